@@ -21,7 +21,7 @@
 #include "lab/bench.h"  // spread_evenly
 #include "lab/levels.h"
 #include "lab/levels_page.h"
-#include "lab/turns.h"
+#include "lab/timed_rounds.h"
 
 namespace binosplat::app {
 
@@ -155,20 +155,18 @@ void print_levels_study(const lab::LevelsStudy& study) {
 
 }  // namespace
 
-CLI::Option* add_levels_options(CLI::App& sub, StudyOptions& options) {
-  CLI::Option* levels = sub.add_flag("--levels", options.levels,
-                                     "What levels of detail lose against the finest, and the time that "
-                                     "they\ntake; of several scenes how that "
-                                     "grows with them");
+void add_levels_options(CLI::App& sub, StudyOptions& options) {
+  sub.add_flag("--levels", options.levels,
+               "What levels of detail lose against the finest, and the time that "
+               "they\ntake; of several scenes how that "
+               "grows with them");
   sub.add_option_function<std::vector<std::string>>(
          "--detail",
          [&options](const std::vector<std::string>& texts) { options.details = parse_details(texts); },
          "With --levels: as `render --detail` takes them (30dB,35dB,40dB,45dB)")
-      ->needs(levels)
       ->delimiter(',')
       ->allow_extra_args(false)
       ->type_name("PX|DB,...");
-  return levels;
 }
 
 void study_levels(const StudyOptions& options) {

@@ -18,13 +18,13 @@
 #include "base/error.h"
 #include "lab/motion.h"
 #include "lab/motion_page.h"
-#include "lab/rules.h"
+#include "lab/rule.h"
 #include "lab/settings.h"
 #include "scene/tour.h"
 
 namespace binosplat::app {
 
-using lab::Variant;
+using lab::Rule;
 
 namespace {
 
@@ -44,20 +44,20 @@ std::vector<std::string> words_between_commas(const std::string& text) {
 }
 
 /// TH,SOURCE by their names.
-Variant rule_of(const std::string& text) {
+Rule rule_of(const std::string& text) {
   const std::vector<std::string> names = words_between_commas(text);
   if (names.size() != 2) fail("--rule {}: expected TH,SOURCE", text);
   const std::string place = "--rule " + text;
-  Variant rule{.th = find_choice(place, names[0], th_choices),
-               .transmittance = find_choice(place, names[1], transmittance_choices)};
+  Rule rule{.th = find_choice(place, names[0], th_choices),
+            .transmittance = find_choice(place, names[1], transmittance_choices)};
   if (render::is_exact(rule.th)) fail("{}: {} is exact, and always measured", place, names[0]);
   return rule;
 }
 
-std::vector<Variant> rules_for(const StudyOptions& options) {
-  std::vector<Variant> rules;
+std::vector<Rule> rules_for(const StudyOptions& options) {
+  std::vector<Rule> rules;
   for (const std::string& text : options.motion.rules) rules.push_back(rule_of(text));
-  if (rules.empty()) rules = lab::all_variants();
+  if (rules.empty()) rules = lab::all_rules();
   return rules;
 }
 
@@ -201,49 +201,40 @@ void print_motion_study(const lab::MotionStudy& study, const lab::Page& page) {
 
 }  // namespace
 
-CLI::Option* add_motion_options(CLI::App& sub, MotionOptions& options) {
+void add_motion_options(CLI::App& sub, MotionOptions& options) {
   const std::vector<std::string> names = all_motions();
-  CLI::Option* motion = sub.add_flag(
-      "--motion", options.chosen, "Rules along moving heads, frame by frame: true quality, pairs and time");
+  sub.add_flag("--motion", options.chosen,
+               "Rules along moving heads, frame by frame: true quality, pairs and time");
   sub.add_option("--motions", options.motions, fmt::format("Which; default: {}", fmt::join(names, ",")))
-      ->needs(motion)
       ->delimiter(',')
       ->type_name("NAME,...")
       ->check(CLI::IsMember(names).description(""));
   sub.add_option("--rule", options.rules,
                  "TH,SOURCE as --th and --transmittance name them; may be given again;\ndefault: all")
-      ->needs(motion)
       ->type_name("RULE")
       ->allow_extra_args(false);
   const auto count = [&](const char* name, std::size_t& into, const char* help) {
-    sub.add_option(name, into, fmt::format("{} ({})", help, into))
-        ->needs(motion)
-        ->type_name("N")
-        ->check(range(0, 10000));
+    sub.add_option(name, into, fmt::format("{} ({})", help, into))->type_name("N")->check(range(0, 10000));
   };
   sub.add_option(
          "--segments", options.segments,
          fmt::format("Stretches, spread evenly along a tour through the cameras ({})", segments_default))
-      ->needs(motion)
       ->type_name("N")
       ->check(range(1, 1000));
   count("--lead", options.lengths.lead, "Frames of a segment before those that count");
   count("--stop", options.lengths.stop, "Frames at the last pose of a segment that moves");
   sub.add_option("--rounds", options.rounds, fmt::format("In which frames are timed ({})", options.rounds))
-      ->needs(motion)
       ->type_name("N")
       ->check(range(1, 100));
   sub.add_flag("--no-equal", options.no_equal,
-               "Without the comparison at one true quality, which takes longest")
-      ->needs(motion);
-  return motion;
+               "Without the comparison at one true quality, which takes longest");
 }
 
 void study_motion(const StudyOptions& options) {
   const Driven driven = open_driven(options);
   const std::vector<lab::MotionPath> paths = paths_of(driven, options);
   const std::vector<shared::View>& views = paths.front().segments.front().frames.front();
-  const std::vector<Variant> rules = rules_for(options);
+  const std::vector<Rule> rules = rules_for(options);
   const auto context = open_context_for_all("study", true, options.context);
   refuse_blind("study --motion", *context, *driven.model,
                make_shots(all_views, driven.lens, no_rig, driven.list, driven.near_plane, driven.model->axes),

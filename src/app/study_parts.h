@@ -13,7 +13,6 @@
 #include "app/shots.h"
 #include "lab/motion_paths.h"
 #include "lab/page.h"
-#include "shared/axes.h"
 
 namespace binosplat::app {
 
@@ -34,8 +33,6 @@ struct MotionOptions {
 struct StudyOptions : MeasuredOptions {
   std::vector<std::string> scenes;  // `scene` is the first; more of --levels only
   RigOptions rig;
-  bool stability = false;
-  bool rules = false;
   bool turn = false;
   bool levels = false;
   std::optional<glm::ivec2> rays;  // of --turn, across and down; none: as many as the device is quick with
@@ -45,16 +42,12 @@ struct StudyOptions : MeasuredOptions {
   std::optional<int> frames;                            // timed of each rule in each round
   std::vector<std::string> test;
   std::string output;
-  std::vector<std::string> cases;
-  double target = 40.0;  // dB
-  // Of the rule that is carried, where it is steered, and where motion is.
-  int th = TH_SQUARED, transmittance = TRANSMITTANCE_ONE;  // of shared/axes.h
-  std::optional<float> tolerance, quality;                 // quality in dB
+  double target = 40.0;          // of --motion, dB
+  std::optional<float> quality;  // likewise
   std::string json;
-  std::vector<std::string> not_for_analyses;  // options given that these know nothing of
 };
 
-/// What is there to study, and the shots of it that the options ask for.
+/// The model and the views of it that the options name.
 struct Studied {
   std::shared_ptr<const Model> model;
   CameraList list;
@@ -68,20 +61,17 @@ void print_table(const lab::Table& table);
 /// Writes what --json and -o ask for.
 void save(const StudyOptions& options, const nlohmann::ordered_json& numbers, const lab::Page& page);
 
-/// --stability: prints the tables, and saves.
-void study_stability(gl::Context& context, const StudyOptions& options, const Studied& studied);
-
 /// --turn: prints the table, and saves.
 void study_turn(gl::Context& context, const StudyOptions& options, const Studied& studied);
 
-/// Adds --motion, which it returns, and the options that no other study takes.
-CLI::Option* add_motion_options(CLI::App& sub, MotionOptions& options);
+/// Adds --motion and the options that no other study takes.
+void add_motion_options(CLI::App& sub, MotionOptions& options);
 
 /// --motion: prints the tables, and saves.
 void study_motion(const StudyOptions& options);
 
-/// Adds --levels, which it returns, and the option that no other study takes.
-CLI::Option* add_levels_options(CLI::App& sub, StudyOptions& options);
+/// Adds --levels and the option that no other study takes.
+void add_levels_options(CLI::App& sub, StudyOptions& options);
 
 /// --levels: prints the tables, and saves.
 void study_levels(const StudyOptions& options);

@@ -138,7 +138,7 @@ Analysis analyse(gl::Context& context, const Model& model, const std::vector<Cal
   }
   done = 0;
   const std::vector<Typical> times = time_in_turns(context, model, tester.views(), all, settings.frames, [&] {
-    progress("timing", ++done, turn_rounds * all.size());
+    progress("timing", ++done, turn_rounds * all.size() * tester.views().size());
   });
   for (std::size_t k = 0; k < times.size(); ++k) timed[k]->times = times[k];
   for (AnalysedSystem& system : from_targets(analysis.targets, settings.targets[settings.targets.size() / 2]))

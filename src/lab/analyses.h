@@ -10,7 +10,7 @@
 #include "lab/calibrate.h"
 #include "lab/contributions.h"
 #include "lab/page.h"
-#include "lab/turns.h"
+#include "lab/timed_rounds.h"
 
 namespace binosplat::lab {
 

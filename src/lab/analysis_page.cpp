@@ -18,17 +18,6 @@ constexpr struct {
   double target_db, removed;
 } paper_removed[] = {{0.1, 0.310}, {0.2, 0.358}, {0.3, 0.389}, {0.4, 0.412}, {0.5, 0.431}};
 
-/// add(series, entry) for every entry of the targets: a line a rule, in their order.
-template <typename Add>
-void by_rule(const Analysis& analysis, Plot& plot, const Add& add) {
-  for (const AnalysedSystem& entry : analysis.targets) series_of(plot, entry.name).line = true;
-  for (Series& series : plot.series) {
-    for (const AnalysedSystem& entry : analysis.targets) {
-      if (entry.name == series.name) add(series, entry);
-    }
-  }
-}
-
 double exact_ms(const Analysis& analysis) {
   for (const AnalysedSystem& system : analysis.systems) {
     if (system.settings.tiles == TILES_ELLIPSE && render::is_exact(system.settings.th))
@@ -44,28 +33,32 @@ Section scene(const Analysis& a) {
                      row("test", a.test_views.size(), db(a.test_photo_db))}};
   std::string sentence =
       fmt::format("{} Gaussians in pictures of {} x {} px.", a.gaussians, a.width, a.height);
-  if (!a.drop()) sentence += " There are no photos: what is lost is told against exact pictures.";
-  return {"scene", "The scene (tables I and II)", sentence, {}, table};
+  if (!a.drop()) sentence += " There are no photos: what is lost is against exact pictures.";
+  return {"scene", "The scene (tables I and II)", sentence, table};
 }
 
 Section systems(const Analysis& a) {
-  Plot plot{{"system", "", false, true}, {"GPU time", "ms"}, {}, true};
   Table table{{"system", "frame ms", "times 3D-GS", "pairs", a.drop() ? "drop dB" : "PSNR against exact dB",
                "worst dB", "in view"},
               {}};
+  Chart chart{.x = "system", .title = "GPU time, ms", .bars = true};
+  for (const gl::StageTime& stage : a.systems.front().times.stages) chart.y.push_back(stage.name + " ms");
+  table.columns.insert(table.columns.end(), chart.y.begin(), chart.y.end());
   const double slowest = a.systems.front().times.frame_ms;
   for (const AnalysedSystem& system : a.systems) {
     const Typical& times = system.times;
-    table.rows.push_back(row(system.name, times.frame_ms, slowest / times.frame_ms, times.pairs,
-                             system.mean_db, system.worst_db, system.worst_view));
-    for (const gl::StageTime& stage : times.stages) series_of(plot, stage.name).add(system.name, stage.ms);
+    auto& cells =
+        table.rows.emplace_back(row(system.name, times.frame_ms, slowest / times.frame_ms, times.pairs,
+                                    system.mean_db, system.worst_db, system.worst_view));
+    for (const gl::StageTime& stage : times.stages) cells.emplace_back(stage.ms);
+    cells.resize(table.columns.size());
   }
   const AnalysedSystem& last = a.systems.back();
   return {"systems", "Where the time goes (figures 2 and 8)",
           fmt::format("The systems by what decides their Gaussian-tile pairs, all in this renderer: “{}” "
                       "draws {:.2f} times as fast as “{}”.",
                       last.name, slowest / last.times.frame_ms, a.systems.front().name),
-          plot, table};
+          table, chart};
 }
 
 Section systems_pictures(const Analysis& a) {
@@ -86,13 +79,10 @@ Section systems_pictures(const Analysis& a) {
 Section skipping(const Analysis& a) {
   const std::vector<SkippingCurve>& curves = a.contributions.skipping;
   const bool drop = curves.front().points.front().drop_db.has_value();
-  Plot plot{{"fragments skipped", "%"}, {"PSNR against exact", "dB"}, {}};
   Table table{{"skipped by", "fragments skipped %", "PSNR against exact dB"}, {}};
   if (drop) table.columns.emplace_back("drop against the photos dB");
   for (const SkippingCurve& curve : curves) {
-    Series& series = plot.series.emplace_back(Series{curve.by, {}, true});
     for (const SkippingCurve::Point& point : curve.points) {
-      series.add(100.0 * point.share, point.psnr_db);
       auto& cells = table.rows.emplace_back(row(curve.by, 100.0 * point.share, point.psnr_db));
       if (drop) cells.emplace_back(point.drop_db);
     }
@@ -104,39 +94,29 @@ Section skipping(const Analysis& a) {
                   "{:.1f} dB; {:.1f} dB where max(T) of each Gaussian is known, {:.1f} dB with the light by "
                   "depth, {:.1f} dB by alpha alone.",
                   half(0), half(1), half(2), half(3)),
-      plot, table};
+      table, Chart{"fragments skipped %", {"PSNR against exact dB"}, "skipped by"}};
 }
 
-/// A plot of one of the values by depth.
+/// A chart of one of the values by depth.
 Section section_by_depth(const Analysis& a, Spread DepthBin::*value, const char* id, const std::string& title,
                          const std::string& label, const std::string& sentence) {
   const std::vector<DepthBin>& bins = a.contributions.by_depth;
-  Plot plot{{"view depth", "world units"}, {label, ""}, {}};
+  Chart chart{.x = "from", .y = {"median", "90 of 100 below", "largest"}, .title = label, .steps = true};
   Table table{{"from", "to", "Gaussians", "median", "90 of 100 below", "largest"}, {}};
   const bool of_transmittance = value == &DepthBin::transmittance;
-  if (of_transmittance) table.columns.emplace_back("T_upper");
-  for (const auto& [number, name] :
-       {std::pair{&Spread::median, "median"}, std::pair{&Spread::p90, "90 of 100 below"},
-        std::pair{&Spread::largest, "largest"}}) {
-    Series& series = plot.series.emplace_back(Series{name, {}, true});
-    for (const DepthBin& bin : bins) {
-      if (std::isnan(bin.*value.*number)) continue;
-      series.add((bin.from + bin.to) / 2, bin.*value.*number, fmt::format("{} Gaussians", bin.gaussians));
-    }
-  }
   if (of_transmittance) {
-    Series& series =
-        plot.series.emplace_back(Series{"T_upper of the calibration views", {}, true, true, false});
-    for (const DepthBin& bin : bins) series.add(bin.from, bin.bound);
+    table.columns.emplace_back("T_upper");
+    chart.y.emplace_back("T_upper");
   }
+  bool shown = false;
   for (const DepthBin& bin : bins) {
     const Spread& of = bin.*value;
+    shown = shown || !std::isnan(of.median);
     auto& cells =
         table.rows.emplace_back(row(bin.from, bin.to, bin.gaussians, of.median, of.p90, of.largest));
     if (of_transmittance) cells.emplace_back(bin.bound);
   }
-  return {id,   title, sentence,
-          plot, table, plot.series.front().points.empty() ? "No pixel blends anything." : ""};
+  return {id, title, sentence, table, chart, {}, shown ? "" : "No pixel blends anything."};
 }
 
 /// How many of the bins, of those that hold Gaussians, have a largest max(T) above a half.
@@ -149,68 +129,56 @@ std::string lit_bins(const Analysis& a) {
   return fmt::format("{} of {}", lit, all);
 }
 
-const char* label_of_tests(const Analysis& a) {
-  return a.drop() ? "drop on the test views" : "PSNR on the test views";
-}
-
 Section real_drops(const Analysis& a) {
-  Plot plot{{"target on the calibration views", "dB"}, {label_of_tests(a), "dB"}, {}};
   Table table{{"rule", "target dB", "reached dB", "test views dB", "worst dB", "in view", "tolerance"}, {}};
   double excess = -INFINITY;
-  by_rule(a, plot, [&](Series& series, const AnalysedSystem& entry) {
+  for (const AnalysedSystem& entry : a.targets) {
     const double target = *entry.target_db, real = entry.mean_db;
     excess = std::max(excess, a.drop() ? real - target : target - real);
-    series.add(target, real, fmt::format("worst: {}", entry.worst_view));
     table.rows.push_back(row(entry.name, target, entry.reached_db, real, entry.worst_db, entry.worst_view,
                              named(entry.settings).tolerance));
-  });
+  }
   return {"real-drops", "What is lost where nothing was calibrated (table III)",
           fmt::format("Tolerances found on {} calibration views cost {} other views {}.",
                       a.calibration_views.size(), a.test_views.size(),
                       excess > 0 ? fmt::format("at most {:.3f} dB more than the target, in the mean", excess)
                                  : std::string("no more than the target, in the mean")),
-          plot, table};
+          table, Chart{"target dB", {"test views dB"}, "rule", "in view"}};
 }
 
 Section removed(const Analysis& a) {
-  Plot plot{{"target", "dB"}, {"pairs removed on the test views", "%"}, {}};
   Table table{{"rule", "target dB", "test views dB", "pairs removed %", "frame ms", "times exact"}, {}};
-  const AnalysedSystem* most = nullptr;
-  by_rule(a, plot, [&](Series& series, const AnalysedSystem& entry) {
-    const double percent = 100.0 * entry.pairs_removed, ms = entry.times.frame_ms;
-    series.add(*entry.target_db, percent);
-    table.rows.push_back(row(entry.name, entry.target_db, entry.mean_db, percent, ms, exact_ms(a) / ms));
-    if (most == nullptr || entry.pairs_removed > most->pairs_removed) most = &entry;
-  });
+  const AnalysedSystem* most = &a.targets.front();
+  for (const AnalysedSystem& entry : a.targets) {
+    const double ms = entry.times.frame_ms;
+    table.rows.push_back(
+        row(entry.name, entry.target_db, entry.mean_db, 100.0 * entry.pairs_removed, ms, exact_ms(a) / ms));
+    if (entry.pairs_removed > most->pairs_removed) most = &entry;
+  }
   if (a.drop()) {
-    Series& series = plot.series.emplace_back(Series{"AdaGScale's paper, its scenes", {}, true});
-    for (const auto& [target, share] : paper_removed) {
-      series.add(target, 100.0 * share);
-      table.rows.push_back(row(series.name, target, nullptr, 100.0 * share, nullptr, nullptr));
-    }
+    for (const auto& [target, share] : paper_removed)
+      table.rows.push_back(
+          row("AdaGScale's paper, its scenes", target, nullptr, 100.0 * share, nullptr, nullptr));
   }
   return {"removed", "Pairs removed (table IV)",
           fmt::format("“{}” removes the most pairs of the exact ellipse test: {:.1f} % at {} dB.{}",
                       most->name, 100.0 * most->pairs_removed, json_text(*most->target_db),
                       a.drop() ? " The paper's K was tuned on the test views themselves." : ""),
-          plot, table};
+          table, Chart{"target dB", {"pairs removed %"}, "rule"}};
 }
 
 Section speed(const Analysis& a) {
-  Plot plot{{label_of_tests(a), "dB"}, {"times as fast as the exact frame", ""}, {}};
-  std::string best;
-  double fastest = 0.0;
-  by_rule(a, plot, [&](Series& series, const AnalysedSystem& entry) {
-    const double times = exact_ms(a) / entry.times.frame_ms;
-    series.add(entry.mean_db, times, json_text(*entry.target_db) + " dB asked");
-    if (times <= fastest) return;
-    fastest = times;
-    best = entry.name;
-  });
-  return {"speed", "Speed at equal error (figure 8)",
-          fmt::format("The fastest is “{}”: {:.2f} times as fast as the exact frame ({:.4g} ms).", best,
-                      fastest, exact_ms(a)),
-          plot};
+  Table table{{"rule", "target dB", "test views dB", "times exact"}, {}};
+  const AnalysedSystem* best = &a.targets.front();
+  for (const AnalysedSystem& entry : a.targets) {
+    table.rows.push_back(row(entry.name, entry.target_db, entry.mean_db, exact_ms(a) / entry.times.frame_ms));
+    if (entry.times.frame_ms < best->times.frame_ms) best = &entry;
+  }
+  const std::string sentence =
+      fmt::format("The fastest is “{}”: {:.2f} times as fast as the exact frame ({:.4g} ms).", best->name,
+                  exact_ms(a) / best->times.frame_ms, exact_ms(a));
+  const Chart chart{"test views dB", {"times exact"}, "rule", "target dB"};
+  return {"speed", "Speed at equal error (figure 8)", sentence, {}, chart, table};
 }
 
 }  // namespace

@@ -10,8 +10,7 @@
 #include "base/clock.h"
 #include "base/statistics.h"
 #include "lab/settings.h"
-#include "lab/times.h"
-#include "lab/wake.h"
+#include "lab/timed_rounds.h"
 #include "measure/depth_table.h"
 #include "measure/foveated.h"
 #include "measure/metrics.h"
@@ -33,8 +32,6 @@ constexpr double share_db = 3.0;
 constexpr std::size_t window = 10;
 constexpr double agreement = 0.03;
 constexpr double warm_up_ms = 3000.0;
-// Before that: for some tenths of a second after a rest both are of the low clock.
-constexpr double wake_ms = 1000.0;
 
 const glm::vec3 black(0.0f);
 
@@ -290,39 +287,40 @@ ViewNumbers Bench::compare(const BenchView& view, const Exact& exact,
 
 void Bench::time(const BenchSettings& settings, BenchNumbers& point) {
   BenchDrawer drawer(gpu_model_, settings);
-  Times all;
-  render::FrameReport report;
-  std::vector<double> repeats;  // means over the views
-  std::map<std::string, double> stages;
-  const auto views = static_cast<double>(views_.size());
+  std::vector<Timed> all;
   bool settled = true;
-  wake(gpu_model_->context(), wake_ms, [&] { drawer.draw(views_.front().eyes); });
-  for (int repeat = 0; repeat < effort_.repeats; ++repeat) {
-    double of_repeat = 0.0;
-    for (const BenchView& view : views_) {
+  render::FrameReport last;
+  for (const BenchView& view : views_) {
+    const auto begin = [&](int repeat) {
       if (repeat == 0) settled = warm_up(drawer, view, gpu_model_->context().software()) && settled;
       for (int n = 0; repeat > 0 && n < render::settling_frames; ++n) drawer.draw(view.eyes);
-      Run run;
-      for (int n = 0; n < effort_.frames; ++n) {
-        report = drawer.draw(view.eyes);
-        run.add(report);
-        all.add(report);
+    };
+    all.push_back({effort_.frames, begin, [&](int) { return last = drawer.draw(view.eyes); }});
+  }
+  const auto rounds = timed_rounds(gpu_model_->context(), effort_.repeats, all, [] {});
+  std::vector<double> repeats, frame_ms, submit_ms;  // repeats: means over the views
+  std::vector<Typical> turns;
+  for (std::size_t repeat = 0; repeat < rounds.front().size(); ++repeat) {
+    std::vector<Typical> of_views;
+    for (const auto& of_view : rounds) {
+      of_views.push_back(typical_of(of_view[repeat]));
+      for (const render::FrameReport& report : of_view[repeat]) {
+        frame_ms.push_back(report.total_ms);
+        submit_ms.push_back(report.submit_ms);
       }
-      of_repeat += run.frame_ms() / views;
-      for (const std::string& stage : run.stage_names())
-        stages[stage] += run.stage_ms(stage) / views / effort_.repeats;
     }
-    repeats.push_back(of_repeat);
+    repeats.push_back(mean_of(of_views).frame_ms);
+    turns.insert(turns.end(), of_views.begin(), of_views.end());
   }
   const auto [least, most] = std::minmax_element(repeats.begin(), repeats.end());
   point.frame_ms = mean(repeats);
-  point.p99_ms = quantile(all.frame, 0.99);
+  point.p99_ms = quantile(frame_ms, 0.99);
   if (effort_.repeats > 1) point.noise_ms = (*most - *least) / 2;
   point.settled = settled;
-  point.frames = all.frame.size();
-  point.gpu_bytes = report.gpu_bytes;
-  point.submit_ms = quantile(all.submit, 0.5);
-  for (const std::string& stage : all.stage_names) point.stages.push_back({stage, stages[stage]});
+  point.frames = frame_ms.size();
+  point.gpu_bytes = last.gpu_bytes;
+  point.submit_ms = quantile(submit_ms, 0.5);
+  point.stages = mean_of(turns).stages;
 }
 
 void Bench::judge(const BenchSettings& settings, BenchNumbers& point) {

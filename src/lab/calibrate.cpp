@@ -6,8 +6,8 @@
 #include "base/clock.h"
 #include "base/error.h"
 #include "base/statistics.h"
-#include "lab/stability.h"
-#include "lab/wake.h"
+#include "lab/rule.h"
+#include "lab/timed_rounds.h"
 #include "measure/search.h"
 #include "render/squared_error.h"
 #include "scene/axes.h"
@@ -138,10 +138,10 @@ CalibrationEntry Calibrator::find(render::FrameSettings settings, double target_
 
 std::vector<render::FrameSettings> calibrated_settings() {
   std::vector<render::FrameSettings> all;
-  for (Variant variant : all_variants()) {
-    if (render::is_exact(variant.th)) continue;
-    variant.tolerance = static_cast<float>(render::threshold_rules[variant.th].careful_tolerance);
-    all.push_back(variant.settings());
+  for (Rule rule : all_rules()) {
+    if (render::is_exact(rule.th)) continue;
+    rule.tolerance = static_cast<float>(render::threshold_rules[rule.th].careful_tolerance);
+    all.push_back(rule.settings());
   }
   return all;
 }

@@ -7,11 +7,10 @@
 #include "base/error.h"
 #include "base/statistics.h"
 #include "lab/fields.h"
-#include "lab/judge.h"
-#include "lab/times.h"
-#include "lab/turns.h"
-#include "lab/wake.h"
+#include "lab/timed_rounds.h"
 #include "measure/flip.h"
+#include "measure/metrics.h"
+#include "stereo/disagreement.h"
 
 namespace binosplat::lab {
 
@@ -47,32 +46,15 @@ std::vector<Picture> drawn(render::Frame& frame, const LevelsShot& shot) {
 
 void judge_levels(const LevelsShot& shot, std::span<const Picture> finest, std::span<const Picture> coarser,
                   LevelsNumbers& numbers) {
-  const FrameErrors errors = judge(shot.views, finest, coarser, TILE_SIZE_DEFAULT);
-  numbers.psnr_db = errors.psnr;
-  if (!std::isnan(errors.disagreement)) numbers.disagreement_db = errors.disagreement;
+  numbers.psnr_db = measure::psnr(finest, coarser, glm::vec3(0.0f));
+  if (shot.views.size() == 2) {
+    const double db = stereo::disagreement({shot.views[0], shot.views[1]}, finest, coarser).db;
+    if (!std::isnan(db)) numbers.disagreement_db = db;
+  }
   std::vector<double> flips;
   for (std::size_t eye = 0; eye < finest.size(); ++eye)
     flips.push_back(measure::flip(on_black(finest[eye]), on_black(coarser[eye])));
   numbers.flip = mean(flips);
-}
-
-struct TimedLevels {
-  render::Frame& frame;
-  LevelsNumbers& into;
-};
-
-void time_in_turns(gl::Context& context, const LevelsShot& shot, std::span<const TimedLevels> all,
-                   int frames) {
-  // It slept while files were read and pictures compared.
-  wake(context, 1000.0, [&] { all.front().frame.draw(shot.views); });
-  for (int round = 0; round < turn_rounds; ++round) {
-    for (const TimedLevels& timed : all) {
-      timed.frame.draw(shot.views);
-      Run run;
-      for (int n = 0; n < frames; ++n) run.add(timed.frame.draw(shot.views));
-      timed.into.frame_ms += run.frame_ms() / turn_rounds;
-    }
-  }
 }
 
 /// Of one number of the shots that have it, by `mean_of`; none where none has.
@@ -164,17 +146,26 @@ void measure_levels(LevelsScene& scene, gl::Context& context, std::span<const Le
       });
       if (!scene.problem.empty()) finest.reset();
     }
-    std::vector<TimedLevels> timed;
+    std::vector<Timed> timed;
+    std::vector<LevelsNumbers*> into;
+    const auto time = [&](render::Frame& of, LevelsNumbers& numbers) {
+      const auto draw = [&](int) { return of.draw(shot.views); };
+      timed.push_back({frames, draw, draw});
+      into.push_back(&numbers);
+    };
     for (std::size_t k = 0; k < models.size(); ++k) {
       LevelsNumbers& numbers = scene.rows[k].shots.back();
       if (finest) judge_levels(shot, pictures, drawn(*of_models[k], shot), numbers);
-      timed.push_back({*of_models[k], numbers});
+      time(*of_models[k], numbers);
     }
     if (finest) {
       of_finest.shots.push_back({.gaussians = static_cast<double>(finest->model.count())});
-      timed.push_back({finest->frame, of_finest.shots.back()});
+      time(finest->frame, of_finest.shots.back());
     }
-    time_in_turns(context, shot, timed, frames);
+    const auto rounds = timed_rounds(context, turn_rounds, timed, [] {});
+    for (std::size_t k = 0; k < into.size(); ++k) {
+      for (const Reports& turn : rounds[k]) into[k]->frame_ms += typical_of(turn).frame_ms / turn_rounds;
+    }
     progress();
   }
   const std::vector<shared::View>& views = shots.front().views;

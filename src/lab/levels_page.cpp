@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "lab/turns.h"
+#include "lab/timed_rounds.h"
 
 namespace binosplat::lab {
 
@@ -15,71 +15,38 @@ std::string detail_text(const LevelsStudy& study, const LevelsRow& row) {
   return row.detail ? fmt::format("{:g} {}", *row.detail, study.in_db ? "dB" : "px") : "finest";
 }
 
-/// The name of a series of a scene.
-std::string series_name(const LevelsStudy& study, const LevelsScene& scene, const std::string& what) {
-  if (study.scenes.size() == 1) return what;
-  return what.empty() ? scene.name : fmt::format("{}: {}", scene.name, what);
-}
-
 double thousands(double gaussians) { return 1e-3 * gaussians; }
 
-Axis detail_axis(const LevelsStudy& study) { return {"asked for", study.in_db ? "dB" : "px"}; }
-
-/// Adds a line a scene: a number over the detail that is asked for.
-void add_lines(const LevelsStudy& study, const std::string& what,
-               std::optional<double> LevelsNumbers::*number, Plot& plot) {
-  for (const LevelsScene& scene : study.scenes) {
-    Series line{series_name(study, scene, what), {}, true};
-    for (const LevelsRow& row : scene.rows) {
-      const std::optional<double> mean = mean_of(row).*number;
-      if (row.detail && mean) line.add(*row.detail, *mean);
-    }
-    if (!line.points.empty()) plot.series.push_back(std::move(line));
-  }
+std::string detail_column(const LevelsStudy& study) {
+  return fmt::format("asked for {}", study.in_db ? "dB" : "px");
 }
 
-Section over_detail(const LevelsStudy& study, const std::string& id, const std::string& title,
-                    const std::string& sentence, const Axis& axis,
-                    std::optional<double> LevelsNumbers::*number) {
-  Section section{id, title, sentence};
-  Plot plot{detail_axis(study), axis, {}};
-  add_lines(study, axis.label, number, plot);
-  if (plot.series.empty()) {
-    section.problem = "This was not measured.";
-  } else {
-    section.plot = std::move(plot);
-  }
-  return section;
+/// A chart of columns of levels_table() over the detail that is asked for; nothing where these are empty.
+Section over_detail(const LevelsStudy& study, const Table& table, const std::string& id,
+                    const std::string& title, const std::string& sentence, const std::string& column) {
+  const auto at = std::ranges::find(table.columns, column) - table.columns.begin();
+  const bool known = std::ranges::any_of(
+      table.rows, [&](const auto& row) { return row[static_cast<std::size_t>(at)] != Cell(); });
+  const Chart chart{detail_column(study), {column}, "scene"};
+  return {id, title, sentence, {}, chart, table, known ? "" : "This was not measured."};
 }
 
-Section losses(const LevelsStudy& study) {
-  Plot plot{detail_axis(study), {"PSNR", "dB"}, {}};
-  add_lines(study, "true", &LevelsNumbers::psnr_db, plot);
-  add_lines(study, "predicted", &LevelsNumbers::predicted_db, plot);
+Section losses(const LevelsStudy& study, const Table& table) {
   std::string sentence =
       "Against the finest levels, the mean over the views; dB by the mean of squared errors. True is of both "
       "eyes' pictures together, predicted of the eye that loses more.";
   for (const std::string& problem : problems_of(study)) sentence += " " + problem;
-  return {"losses", "What is lost", sentence, plot, levels_table(study)};
+  const Chart chart{detail_column(study), {"true dB", "predicted dB"}, "scene"};
+  return {"losses", "What is lost", sentence, table, chart};
 }
 
-Section levels_times(const LevelsStudy& study) {
-  Plot plot{{"Gaussians drawn", "thousands"}, {"GPU time of a frame", "ms"}, {}};
-  for (const LevelsScene& scene : study.scenes) {
-    Series line{series_name(study, scene, ""), {}, true};
-    if (line.name.empty()) line.name = "frame";
-    for (const LevelsRow& row : scene.rows) {
-      const LevelsNumbers mean = mean_of(row);
-      line.add(thousands(mean.gaussians), mean.frame_ms, detail_text(study, row), !row.detail);
-    }
-    plot.series.push_back(std::move(line));
-  }
-  return {"times", "What frames take",
-          fmt::format("A point a detail, the finest levels filled. The median of {} frames of a view, in the "
-                      "mean of {} rounds "
-                      "in which all details took turns, and over the views.",
-                      study.frames, turn_rounds),
-          plot};
+Section levels_times(const LevelsStudy& study, const Table& table) {
+  const std::string sentence = fmt::format(
+      "A point a detail. The median of {} frames of a view, in the mean of {} rounds in which all "
+      "details took turns, and over the views.",
+      study.frames, turn_rounds);
+  const Chart chart{"thousand Gaussians", {"frame ms"}, "scene", detail_column(study)};
+  return {"times", "What frames take", sentence, {}, chart, table};
 }
 
 /// From the fewest Gaussians on.
@@ -90,30 +57,23 @@ std::vector<const LevelsScene*> by_size(const LevelsStudy& study) {
   return scenes;
 }
 
-/// Of each scene, in the order of by_size(), and of what is drawn of any: the time of a frame.
-struct Growth {
-  std::string detail;
-  std::vector<std::optional<double>> ms;
-
-  /// As a multiple of the smallest scene's.
-  std::optional<double> times(std::size_t scene) const {
-    return ms[scene] && ms.front() ? std::optional(*ms[scene] / *ms.front()) : std::nullopt;
-  }
-};
-
-std::vector<Growth> growths(const LevelsStudy& study) {
-  std::vector<Growth> all;
-  const std::vector<const LevelsScene*> scenes = by_size(study);
-  for (std::size_t k = 0; k < scenes.size(); ++k) {
-    for (const LevelsRow& row : scenes[k]->rows) {
-      const std::string detail = detail_text(study, row);
-      auto found = std::ranges::find(all, detail, &Growth::detail);
-      if (found == all.end()) found = all.insert(all.end(), {detail, {}});
-      found->ms.resize(scenes.size());
-      found->ms[k] = mean_of(row).frame_ms;
+/// What is drawn of any scene, in order.
+std::vector<std::string> details_of(const LevelsStudy& study) {
+  std::vector<std::string> details;
+  for (const LevelsScene* scene : by_size(study)) {
+    for (const LevelsRow& one : scene->rows) {
+      const std::string detail = detail_text(study, one);
+      if (std::ranges::find(details, detail) == details.end()) details.push_back(detail);
     }
   }
-  return all;
+  return details;
+}
+
+std::optional<double> ms_of(const LevelsStudy& study, const LevelsScene& scene, const std::string& detail) {
+  for (const LevelsRow& one : scene.rows) {
+    if (detail_text(study, one) == detail) return mean_of(one).frame_ms;
+  }
+  return std::nullopt;
 }
 
 double times_the_gaussians(const std::vector<const LevelsScene*>& scenes, std::size_t k) {
@@ -121,22 +81,14 @@ double times_the_gaussians(const std::vector<const LevelsScene*>& scenes, std::s
 }
 
 Section growth(const LevelsStudy& study) {
-  Plot plot{{"Gaussians at the finest levels", "thousands", true}, {"GPU time of a frame", "ms", true}, {}};
   const std::vector<const LevelsScene*> scenes = by_size(study);
-  std::vector<std::string> ratios;
-  for (const Growth& one : growths(study)) {
-    Series& line = plot.series.emplace_back(Series{one.detail, {}, true});
-    for (std::size_t k = 0; k < scenes.size(); ++k) {
-      if (one.ms[k]) line.add(thousands(static_cast<double>(scenes[k]->finest)), *one.ms[k], scenes[k]->name);
-    }
-    if (const auto times = one.times(scenes.size() - 1))
-      ratios.push_back(fmt::format("{} {:.2f}", one.detail, *times));
-  }
+  Chart chart{.x = "thousand Gaussians", .label = "scene", .title = "GPU time of a frame, ms"};
+  chart.log_x = chart.log_y = true;
+  for (const std::string& detail : details_of(study)) chart.y.push_back(detail + ": ms");
   return {"growth", "Growth with the model",
-          fmt::format("From {} to {}: {:.3g} times the Gaussians. Times the frame's time: {}.",
-                      scenes.front()->name, scenes.back()->name,
-                      times_the_gaussians(scenes, scenes.size() - 1), fmt::join(ratios, ", ")),
-          plot, growth_table(study)};
+          fmt::format("From {} to {}: {:.3g} times the Gaussians.", scenes.front()->name, scenes.back()->name,
+                      times_the_gaussians(scenes, scenes.size() - 1)),
+          growth_table(study), chart};
 }
 
 Section views(const LevelsStudy& study) {
@@ -153,14 +105,14 @@ Section views(const LevelsStudy& study) {
       }
     }
   }
-  return {"views", "Each view", "The numbers that the means above are of.", {}, table};
+  return {"views", "Each view", "The numbers that the means above are of.", table};
 }
 
 }  // namespace
 
 Table levels_table(const LevelsStudy& study) {
-  Table table{{"scene", "detail", "thousand Gaussians", "of the finest %", "predicted dB", "true dB",
-               "worst true dB", "FLIP", "disagreement dB", "frame ms", "of the finest's"},
+  Table table{{"scene", detail_column(study), "thousand Gaussians", "of the finest %", "predicted dB",
+               "true dB", "worst true dB", "FLIP", "disagreement dB", "frame ms", "of the finest's"},
               {}};
   for (const LevelsScene& scene : study.scenes) {
     const bool has_finest = !scene.rows.back().detail;
@@ -168,9 +120,9 @@ Table levels_table(const LevelsStudy& study) {
       const LevelsNumbers n = mean_of(of);
       const double share = n.gaussians / static_cast<double>(scene.finest);
       const Cell of_time = has_finest ? Cell(n.frame_ms / mean_of(scene.rows.back()).frame_ms) : Cell();
-      table.rows.push_back(row(scene.name, detail_text(study, of), thousands(n.gaussians), 100.0 * share,
-                               n.predicted_db, n.psnr_db, worst_db(of), n.flip, n.disagreement_db, n.frame_ms,
-                               of_time));
+      table.rows.push_back(row(scene.name, of.detail ? Cell(*of.detail) : Cell("finest"),
+                               thousands(n.gaussians), 100.0 * share, n.predicted_db, n.psnr_db, worst_db(of),
+                               n.flip, n.disagreement_db, n.frame_ms, of_time));
     }
   }
   return table;
@@ -183,12 +135,14 @@ Table growth_table(const LevelsStudy& study) {
   for (std::size_t k = 0; k < scenes.size(); ++k)
     table.rows.push_back(row(scenes[k]->name, thousands(static_cast<double>(scenes[k]->finest)),
                              times_the_gaussians(scenes, k)));
-  for (const Growth& one : growths(study)) {
-    table.columns.push_back(one.detail + ": ms");
-    table.columns.push_back(one.detail + ": times");
+  for (const std::string& detail : details_of(study)) {
+    table.columns.push_back(detail + ": ms");
+    table.columns.push_back(detail + ": times");
+    const std::optional<double> smallest = ms_of(study, *scenes.front(), detail);
     for (std::size_t k = 0; k < scenes.size(); ++k) {
-      table.rows[k].emplace_back(one.ms[k]);
-      table.rows[k].emplace_back(one.times(k));
+      const std::optional<double> ms = ms_of(study, *scenes[k], detail);
+      table.rows[k].emplace_back(ms);
+      table.rows[k].emplace_back(ms && smallest ? Cell(*ms / *smallest) : Cell());
     }
   }
   return table;
@@ -217,15 +171,16 @@ Page levels_page(const LevelsStudy& study) {
         scene.name, fmt::format("{} Gaussians, {} views of {} x {} x {} px", scene.finest, scene.shots.size(),
                                 scene.eyes, scene.width, scene.height));
   }
+  const Table table = levels_table(study);
   page.sections = {
-      losses(study),
-      over_detail(study, "flip", "What somebody sees who flips between the two",
+      losses(study, table),
+      over_detail(study, table, "flip", "What somebody sees who flips between the two",
                   "FLIP against the finest levels, the mean over pixels, eyes and views; 0 is no difference.",
-                  {"FLIP", ""}, &LevelsNumbers::flip),
-      over_detail(study, "disagreement", "What only one eye sees",
+                  "FLIP"),
+      over_detail(study, table, "disagreement", "What only one eye sees",
                   "Disagreement: the part of the error that the eyes do not share; more dB are less of it.",
-                  {"disagreement", "dB"}, &LevelsNumbers::disagreement_db),
-      levels_times(study)};
+                  "disagreement dB"),
+      levels_times(study, table)};
   if (study.scenes.size() > 1) page.sections.push_back(growth(study));
   page.sections.push_back(views(study));
   return page;

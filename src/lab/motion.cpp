@@ -12,7 +12,7 @@
 #include "lab/exact_frames.h"
 #include "lab/fields.h"
 #include "lab/settings.h"
-#include "lab/wake.h"
+#include "lab/timed_rounds.h"
 #include "measure/depth_table.h"
 #include "render/frame.h"
 
@@ -50,17 +50,17 @@ class Drive {
 
   /// Bounds by depth, for the rules that use them.
   void measure_table(const std::vector<MotionPath>& paths);
-  MotionResult along(const MotionPath& path, const std::vector<Variant>& rules);
+  MotionResult along(const MotionPath& path, const std::vector<Rule>& rules);
 
  private:
-  render::FrameSettings settings_of(const Variant& variant, float request) const {
-    render::FrameSettings settings = variant.settings();
+  render::FrameSettings settings_of(const Rule& rule, float request) const {
+    render::FrameSettings settings = rule.settings();
     settings.depth_table = table_;
     settings.depth = Depth::none;
-    if (!render::is_exact(variant.th)) settings.quality = request;
+    if (!render::is_exact(rule.th)) settings.quality = request;
     return settings;
   }
-  MovedPass judged(const MotionPath& path, const Variant& variant, float request);
+  MovedPass judged(const MotionPath& path, const Rule& rule, float request);
   MovedPass exact_pass(const MotionPath& path) const;
   void bring_to_target(const MotionPath& path, MovedRule& rule);
   void time(MotionResult& result);
@@ -84,9 +84,9 @@ void Drive::measure_table(const std::vector<MotionPath>& paths) {
   table_ = measure::measure_depth_table(frame_, chosen);
 }
 
-MovedPass Drive::judged(const MotionPath& path, const Variant& variant, float request) {
+MovedPass Drive::judged(const MotionPath& path, const Rule& rule, float request) {
   MovedPass pass{request, {}, {}, {}, {}};
-  const render::FrameSettings settings = settings_of(variant, request);
+  const render::FrameSettings settings = settings_of(rule, request);
   for (std::size_t s = 0; s < path.segments.size(); ++s) {
     frame_.start_over();
     auto& frames = pass.frames.emplace_back();
@@ -124,7 +124,7 @@ void Drive::bring_to_target(const MotionPath& path, MovedRule& rule) {
   const MotionPath moving = without_stops(path);
   const auto off = [&](const MovedPass& pass) { return std::abs(pass.moving.true_db - settings_.target); };
   const auto value = [&](double request) {
-    MovedPass pass = judged(moving, rule.variant, static_cast<float>(request));
+    MovedPass pass = judged(moving, rule, static_cast<float>(request));
     const double db = pass.moving.true_db;
     if (off(pass) < off(rule.at_target())) rule.equal = std::move(pass);
     return db;
@@ -139,69 +139,57 @@ void Drive::bring_to_target(const MotionPath& path, MovedRule& rule) {
     rule.problem = fmt::format("not within {} dB of {:g} dB", settings_.equal_within, settings_.target);
 }
 
-// What is timed: frames drawn without a word, and where their times go.
-struct TimedMotion {
-  const MotionPath* path;
-  render::FrameSettings settings;
-  MovedPass* into;
-  std::vector<std::vector<std::vector<double>>> ms;  // by segment, frame and round
-  std::size_t differs = 0;  // frames that made other pairs than when they were judged
-};
-
-void draw_segment(render::Frame& frame, TimedMotion& timed, std::size_t s) {
-  const MotionSegment& segment = timed.path->segments[s];
-  frame.start_over();
-  for (std::size_t n = 0; n < segment.frames.size(); ++n) {
-    const render::FrameReport report = frame.draw(segment.frames[n], timed.settings);
-    timed.ms[s][n].push_back(report.total_ms);
-    timed.differs += static_cast<double>(report.pairs) != timed.into->frames[s][n].pairs;
-  }
-}
-
 void Drive::time(MotionResult& result) {
   const MotionPath moving = without_stops(result.path);
-  std::vector<TimedMotion> all = {{&result.path, settings_of({.th = TH_TAU}, 0.0f), &result.exact, {}, 0}};
+  struct Pass {
+    const MotionPath* path;
+    render::FrameSettings settings;
+    MovedPass* into;
+  };
+  std::vector<Pass> passes = {{&result.path, settings_of({.th = TH_TAU}, 0.0f), &result.exact}};
   for (MovedRule& rule : result.rules) {
-    all.push_back({&result.path, settings_of(rule.variant, rule.asked.request), &rule.asked, {}, 0});
-    if (rule.equal)
-      all.push_back({&moving, settings_of(rule.variant, rule.equal->request), &*rule.equal, {}, 0});
+    passes.push_back({&result.path, settings_of(rule, rule.asked.request), &rule.asked});
+    if (rule.equal) passes.push_back({&moving, settings_of(rule, rule.equal->request), &*rule.equal});
   }
-  const std::size_t segments = result.path.segments.size();
-  for (TimedMotion& timed : all) {
-    for (const MotionSegment& segment : timed.path->segments) timed.ms.emplace_back(segment.frames.size());
+  // Segment by segment, pass after pass.
+  std::vector<Timed> all;
+  for (std::size_t s = 0; s < result.path.segments.size(); ++s) {
+    for (const Pass& pass : passes) {
+      const auto& frames = pass.path->segments[s].frames;
+      all.push_back({static_cast<int>(frames.size()), [this](int) { frame_.start_over(); },
+                     [&](int n) { return frame_.draw(frames[static_cast<std::size_t>(n)], pass.settings); }});
+    }
   }
-  // It slept while sums were read.
-  wake(frame_.model()->context(), 1000.0, [&] { frame_.draw(result.path.segments.front().frames.front()); });
-  std::size_t done = 0;
-  for (int round = 0; round < settings_.rounds; ++round) {
-    for (std::size_t s = 0; s < segments; ++s) {
-      for (TimedMotion& timed : all) {
-        draw_segment(frame_, timed, s);
-        tell_(result.path.name + ": timing", ++done, settings_.rounds * segments * all.size());
+  std::size_t done = 0, differs = 0;
+  const auto rounds = timed_rounds(frame_.model()->context(), settings_.rounds, all, [&] {
+    tell_(result.path.name + ": timing", ++done, settings_.rounds * all.size());
+  });
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    auto& frames = passes[k % passes.size()].into->frames[k / passes.size()];
+    for (std::size_t n = 0; n < frames.size(); ++n) {
+      std::vector<double> ms;
+      for (const Reports& turn : rounds[k]) {
+        ms.push_back(turn[n].total_ms);
+        differs += static_cast<double>(turn[n].pairs) != frames[n].pairs;
       }
+      frames[n].ms = quantile(std::move(ms), 0.5);
     }
   }
-  for (const TimedMotion& timed : all) {
-    for (std::size_t s = 0; s < segments; ++s) {
-      for (std::size_t n = 0; n < timed.ms[s].size(); ++n)
-        timed.into->frames[s][n].ms = quantile(timed.ms[s][n], 0.5);
-    }
-    summarise(*timed.path, *timed.into);
-    if (timed.differs > 0)
-      log_warning("{}: {} frames timed are not those that were judged", result.path.name, timed.differs);
-  }
+  for (const Pass& pass : passes) summarise(*pass.path, *pass.into);
+  if (differs > 0)
+    log_warning("{}: {} frames timed are not those that were judged", result.path.name, differs);
 }
 
-MotionResult Drive::along(const MotionPath& path, const std::vector<Variant>& rules) {
+MotionResult Drive::along(const MotionPath& path, const std::vector<Rule>& rules) {
   exact_.draw(frame_, path);
   if (exact_.left_out() > 0)
     log_info("{}: {} exact frames have no room and are drawn again for each rule", path.name,
              exact_.left_out());
   MotionResult result{path, exact_pass(path), {}};
   std::size_t done = 0;
-  for (const Variant& variant : rules) {
-    MovedRule& rule = result.rules.emplace_back(MovedRule{variant, judged(path, variant, settings_.quality)});
-    if (settings_.equal) bring_to_target(path, rule);
+  for (const Rule& rule : rules) {
+    MovedRule& moved = result.rules.emplace_back(MovedRule{rule, judged(path, rule, settings_.quality)});
+    if (settings_.equal) bring_to_target(path, moved);
     tell_(path.name + ": rules", ++done, rules.size());
   }
   time(result);
@@ -211,7 +199,7 @@ MotionResult Drive::along(const MotionPath& path, const std::vector<Variant>& ru
 // The pass of the rule that `rule` is compared with; none where it is not among them.
 const MovedRule* one_of(const MotionResult& result, const MovedRule& rule) {
   const auto found = std::find_if(result.rules.begin(), result.rules.end(), [&](const MovedRule& other) {
-    return other.variant.th == rule.variant.th && other.variant.transmittance == TRANSMITTANCE_ONE;
+    return other.th == rule.th && other.transmittance == TRANSMITTANCE_ONE;
   });
   return found == result.rules.end() ? nullptr : &*found;
 }
@@ -233,9 +221,9 @@ ordered_json path_json(const MotionResult& result) {
     json["lengths"].push_back(object("lead", segment.lead, "moving", segment.moving(), "stop", segment.stop));
   json["exact"] = object("moving", to_json(result.exact.moving), "segments", to_json(result.exact.frames));
   for (const MovedRule& rule : result.rules) {
-    ordered_json settings = to_json(rule.variant.settings());
+    ordered_json settings = to_json(rule.settings());
     settings.erase("tolerance");  // each frame chooses its own
-    json["rules"].push_back(object("name", rule.variant.name(), "settings", settings, "asked",
+    json["rules"].push_back(object("name", rule.name(), "settings", settings, "asked",
                                    pass_json(rule.asked, shares(result, rule, false))));
     if (!rule.compared) continue;
     ordered_json& at_target = json["rules"].back()["at_target"] =
@@ -248,11 +236,11 @@ ordered_json path_json(const MotionResult& result) {
 }  // namespace
 
 std::vector<MotionResult> measure_motion(gl::Context& context, const Model& model,
-                                         const std::vector<MotionPath>& paths, std::vector<Variant> rules,
+                                         const std::vector<MotionPath>& paths, std::vector<Rule> rules,
                                          const MotionSettings& settings, const Tell& progress) {
-  std::erase_if(rules, [](const Variant& rule) { return render::is_exact(rule.th); });
+  std::erase_if(rules, [](const Rule& rule) { return render::is_exact(rule.th); });
   Drive drive(context, model, settings, progress);
-  const auto by_depth = [](const Variant& rule) { return rule.transmittance == TRANSMITTANCE_DEPTH; };
+  const auto by_depth = [](const Rule& rule) { return rule.transmittance == TRANSMITTANCE_DEPTH; };
   if (std::any_of(rules.begin(), rules.end(), by_depth)) drive.measure_table(paths);
   std::vector<MotionResult> results;
   for (const MotionPath& path : paths) results.push_back(drive.along(path, rules));

@@ -10,7 +10,8 @@
 
 #include "gl/context.h"
 #include "lab/motion_numbers.h"
-#include "lab/stability.h"
+#include "lab/rule.h"
+#include "scene/model.h"
 
 namespace binosplat::lab {
 
@@ -31,8 +32,7 @@ struct MovedPass {
   MotionSummary lead, moving, stop;
 };
 
-struct MovedRule {
-  Variant variant;
+struct MovedRule : Rule {
   MovedPass asked;
   bool compared = false;  // at the target: what follows was looked for
   /// As near to the target as a request was found, without stops. None where the request asked for came
@@ -56,8 +56,8 @@ struct MotionResult {
 /// rule, is timed with them. Tables of bounds by depth are measured in the first and last views of segments.
 /// `progress(what, done, of)` tells what is under way.
 std::vector<MotionResult> measure_motion(
-    gl::Context& context, const Model& model, const std::vector<MotionPath>& paths,
-    std::vector<Variant> rules, const MotionSettings& settings,
+    gl::Context& context, const Model& model, const std::vector<MotionPath>& paths, std::vector<Rule> rules,
+    const MotionSettings& settings,
     const std::function<void(const std::string&, std::size_t, std::size_t)>& progress);
 
 /// Of a rule's moving frames: their time in the exact frames', and it and the pairs in those of the rule that

@@ -3,9 +3,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <algorithm>
-#include <cmath>
 #include <set>
+#include <span>
 
 #include "lab/settings.h"
 
@@ -17,29 +16,6 @@ namespace {
 Cell of_part(const MotionSummary& part, double MotionSummary::*number) {
   return part.frames == 0 ? Cell() : Cell(part.*number);
 }
-
-/// The path on which something of a rule is largest; not a number where it is none on any.
-struct Worst {
-  std::string rule, path;
-  double value = -INFINITY;
-};
-
-/// By rule, of value(path, rule).
-template <typename Value>
-std::vector<Worst> worst_paths(const MotionStudy& study, const Value& value) {
-  std::vector<Worst> all;
-  for (const MotionResult& path : study.paths) {
-    all.resize(path.rules.size());
-    for (std::size_t k = 0; k < all.size(); ++k) {
-      const double here = value(path, path.rules[k]);
-      if (here <= all[k].value || std::isnan(all[k].value)) continue;
-      all[k] = {path.rules[k].variant.name(), path.path.name, here};
-    }
-  }
-  return all;
-}
-
-bool less(const Worst& a, const Worst& b) { return a.value < b.value; }
 
 /// A column a path of what value(path, rule) is.
 template <typename Value>
@@ -53,7 +29,7 @@ void add_columns(const MotionStudy& study, const std::string& what, const Value&
 
 Table rules_of(const MotionStudy& study) {
   Table table{{"rule"}, {}};
-  for (const MovedRule& rule : study.paths.front().rules) table.rows.push_back(row(rule.variant.name()));
+  for (const MovedRule& rule : study.paths.front().rules) table.rows.push_back(row(rule.name()));
   return table;
 }
 
@@ -65,19 +41,22 @@ Section words_kept(const MotionStudy& study) {
   };
   add_columns(study, "true dB", moving(&MotionSummary::true_db), table);
   add_columns(study, "worst dB", moving(&MotionSummary::worst_db), table);
-  add_columns(study, "told minus true dB", moving(&MotionSummary::told_beyond), table);
-  const auto worst = worst_paths(
-      study, [](const MotionResult&, const MovedRule& rule) { return -rule.asked.moving.true_db; });
-  const auto [nearest, farthest] = std::minmax_element(worst.begin(), worst.end(), less);
-  std::string sentence = fmt::format(
-      "Every rule was asked for {:g} dB. “{}” falls least below: moving frames come to {:.1f} dB in the mean "
-      "where it "
-      "does worst ({})",
-      study.settings.quality, nearest->rule, -nearest->value, nearest->path);
-  if (farthest->value > nearest->value)
-    sentence +=
-        fmt::format("; “{}” falls most: {:.1f} dB ({})", farthest->rule, -farthest->value, farthest->path);
-  return {"words", "Whether rules keep their word", sentence + ".", {}, table};
+  add_columns(study, "reported minus true dB", moving(&MotionSummary::told_beyond), table);
+  const MovedRule* worst = nullptr;
+  std::string where;
+  for (const MotionResult& path : study.paths) {
+    for (const MovedRule& rule : path.rules) {
+      if (worst != nullptr && worst->asked.moving.true_db <= rule.asked.moving.true_db) continue;
+      worst = &rule;
+      where = path.path.name;
+    }
+  }
+  const std::string sentence = fmt::format(
+      "Every rule was asked for {:g} dB. “{}” falls farthest below: its moving frames come to {:.1f} dB in "
+      "the "
+      "mean ({}).",
+      study.settings.quality, worst->name(), worst->asked.moving.true_db, where);
+  return {"words", "Whether rules keep their word", sentence, table};
 }
 
 /// What rules take at one true quality.
@@ -106,91 +85,99 @@ Section gains(const MotionStudy& study) {
     add_columns(
         study, "why not", [](const MotionResult&, const MovedRule& rule) { return rule.problem; }, table);
   section.sentence = fmt::format(
-      "At {:g} dB, the true mean of each path's moving frames: GPU time and pairs in those of the rule that "
-      "takes all "
-      "the light for granted, with the same threshold",
+      "At {:g} dB, the true mean of each path's moving frames: GPU time and pairs in those of the rule with "
+      "the "
+      "same threshold and a transmittance of 1, and in the exact frame's.",
       study.settings.target);
-  std::vector<Worst> worst = worst_paths(study, [](const MotionResult& path, const MovedRule& rule) {
-    return rule.problem.empty() ? shares(path, rule, true).ms_of_exact.value_or(NAN) : NAN;
-  });
-  std::erase_if(worst, [](const Worst& one) { return std::isnan(one.value); });
-  if (!worst.empty()) {
-    const Worst best = *std::min_element(worst.begin(), worst.end(), less);
-    section.sentence += fmt::format(". The fastest is “{}”: at most {:.2f} of the exact frame's time ({})",
-                                    best.rule, best.value, best.path);
-  }
-  section.sentence += ".";
   return section;
 }
 
 using Number = double (*)(const MovedFrame&);
 
-/// A number of every frame of a path, its segments one after the other.
-Series line_of(const std::string& name, const MovedFrames& frames, Number number, const MotionPath& path) {
-  Series series{name, {}, true, false, false};
-  for (std::size_t s = 0; s < frames.size(); ++s) {
+/// Numbers of every frame of a path, its segments one after the other: a column for each pass and number.
+Table frames_table(const MotionPath& path, std::span<const std::pair<std::string, const MovedFrames*>> passes,
+                   std::span<const std::pair<std::string, Number>> numbers) {
+  Table table{{"frame", "part"}, {}};
+  for (std::size_t s = 0; s < path.segments.size(); ++s) {
     const MotionSegment& segment = path.segments[s];
-    for (std::size_t n = 0; n < frames[s].size(); ++n) {
+    for (std::size_t n = 0; n < segment.frames.size(); ++n) {
       const char* part = n < segment.lead ? "lead" : n < segment.lead + segment.moving() ? "moving" : "stop";
-      series.add(static_cast<double>(series.points.size()), number(frames[s][n]),
-                 fmt::format("stretch {}, {}", s + 1, part));
+      auto& cells =
+          table.rows.emplace_back(row(table.rows.size(), fmt::format("stretch {}, {}", s + 1, part)));
+      for (const auto& [name, frames] : passes) {
+        for (const auto& [what, number] : numbers) cells.emplace_back(number((*frames)[s][n]));
+      }
     }
   }
-  return series;
+  for (const auto& [name, frames] : passes) {
+    for (const auto& [what, number] : numbers) table.columns.push_back(name + what);
+  }
+  return table;
+}
+
+/// A chart of all columns of such a table.
+Section frames_section(const std::string& id, const std::string& title, const std::string& sentence,
+                       std::optional<Table> table, const std::string& axis, Table numbers) {
+  Chart chart{.x = "frame",
+              .y = {numbers.columns.begin() + 2, numbers.columns.end()},
+              .label = "part",
+              .title = axis,
+              .dots = false};
+  return {id, title, sentence, std::move(table), std::move(chart), std::move(numbers)};
+}
+
+std::vector<std::pair<std::string, const MovedFrames*>> passes_of(const MotionResult& path, bool exact) {
+  std::vector<std::pair<std::string, const MovedFrames*>> passes;
+  if (exact) passes.emplace_back("exact", &path.exact.frames);
+  for (const MovedRule& rule : path.rules) passes.emplace_back(rule.name(), &rule.asked.frames);
+  return passes;
 }
 
 Section asked(const MotionStudy& study, const MotionResult& path) {
-  Plot plot{{"frame", ""}, {"PSNR", "dB"}, {}};
-  for (const MovedRule& rule : path.rules) {
-    const auto add = [&](const std::string& name, Number number) {
-      plot.series.push_back(line_of(name, rule.asked.frames, number, path.path));
-    };
-    add(rule.variant.name(), [](const MovedFrame& frame) { return frame.true_db(); });
-    add(rule.variant.name() + ": told", [](const MovedFrame& frame) { return frame.told(); });
-  }
+  const std::pair<std::string, Number> numbers[] = {
+      {": true dB", [](const MovedFrame& frame) { return frame.true_db(); }},
+      {": reported dB", [](const MovedFrame& frame) { return frame.told(); }}};
   const std::string& name = path.path.name;
-  return {
-      "asked-" + name, fmt::format("{}: true and told", name),
+  return frames_section(
+      "asked-" + name, fmt::format("{}: true and reported", name),
       fmt::format(
           "{}; {}. Asked for {:g} dB; the worse eye's PSNR against the exact frame, of 8-bit pictures, and "
-          "what the program told of itself. Means are over moving frames; {:g} dB are equal pictures.",
+          "what the program reported of itself. Means are over moving frames; {:g} dB are equal pictures.",
           path.path.motion, lengths_of(path.path), study.settings.quality, equal_db),
-      plot, asked_table(path)};
+      asked_table(path), "PSNR, dB", frames_table(path.path, passes_of(path, false), numbers));
 }
 
 /// A number of the frames where all were asked for the same; the exact frame's beside them.
-Plot costs(const MotionResult& path, const Axis& axis, Number number) {
-  Plot plot{{"frame", ""}, axis, {line_of("exact", path.exact.frames, number, path.path)}};
-  for (const MovedRule& rule : path.rules)
-    plot.series.push_back(line_of(rule.variant.name(), rule.asked.frames, number, path.path));
-  return plot;
+Table costs(const MotionResult& path, Number number) {
+  const std::pair<std::string, Number> numbers[] = {{"", number}};
+  return frames_table(path.path, passes_of(path, true), numbers);
 }
 
 Section pairs(const MotionStudy& study, const MotionResult& path) {
-  Section section{"pairs-" + path.path.name, fmt::format("{}: pairs", path.path.name),
-                  fmt::format("Gaussian-tile pairs of a frame, a probe's included, asked for {:g} dB.",
-                              study.settings.quality),
-                  costs(path, {"pairs", "M"}, [](const MovedFrame& frame) { return 1e-6 * frame.pairs; })};
-  const Table table = target_table(path);
-  if (table.rows.empty()) return section;
-  section.table = table;
-  section.sentence +=
-      fmt::format(" The table is of the requests at which moving frames come to {:g} dB in the mean.",
-                  study.settings.target);
-  return section;
+  std::string sentence = fmt::format("Gaussian-tile pairs of a frame, a probe's included, asked for {:g} dB.",
+                                     study.settings.quality);
+  std::optional<Table> table = target_table(path);
+  if (table->rows.empty()) table.reset();
+  if (table)
+    sentence +=
+        fmt::format(" The table is of the requests at which moving frames come to {:g} dB in the mean.",
+                    study.settings.target);
+  return frames_section("pairs-" + path.path.name, fmt::format("{}: pairs", path.path.name), sentence,
+                        std::move(table), "pairs, M",
+                        costs(path, [](const MovedFrame& frame) { return 1e-6 * frame.pairs; }));
 }
 
 Section motion_times(const MotionStudy& study, const MotionResult& path) {
-  return {"times-" + path.path.name, fmt::format("{}: time", path.path.name),
-          fmt::format("GPU time of a frame, the median of {} rounds in which rules took turns.",
-                      study.settings.rounds),
-          costs(path, {"GPU time", "ms"}, [](const MovedFrame& frame) { return frame.ms; })};
+  return frames_section("times-" + path.path.name, fmt::format("{}: time", path.path.name),
+                        fmt::format("GPU time of a frame, the median of {} rounds in which rules took turns.",
+                                    study.settings.rounds),
+                        {}, "GPU time, ms", costs(path, [](const MovedFrame& frame) { return frame.ms; }));
 }
 
 }  // namespace
 
 Table asked_table(const MotionResult& path) {
-  Table table{{"rule", "true dB", "tenth dB", "worst dB", "told minus true dB", "farthest dB",
+  Table table{{"rule", "true dB", "tenth dB", "worst dB", "reported minus true dB", "farthest dB",
                "lead, worst dB", "stop dB", "stop, worst dB", "pairs, M", "removed %", "drawn", "frame ms",
                "of exact", "of `one`", "drawn once, ms", "most ms"},
               {}};
@@ -201,12 +188,11 @@ Table asked_table(const MotionResult& path) {
   for (const MovedRule& rule : path.rules) {
     const MotionSummary &moving = rule.asked.moving, &stop = rule.asked.stop;
     const MovedShares part = shares(path, rule, false);
-    table.rows.push_back(row(rule.variant.name(), moving.true_db, moving.tenth_db, moving.worst_db,
-                             moving.told_beyond, moving.told_worst,
-                             of_part(rule.asked.lead, &MotionSummary::worst_db),
-                             of_part(stop, &MotionSummary::true_db), of_part(stop, &MotionSummary::worst_db),
-                             1e-6 * moving.pairs, 100.0 * moving.removed, moving.drawn, moving.ms,
-                             part.ms_of_exact, part.ms_of_one, moving.once_ms, moving.most_ms));
+    table.rows.push_back(row(
+        rule.name(), moving.true_db, moving.tenth_db, moving.worst_db, moving.told_beyond, moving.told_worst,
+        of_part(rule.asked.lead, &MotionSummary::worst_db), of_part(stop, &MotionSummary::true_db),
+        of_part(stop, &MotionSummary::worst_db), 1e-6 * moving.pairs, 100.0 * moving.removed, moving.drawn,
+        moving.ms, part.ms_of_exact, part.ms_of_one, moving.once_ms, moving.most_ms));
   }
   return table;
 }
@@ -219,7 +205,7 @@ Table target_table(const MotionResult& path) {
     if (!rule.compared) continue;
     const MotionSummary& moving = rule.at_target().moving;
     const MovedShares part = shares(path, rule, true);
-    table.rows.push_back(row(rule.variant.name(), rule.at_target().request, moving.true_db, moving.tenth_db,
+    table.rows.push_back(row(rule.name(), rule.at_target().request, moving.true_db, moving.tenth_db,
                              moving.worst_db, 1e-6 * moving.pairs, part.pairs_of_one, 100.0 * moving.removed,
                              moving.drawn, moving.ms, part.ms_of_exact, part.ms_of_one, rule.problem));
   }

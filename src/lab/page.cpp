@@ -24,23 +24,6 @@ void to_json(ordered_json& json, const Cell& cell) {
 
 std::string json_text(double number) { return ordered_json(number).dump(); }
 
-static void fields(const auto& io, const Axis& a) {
-  io("label", a.label, "unit", a.unit, "log", a.log, "categories", a.categories);
-}
-
-static void fields(const auto& io, const Point& p) {
-  io("y", p.y, "label", p.label, "marked", p.marked);
-  std::visit([&](const auto& x) { io("x", x); }, p.x);
-}
-
-static void fields(const auto& io, const Series& s) {
-  io("name", s.name, "line", s.line, "step", s.step, "dots", s.dots, "points", s.points);
-}
-
-static void fields(const auto& io, const Plot& p) {
-  io("kind", p.bars ? "bars" : "curves", "x", p.x, "y", p.y, "series", p.series);
-}
-
 static void fields(const auto& io, const Table& t) {
   for (const std::vector<Cell>& row : t.rows) {
     if (row.size() != t.columns.size()) {
@@ -56,9 +39,24 @@ static void fields(const auto& io, const Figure& f) {
      base64(png_bytes(f.image)));
 }
 
+static void fields(const auto& io, const Chart& c) {
+  io("x", c.x, "y", c.y, "by", c.by, "label", c.label, "filled", c.filled, "title", c.title, "order", c.order,
+     "bars", c.bars, "line", c.line, "steps", c.steps, "dots", c.dots, "front", c.front, "log_x", c.log_x,
+     "log_y", c.log_y);
+}
+
 static void fields(const auto& io, const Section& s) {
-  io("id", s.id, "title", s.title, "sentence", s.sentence, "problem", s.problem, "plot", s.plot, "table",
-     s.table, "figures", s.figures, "compared", s.compared);
+  if (s.chart) {
+    const std::vector<std::string>& columns = (s.numbers ? s.numbers : s.table).value().columns;
+    std::vector<std::string> named = {s.chart->x, s.chart->by, s.chart->label, s.chart->filled};
+    named.insert(named.end(), s.chart->y.begin(), s.chart->y.end());
+    for (const std::string& name : named) {
+      if (!name.empty() && std::ranges::find(columns, name) == columns.end())
+        throw std::logic_error(fmt::format("{}: a chart of a column '{}', which is not there", s.id, name));
+    }
+  }
+  io("id", s.id, "title", s.title, "sentence", s.sentence, "problem", s.problem, "chart", s.chart, "table",
+     s.table, "numbers", s.numbers, "figures", s.figures, "compared", s.compared);
 }
 
 namespace {
@@ -92,10 +90,6 @@ std::string escaped(const std::string& text) {
 
 }  // namespace
 
-void Series::add(std::variant<double, std::string> x, double y, std::string point, bool marked) {
-  points.push_back({std::move(x), y, std::move(point), marked});
-}
-
 Image for_page(const Image& image) {
   constexpr int widest = 640;
   const int by = (image.width + widest - 1) / widest;
@@ -111,12 +105,6 @@ Image for_page(const Image& image) {
 
 std::string device_text(const gl::Context& context) {
   return fmt::format("{}, OpenGL {}", context.renderer(), context.version());
-}
-
-Series& series_of(Plot& plot, const std::string& name) {
-  const auto found = std::find_if(plot.series.begin(), plot.series.end(),
-                                  [&](const Series& series) { return series.name == name; });
-  return found == plot.series.end() ? plot.series.emplace_back(Series{name, {}}) : *found;
 }
 
 std::string html(const Page& page, const ordered_json& data) {

@@ -21,39 +21,6 @@ class Context;
 
 namespace binosplat::lab {
 
-struct Axis {
-  std::string label;
-  std::string unit;         // "" for none
-  bool log = false;         // only values above 0 can be drawn
-  bool categories = false;  // names, not numbers: x of bars
-};
-
-/// A value that is not finite cannot be drawn; the page says so, by the point's label.
-struct Point {
-  std::variant<double, std::string> x;
-  double y = 0.0;
-  std::string label;    // what it is, for whoever points at it
-  bool marked = false;  // filled, where others are hollow
-};
-
-struct Series {
-  void add(std::variant<double, std::string> x, double y, std::string point = "", bool marked = false);
-
-  std::string name;
-  std::vector<Point> points;
-  bool line = false;  // joined in their order
-  bool step = false;  // joined by steps: a value holds until the next
-  bool dots = true;
-};
-
-/// Points and lines over numbers, or horizontal bars stacked by series over names.
-struct Plot {
-  Axis x;
-  Axis y;
-  std::vector<Series> series;
-  bool bars = false;
-};
-
 /// A number, a text or nothing; a number that is not finite is shown as nothing.
 struct Cell {
   Cell(std::nullptr_t = nullptr) {}
@@ -81,6 +48,27 @@ std::vector<Cell> row(const auto&... cells) { return {Cell(cells)...}; }
 struct Table {
   std::vector<std::string> columns;
   std::vector<std::vector<Cell>> rows;
+
+  bool operator==(const Table&) const = default;
+};
+
+/// What a chart draws of a table, by the names of its columns. A series is the rows that have the same text
+/// in `by` (without it: all rows), for each of the columns of `y`. Cells that are no numbers are left out;
+/// where they are the only `y`, the page says so.
+struct Chart {
+  std::string x;
+  std::vector<std::string> y;
+  std::string by = "";
+  std::string label = "";               // of a point, for whoever points at it
+  std::string filled = "";              // points are filled where this column is "yes", else hollow
+  std::string title = "";               // of the axis up; otherwise the first of `y`
+  std::vector<std::string> order = {};  // texts in `by` whose series come first
+  bool bars = false;                    // horizontal, stacked by series, over names in `x`
+  bool line = true;                     // the points of a series are joined in their order,
+  bool steps = false;                   // by steps: a value holds until the next
+  bool dots = true;
+  bool front = false;                 // one more line by steps through the points that are filled
+  bool log_x = false, log_y = false;  // only values above 0 can be drawn
 };
 
 /// A small picture, drawn as large as there is room.
@@ -95,20 +83,18 @@ Image for_page(const Image& image);
 /// The GPU and its driver, for the page's facts.
 std::string device_text(const gl::Context& context);
 
-/// One heading of the page: what it shows on this scene, in a sentence, then the plot and the table.
+/// One heading of the page: what it shows on this scene, in a sentence, then the chart and the table.
 struct Section {
-  std::string id;  // of the link to it and of the plot's SVG
+  std::string id;  // of the link to it and of the chart's SVG
   std::string title;
   std::string sentence;
-  std::optional<Plot> plot = {};
   std::optional<Table> table = {};
-  std::string problem = {};  // why there is neither
+  std::optional<Chart> chart = {};
+  std::optional<Table> numbers = {};  // what the chart draws, folded away; without it the chart is of `table`
+  std::string problem = {};           // why there is nothing to show
   std::vector<Figure> figures = {};
   bool compared = false;  // the figures are of one size: two lie on each other, with a slider between them
 };
-
-/// The series of a plot with this name, made where there is none yet.
-Series& series_of(Plot& plot, const std::string& name);
 
 struct Page {
   std::string title;
@@ -119,7 +105,7 @@ struct Page {
 
 /// The whole file, with everything that was measured, which it offers to save. Light and dark, readable at
 /// 400 px and printed; colours are told apart by everyone, and never alone. Throws std::logic_error for a
-/// table whose rows do not fit its columns.
+/// table whose rows do not fit its columns, and for a chart of columns that are not there.
 std::string html(const Page& page, const nlohmann::ordered_json& data);
 
 /// Writes it whole or not at all. Throws Error where that fails.

@@ -185,30 +185,27 @@ Page turning_page(const TurningStudy& study) {
                 {"picture", fmt::format("{} x {} px", study.width, study.height)},
                 {"rays", fmt::format("{} x {} over {:g} degrees", study.settings.columns, study.settings.rows,
                                      study.settings.field_degrees)}};
-  Plot plot{{"turn", "degrees", true}, {"PSNR against the head that is not turned", "dB"}, {}};
+  Table up{{"degrees", "order, projection", "PSNR dB"}, {}};
   for (const Turned& turn : study.turns) {
-    if (turn.about != head_axes.front().name || turn.rays == 0) continue;
-    Series& series = series_of(plot, name_of(turn.seen));
-    series.line = true;
-    series.add(turn.degrees, turn.psnr_db);
+    if (turn.about == head_axes.front().name && turn.rays > 0)
+      up.rows.push_back(row(turn.degrees, name_of(turn.seen), turn.psnr_db));
   }
   page.sections.push_back(
       {"turning",
        "What a turn changes",
        "About the axis up; 40 dB is where many begin to see it. Equal pictures have no PSNR.",
-       plot,
        turning_table(study),
+       Chart{.x = "degrees", .y = {"PSNR dB"}, .by = "order, projection", .log_x = true},
+       up,
        {},
        pictures_of(study)});
   if (!study.numbers.empty())
     page.sections.push_back(
-        {"perspectives",
-         "What each order and projection is worth",
+        {"perspectives", "What each order and projection is worth",
          "Against photos: 8-bit PSNR, mean over the views. In one eye only: what the eyes do not share of "
          "the difference from distance and tangent. Apart: frames of a head that moves sideways at 1.5 m/s, "
          "90 a "
          "second, warped to one another by depth.",
-         {},
          perspectives_table(study.numbers)});
   return page;
 }

@@ -47,7 +47,7 @@ TEST_F(CalibrateTest, ViewsThatSeeNothingHaveNoSay) {
   for (const std::vector<std::string>& words : std::vector<std::vector<std::string>>{
            {"bench", model, "--axes", "quick", "-o", folder / "chart"},
            {"study", model, "--size", "36x24", "-o", folder / "page"},
-           {"study", model, "--rules", "--size", "36x24", "--view", "front"},
+           {"study", model, "--turn", "--size", "36x24", "--view", "front"},
            {"study", model, "--motion", "--size", "36x24"},
        })
     EXPECT_TRUE(ended(test::run_program(words), 2, "sees anything of the model")) << words[0];

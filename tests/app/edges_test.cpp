@@ -99,9 +99,9 @@ TEST_F(Edges, PhotosBesideAreNotDrawnOver) {
 TEST_F(Edges, NumbersHaveRanges) {
   const std::string to = folder / "to.ply";
   const std::vector<std::vector<std::string>> lines = {
-      {"render", model, "-o", out, "--quality"},      {"trim", model, "-o", to, "--quality"},
-      {"calibrate", model, "-o", to, "--quality"},    {"study", model, "--rules", "--target"},
-      {"study", model, "--path", model, "--quality"},
+      {"render", model, "-o", out, "--quality"},   {"trim", model, "-o", to, "--quality"},
+      {"calibrate", model, "-o", to, "--quality"}, {"study", model, "--motion", "--target"},
+      {"study", model, "--motion", "--quality"},
   };
   for (std::vector<std::string> line : lines) {
     line.emplace_back();

@@ -81,7 +81,7 @@ TEST_F(FirstWords, TheSceneMayStandBehindTheNames) {
            {"calibrate", "--view", "nobody", model, "-o", folder / "c.json", "--quality", "40"},
            {"convert", "--view", "nobody", model, "-o", file, "--report", "2"},
            {"bench", "--view", "nobody", model, "-o", out},
-           {"study", "--view", "nobody", model, "--rules"},
+           {"study", "--view", "nobody", model, "--turn"},
            {"--quiet", "render", "--view", "nobody", model, "-o", out}}) {
     const Outcome outcome = run(words);
     EXPECT_TRUE(ended(outcome, 2, "nobody")) << words[0];

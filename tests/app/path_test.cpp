@@ -129,23 +129,6 @@ TEST_F(KeysPath, APairOfEyesIsOneKey) {
   }
 }
 
-TEST_F(KeysPath, StudiesGoThroughKeys) {
-  save_cameras(0.05);
-  const auto study = [&](std::vector<std::string> more) {
-    more.insert(more.begin(), {"study", model, "--path", path, "--mono", "--size", "24x16", "--tolerance",
-                               "0.05", "--json", folder / "s.json"});
-    return test::run_program(more);
-  };
-  const auto frames = [&] {
-    return nlohmann::json::parse(test::read_text(folder / "s.json")).at("frames").size();
-  };
-  EXPECT_TRUE(good(study({})));
-  EXPECT_EQ(frames(), 4u);
-  save_cameras(0.2);
-  EXPECT_TRUE(ended(study({}), 0, "through the 4 keys of " + path + " in 0.6 s"));
-  EXPECT_EQ(frames(), 55u);
-}
-
 TEST_F(KeysPath, AVideoHasTheFrames) {
   if (!have_ffmpeg()) GTEST_SKIP() << "ffmpeg is not installed";
   save_cameras(0.5);

@@ -50,7 +50,7 @@ TEST_F(StudyLevels, TellWhatRenderTells) {
   ASSERT_EQ(scene["rows"].size(), 3u);
   EXPECT_EQ(scene["rows"][1]["detail"], 35.0);
   EXPECT_FALSE(scene["rows"][2].contains("detail")) << "the finest";
-  EXPECT_NE(outcome.out.find("\n| " + made + " | 35 dB | "), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.out.find("\n| " + made + " | 35.00 | "), std::string::npos) << outcome.out;
   EXPECT_NE(test::read_text(out + "/report.html").find("What frames take"), std::string::npos);
 
   ASSERT_TRUE(good(run_program({"render", made, "--view", "all", "--detail", "35dB", "--detail-report",
@@ -116,10 +116,9 @@ TEST_F(StudyLevels, WhatIsWrongIsNamed) {
       {{"--detail", "40db,x"}, "--detail x: expected"},
       {{"--detail", "90dB"}, "--detail 90dB"},
       {{"--count", "1000"}, "--count"},
-      {{"--rules"}, "are studies of their own"},
+      {{"--turn"}, "are studies of their own"},
       {{"--photos", folder / "."}, "--photos"},
       {{"--target", "30"}, "--target"},
-      {{"--th", "squared"}, "--th"},
       {{"--rays", "4x3"}, "--rays goes with --turn"},
   };
   for (const auto& [options, message] : wrong) {
@@ -140,7 +139,7 @@ TEST_F(StudyLevels, WhatIsWrongIsNamed) {
   test::write_text(meta, without.dump());
   EXPECT_TRUE(ended(study({made}, {"--cameras", cameras}), 2, "has no errors of its levels to go by"));
   EXPECT_TRUE(ended(run_program({"study", made, "--detail", "40dB"}), 2, "--levels"));
-  EXPECT_TRUE(ended(run_program({"study", model, model, "--rules"}), 2, "only --levels takes more"));
+  EXPECT_TRUE(ended(run_program({"study", model, model, "--turn"}), 2, "only --levels takes more"));
 }
 
 }  // namespace

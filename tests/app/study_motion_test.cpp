@@ -93,11 +93,7 @@ TEST_F(MotionCommand, WhatMakesNoSenseIsNamed) {
   nlohmann::json alone = {test::camera_json("alone", 0.0)};
   test::write_text(folder / "alone.json", alone.dump());
   const std::vector<std::pair<std::vector<std::string>, std::string>> wrong = {
-      {{"--motion", "--rules"}, "are studies of their own"},
-      {{"--motion", "--stability"}, "are studies of their own"},
-      {{"--motion", "--view", "front"}, "--view: --motion goes through all cameras"},
-      {{"--motion", "--tolerance", "0.1"}, "--tolerance"},
-      {{"--motion", "--th", "squared"}, "--th"},
+      {{"--motion", "--view", "front"}, "--view goes with the analyses or --turn or --levels"},
       {{"--motion", "--motions", "crawl"}, "crawl"},
       {{"--motion", "--rule", "squared"}, "expected TH,SOURCE"},
       {{"--motion", "--rule", "squared,first"}, "'first' is not one of one"},
@@ -105,11 +101,11 @@ TEST_F(MotionCommand, WhatMakesNoSenseIsNamed) {
       {{"--motion", "--rule", "squared,last,off"}, "expected TH,SOURCE"},
       {{"--motion", "--cameras", folder / "alone.json"}, "two cameras or more"},
       {{"--motion", "--path", folder / "alone.json"}, "two cameras or more"},
-      {{"--motion", "--photos", folder / "."}, "--test and --photos are for the analyses"},
+      {{"--motion", "--photos", folder / "."}, "--photos goes with the analyses or --turn"},
       {{"--motion", "--path", folder / "alone.json", "--motions", "walk"}, "are for tours"},
       {{"--motion", "--no-equal", "--target", "38"}, "--no-equal"},
       {{"--segments", "2"}, "--motion"},
-      {{"--rules", "--rule", "squared,one"}, "--motion"},
+      {{"--turn", "--rule", "squared,one"}, "--motion"},
       {{"--no-equal"}, "--motion"},
   };
   for (const auto& [options, message] : wrong) {

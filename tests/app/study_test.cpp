@@ -2,8 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "app/scene.h"
@@ -13,32 +11,13 @@
 namespace binosplat {
 namespace {
 
-TEST(Study, APathIsCarriedAndTold) {
-  const test::TempFolder folder;
-  std::string frames;
-  for (int n = 0; n < 3; ++n) {
-    frames += fmt::format(R"({}{{"img_name": "frame_{}", "width": 96, "height": 54, "fx": 60, "fy": 60,
-      "position": [{}, -1.5, -1], "rotation": [[1, 0, 0], [0, 1, 0], [0, 0, 1]]}})",
-                          n > 0 ? "," : "", n, 0.005 * n);
-  }
-  test::write_text(folder / "path.json", "[" + frames + "]");
-  const test::Outcome outcome =
-      test::run_program({"study", "demo:room", "--path", folder / "path.json", "--transmittance", "last",
-                         "--tolerance", "0.05", "--json", folder / "s.json"});
-  ASSERT_EQ(outcome.code, 0) << outcome.err;
-  EXPECT_NE(outcome.out.find("fell back: equals `one`"), std::string::npos) << outcome.out;
-  const auto json = nlohmann::json::parse(test::read_text(folder / "s.json"));
-  ASSERT_EQ(json.at("frames").size(), 3u);
-  EXPECT_EQ(json.at("variant"), "squared, last");
-  EXPECT_GT(json.at("frames")[2].at("removed").get<double>(), 0.0);
-}
-
-// What frames of a file of the same 1000 Gaussians come to.
-nlohmann::json carried(const test::TempFolder& folder, const std::string& model) {
-  const test::Outcome outcome = test::run_program(
-      {"study", model, "--path", folder / "path.json", "--tolerance", "0.05", "--json", folder / "s.json"});
-  EXPECT_TRUE(test::good(outcome));
-  return nlohmann::json::parse(test::read_text(folder / "s.json")).at("frames");
+// The pairs of the exact frames along a path, of a file of the same 1000 Gaussians.
+std::vector<double> exact_pairs_along(const std::string& path, const std::string& model,
+                                      const std::string& json) {
+  EXPECT_TRUE(test::good(
+      test::run_program({"study", model, "--motion", "--path", path, "--mono", "--no-equal", "--stop", "0",
+                         "--rounds", "1", "--rule", "squared,one", "--json", json})));
+  return test::load_json(json).at("paths")[0].at("exact").at("segments")[0].at("pairs");
 }
 
 TEST(Study, CamerasEnterTheModelsFrame) {
@@ -50,54 +29,21 @@ TEST(Study, CamerasEnterTheModelsFrame) {
     path.back()["position"] = {2.0 + 0.01 * n, 3.0, -10.0};
   }
   test::write_text(folder / "path.json", path.dump());
-  const auto ply = carried(folder, fixtures / "ply/inria-train-1000.ply");
-  const auto gltf = carried(folder, fixtures / "gltf/st-train-sh3.glb");  // x left, y up
+  const auto pairs_in = [&](const std::string& model) {
+    return exact_pairs_along(folder / "path.json", fixtures / model, folder / "s.json");
+  };
+  const auto ply = pairs_in("ply/inria-train-1000.ply"),
+             gltf = pairs_in("gltf/st-train-sh3.glb");  // x left, y up
   for (std::size_t n = 0; n < 2; ++n) {
-    const double pairs = ply[n].at("pairs").get<double>();
-    EXPECT_GT(pairs, 100.0);
-    EXPECT_NEAR(gltf[n].at("pairs").get<double>(), pairs, 0.01 * pairs);
+    EXPECT_GT(ply[n], 100.0);
+    EXPECT_NEAR(gltf[n], ply[n], 0.01 * ply[n]);
   }
 }
 
-struct RulesCommand : test::SceneTest {
-  RulesCommand() { add_cameras(); }
+struct TurnCommand : test::SceneTest {};
 
-  std::string printed, logged;
-
-  nlohmann::json rules(std::vector<std::string> more) {
-    more.insert(more.begin(), {"study", model, "--rules", "--frames", "1", "--json", folder / "r.json"});
-    const test::Outcome outcome = test::run_program(more);
-    EXPECT_TRUE(test::good(outcome));
-    printed = outcome.out;
-    logged = outcome.err;
-    return nlohmann::json::parse(test::read_text(folder / "r.json"));
-  }
-};
-
-TEST_F(RulesCommand, PrintsARowForEachRuleAndKeepsAll) {
-  // Some rules have no tolerance that makes pictures of 10 dB, which is no reason to end.
-  const auto json = rules({"--view", "pair", "--target", "10"});
-  const std::string renderer = json.at("renderer");
-  EXPECT_EQ(printed.rfind(renderer + ": " + model + ", pair, 2 x 72 x 48 px, 10 dB\n", 0), 0u) << printed;
-  ASSERT_EQ(json.at("rules").size(), 7u);
-  for (const auto& rule : json.at("rules")) {
-    const std::string name = rule.at("name");
-    SCOPED_TRACE(name);
-    const auto row = printed.find("\n| " + name + " | ");
-    ASSERT_NE(row, std::string::npos) << printed;
-    const std::string cells = printed.substr(row + 1, printed.find('\n', row + 1) - row - 1);
-    EXPECT_EQ(std::count(cells.begin(), cells.end(), '|'), 18);
-    const double ms = rule.at("frame_ms");
-    EXPECT_NE(cells.find(fmt::format(" {:.3f} |", ms)), std::string::npos) << cells;
-    EXPECT_GT(rule.at("stages_ms").at("blend").get<double>(), 0.0);
-    const std::string problem = rule.value("problem", "");
-    const bool is_met = name == "tau" || std::abs(rule.at("psnr_db").get<double>() - 10.0) <= 0.3;
-    EXPECT_EQ(problem, is_met ? "" : "not within 0.3 dB of 10 dB");
-    EXPECT_NE(cells.find("| " + problem + " |"), std::string::npos) << cells;
-  }
-}
-
-TEST_F(RulesCommand, ATurnedHeadIsMeasuredAgainstPhotosToo) {
+TEST_F(TurnCommand, ATurnedHeadIsMeasuredAgainstPhotosToo) {
+  add_cameras();
   const std::string photos = folder / "photos";
   ASSERT_TRUE(test::good(test::run_program({"render", model, "--mono", "--view", "all", "--order", "distance",
                                             "--projection", "tangent", "-o", photos})));
@@ -116,37 +62,13 @@ TEST_F(RulesCommand, ATurnedHeadIsMeasuredAgainstPhotosToo) {
   EXPECT_NE(outcome.out.find("Against 4 photos"), std::string::npos) << outcome.out;
 }
 
-TEST_F(RulesCommand, DrawsTheOneView) {
-  const auto json = rules({"--view", "front", "--mono", "--target", "36"});
-  EXPECT_EQ(json.at("eyes"), 1);
-  EXPECT_EQ(printed.find("nan"), std::string::npos) << printed;
-  ASSERT_EQ(json.at("rules").size(), 7u);
-  EXPECT_TRUE(json.at("rules")[0].at("psnr_db").is_null());
-  EXPECT_EQ(json.at("rules")[0].at("pairs_removed"), 0.0);
-  for (std::size_t k = 1; k < 7; ++k) {
-    const auto& rule = json.at("rules")[k];
-    EXPECT_TRUE(rule.at("disagreement_db").is_null());
-    const bool near = std::abs(rule.at("psnr_db").get<double>() - 36.0) <= 0.3;
-    EXPECT_EQ(near, !rule.contains("problem")) << rule;
-  }
-}
-
-TEST_F(RulesCommand, PutsARigOnACameraWithALensOfAPreset) {
-  const auto exact_pairs = [&](std::vector<std::string> more) {
-    more.insert(more.end(), {"--view", "front", "--size", "61x53", "--target", "10"});
-    const auto json = rules(more);
-    EXPECT_EQ(json.at("eyes"), 2);
-    EXPECT_EQ(json.at("width"), 61);
-    return json.at("rules")[0].at("pairs").get<double>();
-  };
-  EXPECT_LT(exact_pairs({"--preset", "headset"}), exact_pairs({}));
-}
-
-TEST_F(RulesCommand, MetresAreThoseOfTheOption) {
-  std::filesystem::remove(folder / "cameras.json");
+TEST_F(TurnCommand, MetresAreThoseOfTheOption) {
   test::save_ply(model, test::floor_model());
-  rules({"--size", "36x24", "--target", "10", "--units-per-metre", "0.5"});
-  EXPECT_NE(logged.find("from 0.8 units above the ground"), std::string::npos) << logged;
+  const test::Outcome outcome =
+      test::run_program({"study", model, "--turn", "--rays", "2x2", "--size", "36x24", "--units-per-metre",
+                         "0.5", "--json", folder / "s.json"});
+  EXPECT_TRUE(test::good(outcome));
+  EXPECT_NE(outcome.err.find("from 0.8 units above the ground"), std::string::npos) << outcome.err;
 }
 
 struct AnalysesCommand : test::SceneTest {
@@ -181,32 +103,27 @@ TEST(Study, WhatMakesNoSenseIsNamed) {
   const test::TempFolder folder;
   test::write_text(folder / "file", "");
   const std::vector<std::pair<std::vector<std::string>, std::string>> wrong = {
-      {{"--json", folder / "s.json"}, "--json goes with --stability"},
-      {{"--th", "squared", "--transmittance", "last"}, "--th, --transmittance go with --stability"},
-      {{"--target", "45"}, "--target goes with --stability"},
-      {{"--stability", "--path", "x.json"}, "are studies of their own"},
-      {{"--stability", "--photos", folder / "."}, "--test and --photos are for the analyses"},
+      {{"--json", folder / "s.json"}, "--json goes with --motion or --turn or --levels"},
+      {{"--target", "45"}, "--target goes with --motion"},
+      {{"--path", "x.json"}, "--path goes with --motion"},
+      {{"--turn", "--test", "front"}, "--test goes with the analyses"},
       {{"--test", "no-such"}, "--view no-such"},
       {{"-o", folder / "file"}, "file"},
-      {{"--rules", "-o", folder / "out"},
-       "-o is for the analyses, --stability, --motion, --turn and --levels"},
-      {{"--stability", "--case", "no-such"}, "far-wall"},
-      {{"--stability", "--view", "no-such"}, "--view no-such"},
-      {{"--rules", "--view", "all"}, "--view all"},
-      {{"--rules", "--stability"}, "are studies of their own"},
-      {{"--turn", "--rules"}, "are studies of their own"},
-      {{"--turn", "--frames", "5"}, "--rules"},
-      {{"--rules", "--rays", "8x6"}, "--rays goes with --turn"},
-      {{"--rays", "8x6"}, "--rays goes with"},
+      {{"--turn", "--view", "all"}, "--view all"},
+      {{"--turn", "--motion"}, "are studies of their own"},
+      {{"--turn", "--frames", "5"}, "--frames goes with the analyses or --motion or --levels"},
+      {{"--rays", "8x6"}, "--rays goes with --turn"},
       {{"--turn", "--rays", "8"}, "--rays 8: expected"},
       {{"--turn", "--rays", "20000x20000"}, "at most a million"},
-      {{"--rules", "--view", "no-such"}, "--view no-such"},
-      {{"--rules", "--th", "squared"}, "--rules"},
-      {{"--rules", "--tolerance", "0.1"}, "--tolerance"},
-      {{"--rules", "--loss", "0.1"}, "--tolerance"},
-      {{"--stability", "--frames", "5"}, "--rules"},
-      {{"--path", "no_such.json"}, "no_such.json"},
-      {{"--stability", "--json", folder / "file/s.json"}, "file"},
+      {{"--turn", "--view", "no-such"}, "--view no-such"},
+      {{"--turn", "--json", folder / "file/s.json"}, "file"},
+      // Options of earlier versions say what to do instead.
+      {{"--stability", "--case", "mist"}, "`study --motion` compares rules"},
+      {{"--rules", "--preset", "headset"}, "`bench` times rules"},
+      {{"--th", "squared"}, "`study --motion --rule TH,SOURCE`"},
+      {{"--transmittance", "last"}, "`study --motion --rule TH,SOURCE`"},
+      {{"--tolerance", "0.1"}, "`bench --axes FILE`"},
+      {{"--loss", "0.1"}, "`bench --axes FILE`"},
   };
   for (const auto& [options, message] : wrong) {
     std::vector<std::string> all = {"study", "demo:room", "--size", "64x36"};

@@ -271,11 +271,11 @@ TEST(AnalysisPage, SaysWhatItShows) {
       << page.sections[7].sentence;
   EXPECT_EQ(page.sections[5].table->rows[1],
             row("squared, last", 0.2, 0.2, 0.23125, 1.25 * 0.23125, "b", 0.5));
-  // The paper's own figures are told beside, for a drop alone.
-  EXPECT_EQ(page.sections[6].plot->series.back().points.size(), 5u);
+  // The paper's own figures stand beside, for a drop alone.
+  EXPECT_EQ(page.sections[6].table->rows.size(), 2u + 5);
   Analysis quality = sample_analysis();
   quality.kind = CalibrationTarget::Kind::quality;
-  EXPECT_EQ(analysis_page(quality).sections[6].plot->series.size(), 1u);
+  EXPECT_EQ(analysis_page(quality).sections[6].table->rows.size(), 2u);
 }
 
 TEST(AnalysisPage, EmptyResultsAreShownAsSuch) {

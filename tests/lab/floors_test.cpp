@@ -5,8 +5,7 @@
 #include <cmath>
 #include <map>
 
-#include "lab/times.h"
-#include "lab/turns.h"
+#include "lab/timed_rounds.h"
 #include "support/gl.h"
 #include "support/models.h"
 
@@ -83,19 +82,20 @@ TEST(Floors, RatesAreMeasuredAndAFramesWorkIsCounted) {
 }
 
 TEST(RunTimes, OutliersDoNotMoveWhatAFrameTakes) {
-  lab::Run run;
+  lab::Reports frames;
   render::FrameReport report;
   report.stages = {{"blend", 0.0}};
   const auto add = [&](double ms, bool recorded) {
     report.total_ms = ms;
     report.stages[0].ms = ms / 2;
     report.recorded = recorded;
-    run.add(report);
+    frames.push_back(report);
   };
   for (const double ms : {1.0, 1.0, 1.0, 1.0, 50.0, 1.0}) add(ms, false);  // one slow frame
   for (const double ms : {4.0, 4.0}) add(ms, true);
-  EXPECT_DOUBLE_EQ(run.frame_ms(), (6 * 1.0 + 2 * 4.0) / 8);
-  EXPECT_DOUBLE_EQ(run.stage_ms("blend"), run.frame_ms() / 2);
+  const lab::Typical typical = lab::typical_of(frames);
+  EXPECT_DOUBLE_EQ(typical.frame_ms, (6 * 1.0 + 2 * 4.0) / 8);
+  EXPECT_DOUBLE_EQ(typical.stages.front().ms, typical.frame_ms / 2);
 }
 
 }  // namespace

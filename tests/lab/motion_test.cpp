@@ -56,9 +56,9 @@ std::vector<double> looked_at(const std::vector<Picture>& exact, const std::vect
 
 struct Motions : testing::Test {
   const Model model = test::random_model(71, 800, 0);
-  const Variant one{}, last{.transmittance = TRANSMITTANCE_LAST};
+  const Rule one{}, last{.transmittance = TRANSMITTANCE_LAST};
 
-  MotionResult measured(const MotionPath& path, const std::vector<Variant>& rules,
+  MotionResult measured(const MotionPath& path, const std::vector<Rule>& rules,
                         const MotionSettings& settings) const {
     return measure_motion(test::gl_context(), model, {path}, rules, settings,
                           [](const std::string&, std::size_t, std::size_t) {})
@@ -161,7 +161,7 @@ TEST_F(Motions, RulesComeToOneTrueQuality) {
   const MotionResult result = measured(path, {one, last}, settings);
   ASSERT_EQ(result.rules.size(), 2u);
   for (const MovedRule& rule : result.rules) {
-    SCOPED_TRACE(rule.variant.name());
+    SCOPED_TRACE(rule.name());
     EXPECT_EQ(rule.problem, "");
     ASSERT_TRUE(rule.equal);
     EXPECT_NEAR(rule.equal->moving.true_db, 37.0, settings.equal_within);
@@ -186,7 +186,7 @@ TEST_F(Motions, RulesComeToOneTrueQuality) {
 
 TEST_F(Motions, ATargetThatNothingReachesSaysSo) {
   MotionPath path{"still", "", {still_segment(head_at(0.0, false), {.lead = 1, .moving = 1, .stop = 0})}};
-  Variant by_depth{.transmittance = TRANSMITTANCE_DEPTH};
+  Rule by_depth{.transmittance = TRANSMITTANCE_DEPTH};
   const MotionResult result = measured(path, {by_depth}, {.target = 3.0, .rounds = 1});
   EXPECT_NE(result.rules[0].problem.find("not within 0.1 dB of 3 dB"), std::string::npos);
   EXPECT_FALSE(shares(result, result.rules[0], false).ms_of_one) << "there is no `one` among the rules";

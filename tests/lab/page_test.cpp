@@ -24,37 +24,46 @@ Page sample_page() {
   page.title = "Speed against accuracy: fox </script> & <b>";
   page.sentence = "The quickest of 12 settings above 40 dB takes 1.25 ms.";
   page.facts = {{"scene", "fox.ply"}, {"Gaussians", 140131}, {"device", "llvmpipe (LLVM 15.0.6, 256 bits)"}};
-  Plot curve{{"frame time", "ms", true}, {"PSNR against exact", "dB"}, {}, false};
+  Table speed{{"family", "setting", "filled", "frame time ms", "PSNR dB"}, {}};
   const char* const names[] = {"aabb (3D-GS)",      "obb (GSCore)",           "snug (Speedy-Splat)",
                                "ellipse (FlashGS)", "peripheral (AdaGScale)", "squared",
                                "squared, last",     "squared, last, final"};
   for (int s = 0; s < 8; ++s) {
-    Series series{names[s], {}, s > 3, false, true};
-    for (int i = 0; i < 6; ++i) {
-      series.points.push_back({0.5 * std::pow(1.7, i) * (1 + 0.1 * s), 30.0 + 5.123456789 * i - s,
-                               "setting " + std::to_string(10 * s + i), i == s % 6});
-    }
-    curve.series.push_back(series);
+    for (int i = 0; i < 6; ++i)
+      speed.rows.push_back(row(names[s], "setting " + std::to_string(10 * s + i), i == s % 6 ? "yes" : "",
+                               0.5 * std::pow(1.7, i) * (1 + 0.1 * s), 30.0 + 5.123456789 * i - s));
   }
-  curve.series[0].points.push_back({2.5, std::numeric_limits<double>::infinity(), "exact", false});
+  speed.rows.push_back(row(names[0], "exact", "", 2.5, std::numeric_limits<double>::infinity()));
+  Chart curve{"frame time ms", {"PSNR dB"}, "family", "setting", "filled"};
+  curve.log_x = true;
   page.sections.push_back(
-      {"speed", "Accuracy against frame time", "Up and to the left is better.", curve, {}, ""});
-  Plot stages{{"setting", "", false, true}, {"time", "ms"}, {}, true};
-  for (const char* stage : {"project", "order", "pairs", "tile_sort", "ranges", "blend"}) {
-    Series series{stage, {}};
-    for (const char* setting : {"aabb", "ellipse", "squared, last"})
-      series.points.push_back(
-          {std::string(setting), 0.1 + 0.01 * std::strlen(stage) * std::strlen(setting), ""});
-    stages.series.push_back(series);
+      {"speed", "Accuracy against frame time", "Up and to the left is better.", {}, curve, speed});
+  Table stages{{"setting", "project", "order", "pairs", "tile_sort", "ranges", "blend"}, {}};
+  for (const std::string setting : {"aabb", "ellipse", "squared, last"}) {
+    auto& cells = stages.rows.emplace_back(row(setting));
+    for (std::size_t k = 1; k < stages.columns.size(); ++k)
+      cells.emplace_back(0.1 + 0.01 * double(stages.columns[k].size() * setting.size()));
   }
-  page.sections.push_back({"stages", "Where the time goes", "Blending takes most.", stages, {}, ""});
+  Chart bars{"setting", {stages.columns.begin() + 1, stages.columns.end()}};
+  bars.bars = true;
+  page.sections.push_back({"stages", "Where the time goes", "Blending takes most.", stages, bars});
   Table table{{"view", "pairs", "dB"},
               {{"0001", 371596, 46.25}, {"0042", 308963, nullptr}, {"0089", 12, 0.000123456}}};
-  page.sections.push_back({"views", "By view", "The worst view is 0001.", {}, table, ""});
-  page.sections.push_back({"nothing", "Empty plot", "No view was measured.", Plot{}, {}, ""});
-  page.sections.push_back({"bare", "Empty table", "No view was measured.", {}, Table{{"view"}, {}}, ""});
-  page.sections.push_back({"broken", "Failed", "There are no photos.", {}, {}, "No photos: --photos DIR."});
+  page.sections.push_back({"views", "By view", "The worst view is 0001.", table});
+  page.sections.push_back({"nothing",
+                           "Empty chart",
+                           "No view was measured.",
+                           {},
+                           Chart{"view", {"dB"}},
+                           Table{{"view", "dB"}, {}}});
+  page.sections.push_back({"bare", "Empty table", "No view was measured.", Table{{"view"}, {}}});
+  page.sections.push_back(
+      {.id = "broken", .title = "Failed", .sentence = "", .problem = "No photos: --photos DIR."});
   return page;
+}
+
+double number(const Table& table, std::size_t row, std::size_t column) {
+  return std::get<double>(table.rows[row][column].value);
 }
 
 const ordered_json data = {{"version", 1}, {"results", {1, 2, 3}}};
@@ -70,9 +79,9 @@ TEST(Page, CarriesItsDataAndNeedsNoNetwork) {
   const ordered_json json = embedded(text);
   EXPECT_EQ(json["data"], data);
   EXPECT_EQ(json["title"], sample_page().title) << "what looks like a tag must come through";
-  const ordered_json& points = json["sections"][0]["plot"]["series"][0]["points"];
-  EXPECT_EQ(points[1]["y"].get<double>(), 35.123456789);
-  EXPECT_TRUE(points[6]["y"].is_null()) << "infinite";
+  const ordered_json& rows = json["sections"][0]["numbers"]["rows"];
+  EXPECT_EQ(rows[1][4].get<double>(), 35.123456789);
+  EXPECT_TRUE(rows[48][4].is_null()) << "infinite";
   for (const char* loads : {"<script src", "<link", "@import", "<img", "fetch(\"", "url(http"})
     EXPECT_EQ(text.find(loads), std::string::npos) << loads;
   EXPECT_NE(text.find("Copyright 2010-2023 Mike Bostock"), std::string::npos) << "licences travel along";
@@ -81,10 +90,13 @@ TEST(Page, CarriesItsDataAndNeedsNoNetwork) {
             std::string::npos);
 }
 
-TEST(Page, RefusesTablesThatDoNotFit) {
+TEST(Page, RefusesTablesAndChartsThatDoNotFit) {
   Page page = sample_page();
   page.sections[2].table->rows.push_back({"0100", 5});
   EXPECT_THROW(html(page, data), std::logic_error);
+  page = sample_page();
+  page.sections[2].chart = Chart{"view", {"frame ms"}};
+  EXPECT_THROW(html(page, data), std::logic_error) << "a column that is not there";
 }
 
 TEST(Page, IsWrittenWholeOrNotAtAll) {
@@ -122,19 +134,16 @@ TEST_F(ShownPage, EveryNumberIsTheJsons) {
             "[[\"0089\",null],[\"12\",\"12\"],[\"1.23e-4\",\"0.000123456\"]]]");
   const std::string numbers =
       ask("return JSON.stringify([...document.querySelectorAll('#speed tbody tr')].map((row) =>"
-          "[row.cells[0].textContent, row.cells[2].dataset.value, row.cells[3].dataset.value ?? null]));");
+          "[row.cells[0].textContent, row.cells[3].dataset.value, row.cells[4].dataset.value ?? null]));");
   const ordered_json rows = ordered_json::parse(numbers, nullptr, false);
-  ASSERT_EQ(rows.size(), 49) << numbers;
-  std::size_t k = 0;
-  for (const Series& series : page.sections[0].plot->series) {
-    for (const Point& p : series.points) {
-      EXPECT_EQ(rows[k][0], series.name);
-      EXPECT_EQ(std::stod(rows[k][1].get<std::string>()), std::get<double>(p.x));
-      EXPECT_EQ(rows[k][2].is_null(), !std::isfinite(p.y));
-      if (std::isfinite(p.y)) {
-        EXPECT_EQ(std::stod(rows[k][2].get<std::string>()), p.y);
-      }
-      ++k;
+  const Table& speed = *page.sections[0].numbers;
+  ASSERT_EQ(rows.size(), speed.rows.size()) << numbers;
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    EXPECT_EQ(rows[k][0], std::get<std::string>(speed.rows[k][0].value));
+    EXPECT_EQ(std::stod(rows[k][1].get<std::string>()), number(speed, k, 3));
+    EXPECT_EQ(rows[k][2].is_null(), !std::isfinite(number(speed, k, 4)));
+    if (!rows[k][2].is_null()) {
+      EXPECT_EQ(std::stod(rows[k][2].get<std::string>()), number(speed, k, 4));
     }
   }
 }
@@ -156,12 +165,12 @@ TEST_F(ShownPage, PointsStandWhereTheirNumbersSay) {
       "return [at.x + at.width / 2, at.y + at.height / 2]; })));");
   const ordered_json found = ordered_json::parse(places, nullptr, false);
   ASSERT_EQ(found.size(), 8) << places;
-  const Series& series = page.sections[0].plot->series[0];  // circles, whose middle is their box's
+  // Of the first series, circles, whose middle is their box's.
   ASSERT_EQ(found[0].size(), 6) << "what is not finite is left out, the rest drawn";
   std::vector<double> x, y, at_x, at_y;
   for (std::size_t i = 0; i < 6; ++i) {
-    x.push_back(std::log(std::get<double>(series.points[i].x)));
-    y.push_back(series.points[i].y);
+    x.push_back(std::log(number(*page.sections[0].numbers, i, 3)));
+    y.push_back(number(*page.sections[0].numbers, i, 4));
     at_x.push_back(found[0][i][0]);
     at_y.push_back(found[0][i][1]);
   }
@@ -180,8 +189,9 @@ TEST_F(ShownPage, BarsAreAsLongAsTheirNumbers) {
   const ordered_json found = ordered_json::parse(widths, nullptr, false);
   ASSERT_EQ(found.size(), 18) << widths;
   std::vector<double> values;
-  for (const Series& series : page.sections[1].plot->series) {
-    for (const Point& p : series.points) values.push_back(p.y);
+  const Table& stages = *page.sections[1].table;
+  for (std::size_t column = 1; column < stages.columns.size(); ++column) {
+    for (std::size_t k = 0; k < stages.rows.size(); ++k) values.push_back(number(stages, k, column));
   }
   const double px = (found[17].get<double>() + 1) / values[17];
   for (std::size_t i = 0; i < 18; ++i) EXPECT_NEAR(found[i].get<double>() + 1, px * values[i], 0.6) << i;

@@ -1,5 +1,6 @@
 "use strict";
-// Draws the page from the data embedded in it. Series are told apart by colour, symbol and dash together.
+// Draws the page from the description embedded in it (src/lab/page.h): sections with tables, charts of their columns,
+// and pictures. Series are told apart by colour, symbol and dash together.
 
 const symbols = ["circle", "diamond", "square", "triangle", "plus", "star", "times", "wye"];
 const dashes = ["none", "7 3", "2 3", "9 3 2 3", "4 2", "12 3", "1 4", "6 2 1 2 1 2"];
@@ -47,59 +48,72 @@ function table(columns, rows) {
 
 const problem = (text) => element("p", { class: "problem", role: "alert" }, text);
 
-// What of a series can be drawn on these axes, and what cannot.
-function sorted(plot, series) {
-  const fits = (axis, value) => axis.categories ? typeof value === "string"
-    : isNumber(value) && (!axis.log || value > 0);
-  const good = series.points.filter((p) => fits(plot.x, p.x) && fits(plot.y, p.y));
-  return { good, bad: series.points.filter((p) => !good.includes(p)) };
+// The series of a section's chart, from the rows of its table. Without `chart.by`, or where all rows have one text
+// there, a series of several columns is called as its column.
+function seriesOf(section) {
+  const chart = section.chart, { columns, rows } = section.numbers ?? section.table;
+  const at = (row, name) => name ? row[columns.indexOf(name)] : undefined;
+  const groups = [...new Set([...chart.order, ...rows.map((row) => at(row, chart.by))])];
+  const positive = (value, log) => isNumber(value) && (!log || value > 0);
+  const fits = (p) => (chart.bars ? typeof p.x === "string" : positive(p.x, chart.log_x)) && positive(p.y, chart.log_y);
+  const series = groups.flatMap((group) => chart.y.map((column) => {
+    const name = chart.y.length === 1 ? group ?? column : groups.length === 1 ? column : `${group}: ${column}`;
+    const points = rows.filter((row) => at(row, chart.by) === group).map((row) => ({
+      x: at(row, chart.x), y: at(row, column), filled: at(row, chart.filled) === "yes",
+      label: [at(row, chart.label)].flat().map((value) => typeof value === "string" ? value : shown(value)).join() }));
+    const good = points.filter(fits);
+    const bad = chart.y.length > 1 ? [] : points.filter((p) => !fits(p) && p.y !== "" && typeof p.x !== "string");
+    return { name, column, good, bad, line: chart.line, steps: chart.steps, dots: chart.dots };
+  }));
+  const front = chart.front ? series.flatMap((s) => s.good).filter((p) => p.filled).sort((p, q) => p.x - q.x) : [];
+  if (front.length) series.push({ name: "Pareto front", good: front, bad: [], line: true, steps: true, dots: false });
+  return series.map((s, i) => ({ ...s, style: seriesStyle(i), on: true }));
 }
 
-const axisLabel = (axis) => axis.unit ? `${axis.label} (${axis.unit})` : axis.label;
+const titleOf = (chart) => chart.title || chart.y[0];
 
-const pointText = (plot, series, p) =>
-  [p.label, series.name, `${plot.x.label}: ${shown(p.x)}`, `${plot.y.label}: ${shown(p.y)}`]
-    .filter((line) => line).join("\n");
+const pointText = (chart, series, p) =>
+  [p.label, series.name, `${chart.x}: ${shown(p.x)}`, `${series.column ?? titleOf(chart)}: ${shown(p.y)}`]
+    .filter((line) => line && line !== "–").join("\n");
 
-function scale(axis, more) {
-  return { label: axisLabel(axis), labelArrow: "none", grid: !axis.categories,
-    ...(axis.log ? { type: "log", tickFormat: "~g" } : {}), ...more };
+function scale(label, log) {
+  return { label, labelArrow: "none", grid: true, ...(log ? { type: "log", tickFormat: "~g" } : {}) };
 }
 
 // Stacked horizontal bars: names stay readable on a narrow screen.
-function bars(plot, chosen, width) {
+function bars(chart, chosen, width) {
   const categories = [...new Set(chosen.flatMap((s) => s.good.map((p) => p.x)))];
   const points = chosen.flatMap((s) => s.good.map((p) => ({ ...p, of: s })));
   const longest = Math.max(0, ...categories.map((name) => name.length));
   const place = { x: "y", y: "x", z: (p) => p.of.name, order: null };
   return {
     height: 72 + 30 * categories.length, marginBottom: 42, marginLeft: Math.min(14 + 7 * longest, width * 0.4),
-    x: scale(plot.y), y: { label: null, domain: categories },
+    x: scale(titleOf(chart)), y: { label: null, domain: categories },
     marks: [
       Plot.barX(points, Plot.stackX({ ...place, fill: (p) => p.of.style.colour,
-        title: (p) => pointText(plot, p.of, p), tip: true, inset: 0.5 })),
+        title: (p) => pointText(chart, p.of, p), tip: true, inset: 0.5 })),
       Plot.ruleX([0])
     ]
   };
 }
 
-function curves(plot, chosen, width) {
+function curves(chart, chosen, width) {
   const marks = [];
   for (const s of chosen) {
     const at = { x: "x", y: "y" };
     if (s.line) marks.push(Plot.line(s.good, { ...at, stroke: s.style.colour, strokeWidth: 1.75,
-      strokeDasharray: s.style.dash, ...(s.step ? { curve: "step-after" } : {}) }));
+      strokeDasharray: s.style.dash, ...(s.steps ? { curve: "step-after" } : {}) }));
     if (s.dots) marks.push(Plot.dot(s.good, { ...at, symbol: s.style.symbol, stroke: s.style.colour,
-      strokeWidth: 1.75, r: 4, fill: (p) => p.marked ? s.style.colour : "var(--paper)" }));
+      strokeWidth: 1.75, r: 4, fill: (p) => p.filled ? s.style.colour : "var(--paper)" }));
   }
-  const points = chosen.flatMap((s) => s.good.map((p) => ({ ...p, text: pointText(plot, s, p) })));
+  const points = chosen.flatMap((s) => s.good.map((p) => ({ ...p, text: pointText(chart, s, p) })));
   marks.push(Plot.tip(points, Plot.pointer({ x: "x", y: "y", title: "text" })));
   return { height: Math.max(260, Math.min(440, width * 0.55)), marginLeft: 56, marginBottom: 42,
-    x: scale(plot.x), y: scale(plot.y), marks };
+    x: scale(chart.x, chart.log_x), y: scale(titleOf(chart), chart.log_y), marks };
 }
 
-function draw(plot, chosen, width) {
-  const options = plot.kind === "bars" ? bars(plot, chosen, width) : curves(plot, chosen, width);
+function draw(chart, chosen, width) {
+  const options = chart.bars ? bars(chart, chosen, width) : curves(chart, chosen, width);
   return Plot.plot({ width, color: { type: "identity" }, symbol: { type: "identity" }, ...options,
     style: { background: "none", color: "var(--ink)", fontSize: "12px", fontFamily: "inherit" } });
 }
@@ -122,21 +136,19 @@ function save(text, name, type) {
   setTimeout(() => URL.revokeObjectURL(link.href), 1000);
 }
 
-function legendSymbol(plot, style) {
-  const mark = plot.kind === "bars" ? Plot.barX([1], { x: () => 1, fill: style.colour })
+function legendSymbol(chart, style) {
+  const mark = chart.bars ? Plot.barX([1], { x: () => 1, fill: style.colour })
     : Plot.dot([0], { x: () => 0.5, y: () => 0.5, symbol: style.symbol, stroke: style.colour, strokeWidth: 1.75, r: 4 });
   const svg = Plot.plot({ width: 14, height: 14, margin: 1, axis: null, x: { domain: [0, 1] },
-    ...(plot.kind === "bars" ? {} : { y: { domain: [0, 1] } }), symbol: { type: "identity" }, marks: [mark] });
+    ...(chart.bars ? {} : { y: { domain: [0, 1] } }), symbol: { type: "identity" }, marks: [mark] });
   svg.setAttribute("aria-hidden", "true");
   return svg;
 }
 
 function figure(section) {
-  const plot = section.plot;
-  const series = plot.series.map((s, i) => ({ ...s, ...sorted(plot, s), style: seriesStyle(i), on: true }));
-  const parts = [];
-  const bad = series.flatMap((s) => s.bad.map((p) => p.label || `${s.name}: ${shown(p.x)}, ${shown(p.y)}`));
+  const chart = section.chart, series = seriesOf(section), parts = [];
   if (!series.some((s) => s.good.length)) return [problem("There is nothing to draw: no result has a value here.")];
+  const bad = series.flatMap((s) => s.bad.map((p) => p.label || `${s.name}: ${shown(p.x)}, ${shown(p.y)}`));
   if (bad.length) {
     const some = bad.slice(0, 8).join("; ") + (bad.length > 8 ? `; and ${bad.length - 8} more` : "");
     parts.push(problem(`Not drawn, because a value is missing or not finite (an equal picture has no PSNR): ${some}.`));
@@ -145,7 +157,7 @@ function figure(section) {
   let drawnWidth = 0;
   const redraw = (width) => {
     drawnWidth = width;
-    holder.replaceChildren(draw(plot, series.filter((s) => s.on && s.good.length), width));
+    holder.replaceChildren(draw(chart, series.filter((s) => s.on && s.good.length), width));
   };
   if (series.length > 1) {
     parts.push(element("div", { class: "legend" }, ...series.map((s) => {
@@ -153,17 +165,15 @@ function figure(section) {
         s.on = !s.on;
         button.setAttribute("aria-pressed", String(s.on));
         redraw(drawnWidth);
-      } }, legendSymbol(plot, s.style), s.name);
+      } }, legendSymbol(chart, s.style), s.name);
       return button;
     })));
   }
   parts.push(holder);
   parts.push(element("div", { class: "tools" }, element("button", { type: "button",
     onclick: () => saveSvg(holder.querySelector("svg"), section.id) }, "Save as SVG")));
-  const rows = plot.series.flatMap((s) => s.points.map((p) =>
-    [s.name, p.label || "", p.x ?? null, p.y ?? null]));
-  parts.push(element("details", {}, element("summary", {}, "The numbers"),
-    table(["series", "point", axisLabel(plot.x), axisLabel(plot.y)], rows)));
+  if (section.numbers) parts.push(element("details", {}, element("summary", {}, "The numbers"),
+    table(section.numbers.columns, section.numbers.rows)));
   new ResizeObserver(([entry]) => {
     const width = Math.floor(entry.contentRect.width);
     if (width > 0 && width !== drawnWidth) redraw(width);
@@ -206,7 +216,7 @@ function comparison(figures) {
 
 function sectionParts(section) {
   if (section.problem) return [problem(section.problem)];
-  const parts = section.plot ? figure(section) : [];
+  const parts = section.chart ? figure(section) : [];
   if (section.table) {
     parts.push(section.table.rows.length ? table(section.table.columns, section.table.rows)
       : problem("This table is empty: nothing was measured."));

@@ -1,21 +1,36 @@
-#include "lab/stability_cases.h"
+#pragma once
+// Where thresholds that go by the last frame can fail (docs/method.md 7), each as a small scene and a path.
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
+#include <memory>
+#include <string>
+#include <vector>
 
 #include "base/random.h"
+#include "scene/camera.h"
+#include "scene/model.h"
+#include "stereo/rig.h"
 
 namespace binosplat::lab {
 
-namespace {
+struct StabilityCase {
+  std::string name;
+  std::shared_ptr<const Model> model;
+  std::vector<stereo::EyePair> frames;
+  std::size_t event = 0;  // the frame from which settling is counted: 0, or the one after a jump
+};
+
+namespace stability {
 
 constexpr int width = 128, height = 96;
 constexpr double focal = 96.0;
 constexpr double sh_c0 = 0.28209479177387814;
 constexpr std::size_t sway_frames = 24, still_frames = 300, turn_frames = 30;
 
-void add_gaussian(Model& model, const glm::vec3& position, const glm::vec3& scale, float opacity,
-                  const glm::vec3& colour) {
+inline void add_gaussian(Model& model, const glm::vec3& position, const glm::vec3& scale, float opacity,
+                         const glm::vec3& colour) {
   model.position.push_back(position);
   model.scale.push_back(scale);
   model.rotation.emplace_back(1.0f, 0.0f, 0.0f, 0.0f);
@@ -25,8 +40,9 @@ void add_gaussian(Model& model, const glm::vec3& position, const glm::vec3& scal
 
 // Gaussians side by side at depth z, beyond the picture's edges: `step` px apart, `size` steps wide,
 // coloured by their place in px.
-void add_wall(Model& model, double z, double step, double size, float opacity,
-              const std::function<glm::vec3(double x, double y)>& colour, double from_x = -0.75 * width) {
+inline void add_wall(Model& model, double z, double step, double size, float opacity,
+                     const std::function<glm::vec3(double x, double y)>& colour,
+                     double from_x = -0.75 * width) {
   const double unit = z / focal;  // of a px at that depth
   for (double y = -0.75 * height; y <= 0.75 * height; y += step) {
     for (double x = from_x; x <= 0.75 * width; x += step) {
@@ -36,17 +52,17 @@ void add_wall(Model& model, double z, double step, double size, float opacity,
   }
 }
 
-glm::vec3 random_colour(Random& random) {
+inline glm::vec3 random_colour(Random& random) {
   const double r = random.uniform(), g = random.uniform(), b = random.uniform();
   return {r, g, b};
 }
 
-glm::vec3 checks(double x, double y) {
+inline glm::vec3 checks(double x, double y) {
   const bool light = (static_cast<int>(std::floor(x / 24)) + static_cast<int>(std::floor(y / 24))) % 2 == 0;
   return light ? glm::vec3(0.8f, 0.7f, 0.5f) : glm::vec3(0.3f, 0.4f, 0.5f);
 }
 
-Camera head_at(const glm::dvec3& position, double yaw_degrees) {
+inline Camera head_at(const glm::dvec3& position, double yaw_degrees) {
   Camera camera;
   camera.name = "head";
   camera.width = width;
@@ -62,29 +78,27 @@ Camera head_at(const glm::dvec3& position, double yaw_degrees) {
 
 using Path = std::function<Camera(std::size_t frame)>;
 
-std::vector<stereo::EyePair> along(const Path& path, std::size_t count,
-                                   const stereo::RigSettings& rig = {.ipd = 0.063}) {
+inline std::vector<stereo::EyePair> along(const Path& path, std::size_t count,
+                                          const stereo::RigSettings& rig = {.ipd = 0.063}) {
   std::vector<stereo::EyePair> frames;
   for (std::size_t n = 0; n < count; ++n) frames.push_back(stereo::make_rig(path(n), rig));
   return frames;
 }
 
 // A head that looks about: a third of a degree and 3 mm a frame.
-Camera sway(std::size_t frame) {
+inline Camera sway(std::size_t frame) {
   const double n = static_cast<double>(frame);
   return head_at({0.003 * n, 0.0, 0.0}, 0.33 * n);
 }
 
-Camera still(std::size_t) { return head_at(glm::dvec3(0.0), 0.0); }
+inline Camera still(std::size_t) { return head_at(glm::dvec3(0.0), 0.0); }
 
-StabilityCase make(const char* name, const char* fear, Model model, const Path& path,
-                   std::size_t count = sway_frames) {
-  model.name = name;
-  return {name, fear, std::make_shared<const Model>(std::move(model)), along(path, count), 0};
+inline StabilityCase make(const char* name, Model model, const Path& path, std::size_t count = sway_frames) {
+  return {name, std::make_shared<const Model>(std::move(model)), along(path, count), 0};
 }
 
 // Half opaque Gaussians of all sizes, many deep.
-Model clutter() {
+inline Model clutter() {
   Random random(21);
   Model model;
   for (int i = 0; i < 3000; ++i) {
@@ -99,7 +113,7 @@ Model clutter() {
   return model;
 }
 
-Model far_wall() {
+inline Model far_wall() {
   Random random(22);
   Model model;
   add_wall(model, 60.0, 1.0, 0.5, 0.4f,
@@ -107,7 +121,7 @@ Model far_wall() {
   return model;
 }
 
-Model thin_occluder() {
+inline Model thin_occluder() {
   Model model;
   add_wall(model, 6.0, 5.0, 0.7, 0.9f,
            [](double x, double y) { return glm::vec3(0.6f) + 0.4f * checks(x, y); });
@@ -118,7 +132,7 @@ Model thin_occluder() {
   return model;
 }
 
-Model board() {
+inline Model board() {
   Model model;
   add_wall(model, 5.0, 5.0, 0.7, 0.95f, checks);
   add_wall(
@@ -126,7 +140,7 @@ Model board() {
   return model;
 }
 
-Model mist() {
+inline Model mist() {
   Random random(23);
   Model model;
   for (int i = 0; i < 6000; ++i) {
@@ -138,7 +152,7 @@ Model mist() {
   return model;
 }
 
-Model soft_discs() {
+inline Model soft_discs() {
   Random random(24);
   Model model;
   for (int i = 0; i < 60; ++i) {
@@ -150,7 +164,7 @@ Model soft_discs() {
   return model;
 }
 
-Model near_cloud() {
+inline Model near_cloud() {
   Random random(25);
   Model model;
   for (int i = 0; i < 500; ++i) {
@@ -161,7 +175,7 @@ Model near_cloud() {
   return model;
 }
 
-Model veil() {
+inline Model veil() {
   Model model;
   add_wall(model, 4.0, 4.0, 0.7, 0.9f, checks);
   add_gaussian(model, {0.0f, 0.0f, 1.0f}, glm::vec3(3.0f), 0.3f, {0.9f, 0.4f, 0.3f});
@@ -169,35 +183,36 @@ Model veil() {
   return model;
 }
 
-}  // namespace
+}  // namespace stability
 
-std::vector<StabilityCase> built_in_cases() {
-  std::vector<StabilityCase> cases;
-  cases.push_back(
-      make("far-wall", "tiny far Gaussians, each below Th and together a wall (trap 1)", far_wall(), sway));
-  cases.push_back(make("thin-occluder", "bars that uncover a bright field as the head moves (trap 4)",
-                       thin_occluder(), [](std::size_t n) {
-                         return head_at({0.008 * static_cast<double>(n), 0.0, 0.0}, 0.0);
-                       }));
-  cases.push_back(make("one-eye", "a board that hides from one eye what the other sees (trap 4)", board(),
-                       [](std::size_t n) {
-                         return head_at({0.004 * static_cast<double>(n), 0.0, 0.0}, 0.0);
-                       }));
-  cases.push_back(make("still", "a camera that does not move: the loop must settle and not drift (trap 3)",
-                       clutter(), still, still_frames));
-  cases.push_back(make("mist", "a mostly transparent model: nothing hides anything", mist(), sway));
-  cases.push_back(
-      make("tile-edges", "soft discs whose tails end at a tile's edge (trap 5)", soft_discs(), sway));
-  cases.push_back(
-      make("near-plane", "a cloud that the head moves through (trap 6)", near_cloud(), [](std::size_t n) {
-        return head_at({0.0, 0.0, 0.01 * static_cast<double>(n)}, 0.0);
-      }));
-  cases.push_back(make("all-tiles", "one Gaussian over all tiles, before a wall (trap 7)", veil(), sway));
-  return cases;
+/// The built-in cases; each is 128 x 96 px an eye.
+inline std::vector<StabilityCase> built_in_cases() {
+  using namespace stability;
+  const auto at_speed = [](const glm::dvec3& units_a_frame) -> Path {
+    return [units_a_frame](std::size_t n) { return head_at(static_cast<double>(n) * units_a_frame, 0.0); };
+  };
+  return {// Tiny far Gaussians, each below Th and together a wall (trap 1).
+          make("far-wall", far_wall(), sway),
+          // Bars that uncover a bright field as the head moves (trap 4).
+          make("thin-occluder", thin_occluder(), at_speed({0.008, 0.0, 0.0})),
+          // A board that hides from one eye what the other sees (trap 4).
+          make("one-eye", board(), at_speed({0.004, 0.0, 0.0})),
+          // A camera that does not move: the loop must settle and not drift (trap 3).
+          make("still", clutter(), still, still_frames),
+          // A mostly transparent model: nothing hides anything.
+          make("mist", mist(), sway),
+          // Soft discs whose tails end at a tile's edge (trap 5).
+          make("tile-edges", soft_discs(), sway),
+          // A cloud that the head moves through (trap 6).
+          make("near-plane", near_cloud(), at_speed({0.0, 0.0, 0.01})),
+          // One Gaussian over all tiles, before a wall (trap 7).
+          make("all-tiles", veil(), sway)};
 }
 
-std::vector<StabilityCase> cases_in(std::shared_ptr<const Model> scene, const Camera& head,
-                                    const stereo::RigSettings& rig) {
+/// A 30 degree jump and a fast turn of 200 degrees/s at 90 Hz, there and back, in any scene (trap 4).
+inline std::vector<StabilityCase> cases_in(const std::shared_ptr<const Model>& scene, const Camera& head,
+                                           const stereo::RigSettings& rig) {
+  using namespace stability;
   const auto turned = [&head](double degrees) {
     Camera camera = head;
     const double a = glm::radians(degrees), c = std::cos(a), s = std::sin(a);
@@ -206,22 +221,15 @@ std::vector<StabilityCase> cases_in(std::shared_ptr<const Model> scene, const Ca
     return camera;
   };
   constexpr double a_frame_at_90_hz = 200.0 / 90.0;
-  const std::size_t jump = turn_frames / 2;
-  StabilityCase cut{
-      "jump", "a 30 degree jump of the camera (trap 4)", scene,
-      along([&](std::size_t n) { return turned(0.1 * static_cast<double>(n) + (n < jump ? 0 : 30)); },
-            turn_frames, rig),
-      jump};
-  StabilityCase turn{"fast-turn", "200 degrees/s at 90 Hz, there and back (trap 4)", scene,
-                     along(
-                         [&](std::size_t n) {
-                           const double there =
-                               std::min<double>(static_cast<double>(n), turn_frames - static_cast<double>(n));
-                           return turned(a_frame_at_90_hz * there);
-                         },
-                         turn_frames, rig),
-                     0};
-  return {std::move(cut), std::move(turn)};
+  constexpr std::size_t jump = turn_frames / 2;
+  const auto jumping = [&](std::size_t n) {
+    return turned(0.1 * static_cast<double>(n) + (n < jump ? 0 : 30));
+  };
+  const auto turning = [&](std::size_t n) {
+    return turned(a_frame_at_90_hz * static_cast<double>(std::min(n, turn_frames - n)));
+  };
+  return {{"jump", scene, along(jumping, turn_frames, rig), jump},
+          {"fast-turn", scene, along(turning, turn_frames, rig), 0}};
 }
 
 }  // namespace binosplat::lab

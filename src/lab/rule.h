@@ -1,0 +1,24 @@
+#pragma once
+// A threshold rule as studies compare them: the threshold, where its transmittance bound comes from, and its
+// tolerance.
+
+#include <string>
+#include <vector>
+
+#include "render/settings.h"
+
+namespace binosplat::lab {
+
+struct Rule {
+  int th = TH_SQUARED;                    // of th_choices
+  int transmittance = TRANSMITTANCE_ONE;  // of transmittance_choices
+  float tolerance = 0.0f;
+
+  render::FrameSettings settings() const;
+  std::string name() const;  // "squared, last"
+};
+
+/// Every threshold with every bound that it takes; the exact one first. Tolerances are 0.
+std::vector<Rule> all_rules();
+
+}  // namespace binosplat::lab
