@@ -133,7 +133,8 @@ struct Work {
   std::vector<Shot> shots;
   std::optional<Shot> screen;  // what tells how far the screen is, where no option does
   std::string photos;          // a folder; empty: none
-  std::optional<FollowedLevels> followed;
+  bool heads_turn = false;
+  std::unique_ptr<Stream> stream;  // of a model whose levels follow the shots
 };
 
 // Of those that are drawn, before the model is read; and that each has a photo of its own.
@@ -153,7 +154,7 @@ std::optional<double> exact_frame_ms(render::Frame& frame, const Work& work, con
   constexpr std::size_t many = 24, some = 6;
   const RenderOptions& o = report.options;
   if (!o.drawing.quality || !work.list.path ||
-      report.drawn.size() < (report.context.software() ? some : many) || work.followed || o.foveate ||
+      report.drawn.size() < (report.context.software() ? some : many) || work.stream || o.foveate ||
       work.plan.vr180)
     return std::nullopt;
   render::FrameSettings exact = render::exact_of(settings_of(o.drawing));
@@ -164,14 +165,16 @@ std::optional<double> exact_frame_ms(render::Frame& frame, const Work& work, con
 }
 
 // Draws every shot as often as asked for and writes its last frame.
-void draw_all(gl::Context& context, Work& work, Model& model, RenderReport& report) {
+void draw_all(gl::Context& context, Work& work, RenderReport& report) {
   const DrawingOptions& drawing = report.options.drawing;
   const OutputOptions& output = report.options.output;
   render::FrameSettings settings = settings_of(drawing);
   settings.background = output.backdrop();
   const render::Workings workings = workings_of(drawing);
   if (!work.list.path) settings.probe_tiles = std::numeric_limits<int>::max();  // single pictures: all
-  const auto gpu_model = std::make_shared<render::GpuModel>(context, report.model, settings.precision);
+  const auto gpu_model = work.stream
+                             ? work.stream->gpu_model(context, settings.precision)
+                             : std::make_shared<render::GpuModel>(context, report.model, settings.precision);
   render::Frame frame(gpu_model);
   stereo::Show show(gpu_model);
   work.calibrated.check_model(report.model);
@@ -188,6 +191,9 @@ void draw_all(gl::Context& context, Work& work, Model& model, RenderReport& repo
     for (Shot& shot : work.shots) converge(shot, *report.convergence);
   }
   const std::unique_ptr<Video> video = open_video(work.plan, work.shots);
+  std::optional<FinestLevels> finest;
+  std::optional<glm::vec3> of_switches;  // the background, where they are reported
+  if (output.detail_report && work.heads_turn) of_switches = settings.background;
   bool all_empty = true;
   Progress progress("drawing", work.shots.size() * static_cast<std::size_t>(drawing.frames));
   std::size_t done = 0;
@@ -199,8 +205,8 @@ void draw_all(gl::Context& context, Work& work, Model& model, RenderReport& repo
     const std::vector<shared::View> views = views_of(drawn.shot);
     render::FrameSettings of_shot = work.calibrated.of(drawn.shot, settings);
     of_shot.depth = output.exr_depth;
-    if (work.followed) {
-      drawn.levels = work.followed->follow(model, frame, show, views, of_shot);
+    if (work.stream) {
+      drawn.levels = settle_shot(*work.stream, frame, show, views, of_shot, of_switches);
       of_shot.quality = static_cast<float>(drawn.levels->left);
     }
     for (int n = 0; n < drawing.frames; ++n) {
@@ -215,8 +221,10 @@ void draw_all(gl::Context& context, Work& work, Model& model, RenderReport& repo
                                                      : frame.read_pictures();
     if (foveated) drawn.foveated = foveated->parts();
     all_empty = all_empty && std::all_of(pictures.begin(), pictures.end(), is_empty);
-    if (output.detail_report)
-      drawn.levels->finest_psnr = work.followed->against_finest(context, views, pictures, of_shot);
+    if (output.detail_report) {
+      if (!finest) finest.emplace(report.options.scene, context);
+      drawn.levels->finest_psnr = finest->psnr(views, pictures, of_shot, settings.background);
+    }
     if (!panorama) drawn.comfort = comfort_of(drawn.shot, report.options.camera.lens.headset(), pictures[0]);
     const stereo::Shown shown = show.make(output.show, frame, views, pictures, of_shot, output.background);
     drawn.most_shown = shown.most;
@@ -296,18 +304,18 @@ ExitCode render(const RenderOptions& asked) {
   const render::FrameSettings settings = settings_of(o.drawing);
   std::optional<DetailBudget> budget;
   if (o.scene.detail || may_share(o)) {
-    const bool heads_turn =
-        work.list.path || work.plan.vr180;  // such a picture shows what lies beside the view
-    work.followed.emplace(o.scene, settings, o.output.detail_report, o.output.backdrop(), heads_turn);
-    if (!o.scene.detail && !work.followed->has_errors()) work.followed.reset();
+    work.heads_turn = work.list.path || work.plan.vr180;  // such a picture shows what lies beside the view
+    work.stream = open_for_shots(o.scene, settings, work.heads_turn);
+    if (!o.scene.detail && !work.stream->files().has_errors()) work.stream.reset();
   }
-  if (!work.followed && o.output.detail_report)
+  if (!work.stream && o.output.detail_report)
     fail("--detail-report: {} does not say what its levels lose, to share --quality with: give --detail PX",
          o.scene.name);
-  if (!work.followed && o.scene.gpu_memory) budget = detail_budget(o, work.list);
-  Model model = work.followed ? work.followed->coarsest() : load_scene(o.scene, budget, work.list.cameras);
-  log_model(o.scene.name, o.drawing.decode, model,
-            work.followed ? work.followed->gaussians() : model.count());
+  if (!work.stream && o.scene.gpu_memory) budget = detail_budget(o, work.list);
+  Model loaded;
+  if (!work.stream) loaded = load_scene(o.scene, budget, work.list.cameras);
+  const Model& model = work.stream ? work.stream->model() : loaded;
+  log_model(o.scene.name, o.drawing.decode, model, work.stream ? work.stream->gaussians() : model.count());
   if (!work.list.listed) work.list = made_up_cameras(o.scene, o.camera, work.list.known, model);
 
   const double near_plane = near_plane_of(o.camera, work.list);
@@ -327,7 +335,10 @@ ExitCode render(const RenderOptions& asked) {
   const std::optional<ordered_json> run = take_what_is_left(o, near_plane, work);
   if (work.shots.empty()) return ExitCode::done;
   context = open_context(o.context);
-  if (work.followed) work.followed->bring(*context, model, first);
+  if (work.stream) {
+    work.stream->gpu_model(*context, settings.precision);
+    work.stream->settle(first, settings);
+  }
   const auto vr180_near = work.plan.vr180 ? std::optional(near_plane) : std::nullopt;
   RenderReport report{o,
                       model,
@@ -339,7 +350,7 @@ ExitCode render(const RenderOptions& asked) {
                       {}};
   print_needs(report.needs);
   if (o.output.output.empty()) claim_folder(work.plan.folder, o.scene.name);
-  draw_all(*context, work, model, report);
+  draw_all(*context, work, report);
   check_alone(work.plan, run);
   print(report);
   if (!o.output.json.empty()) save(o.output.json, report);

@@ -165,7 +165,7 @@ ordered_json settings_json(const RenderReport& report) {
   const DrawingOptions& o = report.options.drawing;
   const Background& background = report.options.output.background;
   const Model& model = report.model;
-  const std::optional<DetailNeed>& detail = report.options.scene.detail;
+  const std::optional<DetailRequest>& detail = report.options.scene.detail;
   const bool vr180 = report.options.camera.lens.vr180();
   const int order = vr180 ? ORDER_DISTANCE : o.order.value_or(model.perspective.order);
   const int projection = vr180 ? PROJECTION_TANGENT : o.projection.value_or(model.perspective.projection);

@@ -11,7 +11,7 @@
 
 namespace binosplat::app {
 
-DetailNeed parse_detail(const std::string& text) {
+DetailRequest parse_detail(const std::string& text) {
   std::string_view rest = text;
   const std::optional<double> number = take_real(rest);
   std::string unit(rest);

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "app/cli.h"
-#include "stream/detail.h"
+#include "stream/choice.h"
 
 namespace binosplat::app {
 
@@ -19,7 +19,7 @@ struct SceneOptions {
 
   std::optional<int> lod;                 // of a model file that has levels of detail
   std::optional<double> gpu_memory;       // MB, which levels are chosen to fit; instead of lod
-  std::optional<DetailNeed> detail;       // by which levels are chosen for each view anew; not `most`
+  std::optional<DetailRequest> detail;    // by which levels are chosen for each view anew; not `most`
   std::string axes;                       // where a file's x, y and z point; empty: what its format says
   std::optional<std::size_t> appearance;  // of a Scaffold-GS model
 
@@ -34,7 +34,7 @@ struct SceneOptions {
 };
 
 /// As in --detail: "5", px, or "40dB". Throws Error for anything else.
-DetailNeed parse_detail(const std::string& text);
+DetailRequest parse_detail(const std::string& text);
 
 /// Adds all of them; `options` must outlive the parsing.
 void add_scene_options(CLI::App& sub, SceneOptions& options);

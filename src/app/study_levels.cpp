@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <list>
+#include <memory>
 #include <nlohmann/json.hpp>
 
 #include "app/blind.h"
@@ -30,18 +30,18 @@ namespace {
 constexpr std::size_t shots_wanted = 8;
 constexpr int frames_wanted = 24;
 
-double number_of_detail(const DetailNeed& detail) { return detail.db.value_or(detail.apart_px); }
+double number_of_detail(const DetailRequest& detail) { return detail.db.value_or(detail.apart_px); }
 
 /// From the fewest dB or px on.
-std::vector<DetailNeed> parse_details(const std::vector<std::string>& texts) {
-  std::vector<DetailNeed> details;
+std::vector<DetailRequest> parse_details(const std::vector<std::string>& texts) {
+  std::vector<DetailRequest> details;
   for (const std::string& text : texts) {
     details.push_back(parse_detail(text));
     if (details.back().db.has_value() != details.front().db.has_value())
       fail("--detail {}: expected all of them in pixels, or all in decibels", fmt::join(texts, ","));
   }
   std::ranges::sort(details, {}, number_of_detail);
-  const auto same = [](const DetailNeed& a, const DetailNeed& b) {
+  const auto same = [](const DetailRequest& a, const DetailRequest& b) {
     return number_of_detail(a) == number_of_detail(b);
   };
   details.erase(std::unique(details.begin(), details.end(), same), details.end());
@@ -64,36 +64,19 @@ Listed listed(const StudyOptions& options, const std::string& name) {
         "--levels: {} is no folder with levels of detail (a lod-meta.json): `binosplat levels MODEL -o DIR` "
         "makes one",
         name);
-  StreamedSog levels(name);
-  for (const DetailNeed& detail : options.details) levels.choose({}, detail);
+  const LodFiles files(name);
+  for (const DetailRequest& detail : options.details) files.check(detail);
   found.list = listed_cameras(found.scene, options.camera, options.rig);
   if (!found.list.listed) fail("--levels: no cameras beside {}; name their file with --cameras", name);
   check_views(options.camera.views, options.rig.mono, found.list);
   return found;
 }
 
-/// A model whose levels follow one detail.
-struct Following {
-  Following(gl::Context& context, const SceneOptions& scene)
-      : detail(*scene.detail),
-        levels(scene, {}, false, glm::vec3(0.0f), false),
-        model(levels.coarsest()),
-        gpu_model(std::make_shared<render::GpuModel>(context, model)),
-        show(gpu_model) {}
-
-  DetailNeed detail;
-  FollowedLevels levels;
-  Model model;
-  std::shared_ptr<render::GpuModel> gpu_model;
-  stereo::Show show;
-};
-
-lab::FollowingModel following_model(Following& following) {
-  return {number_of_detail(following.detail), following.gpu_model,
-          [&following](render::Frame& frame, std::span<const shared::View> views) {
-            const ShotLevels levels =
-                following.levels.follow(following.model, frame, following.show, views, {});
-            return lab::LevelsBrought{levels.gaussians, levels.predicted_psnr};
+lab::FollowingModel following_model(gl::Context& context, const DetailRequest& detail, Stream& stream) {
+  return {number_of_detail(detail), stream.gpu_model(context, PRECISION_FULL),
+          [&stream](std::span<const shared::View> views) {
+            stream.settle(views, {});
+            return lab::LevelsBrought{stream.gaussians(), stream.reported_db()};
           }};
 }
 
@@ -115,15 +98,16 @@ std::vector<lab::LevelsShot> shots_of(gl::Context& context, const StudyOptions& 
 
 lab::LevelsScene measured(gl::Context& context, const StudyOptions& options, const Listed& listed,
                           int frames) {
-  std::list<Following> all;  // which stay where they are
+  std::vector<std::unique_ptr<Stream>> streams;
   std::vector<lab::FollowingModel> models;
-  for (const DetailNeed& detail : options.details) {
+  for (const DetailRequest& detail : options.details) {
     SceneOptions scene = listed.scene;
     scene.detail = detail;
-    models.push_back(following_model(all.emplace_back(context, scene)));
+    streams.push_back(open_for_shots(scene, {}, false));
+    models.push_back(following_model(context, detail, *streams.back()));
   }
-  const std::vector<lab::LevelsShot> shots = shots_of(context, options, listed, all.front().model);
-  lab::LevelsScene scene{.name = listed.scene.name, .finest = all.front().levels.finest()};
+  const std::vector<lab::LevelsShot> shots = shots_of(context, options, listed, streams.front()->model());
+  lab::LevelsScene scene{.name = listed.scene.name, .finest = streams.front()->files().finest()};
   Progress progress("measuring " + scene.name, shots.size());
   std::size_t done = 0;
   lab::measure_levels(

@@ -37,7 +37,7 @@ struct StudyOptions : MeasuredOptions {
   bool levels = false;
   std::optional<glm::ivec2> rays;  // of --turn, across and down; none: as many as the device is quick with
   MotionOptions motion;
-  std::vector<DetailNeed> details = {
+  std::vector<DetailRequest> details = {
       {.db = 30}, {.db = 35}, {.db = 40}, {.db = 45}};  // of --levels, in order
   std::optional<int> frames;                            // timed of each rule in each round
   std::vector<std::string> test;

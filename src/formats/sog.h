@@ -1,7 +1,7 @@
 #pragma once
 // PlayCanvas' SOG, versions 1 and 2: the numbers of a model as bytes of lossless WebP pictures, and meta.json
 // that says how they are to be read; as a folder, or as a zip archive (.sog), where they may lie in a
-// sub-folder; stream/streamed_sog.h is for several of them. Frame: the trainer's (RDF), as a ply file's.
+// sub-folder; formats/streamed_sog.h is for several of them. Frame: the trainer's (RDF), as a ply file's.
 
 #include <filesystem>
 #include <nlohmann/json_fwd.hpp>

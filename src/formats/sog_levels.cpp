@@ -53,8 +53,8 @@ std::vector<double> by_direction(const JsonValue& value, std::size_t widths) {
 
 /// Whether a leaf says what it loses of each pixel that shows it: not where its finest level shows nothing,
 /// and another one does.
-bool knows_errors(const DetailPart& leaf) {
-  return std::ranges::all_of(leaf.levels, [&](const DetailPart::Level& level) {
+bool knows_errors(const LodChunk& leaf) {
+  return std::ranges::all_of(leaf.levels, [&](const LodChunk::Level& level) {
     return std::ranges::equal(level.errors, leaf.seen,
                               [](double error, double seen) { return error <= most_lost * seen; });
   });
@@ -126,18 +126,18 @@ std::vector<bool> SogLevels::found() const {
   return found;
 }
 
-std::vector<DetailPart> SogLevels::leaves(const nlohmann::json& json) const {
+std::vector<LodChunk> SogLevels::leaves(const nlohmann::json& json) const {
   const std::vector<bool> is_there = found();
-  std::vector<DetailPart> result;
+  std::vector<LodChunk> result;
   walk(JsonValue(path_.string(), json), [&](const JsonValue& node) {
     const JsonValue bound = node.at("bound");
-    DetailPart leaf{corner(bound.at("min")), corner(bound.at("max")), {}};
+    LodChunk leaf{corner(bound.at("min")), corner(bound.at("max")), {}};
     if (node.has("pixels")) {
       leaf.pixels = widths_of(node.at("pixels"));
       leaf.seen = by_direction(node.at("seen"), leaf.pixels.size());
     }
     for (const Place& place : leaves_[result.size()]) {
-      DetailPart::Level level{place.level, place.range.count};
+      LodChunk::Level level{place.level, place.range.count};
       if (!leaf.pixels.empty()) {
         const JsonValue lod = node.at("lods").at(std::to_string(place.level));
         level.errors = by_direction(lod.at("errors"), leaf.pixels.size());

@@ -18,7 +18,7 @@ namespace binosplat {
 /// Directions in which what levels lose is known: along x, against it, along y and so on.
 constexpr std::size_t detail_directions = 6;
 /// A part of a model: its box, and its levels from the finest to the coarsest.
-struct DetailPart {
+struct LodChunk {
   struct Level {
     int number = 0;
     std::size_t count = 0;  // Gaussians
@@ -30,7 +30,7 @@ struct DetailPart {
   glm::dvec3 low{0.0}, high{0.0};
   std::vector<Level> levels;   // may be empty
   std::vector<double> pixels;  // widths, world units, from the narrowest; empty: the errors are not known
-  std::vector<double> seen;    // what those pictures of the finest show (SeenPart), px, likewise
+  std::vector<double> seen;    // what those pictures of the finest show (ChunkVisibility), px, likewise
 };
 
 class SogLevels {
@@ -60,7 +60,7 @@ class SogLevels {
 
   /// The tree's leaves, with the levels whose files are there, and their errors where those are told; from
   /// the same lod-meta.json.
-  std::vector<DetailPart> leaves(const nlohmann::json& json) const;
+  std::vector<LodChunk> leaves(const nlohmann::json& json) const;
 
   /// For each level the first file that it needs and that is not there.
   std::vector<std::optional<std::filesystem::path>> missing() const;

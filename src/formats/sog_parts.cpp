@@ -24,7 +24,7 @@ std::vector<SogSource::Range> ranges_of(const SogLevels::TakenOfFile& taken) {
   return ranges;
 }
 
-void check_leaves(const std::filesystem::path& path, const std::vector<DetailPart>& leaves) {
+void check_leaves(const std::filesystem::path& path, const std::vector<LodChunk>& leaves) {
   if (std::all_of(leaves.begin(), leaves.end(), [](const auto& leaf) { return leaf.levels.empty(); }))
     fail("{}: none of its levels of detail is there: fetch one", path.string());
 }

@@ -19,7 +19,7 @@ SogSource open_part(const std::filesystem::path& path);
 std::vector<SogSource::Range> ranges_of(const SogLevels::TakenOfFile& taken);
 
 /// Throws Error if no leaf has a level that is there.
-void check_leaves(const std::filesystem::path& path, const std::vector<DetailPart>& leaves);
+void check_leaves(const std::filesystem::path& path, const std::vector<LodChunk>& leaves);
 
 /// The format of a model whose levels are chosen.
 std::string format_of_chosen(const SogLevels& levels);

@@ -134,7 +134,7 @@ void measure_levels(LevelsScene& scene, gl::Context& context, std::span<const Le
     scene.shots.push_back(shot.name);
     // Before the finest come, which may take the room that is left.
     for (std::size_t k = 0; k < models.size(); ++k) {
-      const LevelsBrought brought = models[k].bring(*of_models[k], shot.views);
+      const LevelsBrought brought = models[k].bring(shot.views);
       scene.rows[k].shots.push_back(
           {.gaussians = static_cast<double>(brought.gaussians), .predicted_db = brought.predicted_db});
     }

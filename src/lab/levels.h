@@ -30,8 +30,8 @@ struct LevelsBrought {
 struct FollowingModel {
   double detail = 0.0;  // that is asked for, dB or px
   std::shared_ptr<render::GpuModel> model;
-  /// Brings it to the levels that these views need; `frame` is one of the model.
-  std::function<LevelsBrought(render::Frame& frame, std::span<const shared::View> views)> bring;
+  /// Brings it to the levels that these views need.
+  std::function<LevelsBrought(std::span<const shared::View> views)> bring;
 };
 
 /// What a shot, or some in the mean, come to. What is against the finest levels is none where these were not

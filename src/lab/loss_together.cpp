@@ -2,7 +2,6 @@
 
 #include <cmath>
 #include <functional>
-#include <limits>
 #include <memory>
 #include <optional>
 
@@ -11,10 +10,10 @@
 #include "render/frame.h"
 #include "render/squared_error.h"
 #include "scene/camera.h"
-#include "scene/model_parts.h"
+#include "scene/model_chunks.h"
 #include "scene/reduce.h"
-#include "stream/detail.h"
-#include "stream/sight.h"
+#include "stream/choice.h"
+#include "stream/visibility.h"
 
 namespace binosplat::lab {
 
@@ -32,8 +31,8 @@ constexpr double as_far_least = 0.4;  // on the whole, of how far away what it l
 constexpr double hidden = 0.01;       // px of a part that is shown; of hundreds of thousands
 
 /// As lod-meta.json will tell it.
-DetailPart part_of(std::span<const Model> levels, const LeafErrors& errors) {
-  DetailPart part;
+LodChunk part_of(std::span<const Model> levels, const LeafErrors& errors) {
+  LodChunk part;
   const Box box = reach_of(levels.front());
   part.low = box.low;
   part.high = box.high;
@@ -76,7 +75,7 @@ class Leaves {
     bring_to(coarsest());
     gpu_model_ = std::make_shared<render::GpuModel>(context, model_);
     frame_.emplace(gpu_model_);
-    sight_.emplace(gpu_model_);
+    visibility_.emplace(gpu_model_);
   }
 
   std::vector<std::size_t> coarsest() const {
@@ -85,7 +84,7 @@ class Leaves {
 
   void bring_to(const std::vector<std::size_t>& levels) {
     put(levels);
-    const ModelParts::Changes changes = layout_.take_changes();
+    const ModelChunks::Changes changes = layout_.take_changes();
     if (gpu_model_) gpu_model_->reload(changes);
   }
 
@@ -126,14 +125,14 @@ class Leaves {
   /// Brings them to the levels that the view needs, and says what it is predicted to lose.
   double settle(const shared::View& view) {
     bring_to(coarsest());
-    DetailChoice choice;
+    LevelChoice choice;
     shows_.assign(leaves_.size(), 0.0);
     for (int look = 0; look < looks; ++look) {
-      const DetailSeen seen{sight_->look({&view, 1}, {}, layout_), levels_};
+      const VisibleChunks seen{visibility_->measure({&view, 1}, {}, layout_), levels_};
       for (std::size_t i = 0; i < shows_.size(); ++i)
         shows_[i] = std::max(shows_[i], seen.by_view[0][i].area);
-      choice = choose_levels_within(parts_, detail_views({&view, 1}), error_of_psnr(asked_db),
-                                    std::numeric_limits<std::size_t>::max(), seen, {}, false);
+      choice = choose_within(parts_, detail_views({&view, 1}),
+                             {.error = error_of_psnr(asked_db), .heads_turn = false}, seen);
       if (choice.levels == levels_) break;
       bring_to(choice.levels);
     }
@@ -150,7 +149,7 @@ class Leaves {
 
  private:
   void put(const std::vector<std::size_t>& levels) {
-    std::vector<ModelParts::Replacement> replacements;
+    std::vector<ModelChunks::Replacement> replacements;
     for (std::size_t i = 0; i < leaves_.size(); ++i)
       if (levels_.empty() || levels[i] != levels_[i]) replacements.push_back({i, &leaves_[i][levels[i]]});
     levels_ = levels;
@@ -165,16 +164,16 @@ class Leaves {
   std::vector<Try> those_that_show(std::span<const Try> tries, bool& room) {
     std::vector<shared::View> views;
     for (const Try& one : tries) views.push_back(from(one.eye, one.at, tried_side));
-    std::vector<std::vector<SeenPart>> seen;
+    std::vector<std::vector<ChunkVisibility>> seen;
     if (views.empty()) return {};
-    if (!can_draw([&] { seen = sight_->look(views, {}, layout_); })) {
+    if (!can_draw([&] { seen = visibility_->measure(views, {}, layout_); })) {
       room = false;
       return {};
     }
     std::vector<Try> found;
     for (std::size_t k = 0; k < tries.size(); ++k) {
       double area = 0.0, logarithms = 0.0;
-      for (const SeenPart& part : seen[k]) {
+      for (const ChunkVisibility& part : seen[k]) {
         if (part.area == 0.0) continue;
         area += part.area;
         logarithms += part.area * std::log(part.distance);
@@ -187,14 +186,14 @@ class Leaves {
   }
 
   std::span<const std::vector<Model>> leaves_;
-  std::vector<DetailPart> parts_;
-  ModelParts layout_;
+  std::vector<LodChunk> parts_;
+  ModelChunks layout_;
   std::vector<std::size_t> levels_;
   std::vector<double> shows_;  // of each, the view that was settled, px
   Model model_;
   std::shared_ptr<render::GpuModel> gpu_model_;
   std::optional<render::Frame> frame_;
-  std::optional<Sight> sight_;
+  std::optional<Visibility> visibility_;
 };
 
 }  // namespace

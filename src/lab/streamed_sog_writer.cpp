@@ -28,7 +28,7 @@ namespace {
 using nlohmann::ordered_json;
 
 // A pixel as a level is seen, of the distance between Gaussians by which levels are chosen
-// (stream/detail.h): that is as if they lay on a square as wide as the box's diagonal, and they lie denser.
+// (stream/choice.h): that is as if they lay on a square as wide as the box's diagonal, and they lie denser.
 constexpr double pixel_share = 0.2;
 // Which pairs are merged is judged once for all levels, as this one sees them.
 constexpr int judged_level = 3;

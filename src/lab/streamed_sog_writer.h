@@ -1,5 +1,5 @@
 #pragma once
-// A model as a streamed SOG (stream/streamed_sog.h): a tree of its parts, each at several levels of detail.
+// A model as a streamed SOG (formats/streamed_sog.h): a tree of its parts, each at several levels of detail.
 
 #include <cstddef>
 #include <functional>
@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "scene/model.h"
-#include "stream/detail.h"
+#include "stream/choice.h"
 
 namespace binosplat {
 
@@ -20,7 +20,7 @@ struct LevelSettings {
   std::size_t together = 5242880;  // of the finest level, at most, or a piece, in pictures of many leaves
 };
 
-/// What the levels of a leaf lose (stream/detail.h), in lists of a number for each width of a pixel.
+/// What the levels of a leaf lose (stream/choice.h), in lists of a number for each width of a pixel.
 struct LeafErrors {
   std::vector<double> pixels;                              // world units, from the narrowest
   std::vector<std::vector<double>> seen;                   // by direction, px
@@ -59,7 +59,7 @@ struct LevelsWritten {
 
 /// Writes a model in the frame of SOG. Level 0 is the model itself, the others are merged from it
 /// (scene/merge.h), for pixels of a fifth of the distance between a leaf's Gaussians by which levels are
-/// chosen (stream/detail.h). A SOG has one level of neighbouring leaves. Its meta.json is written after its
+/// chosen (stream/choice.h). A SOG has one level of neighbouring leaves. Its meta.json is written after its
 /// pictures, and lod-meta.json when all are there: SOGs whose meta.json the folder has already, from a run
 /// with the same model and settings that was interrupted, are left as they are, and the result has the same
 /// bytes, if memory suffices for the same pictures. What levels lose is kept beside the SOGs, in

@@ -17,7 +17,6 @@ namespace binosplat::preview {
 namespace {
 
 constexpr std::size_t reports_kept = 240;
-constexpr std::size_t gaussians_a_frame = 1 << 17;  // of levels that change; nobody sees the wait
 
 // Where the densest part of a model lies before a camera: the median view depth of what is ahead.
 double depth_ahead(const Model& model, const Camera& of_world) {
@@ -64,17 +63,19 @@ int next_divisor(int divisor, double ms) {
   return ms > moving_ms ? std::min(most, divisor + 1) : divisor;
 }
 
-Session::Session(gl::Context& context, Model model, std::vector<Camera> cameras, const glm::dvec3& up,
+Session::Session(gl::Context& context, Loaded loaded, std::vector<Camera> cameras, const glm::dvec3& up,
                  Choices wanted, std::filesystem::path folder)
     : keys(folder),
-      head(cameras.at(0), up, depth_ahead(model, cameras[0])),
+      head(cameras.at(0), up, depth_ahead(loaded.shown(), cameras[0])),
       choices(std::move(wanted)),
       context_(context),
-      model_(std::move(model)),
+      loaded_(std::move(loaded)),
       cameras_(std::move(cameras)),
       up_(up),
       folder_(std::move(folder)),
-      frame_(context, model_, choices.settings.precision),
+      frame_(loaded_.stream
+                 ? loaded_.stream->gpu_model(context, choices.settings.precision)
+                 : std::make_shared<render::GpuModel>(context, loaded_.model, choices.settings.precision)),
       presenter_(context),
       show_(frame_.model()),
       shown_colours_(context, "pixels to show"),
@@ -112,7 +113,7 @@ void Session::step_camera(int by) {
 }
 
 void Session::go_to(const Camera& camera) {
-  head = Navigator(camera, up_, depth_ahead(model_, camera));
+  head = Navigator(camera, up_, depth_ahead(model(), camera));
   change();
 }
 
@@ -160,26 +161,14 @@ void Session::make_shown(std::span<const shared::View> views) {
 
 render::FrameSettings Session::settings() const {
   render::FrameSettings of_frame = choices.settings;
-  if (of_frame.quality > 0.0f && left_) of_frame.quality = static_cast<float>(*left_);
+  if (loaded_.stream) of_frame.quality = static_cast<float>(loaded_.stream->quality_left(of_frame.quality));
   return of_frame;
 }
 
-void Session::follow(LevelStream& levels) {
-  levels.share(choices.settings.quality);
-  levels.want(views(), [&](const shared::View& view, Band band, const ModelParts& parts) {
-    if (!sight_) sight_.emplace(frame_.model());
-    return sight_->look(view, band, choices.settings, parts);
-  });
-  const ModelParts::Changes changes = levels.take(model_, gaussians_a_frame);
-  if (!changes.empty()) {
-    show_.release();
-    frame_.model()->reload(changes);
-  }
-  if (sight_) levels.try_out(model_, sight_->trial(choices.settings));
-  left_ = levels.left();
-  constexpr float unnoticed = 0.25f;  // dB
-  if (settings().quality > drawn_quality_ + unnoticed) change();
-  if (!changes.empty()) change();
+void Session::follow_levels() {
+  if (!loaded_.stream || !loaded_.stream->begin_frame(views(), choices.settings, levels_ms_most)) return;
+  show_.release();
+  change();
 }
 
 std::vector<shared::View> Session::views() {
@@ -189,7 +178,7 @@ std::vector<shared::View> Session::views() {
 }
 
 std::vector<shared::View> Session::views_of(const Camera& camera) {
-  const auto drawn = stereo::make_rig(into_axes(camera, model_.axes), choices.rig).views;
+  const auto drawn = stereo::make_rig(into_axes(camera, model().axes), choices.rig).views;
   return {drawn.begin(), drawn.end()};
 }
 
@@ -206,7 +195,6 @@ bool Session::draw() {
     eyes_ = stereo::make_rig(camera, choices.rig).cameras;
     divisor_ = divisor;
     reports_.push_back(frame_.draw(asked, settings()));
-    drawn_quality_ = settings().quality;
     shown_layout_ = choices.layout;
     drawn_ = frame_.views();
     make_shown(asked);

@@ -17,8 +17,7 @@
 #include "stereo/present.h"
 #include "stereo/rig.h"
 #include "stereo/show.h"
-#include "stream/level_stream.h"
-#include "stream/sight.h"
+#include "stream/stream.h"
 
 namespace binosplat::preview {
 
@@ -50,11 +49,23 @@ constexpr double moving_ms = 30.0;
 /// divided by `divisor` and took `ms`. Goes back only where the larger picture would be in time, too.
 int next_divisor(int divisor, double ms);
 
+/// A model that was read, or a stream that owns it and has its levels of detail follow what is seen.
+struct Loaded {
+  Loaded(Model read) : model(std::move(read)) {}
+  Loaded(std::unique_ptr<Stream> opened) : stream(std::move(opened)) {}
+
+  const Model& shown() const { return stream ? stream->model() : model; }
+  std::size_t gaussians() const { return stream ? stream->gaussians() : model.count(); }
+
+  Model model;
+  std::unique_ptr<Stream> stream;
+};
+
 class Session {
  public:
   /// Uploads; the context is current here and in every call. `cameras` are where to start and what to step
   /// through, not empty. `folder` is where pictures and keys are saved.
-  Session(gl::Context& context, Model model, std::vector<Camera> cameras, const glm::dvec3& up,
+  Session(gl::Context& context, Loaded loaded, std::vector<Camera> cameras, const glm::dvec3& up,
           Choices wanted, std::filesystem::path folder);
   ~Session();
   Session(const Session&) = delete;
@@ -64,10 +75,11 @@ class Session {
   Navigator head;
   Choices choices;
 
-  /// Has levels of detail read that the next frame needs, and takes some that were read of the model; all
-  /// else stays. Levels that share the quality which is chosen leave the rest of it to frames. Throws what
-  /// reading them threw.
-  void follow(LevelStream& levels);
+  /// Of a stream: has its levels follow what the next frame shows, which takes some ms; all else stays.
+  /// Throws what reading them threw.
+  void follow_levels();
+  /// None where the model has no levels that follow.
+  const Stream* stream() const { return loaded_.stream.get(); }
 
   /// What is seen next is drawn anew; with thresholds that go by what frames measure, until those have
   /// settled.
@@ -120,7 +132,7 @@ class Session {
   const std::string& trouble() const { return trouble_; }
   /// The convergence that suited the first picture, in m, where that was asked for.
   const std::optional<double>& screen_found() const { return screen_found_; }
-  const Model& model() const { return model_; }
+  const Model& model() const { return loaded_.shown(); }
 
   /// What the next frame draws, left eye first; none before there is a size to draw in.
   std::vector<shared::View> views();
@@ -135,7 +147,7 @@ class Session {
   void make_shown(std::span<const shared::View> views);
 
   gl::Context& context_;
-  Model model_;
+  Loaded loaded_;
   std::vector<Camera> cameras_;
   std::size_t camera_ = 0;
   glm::dvec3 up_;
@@ -143,11 +155,8 @@ class Session {
   render::Frame frame_;
   stereo::Presenter presenter_;
   stereo::Show show_;
-  std::optional<Sight> sight_;  // where levels go by dB
-  std::optional<double> left_;  // of the chosen quality for frames, where there are levels
-  float drawn_quality_ = 0.0f;  // that the last frame was asked for
-  stereo::Shown shown_;         // in place of the frame's own pictures; none: those
-  gl::Buffer shown_colours_;    // as the frame's colours
+  stereo::Shown shown_;       // in place of the frame's own pictures; none: those
+  gl::Buffer shown_colours_;  // as the frame's colours
   glm::ivec2 framebuffer_{0};
   bool moving_ = false;
   int divisor_ = 1;                       // of the last frame drawn

@@ -131,7 +131,7 @@ void Window::take_loaded() {
   try {
     Loaded loaded = loading_.get();
     Choices choices = session_ ? session_->choices : choices_;
-    Start start = next_.start(loaded.model, choices);
+    Start start = next_.start(loaded.shown(), choices);
     std::optional<Navigator> head;
     std::optional<KeyList> keys;
     if (session_ && again_) {
@@ -141,13 +141,13 @@ void Window::take_loaded() {
       choices.seeks_screen = choices.seeks_screen && !choices.rig.convergence;  // it stays where it is
     }
     session_.reset();  // its memory first
-    levels_ = std::move(loaded.levels);
+    levels_follow_ = loaded.stream != nullptr;
     levels_moved_ = false;
-    levels_told_ = levels_ ? levels_->gaussians() : 0;
-    log_info("{}: {} Gaussians", next_.name, levels_ ? levels_->gaussians() : loaded.model.count());
+    levels_reported_ = loaded.gaussians();
+    log_info("{}: {} Gaussians", next_.name, loaded.gaussians());
     scene_ = std::move(next_);
-    session_ = std::make_unique<Session>(*context_, std::move(loaded.model), std::move(start.cameras),
-                                         start.up, choices, scene_.folder);
+    session_ = std::make_unique<Session>(*context_, std::move(loaded), std::move(start.cameras), start.up,
+                                         choices, scene_.folder);
     announced_ = false;
     playing_.reset();
     if (head) session_->head = *head;
@@ -160,27 +160,27 @@ void Window::take_loaded() {
   ui_frames_ = 3;
 }
 
-bool Window::levels_move() const { return levels_ && !levels_->settled(); }
+bool Window::levels_move() const { return levels_follow_ && !session_->stream()->settled(); }
 
-// Takes levels that were read, and has those read that the head needs now. What cannot be read leaves the
-// levels as they are.
+// What cannot be read leaves the levels as they are.
 void Window::follow_levels() {
-  if (!levels_) return;
+  if (!levels_follow_) return;
   // They may come to rest between two calls, in the thread that reads.
   const bool moved = levels_moved_ || levels_move();
   try {
-    session_->follow(*levels_);
+    session_->follow_levels();
     levels_moved_ = levels_move();
-    if (moved && !levels_moved_ && levels_->gaussians() != levels_told_) {
-      levels_told_ = levels_->gaussians();
-      const auto psnr = levels_->predicted_psnr();
-      log_info("{}: levels of {} Gaussians{}", scene_.name, levels_told_,
-               psnr ? fmt::format(", {:.1f} dB predicted", *psnr) : "");
+    const Stream& stream = *session_->stream();
+    if (moved && !levels_moved_ && stream.gaussians() != levels_reported_) {
+      levels_reported_ = stream.gaussians();
+      const auto db = stream.reported_db();
+      log_info("{}: levels of {} Gaussians{}", scene_.name, levels_reported_,
+               db ? fmt::format(", {:.1f} dB predicted", *db) : "");
     }
   } catch (const Error& error) {
     // A GPU without room has lost a part of the model by now.
     if (error.code() == ExitCode::no_gl || error.code() == ExitCode::out_of_memory) throw;
-    levels_.reset();
+    levels_follow_ = false;
     tell(error.what(), true);
   }
   if (moved) ui_frames_ = 3;

@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "preview/session.h"
-#include "stream/level_stream.h"
 
 namespace binosplat::preview {
 
@@ -17,12 +16,6 @@ namespace binosplat::preview {
 struct Start {
   std::vector<Camera> cameras;  // to start at the first and step through; not empty
   glm::dvec3 up;                // the world's
-};
-
-/// A model that was read, and what follows its levels of detail, where it has such.
-struct Loaded {
-  Model model;
-  std::unique_ptr<LevelStream> levels;
 };
 
 /// A scene to open: read in a thread of its own, then shown.

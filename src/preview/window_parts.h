@@ -78,9 +78,9 @@ class Window {
   bool again_ = false;      // that is the same one
   bool announced_ = false;  // that the first frame of what is shown takes longer
   std::future<Loaded> loading_;
-  std::unique_ptr<LevelStream> levels_;
-  bool levels_moved_ = false;    // when they were followed last
-  std::size_t levels_told_ = 0;  // Gaussians
+  bool levels_follow_ = false;       // until they cannot be read
+  bool levels_moved_ = false;        // when they were followed last
+  std::size_t levels_reported_ = 0;  // Gaussians
   double loading_since_ = 0.0, last_time_ = 0.0, last_click_ = 0.0, moved_at_ = 0.0;
   std::optional<KeyPath> playing_;
   Camera played_;  // where that has brought the head

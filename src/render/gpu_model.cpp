@@ -20,7 +20,7 @@ shared::Gaussian gaussian_of(const Model& model, std::size_t i) {
   return {glm::vec4(model.position[i], model.opacity[i]), model.rotation[i], glm::vec4(model.scale[i], 0.0f)};
 }
 
-using Range = ModelParts::Range;
+using Range = ModelChunks::Range;
 
 // How one kind of a Gaussian's numbers lies on the GPU: pack(first, places, room) puts those of the Gaussians
 // first + place of the model into room for `words` of each, and zeros where it has fewer.
@@ -153,7 +153,7 @@ void ModelBuffers::upload(gl::Context& context, const Model& model) {
   if (model.count() > 0) box = all_bounds(model);
 }
 
-void ModelBuffers::upload(gl::Context& context, const Model& model, const ModelParts::Changes& changes) {
+void ModelBuffers::upload(gl::Context& context, const Model& model, const ModelChunks::Changes& changes) {
   set_pages(context, model);
   for (const Page& page : pages) {
     const std::int64_t each = gaussian_bytes(precision);
@@ -272,7 +272,7 @@ void GpuModel::reload() {
   upload_all([&](ModelBuffers& buffers) { buffers.upload(context_, model_); });
 }
 
-void GpuModel::reload(const ModelParts::Changes& changes) {
+void GpuModel::reload(const ModelChunks::Changes& changes) {
   if (changes.empty()) return;
   ++uploads_;
   upload_all([&](ModelBuffers& buffers) { buffers.upload(context_, model_, changes); });

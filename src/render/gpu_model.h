@@ -11,7 +11,7 @@
 #include "render/anchors.h"
 #include "render/scatter.h"
 #include "render/shape.h"
-#include "scene/model_parts.h"
+#include "scene/model_chunks.h"
 
 namespace binosplat::render {
 
@@ -35,7 +35,7 @@ struct ModelBuffers {
 
   /// What of the model has changed, which has grown if anything: places that were never filled have an
   /// opacity of 0. Of no Scaffold-GS.
-  void upload(gl::Context& context, const Model& model, const ModelParts::Changes& changes);
+  void upload(gl::Context& context, const Model& model, const ModelChunks::Changes& changes);
 
   /// Room for what a frame of this shape decodes.
   void reserve(const FrameShape& shape);
@@ -81,7 +81,7 @@ class GpuModel {
   void reload();
   /// The same of these places only (ModelBuffers::upload): what frames measured of all others is of the same
   /// Gaussians still.
-  void reload(const ModelParts::Changes& changes);
+  void reload(const ModelChunks::Changes& changes);
   int uploads() const { return uploads_; }
 
  private:

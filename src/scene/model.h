@@ -49,7 +49,7 @@ struct Model {
   bool antialiased = false;  // trained with the opacity that the low-pass takes away (Mip-Splatting, Yu 2024)
   Perspective perspective;   // that it was trained with
   std::string axes = "RDF";  // where the model's x, y and z point in the cameras' world (scene/axes.h)
-  /// Gaussians that it may come to have while it is drawn (scene/model_parts.h): whoever draws it makes room
+  /// Gaussians that it may come to have while it is drawn (scene/model_chunks.h): whoever draws it makes room
   /// for so many at once, since no frame should wait for that.
   std::size_t room = 0;
   /// Where there is one, it makes the Gaussians anew for each eye, and all arrays above but `position` are

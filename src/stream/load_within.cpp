@@ -9,8 +9,7 @@
 #include "base/log.h"
 #include "formats/sog_parts.h"
 #include "formats/streamed_sog.h"
-#include "stream/detail.h"
-#include "stream/level_chooser.h"
+#include "stream/chooser.h"
 
 namespace binosplat {
 
@@ -21,20 +20,20 @@ Model load_within(const std::filesystem::path& path, const DetailBudget& budget)
     fail("--gpu-memory: {} has no levels of detail to choose from; a streamed SOG's lod-meta.json has",
          path.string());
   const SogLevels levels(lod_meta, *root);
-  const std::vector<DetailPart> leaves = levels.leaves(*root);
+  const std::vector<LodChunk> leaves = levels.leaves(*root);
   check_leaves(lod_meta, leaves);
   std::size_t file = 0;
   while (!levels.there(file)) ++file;
   std::size_t most = budget.gaussians(open_part(levels.files()[file]).degree());
   const std::size_t around = levels.environment() ? open_part(*levels.environment()).count() : 0;
   most -= std::min(most, around);
-  const std::vector<std::size_t> chosen = choose_levels(leaves, budget.eyes, most);
+  const std::vector<std::size_t> chosen = choose_apart(leaves, budget.eyes, most);
   std::vector<std::size_t> of_level(static_cast<std::size_t>(levels.count()), 0);
   std::size_t total = 0;
   std::vector<int> numbers(leaves.size(), no_level);
   for (std::size_t i = 0; i < leaves.size(); ++i) {
     if (leaves[i].levels.empty()) continue;
-    const DetailPart::Level& level = leaves[i].levels[chosen[i]];
+    const LodChunk::Level& level = leaves[i].levels[chosen[i]];
     numbers[i] = level.number;
     of_level[static_cast<std::size_t>(level.number)] += level.count;
     total += level.count;

@@ -25,14 +25,13 @@ constexpr milliseconds between_polls{10};            // while no frames are want
 
 class Viewer {
  public:
-  Viewer(const Instance& instance, gl::Context& context, Model& model, const HeadsetSettings& settings,
+  Viewer(const Instance& instance, std::shared_ptr<render::GpuModel> model, const HeadsetSettings& settings,
          const Beside& beside)
       : instance_(instance),
-        context_(context),
+        context_(model->context()),
         settings_(settings),
         beside_(beside),
-        model_(model),
-        frame_(std::make_shared<render::GpuModel>(context, model_, settings.frame.precision)) {}
+        frame_(std::move(model)) {}
 
   /// False where the session was lost.
   bool run_session() {
@@ -137,14 +136,13 @@ class Viewer {
     const render::Frame& frame = frame_.frame();
     if (!beside_.levels || frame.views().empty()) return settings_.frame.quality;
     const auto views = std::span(frame.views()).first(frame.shape().asked);
-    return beside_.levels(model_, frame_.frame().model(), views, period_ms, times_.back());
+    return beside_.levels(views, period_ms, times_.back());
   }
 
   const Instance& instance_;
   gl::Context& context_;
   const HeadsetSettings& settings_;
   const Beside& beside_;
-  Model& model_;
   stereo::FoveatedFrame frame_;
   std::optional<Walk> walk_;  // goes on where a session is lost
   std::optional<Budget> budget_;
@@ -177,9 +175,9 @@ Placement start_of(const HeadsetSettings& settings, bool on_floor, const Eye* he
   return placement;
 }
 
-void run(Instance& instance, gl::Context& context, Model& model, const HeadsetSettings& settings,
+void run(Instance& instance, std::shared_ptr<render::GpuModel> model, const HeadsetSettings& settings,
          const Beside& beside) {
-  Viewer viewer(instance, context, model, settings, beside);
+  Viewer viewer(instance, std::move(model), settings, beside);
   std::size_t drawn = 0;
   for (int in_vain = 0; !viewer.run_session();) {
     in_vain = viewer.frames() > drawn ? 0 : in_vain + 1;

@@ -6,7 +6,6 @@
 #include <optional>
 #include <span>
 
-#include "scene/model_parts.h"
 #include "xr/projection.h"
 
 namespace binosplat::xr {
@@ -27,12 +26,10 @@ struct Beside {
   std::function<bool()> step;
   /// Shows the left eye's picture. May be empty.
   Projection::DrawnLeft show;
-  /// Of a model with levels of detail: changes the model, on the GPU as well, a little for each frame, to
+  /// Of a model with levels of detail, called before each frame: changes the model on the GPU a little, to
   /// what these views need; frames are due every `frame_ms`, and drawing the last one took `drawn_ms`.
   /// Returns what of the frame's quality is left for what it leaves out of them. May be empty.
-  std::function<float(Model& model, const std::shared_ptr<render::GpuModel>& gpu_model,
-                      std::span<const shared::View> views, double frame_ms, double drawn_ms)>
-      levels;
+  std::function<float(std::span<const shared::View> views, double frame_ms, double drawn_ms)> levels;
 };
 
 /// Where OpenXR's space lies at first: its origin at the start camera, 1.6 m lower where it lies on the
@@ -40,10 +37,10 @@ struct Beside {
 /// in the middle of a room, this head is there, and looks that way.
 Placement start_of(const HeadsetSettings& settings, bool on_floor, const Eye* head = nullptr);
 
-/// Draws with the OpenGL context that is current. A session that the runtime loses is followed by another, if
-/// the headset is there again within some seconds. Throws Error(no_gl) for what a runtime refuses or loses,
-/// and as render::Frame does.
-void run(Instance& instance, gl::Context& context, Model& model, const HeadsetSettings& settings,
+/// Draws with the model's OpenGL context, which is current. A session that the runtime loses is followed by
+/// another, if the headset is there again within some seconds. Throws Error(no_gl) for what a runtime refuses
+/// or loses, and as render::Frame does.
+void run(Instance& instance, std::shared_ptr<render::GpuModel> model, const HeadsetSettings& settings,
          const Beside& beside);
 
 }  // namespace binosplat::xr

@@ -22,7 +22,7 @@
 #include "render/squared_error.h"
 #include "stereo/rig.h"
 #include "stream/level_stream.h"
-#include "stream/sight.h"
+#include "stream/visibility.h"
 
 namespace binosplat {
 namespace {
@@ -108,7 +108,7 @@ struct Numbers {
   double rest_db = 0.0;
 };
 
-DetailNeed need_of(const std::string& detail) {
+DetailRequest need_of(const std::string& detail) {
   char* end = nullptr;
   const double number = std::strtod(detail.c_str(), &end);
   if (end != detail.c_str() && std::string_view(end) == "dB") return {.db = number};
@@ -174,7 +174,7 @@ class Flight {
   }
 
   void want(const Views& views) {
-    levels_.want(views, [&](const shared::View& view, Band band, const ModelParts& parts) {
+    levels_.want(views, [&](const shared::View& view, Band band, const ModelChunks& parts) {
       const auto begin = Clock::now();
       auto seen = sight_.look(view, band, plan_.settings, parts);
       numbers_.look_ms.push_back(ms_since(begin));
@@ -194,7 +194,7 @@ class Flight {
 
   void draw(const Views& views) {
     const auto begin = Clock::now();
-    const ModelParts::Changes changes = levels_.take(model_, plan_.gaussians_a_frame);
+    const ModelChunks::Changes changes = levels_.take(model_, plan_.gaussians_a_frame);
     const double taken_ms = ms_since(begin);
     gpu_model_->reload(changes);
     numbers_.take_ms.push_back(ms_since(begin));
@@ -214,7 +214,7 @@ class Flight {
     numbers_.gpu_bytes.push_back(static_cast<double>(context_.allocated_bytes() - others_));
     numbers_.gaussians.push_back(static_cast<double>(levels_.gaussians()));
     std::size_t filled = 0;
-    for (const ModelParts::Range& range : changes.filled) filled += range.count;
+    for (const ModelChunks::Range& range : changes.filled) filled += range.count;
     if (filled > 0) numbers_.read_gaussians.push_back(static_cast<double>(filled));
     timeline_.push_back({{"look_ms", looked ? numbers_.look_ms.back() : 0.0},
                          {"look_at", looked ? Json({band_.begin, band_.end}) : Json()},
@@ -268,7 +268,7 @@ class Flight {
     before_.clear();
     before_.add(frame_.colours(), pixels_of(views));
     others_ += context_.allocated_bytes() - bytes;
-    const ModelParts::Changes changes = levels_.take(model_, plan_.gaussians_a_frame);
+    const ModelChunks::Changes changes = levels_.take(model_, plan_.gaussians_a_frame);
     gpu_model_->reload(changes);
     levels_.take_ahead(model_, plan_.gaussians_a_frame);
     if (changes.empty()) return;

@@ -6,7 +6,7 @@
 #include "formats/streamed_sog.h"
 #include "scene/reduce.h"
 #include "stream/load_within.h"
-#include "stream/streamed_sog.h"
+#include "stream/lod_files.h"
 #include "support/broken.h"
 #include "support/fixtures.h"
 #include "support/ply_models.h"

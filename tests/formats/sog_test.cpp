@@ -4,7 +4,7 @@
 
 #include "formats/model_file.h"
 #include "stream/load_within.h"
-#include "stream/streamed_sog.h"
+#include "stream/lod_files.h"
 #include "support/broken.h"
 #include "support/fixtures.h"
 

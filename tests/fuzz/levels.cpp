@@ -12,7 +12,7 @@ namespace binosplat::fuzz {
 namespace {
 
 void check(const SogLevels& levels, const nlohmann::json& json) {
-  std::vector<DetailPart> leaves = levels.leaves(json);
+  std::vector<LodChunk> leaves = levels.leaves(json);
   for (int level = 0; level < std::min(levels.count(), 3); ++level) {
     const auto taken = levels.taken(level);
     demand(taken.size() == levels.files().size(), "a file without a list");
@@ -27,7 +27,7 @@ void check(const SogLevels& levels, const nlohmann::json& json) {
     }
   }
   // Its files are not there; as if they were:
-  for (DetailPart& leaf : leaves) {
+  for (LodChunk& leaf : leaves) {
     const auto losing = [&](double error) { return std::vector<double>(leaf.seen.size(), error); };
     leaf.levels = {{0, 1000, losing(0.0)}, {1, 100, losing(1.0)}, {2, 10, losing(9.0)}};
   }
@@ -48,7 +48,7 @@ void check(const SogLevels& levels, const nlohmann::json& json) {
   });
   follow([&](double x, const auto& before) {
     DetailSeen seen;
-    if (!before.empty()) seen = {{std::vector<SeenPart>(leaves.size(), {x, x + 1.0})}, before, 700};
+    if (!before.empty()) seen = {{std::vector<ChunkVisibility>(leaves.size(), {x, x + 1.0})}, before, 700};
     return choose_levels_within(leaves, {{.eye = {x, 0, 0}}}, 1e-4, most, seen, before).levels;
   });
 }

@@ -15,7 +15,7 @@
 #include "formats/content.h"
 #include "formats/streamed_sog.h"
 #include "scene/reduce.h"
-#include "stream/streamed_sog.h"
+#include "stream/lod_files.h"
 #include "support/models.h"
 #include "support/program.h"
 

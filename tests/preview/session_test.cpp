@@ -68,7 +68,7 @@ TEST(Session, OtherLevelsTakeThePlaceOfThoseThatAreThere) {
   REQUIRE_FIXTURES(fixtures);
   const test::TempFolder folder;
   const Camera camera = look_at({0, -1, -20}, {0, -1, 0}, {0, -1, 0}, 60, 64, 40);
-  const auto fine = [](const StreamedSog&, std::span<const shared::View>) { return DetailNeed{}; };
+  const auto fine = [](const StreamedSog&, std::span<const shared::View>) { return DetailRequest{}; };
   LevelStream levels(fixtures / "sog/st-lod", fine);
   Model coarsest = levels.coarsest();
   const auto session_of = [&](Model model) {
@@ -104,7 +104,7 @@ TEST(Session, LevelsGoByWhatItShows) {
   test::add_level_errors(scene);
   const auto gaussians_for = [&](double db) {
     const auto need = [db](const StreamedSog&, std::span<const shared::View>) {
-      return DetailNeed{.db = db};
+      return DetailRequest{.db = db};
     };
     LevelStream levels(scene.path(), need);
     Session session(test::gl_context(), levels.coarsest(),

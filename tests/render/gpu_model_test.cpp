@@ -70,7 +70,7 @@ TEST(ModelOfParts, ReloadsWhatHasChangedOfIt) {
         const render::FrameSettings settings{.precision = precision};
         Model model;
         model.degree = degree;
-        ModelParts parts(6);
+        ModelChunks parts(6);
         auto replace = [&, seed = 95u](std::size_t part, int count) mutable {
           parts.replace(model, part, test::random_model(seed++, count, degree));
         };
@@ -121,7 +121,7 @@ TEST(ModelOfParts, GrowsUnderFrames) {
   const std::vector<shared::View> views = {make_view(test::front_camera(60, 50, 60))};
   Model model;
   model.room = 60000;
-  ModelParts parts(20);
+  ModelChunks parts(20);
   parts.replace(model, 0, test::random_model(120, 3000, 0));
   parts.take_changes();
   const auto gpu_model = std::make_shared<GpuModel>(test::gl_context(), model);

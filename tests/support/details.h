@@ -3,12 +3,12 @@
 
 #include <vector>
 
-#include "stream/detail.h"
+#include "stream/choice.h"
 
 namespace binosplat::test {
 
 /// How many Gaussians the parts have at the levels that were chosen; parts without levels have none.
-inline std::size_t gaussians_of(const std::vector<DetailPart>& parts,
+inline std::size_t gaussians_of(const std::vector<LodChunk>& parts,
                                 const std::vector<std::size_t>& chosen) {
   std::size_t sum = 0;
   for (std::size_t i = 0; i < parts.size(); ++i) {

@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
-#include "stream/detail.h"
+#include "stream/choice.h"
 #include "support/broken.h"
 
 namespace binosplat::test {

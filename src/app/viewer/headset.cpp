@@ -20,8 +20,6 @@ namespace binosplat::app {
 
 namespace {
 
-constexpr std::size_t gaussians_a_frame = 1 << 18;  // of levels that change: no frame waits for more
-
 volatile std::sig_atomic_t signalled = 0;
 
 // The first signal is told, so that the runtime's session can be ended in order; the next one ends the
@@ -76,9 +74,9 @@ void view_in_headset(const RenderOptions& o, const preview::Opened& scene, previ
   if (!o.context.shader_dir.empty()) context.set_shader_folder(o.context.shader_dir);
 
   preview::Loaded loaded = scene.load();
-  Model& model = loaded.model;
+  const Model& model = loaded.shown();
   const preview::Start start = scene.start(model, choices);
-  log_info("{}: {} Gaussians", scene.name, loaded.levels ? loaded.levels->gaussians() : model.count());
+  log_info("{}: {} Gaussians", scene.name, loaded.gaussians());
   xr::HeadsetSettings settings;
   settings.projection = {o.headset.scale, choices.rig.near_plane, choices.rig.units_per_metre,
                          choices.background, o.foveate};
@@ -90,24 +88,18 @@ void view_in_headset(const RenderOptions& o, const preview::Opened& scene, previ
   tell_first_signal();
   xr::Beside beside = {
       .step = [&] { return (!mirror || mirror->step()) && signalled == 0; }, .show = {}, .levels = {}};
-  std::optional<Sight> sight;
-  if (loaded.levels) {
-    beside.levels = [&](Model& drawn, const std::shared_ptr<render::GpuModel>& gpu_model,
-                        std::span<const shared::View> views, double frame_ms, double drawn_ms) {
-      gpu_model->reload(loaded.levels->take(drawn, gaussians_a_frame));
-      loaded.levels->give_time(time_for_levels(frame_ms, drawn_ms));
-      loaded.levels->want(views, [&](const shared::View& view, Band band, const ModelParts& parts) {
-        if (!sight) sight.emplace(gpu_model);
-        return sight->look(view, band, settings.frame, parts);
-      });
-      if (sight) loaded.levels->try_out(drawn, sight->trial(settings.frame));
-      loaded.levels->take_ahead(drawn, gaussians_a_frame);
-      return static_cast<float>(loaded.levels->left());
+  const int precision = settings.frame.precision;
+  const auto gpu_model = loaded.stream ? loaded.stream->gpu_model(context, precision)
+                                       : std::make_shared<render::GpuModel>(context, model, precision);
+  if (loaded.stream) {
+    beside.levels = [&](std::span<const shared::View> views, double frame_ms, double drawn_ms) {
+      loaded.stream->begin_frame(views, settings.frame, time_for_levels(frame_ms, drawn_ms));
+      return static_cast<float>(loaded.stream->quality_left(settings.frame.quality));
     };
   }
   if (mirror)
     beside.show = [&](const Target& left, const glm::ivec2& size) { mirror->show(left, size); };
-  xr::run(instance, context, model, settings, beside);
+  xr::run(instance, gpu_model, settings, beside);
 }
 
 }  // namespace binosplat::app

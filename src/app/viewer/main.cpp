@@ -68,15 +68,10 @@ preview::Loaded load(const SceneOptions& scene, const std::vector<Camera>& camer
                      const render::FrameSettings& settings) {
   const bool asked = scene.detail || scene.gpu_memory;
   const bool follows = !scene.lod && !is_built_in(scene.name) && (asked || is_streamed_sog(scene.name));
-  if (!follows) return {load_scene(scene, {}, cameras), nullptr};
-  const auto need = [scene, settings](const StreamedSog& levels, std::span<const shared::View> views) {
-    return detail_need(scene, settings, levels, views);
-  };
-  auto levels = std::make_unique<LevelStream>(scene.name, need, few_gaussians);
-  levels->share(settings.quality);
-  Model model = levels->coarsest();
-  set_as_asked(scene, model);
-  return {std::move(model), std::move(levels)};
+  if (!follows) return load_scene(scene, {}, cameras);
+  StreamSettings of_stream = stream_settings(scene, settings);
+  of_stream.reserve = std::size_t{1} << 22;  // 0.4 GB, or 1 with all their harmonics
+  return open_stream(scene, std::move(of_stream));
 }
 
 // Cameras that come as pairs of eyes are taken one by one.

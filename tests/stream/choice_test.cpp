@@ -1,4 +1,4 @@
-#include "stream/detail.h"
+#include "stream/choice.h"
 
 #include <gtest/gtest.h>
 
@@ -11,15 +11,15 @@ namespace binosplat {
 namespace {
 
 // Boxes of 1 along x, each with levels of 400, 100 and 25 Gaussians.
-std::vector<DetailPart> row_of_parts(int count) {
-  std::vector<DetailPart> parts;
+std::vector<LodChunk> row_of_parts(int count) {
+  std::vector<LodChunk> parts;
   for (int i = 0; i < count; ++i)
     parts.push_back({{2.0 * i, 0, 0}, {2.0 * i + 1, 1, 1}, {{0, 400}, {1, 100}, {2, 25}}});
   return parts;
 }
 
 TEST(Detail, WhatIsNearComesFirst) {
-  const std::vector<DetailPart> parts = row_of_parts(6);
+  const std::vector<LodChunk> parts = row_of_parts(6);
   const std::vector<std::size_t> chosen = choose_levels(parts, {{-1, 0.5, 0.5}}, 899);
   EXPECT_EQ(chosen, (std::vector<std::size_t>{0, 1, 1, 1, 1, 2}));
   // From the other end, and with an eye at either end, one choice for both.
@@ -29,7 +29,7 @@ TEST(Detail, WhatIsNearComesFirst) {
 }
 
 TEST(Detail, KeepsToTheBudget) {
-  const std::vector<DetailPart> parts = row_of_parts(6);
+  const std::vector<LodChunk> parts = row_of_parts(6);
   for (std::size_t most = 150; most < 2500; most += 25) {
     const std::size_t used = test::gaussians_of(parts, choose_levels(parts, {}, most));
     EXPECT_LE(used, most);
@@ -40,7 +40,7 @@ TEST(Detail, KeepsToTheBudget) {
 }
 
 /// Whether each part is as fine as `enough` asks, and no finer.
-bool as_needed(const std::vector<DetailPart>& parts, const std::vector<std::size_t>& chosen,
+bool as_needed(const std::vector<LodChunk>& parts, const std::vector<std::size_t>& chosen,
                const glm::dvec3& eye, double enough) {
   for (std::size_t p = 0; p < parts.size(); ++p) {
     const double distance = glm::distance(eye, glm::clamp(eye, parts[p].low, parts[p].high));
@@ -54,7 +54,7 @@ bool as_needed(const std::vector<DetailPart>& parts, const std::vector<std::size
 }
 
 TEST(Detail, FineEnoughIsEnough) {
-  const std::vector<DetailPart> parts = row_of_parts(6);
+  const std::vector<LodChunk> parts = row_of_parts(6);
   const glm::dvec3 eye(-1, 0.5, 0.5);
   std::size_t last = 6 * 400 + 1;
   for (const double enough : {0.005, 0.02, 0.04, 0.08, 0.16, 1.0}) {
@@ -73,7 +73,7 @@ TEST(Detail, FineEnoughIsEnough) {
 }
 
 TEST(Detail, KeepsToWhatWasChosenBefore) {
-  const std::vector<DetailPart> parts = row_of_parts(6);
+  const std::vector<LodChunk> parts = row_of_parts(6);
   const auto choose = [&](double x, std::span<const std::size_t> before) {
     return choose_levels(parts, {{x, 0.5, 0.5}}, 10000, 0.04, before);
   };
@@ -89,7 +89,7 @@ TEST(Detail, KeepsToWhatWasChosenBefore) {
 }
 
 TEST(Detail, PartsThatLackLevels) {
-  std::vector<DetailPart> parts = row_of_parts(3);
+  std::vector<LodChunk> parts = row_of_parts(3);
   parts[0].levels.clear();
   parts[1].levels = {{1, 100}};
   const std::vector<std::size_t> chosen = choose_levels(parts, {{0.5, 0.5, 0.5}}, 10000);

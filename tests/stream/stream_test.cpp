@@ -29,10 +29,10 @@ using test::beside_last;
 using test::far_away;
 using test::view_at;
 
-DetailNeed coarse_to_30_px(const StreamedSog&, std::span<const shared::View>) { return {30.0}; }
+DetailRequest coarse_to_30_px(const StreamedSog&, std::span<const shared::View>) { return {30.0}; }
 
 LevelStream::Need for_db(double db) {
-  return [db](const StreamedSog&, std::span<const shared::View>) { return DetailNeed{.db = db}; };
+  return [db](const StreamedSog&, std::span<const shared::View>) { return DetailRequest{.db = db}; };
 }
 
 /// Takes what comes for a view, so many Gaussians at a time; how many there were after each that came.
@@ -99,7 +99,7 @@ TEST(LevelStream, BringsWhatViewsNeedAPartAtATime) {
   const Model fine = load_model(folder / "sog/st-lod", {.lod = 0});
   std::size_t same = 0;
   for (const std::size_t b : stream.parts().blocks(2)) {
-    for (std::size_t i = b * ModelParts::block; i < (b + 1) * ModelParts::block; ++i)
+    for (std::size_t i = b * ModelChunks::block; i < (b + 1) * ModelChunks::block; ++i)
       same += std::count(fine.position.begin() + 752, fine.position.end(), model.position[i]) == 1 &&
                       model.opacity[i] > 0.0f
                   ? 1
@@ -164,10 +164,10 @@ TEST(LevelStream, LooksAFewTimes) {
   std::vector<std::size_t> gaussians;
   const auto rest = [&] {
     gaussians.clear();
-    const auto look = [&](const shared::View& seen_by, Band, const ModelParts& parts) {
+    const auto look = [&](const shared::View& seen_by, Band, const ModelChunks& parts) {
       EXPECT_EQ(seen_by.anchor.x, view.anchor.x);
       gaussians.push_back(parts.gaussians());
-      const SeenPart seen{gaussians.size() % 2 == 1 ? 2000.0 : 1e-6, 30.0};
+      const ChunkVisibility seen{gaussians.size() % 2 == 1 ? 2000.0 : 1e-6, 30.0};
       return std::vector(parts.size(), seen);
     };
     ASSERT_TRUE(frames_until(stream, model, view, look, [&] { return stream.settled(); })) << "it hangs";
@@ -190,8 +190,8 @@ TEST(LevelStream, FinerLevelsStayForAWhile) {
   Model model = stream.coarsest();
   shared::View view = before_all();
   double of_last = 2000.0;  // px that are seen of the last part
-  const auto look = [&](const shared::View&, Band, const ModelParts& parts) {
-    std::vector<SeenPart> seen(parts.size(), {2000.0, 30.0});
+  const auto look = [&](const shared::View&, Band, const ModelChunks& parts) {
+    std::vector<ChunkVisibility> seen(parts.size(), {2000.0, 30.0});
     seen[2].area = of_last;
     return seen;
   };
@@ -220,16 +220,16 @@ TEST(LevelStream, SharesAQuality) {
   const test::Copy copy(folder / "sog/st-lod");
   test::add_level_errors(copy);
   LevelStream stream(copy.path(), [](const StreamedSog&, std::span<const shared::View>) {
-    return DetailNeed{.shares = true};
+    return DetailRequest{.shares = true};
   });
   Model model = stream.coarsest();
   EXPECT_EQ(stream.left(), 0.0);
   shared::View view = before_all();
   int looks = 0;
   const auto rest = [&] {
-    const auto look = [&](const shared::View&, Band, const ModelParts& parts) {
+    const auto look = [&](const shared::View&, Band, const ModelChunks& parts) {
       ++looks;
-      return std::vector(parts.size(), SeenPart{20.0, 30.0});
+      return std::vector(parts.size(), ChunkVisibility{20.0, 30.0});
     };
     ASSERT_TRUE(frames_until(stream, model, view, look, [&] { return stream.settled(); })) << "it hangs";
   };
@@ -263,7 +263,7 @@ TEST(LevelStream, LooksAheadOfAHeadThatMoves) {
   const double speed = 2.0, stops_at = 1.0;  // world units a second, s
   float now = 0.0f;                          // where the head is
   std::vector<float> here, ahead, at_rest;   // of the looks: where, or how far from the head
-  const auto look = [&](const shared::View& seen_by, Band, const ModelParts& parts) {
+  const auto look = [&](const shared::View& seen_by, Band, const ModelChunks& parts) {
     const float from_head = seen_by.anchor.x + seen_by.eye.x - now;
     const bool is_left = seen_by.centre.y == 0.0f;
     if (seconds() > stops_at) {
@@ -271,7 +271,7 @@ TEST(LevelStream, LooksAheadOfAHeadThatMoves) {
     } else if (seconds() > 0.5 && seconds() < stops_at) {
       (is_left ? here : ahead).push_back(from_head);
     }
-    return std::vector(parts.size(), SeenPart{2000.0, 30.0});
+    return std::vector(parts.size(), ChunkVisibility{2000.0, 30.0});
   };
   do {
     now = static_cast<float>(speed * std::min(seconds(), stops_at));
@@ -302,10 +302,10 @@ TEST(LevelStream, TellsOfAHeadThatMoves) {
   Model model = stream.coarsest();
   float now = 0.0f;  // where the head is
   bool saw_ahead = false;
-  const auto look = [&](const shared::View& seen_by, Band, const ModelParts& parts) {
+  const auto look = [&](const shared::View& seen_by, Band, const ModelChunks& parts) {
     const bool is_ahead = seen_by.anchor.x + seen_by.eye.x - now > 0.5f;
     saw_ahead = saw_ahead || is_ahead;
-    return std::vector(parts.size(), SeenPart{is_ahead ? 100.0 : 1000.0, 30.0});
+    return std::vector(parts.size(), ChunkVisibility{is_ahead ? 100.0 : 1000.0, 30.0});
   };
   const auto start = std::chrono::steady_clock::now();
   const auto seconds = [&] {
@@ -340,10 +340,10 @@ TEST(LevelStream, LooksAtBandsWhereThatTakesLong) {
     LevelStream stream(copy.path(), for_db(40.0));
     Model model = stream.coarsest();
     std::vector<std::pair<float, Band>> looks;  // where the eye was, and at what
-    const auto look = [&](const shared::View& seen_by, Band band, const ModelParts& parts) {
+    const auto look = [&](const shared::View& seen_by, Band band, const ModelChunks& parts) {
       looks.emplace_back(seen_by.anchor.x, band);
       std::this_thread::sleep_for(std::chrono::milliseconds(slow_ms));
-      return std::vector(parts.size(), SeenPart{2000.0 * (band.end - band.begin), 30.0});
+      return std::vector(parts.size(), ChunkVisibility{2000.0 * (band.end - band.begin), 30.0});
     };
     for (const float x : {0.0f, 1.0f}) {
       view.anchor.x = x;
@@ -423,9 +423,9 @@ TEST(LevelStream, WantsNoMoreThanComes) {
   const std::size_t coarsest = stream.gaussians();
   double area = 1e-12;
   int looks = 0;
-  const auto look = [&](const shared::View&, Band, const ModelParts& parts) {
+  const auto look = [&](const shared::View&, Band, const ModelChunks& parts) {
     ++looks;
-    return std::vector(parts.size(), SeenPart{area, 30.0});
+    return std::vector(parts.size(), ChunkVisibility{area, 30.0});
   };
   shared::View view = before_all();
   const auto frame = [] { std::this_thread::sleep_for(std::chrono::milliseconds(1)); };
@@ -462,10 +462,10 @@ TEST(LevelStream, TakesWhatALookLeavesTimeFor) {
     stream.give_time(frame_has_ms);
     Model model = stream.coarsest();
     int looks = 0;
-    const auto look = [&](const shared::View&, Band, const ModelParts& parts) {
+    const auto look = [&](const shared::View&, Band, const ModelChunks& parts) {
       ++looks;
       std::this_thread::sleep_for(std::chrono::milliseconds(look_ms));
-      return std::vector(parts.size(), SeenPart{50.0, 30.0});
+      return std::vector(parts.size(), ChunkVisibility{50.0, 30.0});
     };
     bool takes = false;
     shared::View view = before_all();
@@ -496,15 +496,15 @@ TEST(LevelStream, TakesWhatALookLeavesTimeFor) {
 TEST(LevelStream, LooksAtNothingWhereFewGaussiansAreAll) {
   const test::TempFolder folder;
   write_levels(folder, 3000);
-  const auto looks = [&](DetailNeed need, std::size_t all_up_to, double together_db) {
+  const auto looks = [&](DetailRequest need, std::size_t all_up_to, double together_db) {
     LevelStream stream(
         folder.path(), [need](const StreamedSog&, std::span<const shared::View>) { return need; }, all_up_to);
     stream.share(together_db);
     Model model = stream.coarsest();
     bool looked = false;
-    const auto look = [&](const shared::View&, Band, const ModelParts& parts) {
+    const auto look = [&](const shared::View&, Band, const ModelChunks& parts) {
       looked = true;
-      return std::vector(parts.size(), SeenPart{50.0, 30.0});
+      return std::vector(parts.size(), ChunkVisibility{50.0, 30.0});
     };
     EXPECT_TRUE(frames_until(stream, model, before_all(), look, [&] { return stream.settled(); }))
         << "it hangs";
@@ -526,13 +526,13 @@ TEST(LevelStream, GoesOnWithoutLooksWhereRoomGrowsLess) {
   const test::TempFolder folder;
   write_levels(folder, 3000);
   const auto need = [](const StreamedSog&, std::span<const shared::View> views) {
-    return DetailNeed{.most = views.empty() ? 3000u : 2000u, .db = 40.0};
+    return DetailRequest{.most = views.empty() ? 3000u : 2000u, .db = 40.0};
   };
   LevelStream stream(folder.path(), need, 3000);
   Model model = stream.coarsest();
-  const auto look = [](const shared::View&, Band, const ModelParts& parts) {
+  const auto look = [](const shared::View&, Band, const ModelChunks& parts) {
     ADD_FAILURE() << "it looks";
-    return std::vector<SeenPart>(parts.size());
+    return std::vector<ChunkVisibility>(parts.size());
   };
   EXPECT_TRUE(frames_until(stream, model, before_all(), look, [&] { return stream.settled(); }))
       << "it hangs";
@@ -550,17 +550,17 @@ struct FrameAhead {
   std::size_t on_gpu = stream.gaussians();
   std::size_t new_most = 0;
 
-  ModelParts::Changes step(const shared::View& view, std::size_t most, const PartsTrial* trial = nullptr) {
+  ModelChunks::Changes step(const shared::View& view, std::size_t most, const PartsTrial* trial = nullptr) {
     const std::size_t before = stream.gaussians();
     EXPECT_EQ(before, on_gpu) << "before anybody takes them";
-    ModelParts::Changes changes = stream.take(model, most);
+    ModelChunks::Changes changes = stream.take(model, most);
     on_gpu = stream.gaussians();
     new_most = std::max(new_most, on_gpu - std::min(on_gpu, before));
-    const auto look = [&](const shared::View&, Band, const ModelParts& parts) {
+    const auto look = [&](const shared::View&, Band, const ModelChunks& parts) {
       ++looks;
       EXPECT_TRUE(changes.empty()) << "a frame has no time for both";
       EXPECT_EQ(parts.gaussians(), on_gpu) << "what is on the GPU, and nothing that is on its way";
-      return std::vector(parts.size(), SeenPart{50.0, 30.0});
+      return std::vector(parts.size(), ChunkVisibility{50.0, 30.0});
     };
     stream.want(std::vector{view}, look);
     if (trial != nullptr) stream.try_out(model, *trial);
@@ -600,8 +600,8 @@ TEST(LevelStream, TakesAheadWhileAFrameIsDrawn) {
   // What it holds is what one gets that takes nothing ahead.
   LevelStream other(folder.path(), for_db(100.0));
   Model same = other.coarsest();
-  const auto look = [](const shared::View&, Band, const ModelParts& parts) {
-    return std::vector(parts.size(), SeenPart{50.0, 30.0});
+  const auto look = [](const shared::View&, Band, const ModelChunks& parts) {
+    return std::vector(parts.size(), ChunkVisibility{50.0, 30.0});
   };
   ASSERT_TRUE(frames_until(other, same, view, look, [&] { return other.settled(); }));
   EXPECT_EQ(positions(model), positions(same));
@@ -618,7 +618,7 @@ TEST(LevelStream, TakesNothingAheadBesideASample) {
   bool is_there = false;  // the sample, or about to be
   int tried = 0;
   const PartsTrial trial = {.upload =
-                                [&](const ModelParts::Changes& changes) {
+                                [&](const ModelChunks::Changes& changes) {
                                   EXPECT_FALSE(changes.empty());
                                   if (tried % 2 == 0) return;
                                   EXPECT_EQ(positions(model), kept) << "put back, and nothing else has come";
@@ -643,7 +643,7 @@ TEST(LevelStream, TakesNothingAheadBesideASample) {
   for (int n = 0; n < 300; ++n) {
     view.anchor.x += n < 200 ? 0.02f : 0.0f;
     const bool was_there = is_there;
-    const ModelParts::Changes changes = frame.step(view, 1, &trial);
+    const ModelChunks::Changes changes = frame.step(view, 1, &trial);
     EXPECT_FALSE(was_there && !changes.empty()) << "beside a sample";
     frame.on_gpu = stream.gaussians();  // with a sample
   }
@@ -675,11 +675,11 @@ TEST(LevelStream, GoesByWhatASampleLoses) {
   const auto settle = [&](double found, bool tries) {
     LevelStream stream(folder.path(), for_db(24.0));
     Model model = stream.coarsest();
-    const auto look = [](const shared::View&, Band, const ModelParts& parts) {
-      return std::vector(parts.size(), SeenPart{100.0, 30.0});
+    const auto look = [](const shared::View&, Band, const ModelChunks& parts) {
+      return std::vector(parts.size(), ChunkVisibility{100.0, 30.0});
     };
     int kept = 0, tried = 0;
-    const PartsTrial trial = {.upload = [](const ModelParts::Changes&) {},
+    const PartsTrial trial = {.upload = [](const ModelChunks::Changes&) {},
                               .keep = [&](const shared::View&) { ++kept; },
                               .differs =
                                   [&](const shared::View&) {
@@ -709,15 +709,15 @@ TEST(LevelStream, HasRoomForASample) {
   const test::TempFolder folder;
   write_levels(folder, 3000);
   LevelStream stream(folder.path(), [](const StreamedSog&, std::span<const shared::View>) {
-    return DetailNeed{.most = 1600, .db = 60.0};
+    return DetailRequest{.most = 1600, .db = 60.0};
   });
   Model model = stream.coarsest();
   EXPECT_EQ(model.room, 1600 + StreamedSog(folder.path()).spare()) << "which --gpu-memory counts";
-  const auto look = [](const shared::View&, Band, const ModelParts& parts) {
-    return std::vector(parts.size(), SeenPart{100.0, 30.0});
+  const auto look = [](const shared::View&, Band, const ModelChunks& parts) {
+    return std::vector(parts.size(), ChunkVisibility{100.0, 30.0});
   };
   int tried = 0;
-  const PartsTrial trial = {.upload = [](const ModelParts::Changes&) {},
+  const PartsTrial trial = {.upload = [](const ModelChunks::Changes&) {},
                             .keep = [](const shared::View&) {},
                             .differs =
                                 [&](const shared::View&) {

@@ -1,6 +1,6 @@
-// A model whose parts come and go.
+// A model whose chunks come and go.
 
-#include "scene/model_parts.h"
+#include "scene/model_chunks.h"
 
 #include <gtest/gtest.h>
 
@@ -13,7 +13,7 @@
 namespace binosplat {
 namespace {
 
-constexpr std::size_t block = ModelParts::block;
+constexpr std::size_t block = ModelChunks::block;
 
 bool equal(const Model& a, std::size_t i, const Model& b, std::size_t k) {
   const auto values = 3 * static_cast<std::size_t>(sh_count(a.degree));
@@ -22,58 +22,58 @@ bool equal(const Model& a, std::size_t i, const Model& b, std::size_t k) {
          std::equal(&a.sh[values * i], &a.sh[values * (i + 1)], &b.sh[values * k]);
 }
 
-/// Whether the model has the Gaussians of each part where they are said to be, and no others that are drawn.
-testing::AssertionResult holds(const Model& model, const ModelParts& parts,
+/// Whether the model has the Gaussians of each chunk where they are said to be, and no others that are drawn.
+testing::AssertionResult holds(const Model& model, const ModelChunks& chunks,
                                const std::vector<Model>& wanted) {
   std::size_t drawn = 0, total = 0;
   for (std::size_t p = 0; p < wanted.size(); ++p) {
     total += wanted[p].count();
     for (std::size_t k = 0; k < wanted[p].count(); ++k) {
-      const std::size_t i = parts.blocks(p).at(k / block) * block + k % block;
-      if (!equal(model, i, wanted[p], k)) return testing::AssertionFailure() << k << " of part " << p;
-      if (parts.part_of(i) != p) return testing::AssertionFailure() << i << " is not of part " << p;
+      const std::size_t i = chunks.blocks(p).at(k / block) * block + k % block;
+      if (!equal(model, i, wanted[p], k)) return testing::AssertionFailure() << k << " of chunk " << p;
+      if (chunks.chunk_of(i) != p) return testing::AssertionFailure() << i << " is not of chunk " << p;
       drawn += wanted[p].opacity[k] > 0.0f ? 1 : 0;
     }
   }
   for (const float opacity : model.opacity) drawn -= opacity > 0.0f ? 1 : 0;
   if (drawn != 0) return testing::AssertionFailure() << "others are drawn, too";
-  if (parts.gaussians() != total) return testing::AssertionFailure() << parts.gaussians() << " Gaussians";
+  if (chunks.gaussians() != total) return testing::AssertionFailure() << chunks.gaussians() << " Gaussians";
   return testing::AssertionSuccess();
 }
 
-struct Parts : testing::Test {
+struct Chunks : testing::Test {
   Model like = [] {
     Model none;
     none.degree = 1;
     return none;
   }();
   Model model = like;
-  ModelParts parts{5};
+  ModelChunks chunks{5};
   std::vector<Model> wanted{5, like};
   std::uint32_t seed = 1;
 
-  void replace(std::size_t part, int count) {
-    wanted[part] = test::random_model(seed++, count, 1);
-    parts.replace(model, part, wanted[part]);
+  void replace(std::size_t chunk, int count) {
+    wanted[chunk] = test::random_model(seed++, count, 1);
+    chunks.replace(model, chunk, wanted[chunk]);
   }
-  // What is wanted of some parts at once.
+  // What is wanted of some chunks at once.
   void replace_some(const std::vector<std::size_t>& some, const std::function<int()>& count) {
-    std::vector<ModelParts::Replacement> all;
-    for (const std::size_t part : some) {
-      wanted[part] = test::random_model(seed++, count(), 1);
-      all.push_back({part, &wanted[part]});
+    std::vector<ModelChunks::Replacement> all;
+    for (const std::size_t chunk : some) {
+      wanted[chunk] = test::random_model(seed++, count(), 1);
+      all.push_back({chunk, &wanted[chunk]});
     }
-    parts.replace(model, all);
+    chunks.replace(model, all);
   }
 };
 
-TEST_F(Parts, ComeAndGo) {
+TEST_F(Chunks, ComeAndGo) {
   test::Uniform random(7);
   std::size_t most = 0;
   const auto check = [&] {
-    ASSERT_TRUE(holds(model, parts, wanted));
+    ASSERT_TRUE(holds(model, chunks, wanted));
     std::size_t blocks = 0;
-    for (std::size_t p = 0; p < 5; ++p) blocks += parts.blocks(p).size();
+    for (std::size_t p = 0; p < 5; ++p) blocks += chunks.blocks(p).size();
     most = std::max(most, blocks);
   };
   for (int n = 0; n < 300; ++n) {
@@ -85,19 +85,19 @@ TEST_F(Parts, ComeAndGo) {
   }
   EXPECT_LE(model.count(), (most + most / 8 + 1) * block) << "room that is free is used first";
   for (float& opacity : model.opacity) opacity *= 0.9f;  // planted
-  EXPECT_FALSE(holds(model, parts, wanted));
+  EXPECT_FALSE(holds(model, chunks, wanted));
 }
 
-TEST_F(Parts, TellWhatHasChangedAndNothingElse) {
+TEST_F(Chunks, TellWhatHasChangedAndNothingElse) {
   for (std::size_t p = 0; p < 5; ++p) replace(p, 700);
-  parts.take_changes();
-  EXPECT_TRUE(parts.take_changes().empty());
+  chunks.take_changes();
+  EXPECT_TRUE(chunks.take_changes().empty());
   test::Uniform random(8);
   for (int n = 0; n < 100; ++n) {
     const Model before = model;
-    const std::size_t part = static_cast<std::size_t>(random(0.0, 5.0));
-    replace_some({part, (part + 1) % 5}, [&] { return static_cast<int>(random(0.0, 1400.0)); });
-    const ModelParts::Changes changes = parts.take_changes();
+    const std::size_t chunk = static_cast<std::size_t>(random(0.0, 5.0));
+    replace_some({chunk, (chunk + 1) % 5}, [&] { return static_cast<int>(random(0.0, 1400.0)); });
+    const ModelChunks::Changes changes = chunks.take_changes();
     std::set<std::size_t> told, empty;
     for (const auto& [first, count] : changes.filled) {
       for (std::size_t i = first; i < first + count; ++i) EXPECT_TRUE(told.insert(i).second);
@@ -118,26 +118,26 @@ TEST_F(Parts, TellWhatHasChangedAndNothingElse) {
   }
 }
 
-TEST_F(Parts, AreToldAsTheyWerePut) {
+TEST_F(Chunks, AreToldAsTheyWerePut) {
   for (const int count : {0, 1, 64, 65, 200}) {
     replace(2, count);
     replace(4, 30);
-    const Model found = parts.part(model, 2);
+    const Model found = chunks.chunk(model, 2);
     ASSERT_EQ(found.count(), wanted[2].count());
     for (std::size_t i = 0; i < found.count(); ++i) EXPECT_TRUE(equal(found, i, wanted[2], i)) << i;
   }
 }
 
-TEST_F(Parts, MakeNoBoxLarger) {
+TEST_F(Chunks, MakeNoBoxLarger) {
   for (std::size_t p = 0; p < 5; ++p) {
     wanted[p] = test::random_model(seed++, 1000, 1);
     for (glm::vec3& position : wanted[p].position) position += 100.0f;
   }
-  const std::vector<ModelParts::Replacement> replacements{
+  const std::vector<ModelChunks::Replacement> replacements{
       {0, &wanted[0]}, {1, &wanted[1]}, {2, &wanted[2]}, {3, &wanted[3]}, {4, &wanted[4]}};
-  parts.replace(model, replacements);
+  chunks.replace(model, replacements);
   Model all = like;
-  for (const Model& part : wanted) append(all, part, 0, part.count());
+  for (const Model& chunk : wanted) append(all, chunk, 0, chunk.count());
   EXPECT_GT(model.count(), all.count());
   EXPECT_EQ(all_bounds(model).low, all_bounds(all).low);
   EXPECT_EQ(all_bounds(model).high, all_bounds(all).high);

@@ -1,6 +1,6 @@
 // Levels of detail that follow the eyes: leaves of 505 and 120, 247 and 65, 248 and 65 Gaussians.
 
-#include "stream/streamed_sog.h"
+#include "stream/lod_files.h"
 
 #include <gtest/gtest.h>
 
@@ -12,7 +12,7 @@
 
 #include "formats/model_file.h"
 #include "formats/streamed_sog.h"
-#include "scene/model_parts.h"
+#include "scene/model_chunks.h"
 #include "scene/reduce.h"
 #include "support/broken.h"
 #include "support/details.h"
@@ -48,14 +48,14 @@ struct Followed {
     return all;
   }
 
-  Model read(const std::vector<shared::View>& views, const DetailNeed& need) {
+  Model read(const std::vector<shared::View>& views, const DetailRequest& need) {
     scene.choose(views, need);
     return read();
   }
 };
 
 /// The same without anything read before.
-Model read_anew(const fs::path& path, const glm::dvec3& eye, const DetailNeed& need) {
+Model read_anew(const fs::path& path, const glm::dvec3& eye, const DetailRequest& need) {
   return Followed(path).read({view_at(eye)}, need);
 }
 
@@ -246,7 +246,7 @@ TEST(StreamedSog, WhatIsNotKnownIsRefined) {
 
 /// What the view shows of each part: so many px, a thousand at most, and 21 units away.
 DetailSeen showing(const StreamedSog& scene, const std::vector<double>& areas) {
-  DetailSeen seen{{std::vector<SeenPart>(scene.parts())}, scene.chosen()};
+  DetailSeen seen{{std::vector<ChunkVisibility>(scene.parts())}, scene.chosen()};
   for (std::size_t p = 0; p < areas.size(); ++p) seen.by_view[0][p] = {areas[p], 21.0};
   return seen;
 }
@@ -256,7 +256,7 @@ TEST(StreamedSog, FinerLevelsStayWhereThereIsRoom) {
   const Copy copy(folder / "sog/st-lod");
   copy.edit("lod-meta.json", teach);
   const std::vector<shared::View> views = {ahead({0, 0, -20})};
-  const auto count = [&](const DetailNeed& need, int after_ms) {
+  const auto count = [&](const DetailRequest& need, int after_ms) {
     Followed scene(copy.path());
     scene.scene.choose({}, {});
     const std::vector<double> all = {1000, 1000, 1000}, first_two = {1000, 1000, 1e-9};

@@ -1,20 +1,20 @@
-#include "stream/detail.h"
+#include "stream/choice.h"
 
 #include <algorithm>
 #include <cmath>
 #include <queue>
 
-#include "stream/detail_parts.h"
+#include "stream/hysteresis.h"
 
 namespace binosplat {
 
 namespace {
 
 /// From the nearest eye; 1 without eyes.
-double distance_to(const DetailPart& part, const std::vector<glm::dvec3>& eyes) {
+double distance_to(const LodChunk& chunk, const std::vector<glm::dvec3>& eyes) {
   if (eyes.empty()) return 1.0;
   double nearest = INFINITY;
-  for (const glm::dvec3& eye : eyes) nearest = std::min(nearest, distance_to(part, eye));
+  for (const glm::dvec3& eye : eyes) nearest = std::min(nearest, distance_to(chunk, eye));
   return nearest;
 }
 
@@ -37,37 +37,37 @@ glm::dvec3 detail_direction(std::size_t d) {
   return direction;
 }
 
-std::vector<std::size_t> choose_levels(const std::vector<DetailPart>& parts,
-                                       const std::vector<glm::dvec3>& eyes, std::size_t most, double enough,
-                                       std::span<const std::size_t> before) {
+std::vector<std::size_t> choose_apart(const std::vector<LodChunk>& chunks,
+                                      const std::vector<glm::dvec3>& eyes, std::size_t most, double enough,
+                                      std::span<const std::size_t> before) {
   struct Coarse {
     double apart;  // of its Gaussians, as seen, radians
-    std::size_t part;
+    std::size_t chunk;
     bool operator<(const Coarse& other) const { return apart < other.apart; }
   };
-  std::vector<std::size_t> chosen(parts.size(), 0);
+  std::vector<std::size_t> chosen(chunks.size(), 0);
   std::priority_queue<Coarse> coarse;
   std::size_t total = 0;
   const auto add = [&](std::size_t p) {
-    const DetailPart& part = parts[p];
+    const LodChunk& chunk = chunks[p];
     if (chosen[p] == 0) return;  // the finest
-    const auto count = static_cast<double>(std::max<std::size_t>(part.levels[chosen[p]].count, 1));
-    const double diagonal = glm::distance(part.low, part.high);
+    const auto count = static_cast<double>(std::max<std::size_t>(chunk.levels[chosen[p]].count, 1));
+    const double diagonal = glm::distance(chunk.low, chunk.high);
     const double stays = inertia_of(before, p, chosen[p] - 1);
-    const double apart = stays * diagonal / std::sqrt(count) / distance_to(part, eyes);
+    const double apart = stays * diagonal / std::sqrt(count) / distance_to(chunk, eyes);
     if (apart > enough) coarse.push({apart, p});
   };
-  for (std::size_t p = 0; p < parts.size(); ++p) {
-    if (parts[p].levels.empty()) continue;
-    chosen[p] = parts[p].levels.size() - 1;
-    total += parts[p].levels.back().count;
+  for (std::size_t p = 0; p < chunks.size(); ++p) {
+    if (chunks[p].levels.empty()) continue;
+    chosen[p] = chunks[p].levels.size() - 1;
+    total += chunks[p].levels.back().count;
     add(p);
   }
   while (!coarse.empty()) {
-    const std::size_t p = coarse.top().part;
+    const std::size_t p = coarse.top().chunk;
     coarse.pop();
-    const std::size_t now = parts[p].levels[chosen[p]].count;
-    const std::size_t finer = parts[p].levels[chosen[p] - 1].count;
+    const std::size_t now = chunks[p].levels[chosen[p]].count;
+    const std::size_t finer = chunks[p].levels[chosen[p] - 1].count;
     if (total - now + finer > most) continue;  // others may be smaller
     total = total - now + finer;
     --chosen[p];
@@ -87,16 +87,35 @@ std::vector<DetailView> detail_views(std::span<const shared::View> views) {
   return result;
 }
 
+LevelChoice choose_levels(const std::vector<LodChunk>& chunks, std::span<const shared::View> views,
+                          const DetailRequest& request, const VisibleChunks& visible,
+                          std::span<const std::size_t> before) {
+  const std::vector<DetailView> detail = detail_views(views);
+  if (request.db && !views.empty()) {
+    const double error = error_of_psnr(*request.db) / request.calibration;
+    return choose_within(chunks, detail, {error, request.most, request.heads_turn, request.most_new}, visible,
+                         before);
+  }
+  std::vector<glm::dvec3> eyes;
+  double focal = 0.0;
+  for (const DetailView& view : detail) {
+    eyes.push_back(view.eye);
+    focal = std::max(focal, view.focal);
+  }
+  const double enough = views.empty() ? INFINITY : request.apart_px / focal;
+  return {.levels = choose_apart(chunks, eyes, request.most, enough, before)};
+}
+
 double psnr_of_error(double squared) { return -10.0 * std::log10(squared); }
 
 double error_of_psnr(double db) { return std::pow(10.0, -0.1 * db); }
 
 double levels_share(double together_db) { return psnr_of_error(0.5 * error_of_psnr(together_db)); }
 
-double left_of(double together_db, double asked_db, double now_db) {
-  constexpr double least = 0.1;  // of all, whatever was asked for
+double left_of(double together_db, double levels_db) {
+  constexpr double least = 0.1;
   const double all = error_of_psnr(together_db);
-  return psnr_of_error(std::max(all - std::min(error_of_psnr(now_db), error_of_psnr(asked_db)), least * all));
+  return psnr_of_error(std::max(all - error_of_psnr(levels_db), least * all));
 }
 
 double psnr_of_both(double a_db, double b_db) {

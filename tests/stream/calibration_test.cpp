@@ -1,6 +1,6 @@
 // What levels lose, by a sample of parts.
 
-#include "stream/level_sample.h"
+#include "stream/calibration.h"
 
 #include <gtest/gtest.h>
 
@@ -58,21 +58,21 @@ TEST(LevelSample, HasWhatLosesMoreMoreOften) {
 
 TEST(LevelSample, ChangesPlacesWithWhatIsThere) {
   Model model = without_gaussians(test::random_model(1, 1, 1));
-  ModelParts parts(4);
+  ModelChunks parts(4);
   for (std::size_t p = 0; p < 4; ++p)
     parts.replace(model, p, test::random_model(static_cast<unsigned>(p), 70, 1));
   parts.take_changes();
   std::vector<std::size_t> uploaded;
   const PartsTrial trial = {.upload =
-                                [&](const ModelParts::Changes& changes) {
+                                [&](const ModelChunks::Changes& changes) {
                                   EXPECT_FALSE(changes.empty());
                                   uploaded.push_back(parts.gaussians());
                                 },
                             .keep = {},
                             .differs = {}};
-  const PartModels finest{{2, 0}, {test::random_model(9, 300, 1), test::random_model(10, 100, 1)}};
+  const ChunkModels finest{{2, 0}, {test::random_model(9, 300, 1), test::random_model(10, 100, 1)}};
   const Model second = parts.part(model, 2);
-  const PartModels before = exchange(finest, model, parts, trial);
+  const ChunkModels before = exchange(finest, model, parts, trial);
   EXPECT_EQ(parts.part(model, 2).position, finest.models[0].position);
   EXPECT_EQ(before.models[0].position, second.position);
   exchange(before, model, parts, trial);
@@ -82,10 +82,10 @@ TEST(LevelSample, ChangesPlacesWithWhatIsThere) {
 
 TEST(LevelSample, HasRoom) {
   Model model = without_gaussians(test::random_model(1, 1, 1));
-  ModelParts parts(2);
-  model.room = 2 * ModelParts::block + 100 + 300;
+  ModelChunks parts(2);
+  model.room = 2 * ModelChunks::block + 100 + 300;
   parts.replace(model, 0, test::random_model(1, 100, 1));
-  PartModels finest{{0, 1}, {test::random_model(2, 200, 1), test::random_model(3, 101, 1)}};
+  ChunkModels finest{{0, 1}, {test::random_model(2, 200, 1), test::random_model(3, 101, 1)}};
   keep_what_fits(finest, model, parts);
   EXPECT_EQ(finest.parts, (std::vector<std::size_t>{0}));
   EXPECT_EQ(finest.models.size(), 1u);

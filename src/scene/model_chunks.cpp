@@ -1,4 +1,4 @@
-#include "scene/model_parts.h"
+#include "scene/model_chunks.h"
 
 #include <algorithm>
 #include <bit>
@@ -22,7 +22,7 @@ void hide(Model& model, std::size_t first, std::size_t count) {
 
 // The first that is free, so that they stay side by side. Places that are made for later, too, lie where
 // something is, which makes no box larger.
-std::size_t ModelParts::take_block(Model& model, const glm::vec3& where) {
+std::size_t ModelChunks::take_block(Model& model, const glm::vec3& where) {
   while (none_before_ < free_.size() && free_[none_before_] == 0) ++none_before_;
   if (none_before_ == free_.size()) {
     const std::size_t before = owners_.size();
@@ -47,44 +47,44 @@ std::size_t ModelParts::take_block(Model& model, const glm::vec3& where) {
   return none_before_ * 64 + bit;
 }
 
-void ModelParts::set_free(std::size_t b) {
+void ModelChunks::set_free(std::size_t b) {
   const std::size_t word = b / 64;
   if (word >= free_.size()) free_.resize(word + 1);
   free_[word] |= std::uint64_t{1} << b % 64;
   none_before_ = std::min(none_before_, word);
 }
 
-void ModelParts::note(std::size_t b, Change change) {
+void ModelChunks::note(std::size_t b, Change change) {
   if (changes_[b] == Change::none) changed_.push_back(b);
   changes_[b] = change;
 }
 
-Model ModelParts::part(const Model& model, std::size_t part) const {
+Model ModelChunks::chunk(const Model& model, std::size_t chunk) const {
   Model found = without_gaussians(model);
-  found.resize(counts_[part]);
-  for (std::size_t n = 0; n < blocks_[part].size(); ++n) {
+  found.resize(counts_[chunk]);
+  for (std::size_t n = 0; n < blocks_[chunk].size(); ++n) {
     const std::size_t first = n * block;
-    copy(model, blocks_[part][n] * block, std::min(block, found.count() - first), found, first);
+    copy(model, blocks_[chunk][n] * block, std::min(block, found.count() - first), found, first);
   }
   return found;
 }
 
-void ModelParts::replace(Model& model, std::size_t part, const Model& by) {
-  const Replacement one{part, &by};
+void ModelChunks::replace(Model& model, std::size_t chunk, const Model& by) {
+  const Replacement one{chunk, &by};
   replace(model, {&one, 1});
 }
 
-void ModelParts::replace(Model& model, std::span<const Replacement> all) {
-  std::vector<std::vector<std::size_t>> before;  // blocks of the parts
-  for (const Replacement& each : all) before.push_back(give_back(each.part));
-  for (const auto& [part, by] : all) take_place(model, part, *by);
+void ModelChunks::replace(Model& model, std::span<const Replacement> all) {
+  std::vector<std::vector<std::size_t>> before;  // blocks of the chunks
+  for (const Replacement& each : all) before.push_back(give_back(each.chunk));
+  for (const auto& [chunk, by] : all) take_place(model, chunk, *by);
   const auto fill = [&](std::size_t k) {
     for (const std::size_t b : before[k])
       if (changes_[b] == Change::emptied) hide(model, b * block, block);
-    const auto& [part, by] = all[k];
-    for (std::size_t n = 0; n < blocks_[part].size(); ++n) {
+    const auto& [chunk, by] = all[k];
+    for (std::size_t n = 0; n < blocks_[chunk].size(); ++n) {
       const std::size_t first = n * block, count = std::min(block, by->count() - first);
-      const std::size_t at = blocks_[part][n] * block;
+      const std::size_t at = blocks_[chunk][n] * block;
       copy(*by, first, count, model, at);
       hide(model, at + count, block - count);
       std::fill_n(model.position.begin() + static_cast<std::ptrdiff_t>(at + count), block - count,
@@ -100,27 +100,27 @@ void ModelParts::replace(Model& model, std::span<const Replacement> all) {
   frame_chunks(all.size(), all.size() * frame_chunk_numbers / numbers + 1, fill_some);
 }
 
-std::vector<std::size_t> ModelParts::give_back(std::size_t part) {
-  for (const std::size_t b : blocks_[part]) {
+std::vector<std::size_t> ModelChunks::give_back(std::size_t chunk) {
+  for (const std::size_t b : blocks_[chunk]) {
     note(b, Change::emptied);
     set_free(b);
   }
-  return std::exchange(blocks_[part], {});
+  return std::exchange(blocks_[chunk], {});
 }
 
-void ModelParts::take_place(Model& model, std::size_t part, const Model& by) {
-  blocks_[part].reserve((by.count() + block - 1) / block);
+void ModelChunks::take_place(Model& model, std::size_t chunk, const Model& by) {
+  blocks_[chunk].reserve((by.count() + block - 1) / block);
   for (std::size_t first = 0; first < by.count(); first += block) {
     const std::size_t b = take_block(model, by.position.front());
-    owners_[b] = static_cast<std::uint32_t>(part);
+    owners_[b] = static_cast<std::uint32_t>(chunk);
     note(b, Change::filled);
-    blocks_[part].push_back(b);
+    blocks_[chunk].push_back(b);
   }
-  gaussians_ = gaussians_ - counts_[part] + by.count();
-  counts_[part] = by.count();
+  gaussians_ = gaussians_ - counts_[chunk] + by.count();
+  counts_[chunk] = by.count();
 }
 
-ModelParts::Changes ModelParts::take_changes() {
+ModelChunks::Changes ModelChunks::take_changes() {
   Changes changes;
   std::ranges::sort(changed_);
   for (const std::size_t b : changed_) {

@@ -7,7 +7,7 @@
 #include <limits>
 #include <random>
 
-#include "stream/detail.h"
+#include "stream/choice.h"
 #include "support/details.h"
 
 namespace binosplat {
@@ -25,12 +25,12 @@ std::vector<double> in_all_directions(const std::vector<double>& by_width) {
 }
 
 /// Boxes of 1 along x, of four levels each; what a coarser one loses is up to chance.
-std::vector<DetailPart> row_with_errors(int count, unsigned seed = 1) {
+std::vector<LodChunk> row_with_errors(int count, unsigned seed = 1) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> factor(1.5, 6.0);
-  std::vector<DetailPart> parts;
+  std::vector<LodChunk> parts;
   for (int i = 0; i < count; ++i) {
-    DetailPart part{{2.0 * i, 0, 0}, {2.0 * i + 1, 1, 1}, {}, {0.01, 0.02, 0.04}};
+    LodChunk part{{2.0 * i, 0, 0}, {2.0 * i + 1, 1, 1}, {}, {0.01, 0.02, 0.04}};
     part.seen = in_all_directions({6000.0, 1600.0, 400.0});
     double error = 0.0;
     for (int level = 0; level < 4; ++level) {
@@ -57,7 +57,7 @@ DetailView along_x(double x, double forward = 1.0) {
 }
 
 /// What an eye would see of a part that nothing hides.
-SeenPart open_sight(const DetailPart& part, const DetailView& view) {
+ChunkVisibility open_sight(const LodChunk& part, const DetailView& view) {
   const double distance = std::max(glm::distance(view.eye, glm::clamp(view.eye, part.low, part.high)),
                                    0.01 * glm::distance(part.low, part.high));
   const double px = part.pixels.front() * view.focal / distance;
@@ -65,10 +65,10 @@ SeenPart open_sight(const DetailPart& part, const DetailView& view) {
 }
 
 /// What an eye loses per pixel that sees all of the row, as far away as it is.
-double loss(const std::vector<DetailPart>& parts, const Levels& chosen, const DetailView& view) {
+double loss(const std::vector<LodChunk>& parts, const Levels& chosen, const DetailView& view) {
   double sum = 0.0;
   for (std::size_t p = 0; p < parts.size(); ++p) {
-    const SeenPart seen = open_sight(parts[p], view);
+    const ChunkVisibility seen = open_sight(parts[p], view);
     const glm::dvec3 along = 0.5 * (parts[p].low + parts[p].high) - view.eye;
     sum += seen.area * relative_error(parts[p], chosen[p], seen.distance / view.focal, along);
   }
@@ -76,7 +76,7 @@ double loss(const std::vector<DetailPart>& parts, const Levels& chosen, const De
 }
 
 /// The fewest Gaussians of all choices that lose no more.
-std::size_t fewest(const std::vector<DetailPart>& parts, const DetailView& view, double error) {
+std::size_t fewest(const std::vector<LodChunk>& parts, const DetailView& view, double error) {
   std::size_t best = any;
   Levels chosen(parts.size(), 0);
   for (std::size_t n = 0; n < std::size_t{1} << (2 * parts.size()); ++n) {
@@ -88,7 +88,7 @@ std::size_t fewest(const std::vector<DetailPart>& parts, const DetailView& view,
 }
 
 TEST(DetailErrors, LieOnLinesBetweenThePixelsThatAreKnown) {
-  DetailPart part{{}, {1, 1, 1}, {{0, 9, in_all_directions({0.0, 0.0, 0.0})}}, {0.5, 1.0, 2.0}};
+  LodChunk part{{}, {1, 1, 1}, {{0, 9, in_all_directions({0.0, 0.0, 0.0})}}, {0.5, 1.0, 2.0}};
   part.seen = in_all_directions({100.0, 25.0, 0.0});
   part.levels.push_back({1, 4, in_all_directions({8.0, 1.0, 0.0})});
   for (const auto& [width, error] : {std::pair(0.5, 0.08),
@@ -107,7 +107,7 @@ TEST(DetailErrors, LieOnLinesBetweenThePixelsThatAreKnown) {
 }
 
 TEST(DetailErrors, AreThoseOfTheDirectionsBeside) {
-  DetailPart part{{}, {1, 1, 1}, {{0, 9, {}}}, {0.5}};
+  LodChunk part{{}, {1, 1, 1}, {{0, 9, {}}}, {0.5}};
   part.seen = {1, 2, 3, 4, 5, 6};
   part.levels[0].errors = {0.1, 0.1, 0.2, 0.2, 0.3, 0.6};
   for (std::size_t d = 0; d < detail_directions; ++d)
@@ -122,7 +122,7 @@ TEST(DetailErrors, KeepTheBoundWithHardlyMoreThanTheFewestGaussians) {
   double worst = 1.0;
   std::size_t planted = 0, cases = 0;
   for (unsigned seed = 0; seed < 12; ++seed) {
-    const std::vector<DetailPart> parts = row_with_errors(6, seed);
+    const std::vector<LodChunk> parts = row_with_errors(6, seed);
     const DetailView near = along_x(-1.0), far = along_x(-40.0);
     for (const double error : {1e-5, 1e-4, 3e-4, 1e-3}) {
       const DetailChoice choice = choose_levels_within(parts, {near}, error, any);
@@ -143,7 +143,7 @@ TEST(DetailErrors, KeepTheBoundWithHardlyMoreThanTheFewestGaussians) {
 }
 
 TEST(DetailErrors, MoreDecibelsAreMoreGaussians) {
-  const std::vector<DetailPart> parts = row_with_errors(20);
+  const std::vector<LodChunk> parts = row_with_errors(20);
   std::size_t last = 0;
   for (double db = 20.0; db <= 80.0; db += 1.0) {
     const DetailChoice choice = choose_levels_within(parts, {along_x(-1.0)}, std::pow(10, -0.1 * db), any);
@@ -154,7 +154,7 @@ TEST(DetailErrors, MoreDecibelsAreMoreGaussians) {
 }
 
 TEST(DetailErrors, OneChoiceForAllViews) {
-  const std::vector<DetailPart> parts = row_with_errors(8);
+  const std::vector<LodChunk> parts = row_with_errors(8);
   const DetailView first = along_x(-1.0), last = along_x(16.0, -1.0);
   const DetailChoice both = choose_levels_within(parts, {first, last}, 1e-4, any);
   EXPECT_EQ(both.levels, choose_levels_within(parts, {last, first}, 1e-4, any).levels);
@@ -165,7 +165,7 @@ TEST(DetailErrors, OneChoiceForAllViews) {
 }
 
 TEST(DetailErrors, WhatIsOutOfSightIsThereForHeadsThatTurn) {
-  const std::vector<DetailPart> parts = row_with_errors(8);
+  const std::vector<LodChunk> parts = row_with_errors(8);
   const DetailView ahead = along_x(6.5), beside = along_x(-1.0, -1.0);
   const DetailChoice one = choose_levels_within(parts, {ahead}, 1e-4, any);
   EXPECT_LE(one.error(), 1e-4);
@@ -185,13 +185,13 @@ TEST(DetailErrors, WhatIsOutOfSightIsThereForHeadsThatTurn) {
   EXPECT_LE(still.error(), 1e-4);
   EXPECT_EQ(choose_levels_within(parts, {beside}, 1e-4, any, {}, {}, false).levels, Levels(parts.size(), 3));
   // A part beside the picture is seen whose coarsest Gaussians reach into it.
-  const std::vector<DetailPart> at_edge = {row_with_errors(1).front()};
+  const std::vector<LodChunk> at_edge = {row_with_errors(1).front()};
   DetailView view{.eye = {0.5, 0.5, -2.0},
                   .inward = inward_of({std::sin(0.79), 0, std::cos(0.79)}, 0.5),
                   .focal = 100.0,
                   .pixels = 1.0};
   EXPECT_GT(choose_levels_within(at_edge, {view}, 1e9, any).error(), 0.0);
-  DetailSeen seen{{{SeenPart{}}}, {3}};
+  DetailSeen seen{{{ChunkVisibility{}}}, {3}};
   EXPECT_EQ(choose_levels_within(at_edge, {view}, 1e9, any, seen).error(), 0.0)
       << "they were drawn, and do not";
   seen.drawn = {1};
@@ -227,13 +227,13 @@ TEST(DetailErrors, GoByThePicturesSides) {
 
 // What is hidden, or out of the picture, need not be fine.
 TEST(DetailErrors, GoByWhatIsSeen) {
-  const std::vector<DetailPart> parts = row_with_errors(8);
+  const std::vector<LodChunk> parts = row_with_errors(8);
   const DetailView view = along_x(-1.0);
   const DetailChoice blind = choose_levels_within(parts, {view}, 1e-4, any);
-  std::vector<SeenPart> seen;
-  for (const DetailPart& part : parts) seen.push_back(open_sight(part, view));
+  std::vector<ChunkVisibility> seen;
+  for (const LodChunk& part : parts) seen.push_back(open_sight(part, view));
   const Levels coarsest(parts.size(), 3);
-  const auto by = [&](const std::vector<SeenPart>& found, const Levels& drawn) {
+  const auto by = [&](const std::vector<ChunkVisibility>& found, const Levels& drawn) {
     return choose_levels_within(parts, {view}, 1e-4, any, {{found}, drawn}, drawn);
   };
   EXPECT_NEAR(by(seen, Levels()).error(), blind.error(), 1e-12) << "nothing hides anything";
@@ -244,18 +244,18 @@ TEST(DetailErrors, GoByWhatIsSeen) {
   for (std::size_t p = 1; p < parts.size(); ++p) EXPECT_EQ(first_only.levels[p], 3u) << p;
   EXPECT_LT(first_only.error(), blind.error());
   // A little of a part that is seen loses so much less.
-  for (SeenPart& part : seen) part.area *= 0.5;
+  for (ChunkVisibility& part : seen) part.area *= 0.5;
   EXPECT_NEAR(by(seen, coarsest).error(), 0.5 * loss({parts[0]}, {by(seen, coarsest).levels[0]}, view),
               1e-12);
   // Coarser levels than those that were drawn may show what these do not.
-  for (SeenPart& part : seen) part.area = hidden;
+  for (ChunkVisibility& part : seen) part.area = hidden;
   EXPECT_LT(by(seen, coarsest).error(), 1e-9);
   EXPECT_EQ(by(seen, coarsest).levels, coarsest);
   EXPECT_GT(by(seen, Levels(parts.size(), 0)).error(), 1e-6);
   // And finer ones, where none of these lies in the picture but the part may.
-  const std::vector<SeenPart> nothing(parts.size());
+  const std::vector<ChunkVisibility> nothing(parts.size());
   const DetailView ahead = along_x(6.5);
-  const auto ahead_by = [&](const std::vector<SeenPart>& found, double error) {
+  const auto ahead_by = [&](const std::vector<ChunkVisibility>& found, double error) {
     return choose_levels_within(parts, {ahead}, error, any, {{found}, coarsest}, coarsest, false);
   };
   EXPECT_GT(ahead_by(nothing, 1.0).error(), 1e-6);
@@ -266,7 +266,7 @@ TEST(DetailErrors, GoByWhatIsSeen) {
 }
 
 TEST(DetailErrors, KeepToWhatWasChosenBefore) {
-  const std::vector<DetailPart> parts = row_with_errors(20);
+  const std::vector<LodChunk> parts = row_with_errors(20);
   std::size_t anew = 0;
   for (double x = -12.0; x < -0.5; x += 0.25) {
     Levels here = choose_levels_within(parts, {along_x(x)}, 1e-4, any).levels;
@@ -286,7 +286,7 @@ TEST(DetailErrors, KeepToWhatWasChosenBefore) {
 
 // Of what does not come in time many parts get some, not a few all.
 TEST(DetailErrors, WantNoMoreThanComesInTime) {
-  const std::vector<DetailPart> parts = row_with_errors(200);
+  const std::vector<LodChunk> parts = row_with_errors(200);
   const DetailView view = along_x(-1.0);
   const Levels coarsest(parts.size(), 3);
   const auto wanted = [&](std::size_t to_come, const Levels& drawn) {
@@ -328,7 +328,7 @@ TEST(DetailErrors, WantNoMoreThanComesInTime) {
 }
 
 TEST(DetailErrors, TellWhatAnotherLevelSaves) {
-  const std::vector<DetailPart> parts = row_with_errors(4);
+  const std::vector<LodChunk> parts = row_with_errors(4);
   const DetailView near = along_x(-1.0), far = along_x(-9.0), away = along_x(-1.0, -1.0);
   const DetailChoice choice = choose_levels_within(parts, {near, far}, 1e-3, any);
   const DetailChoice unseen = choose_levels_within(parts, {away}, 1e-3, any);
@@ -344,7 +344,7 @@ TEST(DetailErrors, TellWhatAnotherLevelSaves) {
 }
 
 TEST(DetailErrors, FewGaussiansMayBeAllowedAndPartsUnknown) {
-  std::vector<DetailPart> parts = row_with_errors(6);
+  std::vector<LodChunk> parts = row_with_errors(6);
   for (std::size_t most = 300; most < 2500; most += 50) {
     Levels chosen = choose_levels_within(parts, {along_x(-1.0)}, 1e-9, most).levels;
     EXPECT_LE(test::gaussians_of(parts, chosen), most);
@@ -356,7 +356,7 @@ TEST(DetailErrors, FewGaussiansMayBeAllowedAndPartsUnknown) {
     }
   }
   // Where the best step is too large, a smaller one is taken.
-  const std::vector<DetailPart> leap = {
+  const std::vector<LodChunk> leap = {
       {{},
        {1, 1, 1},
        {{0, 400, std::vector(6, 0.0)}, {1, 200, std::vector(6, 0.9)}, {2, 100, std::vector(6, 1.0)}},
@@ -366,7 +366,7 @@ TEST(DetailErrors, FewGaussiansMayBeAllowedAndPartsUnknown) {
   EXPECT_EQ(choose_levels_within(leap, {along_x(-1.0)}, 1e-9, 399).levels, Levels{1});
   parts[3].pixels.clear();
   parts[3].seen.clear();
-  for (DetailPart::Level& level : parts[3].levels) level.errors.clear();
+  for (LodChunk::Level& level : parts[3].levels) level.errors.clear();
   parts[4].levels.clear();
   const DetailChoice choice = choose_levels_within(parts, {along_x(-1.0)}, 1e9, any);
   EXPECT_EQ(choice.levels, (Levels{3, 3, 3, 0, 0, 3}));

@@ -1,6 +1,6 @@
 // What views show of the parts of a model.
 
-#include "stream/sight.h"
+#include "stream/visibility.h"
 
 #include <algorithm>
 #include <cmath>
@@ -25,7 +25,7 @@ using Indices = std::vector<std::vector<std::uint32_t>>;
 /// A model on the GPU with the Gaussians at these indices as parts.
 struct Parted {
   Model model;
-  ModelParts parts;
+  ModelChunks parts;
   std::shared_ptr<render::GpuModel> gpu_model;
 
   Parted(const Model& all, const Indices& indices, std::uint32_t page = 0, int precision = PRECISION_FULL)
@@ -34,7 +34,7 @@ struct Parted {
     gpu_model = std::make_shared<render::GpuModel>(test::gl_context(), model, precision, page);
   }
 
-  std::vector<std::vector<SeenPart>> look(const std::vector<shared::View>& views,
+  std::vector<std::vector<ChunkVisibility>> look(const std::vector<shared::View>& views,
                                           const FrameSettings& settings = {}, int shrink_most = 4) const {
     return Sight(gpu_model).look(views, settings, parts, shrink_most);
   }
@@ -107,7 +107,7 @@ TEST(Sight, IsSumsAndMeans) {
   EXPECT_EQ(both[2].area, alone[1].area) << "in whatever order they lie";
   const auto all = Parted(wall_with_balls(), {{0, 1, 2, 3}}).look({sight_view()}).at(0);
   double area = 0.0, logarithm = 0.0;
-  for (const SeenPart& part : alone) {
+  for (const ChunkVisibility& part : alone) {
     area += part.area;
     if (part.area > 0.0) logarithm += part.area * std::log(part.distance);
   }
@@ -159,7 +159,7 @@ TEST(Sight, IsTheSameWhateverSummedItUp) {
   const auto is_usual = [&](int tile_size) {
     const auto other = parted.look(views, {.tile_size = tile_size}).at(0);
     const double unnoticed = tile_size == TILE_SIZE_DEFAULT ? 0.0 : 1e-4;
-    const auto same = [&](const SeenPart& a, const SeenPart& b) {
+    const auto same = [&](const ChunkVisibility& a, const ChunkVisibility& b) {
       return std::abs(a.area - b.area) <= unnoticed && std::abs(a.distance - b.distance) <= unnoticed;
     };
     return std::ranges::equal(usual, other, same);

@@ -1,0 +1,26 @@
+#include "stream/chooser.h"
+
+#include <algorithm>
+
+#include "base/log.h"
+
+namespace binosplat {
+
+LevelChoice Chooser::choose(std::span<const shared::View> views, const DetailRequest& request,
+                            const VisibleChunks& visible) {
+  DetailRequest of_chunks = request;
+  of_chunks.most -= std::min(request.most, files_.environment_count());
+  LevelChoice choice = choose_levels(files_.chunks(), views, of_chunks, visible, before_);
+  before_ = views.empty() ? std::vector<std::size_t>() : choice.levels;
+  const std::size_t total = files_.count(choice.levels);
+  if (total > request.most && !told_no_room_) warn_of_no_room(files_.name(), total, request.most);
+  told_no_room_ = total > request.most;
+  return choice;
+}
+
+void warn_of_no_room(const std::string& name, std::size_t total, std::size_t most) {
+  log_warning("{}: even its coarsest levels of detail have {} Gaussians, and there is room for {}", name,
+              total, most);
+}
+
+}  // namespace binosplat

@@ -1,0 +1,139 @@
+#include "stream/visibility.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+#include "base/frame_crew.h"
+#include "render/stages.h"
+
+namespace binosplat {
+
+namespace {
+
+// px. In smaller pictures chunks are sampled by so few pixels that those of which little is found by chance,
+// which then stay coarse, cost 1.5 dB (taebak at 915 x 800 px).
+constexpr std::uint32_t small_enough = 512;
+// A GPU draws the tiles of more pixels at once, and ends sooner: the lists of the few tiles in which most of
+// a scene lies take the time, and smaller tiles have shorter ones.
+constexpr int shrink_on_gpu = 2, shrink_on_cpu = 4;
+
+/// The same view in a picture of fewer pixels.
+shared::View shrunk(const shared::View& view, int by) {
+  shared::View small = view;
+  for (int k = 0; k < 2; ++k) {
+    const std::uint32_t size = k == 0 ? view.width : view.height;
+    const std::uint32_t pixels = std::max<std::uint32_t>(
+        1, (size + static_cast<std::uint32_t>(by) / 2) / static_cast<std::uint32_t>(by));
+    const float scale = static_cast<float>(pixels) / static_cast<float>(size);
+    (k == 0 ? small.width : small.height) = pixels;
+    small.lens[k] *= scale;
+    small.lens[k + 2] *= scale;
+  }
+  return small;
+}
+
+render::FrameSettings exact_in_precision(const render::FrameSettings& settings) {
+  render::FrameSettings exact = render::exact_of(settings);
+  exact.precision = settings.precision;
+  return exact;
+}
+
+}  // namespace
+
+Visibility::Visibility(std::shared_ptr<render::GpuModel> model)
+    : frame_(model),
+      dispatcher_(model->context()),
+      sums_(model->context(), "how much is seen by splat"),
+      owners_(model->context(), "chunks by block"),
+      of_chunks_(model->context(), "how much is seen by chunk"),
+      kept_(model->context()) {}
+
+std::vector<std::vector<ChunkVisibility>> Visibility::measure(std::span<const shared::View> views,
+                                                              const render::FrameSettings& settings,
+                                                              const ModelChunks& chunks,
+                                                              std::optional<int> shrink_most) {
+  const int most = shrink_most.value_or(frame_.model()->context().software() ? shrink_on_cpu : shrink_on_gpu);
+  render::FrameSettings exact = exact_in_precision(settings);
+  std::vector<shared::View> small(views.begin(), views.end());
+  std::vector<double> pixel_areas;  // of the views' pixels
+  for (shared::View& view : small) {
+    const auto shrink = static_cast<int>(std::min(view.width, view.height) / small_enough);
+    const glm::dvec2 size(view.width, view.height);
+    view = shrunk(view, std::clamp(shrink, 1, most));
+    pixel_areas.push_back(size.x / view.width * size.y / view.height);
+    exact.parts.push_back({.low_pass_share = static_cast<float>(1.0 / pixel_areas.back())});
+  }
+  frame_.draw_until(render::Stage::ranges, small, exact);
+  const std::vector<std::int64_t> sums = sum_up(views.size(), exact.precision, chunks);
+  std::vector<std::vector<ChunkVisibility>> seen(views.size(), std::vector<ChunkVisibility>(chunks.size()));
+  for (std::size_t v = 0; v < views.size(); ++v) {
+    const auto read = [&](std::size_t begin, std::size_t end) {
+      for (std::size_t c = begin; c < end; ++c) {
+        const std::int64_t* const of = &sums[2 * (v * chunks.size() + c)];
+        if (of[0] == 0) continue;
+        const double area = static_cast<double>(of[0]);
+        seen[v][c] = {area / SEEN_SCALE * pixel_areas[v],
+                      std::exp2(static_cast<double>(of[1]) / area - 32.0)};
+      }
+    };
+    frame_chunks(chunks.size(), 1 << 12, read);
+  }
+  return seen;
+}
+
+// Of the views that the frame has drawn up to its blend.
+std::vector<std::int64_t> Visibility::sum_up(std::size_t views, int precision, const ModelChunks& chunks) {
+  const render::FrameShape& shape = frame_.shape();
+  render::FrameBuffers& buffers = frame_.buffers();
+  // Zeros again after each pass, since clearing takes as long as all of the rest.
+  const std::int64_t sum_bytes = std::int64_t{shape.slots} * static_cast<std::int64_t>(views) * 8;
+  if (sums_.bytes() < sum_bytes) sums_.reserve_zeros(sum_bytes);
+  of_chunks_.reserve_zeros(static_cast<std::int64_t>(chunks.size() * views * 16));
+  owners_.upload(chunks.owners());
+  dispatcher_.begin_frame();
+  dispatcher_.begin_stage("blend");
+  render::find_long_lists(dispatcher_, shape, buffers);
+  render::blend_seen(dispatcher_, shape, buffers, sums_);
+  const auto model_buffers = frame_.model()->in(precision);
+  const gl::Program& program = dispatcher_.context().program(
+      "parts_seen.comp", {{"OFFSETS", "0"}, {"HALF", precision == PRECISION_HALF ? "1" : "0"}});
+  for (std::size_t group = 0; group < shape.groups.size(); ++group) {
+    for (const render::ModelBuffers::Page& page : model_buffers->pages) {
+      const render::DrawnBuffers& drawn = *buffers.drawn[group];
+      dispatcher_.run(program,
+                      gl::Work::indirect(drawn.arguments, offsetof(shared::DispatchArguments, threads_x)),
+                      {{"Frame", buffers.parameters},
+                       {"Views", buffers.views},
+                       {"Gaussians", *page.gaussians},
+                       {"Arguments", drawn.arguments},
+                       {"Indices", drawn.indices},
+                       {"Sums", sums_},
+                       {"Owners", owners_},
+                       {"OfParts", of_chunks_}},
+                      {{"page_first", page.first},
+                       {"page_count", page.count},
+                       {"part_count", static_cast<std::uint32_t>(chunks.size())},
+                       {"block_size", static_cast<std::uint32_t>(ModelChunks::block)},
+                       {"view_begin", shape.groups[group].begin},
+                       {"view_end", shape.groups[group].end}});
+    }
+  }
+  dispatcher_.end_frame();
+  dispatcher_.wait_and_time();
+  render::refuse_cut(dispatcher_.context(), buffers.counters.read<shared::Counters>(1).front());
+  return of_chunks_.read<std::int64_t>(2 * chunks.size() * views);
+}
+
+void Visibility::keep_picture(const shared::View& view, const render::FrameSettings& settings) {
+  frame_.draw({&view, 1}, exact_in_precision(settings));
+  kept_.clear();
+  kept_.add(frame_.colours(), view.width * view.height);
+}
+
+double Visibility::picture_error(const shared::View& view, const render::FrameSettings& settings) {
+  frame_.draw({&view, 1}, exact_in_precision(settings));
+  return kept_.mean(frame_.colours());
+}
+
+}  // namespace binosplat

@@ -1,0 +1,120 @@
+#include "stream/worker.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "base/parallel.h"
+
+namespace binosplat {
+
+namespace {
+
+// Gaussians that may wait to be taken: a quarter of a GB with all their harmonics.
+constexpr std::size_t waiting_most = 1 << 20;
+constexpr double cores_share = 0.5;  // the rest is for frames
+
+}  // namespace
+
+StreamWorker::StreamWorker(const LodFiles& files, std::vector<std::size_t> there)
+    : files_(files), chooser_(files), there_(std::move(there)) {
+  thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
+}
+
+void StreamWorker::request(Request request) {
+  const std::lock_guard lock(mutex_);
+  request_ = std::move(request);
+  changed_.notify_all();
+}
+
+std::vector<LodFiles::Piece> StreamWorker::take(std::size_t gaussians) {
+  std::vector<LodFiles::Piece> taken;
+  const std::lock_guard lock(mutex_);
+  for (std::size_t count = 0; !pieces_.empty() && count < gaussians;) {
+    LodFiles::Piece& piece = taken.emplace_back(std::move(pieces_.front()));
+    pieces_.pop_front();
+    there_[piece.chunk] = piece.level;
+    count += piece.model.count();
+    waiting_ -= piece.model.count();
+  }
+  if (!taken.empty()) changed_.notify_all();
+  return taken;
+}
+
+bool StreamWorker::is_idle() const {
+  const std::lock_guard lock(mutex_);
+  return !request_ && !is_at_work_ && pieces_.empty() && !trouble_;
+}
+
+std::shared_ptr<RunningError> StreamWorker::error() const {
+  const std::lock_guard lock(mutex_);
+  return error_;
+}
+
+bool StreamWorker::is_limited() const {
+  const std::lock_guard lock(mutex_);
+  return is_limited_;
+}
+
+void StreamWorker::check() const {
+  const std::lock_guard lock(mutex_);
+  if (trouble_) std::rethrow_exception(trouble_);
+}
+
+void StreamWorker::run(const std::stop_token& stop) {
+  std::unique_lock lock(mutex_);
+  while (changed_.wait(lock, stop, [&] { return request_.has_value(); })) {
+    const Request request = *std::exchange(request_, std::nullopt);
+    is_at_work_ = true;
+    lock.unlock();
+    std::exception_ptr trouble;
+    try {
+      on_some_cores(cores_share, [&] { work(request, stop); });
+    } catch (...) {
+      trouble = std::current_exception();
+    }
+    lock.lock();
+    is_at_work_ = false;
+    trouble_ = trouble;
+    if (trouble) return;
+  }
+}
+
+void StreamWorker::work(const Request& request, const std::stop_token& stop) {
+  const auto choice =
+      std::make_shared<const LevelChoice>(chooser_.choose(request.views, request.detail, request.visible));
+  std::shared_ptr<RunningError> error;
+  if (choice->knows_errors()) error = std::make_shared<RunningError>(choice, request.visible.drawn);
+  {
+    const std::lock_guard lock(mutex_);
+    error_.swap(error);  // the one before is freed when no frame waits for the lock any more
+    is_limited_ = choice->is_limited;
+  }
+  files_.read(
+      keep_wanted(*choice), *choice, [&](LodFiles::Piece piece) { add(std::move(piece), stop); },
+      [&] {
+        const std::lock_guard lock(mutex_);
+        return !stop.stop_requested() && !request_;
+      });
+}
+
+// Drops pieces that another choice was for; with the others the chunks are at the levels that it returns.
+std::vector<std::size_t> StreamWorker::keep_wanted(const LevelChoice& choice) {
+  const std::lock_guard lock(mutex_);
+  std::erase_if(pieces_, [&](const LodFiles::Piece& piece) {
+    const bool is_wanted = choice.levels[piece.chunk] == piece.level;
+    if (!is_wanted) waiting_ -= piece.model.count();
+    return !is_wanted;
+  });
+  std::vector<std::size_t> levels = there_;
+  for (const LodFiles::Piece& piece : pieces_) levels[piece.chunk] = piece.level;
+  return levels;
+}
+
+void StreamWorker::add(LodFiles::Piece piece, const std::stop_token& stop) {
+  std::unique_lock lock(mutex_);
+  changed_.wait(lock, stop, [&] { return waiting_ < waiting_most || request_; });
+  waiting_ += piece.model.count();
+  pieces_.push_back(std::move(piece));
+}
+
+}  // namespace binosplat
