@@ -9,7 +9,6 @@
 #include <cstdlib>
 #include <deque>
 #include <fstream>
-#include <limits>
 #include <nlohmann/json.hpp>
 #include <string_view>
 #include <thread>
@@ -21,8 +20,7 @@
 #include "formats/model_file.h"
 #include "render/squared_error.h"
 #include "stereo/rig.h"
-#include "stream/level_stream.h"
-#include "stream/visibility.h"
+#include "stream/stream.h"
 
 namespace binosplat {
 namespace {
@@ -37,8 +35,7 @@ struct Plan {
   double rate = 90.0;  // a second
   int judged = 8;      // of the frames, evenly spread, against the finest
   int shrink = 1;
-  std::size_t gaussians_a_frame = 1 << 18;
-  std::size_t most = std::numeric_limits<std::size_t>::max();
+  std::size_t most = any_number;
   std::size_t all_up_to = few_gaussians;
   render::FrameSettings settings;
 };
@@ -104,17 +101,25 @@ void wake(render::Frame& frame, const Views& views) {
 
 struct Numbers {
   std::vector<double> gaussians, read_gaussians, look_ms, take_ms, frame_ms, all_ms, finest_db, late_s,
-      quiet_ms, told_db, off_db, jump_db, gpu_bytes;
+      quiet_ms, reported_db, off_db, jump_db, gpu_bytes;
   double rest_db = 0.0;
 };
 
-DetailRequest need_of(const std::string& detail) {
+StreamSettings stream_settings(const Plan& plan, const std::string& detail) {
+  StreamSettings settings{.all_up_to = plan.all_up_to, .reserve = std::size_t{1} << 22};
   char* end = nullptr;
   const double number = std::strtod(detail.c_str(), &end);
-  if (end != detail.c_str() && std::string_view(end) == "dB") return {.db = number};
-  if (end != detail.c_str() && *end == '\0') return {number};
-  if (detail == "shared") return {.shares = true};
-  fail("--detail {}: expected px, or dB as in 40dB, or shared", detail);
+  if (end != detail.c_str() && std::string_view(end) == "dB") {
+    settings.detail.db = number;
+  } else if (end != detail.c_str() && *end == '\0') {
+    settings.detail.apart_px = number;
+  } else if (detail == "shared") {
+    settings.shares = true;
+  } else {
+    fail("--detail {}: expected px, or dB as in 40dB, or shared", detail);
+  }
+  settings.detail.most = plan.most;
+  return settings;
 }
 
 // Along the path in real time, as a headset would: a frame begins when it is due, draws with the levels that
@@ -126,19 +131,10 @@ class Flight {
       : context_(context),
         plan_(plan),
         path_(path),
-        levels_(
-            plan.scene,
-            [need = need_of(detail), most = plan.most](const StreamedSog&,
-                                                       std::span<const shared::View>) mutable {
-              need.most = most;
-              return need;
-            },
-            plan.all_up_to),
+        stream_(plan.scene, stream_settings(plan, detail)),
         others_(context.allocated_bytes()),
-        gpu_model_(std::make_shared<render::GpuModel>(context, model_ = coarsest())),
+        gpu_model_(stream_.gpu_model(context, plan.settings.precision)),
         frame_(gpu_model_),
-        sight_(gpu_model_),
-        trial_(sight_.trial(plan.settings)),
         before_(context) {}
 
   Numbers run(std::deque<render::SquaredError>& finest) {
@@ -162,72 +158,47 @@ class Flight {
   }
 
  private:
-  Model coarsest() {
-    levels_.share(plan_.settings.quality);
-    return levels_.coarsest(path_[0]);
-  }
-
   render::FrameSettings settings() const {
     render::FrameSettings of_frame = plan_.settings;
-    of_frame.quality = static_cast<float>(levels_.left());
+    of_frame.quality = static_cast<float>(stream_.quality_left(of_frame.quality));
     return of_frame;
   }
 
-  void want(const Views& views) {
-    levels_.want(views, [&](const shared::View& view, Band band, const ModelChunks& parts) {
-      const auto begin = Clock::now();
-      auto seen = sight_.look(view, band, plan_.settings, parts);
-      numbers_.look_ms.push_back(ms_since(begin));
-      band_ = band;
-      return seen;
-    });
+  bool follow(const Views& views) {
+    return stream_.begin_frame(views, plan_.settings, time_for_levels(1e3 / plan_.rate, report_.total_ms));
   }
 
   void settle(const Views& views) {
-    do {
-      gpu_model_->reload(levels_.take(model_, plan_.gaussians_a_frame));
-      want(views);
-      levels_.try_out(model_, trial_);
-      levels_.take_ahead(model_, plan_.gaussians_a_frame);
-    } while (!levels_.settled());
+    do follow(views);
+    while (!stream_.settled());
   }
 
   void draw(const Views& views) {
     const auto begin = Clock::now();
-    const ModelChunks::Changes changes = levels_.take(model_, plan_.gaussians_a_frame);
-    const double taken_ms = ms_since(begin);
-    gpu_model_->reload(changes);
-    numbers_.take_ms.push_back(ms_since(begin));
-    levels_.give_time(time_for_levels(1e3 / plan_.rate, report_.total_ms));
-    const std::size_t looks = numbers_.look_ms.size();
-    want(views);
-    const bool looked = looks < numbers_.look_ms.size();
-    const auto trying = Clock::now();
-    levels_.try_out(model_, trial_);
-    const double trial_ms = ms_since(trying);
-    levels_.take_ahead(model_, plan_.gaussians_a_frame);
+    const double gaussians = static_cast<double>(stream_.gaussians());
+    const bool changed = follow(views);
+    const double levels_ms = ms_since(begin);
+    const bool looked = !changed && levels_ms > 0.1;  // a visibility pass
+    if (looked) numbers_.look_ms.push_back(levels_ms);
+    if (!looked) numbers_.take_ms.push_back(levels_ms);
     report_ = frame_.draw(views, settings());
     const double drawn_ms = report_.total_ms;
     numbers_.frame_ms.push_back(drawn_ms);
-    if (changes.empty() && !looked) numbers_.quiet_ms.push_back(drawn_ms);
+    if (!changed && !looked) numbers_.quiet_ms.push_back(drawn_ms);
     numbers_.all_ms.push_back(ms_since(begin));
     numbers_.gpu_bytes.push_back(static_cast<double>(context_.allocated_bytes() - others_));
-    numbers_.gaussians.push_back(static_cast<double>(levels_.gaussians()));
-    std::size_t filled = 0;
-    for (const ModelChunks::Range& range : changes.filled) filled += range.count;
-    if (filled > 0) numbers_.read_gaussians.push_back(static_cast<double>(filled));
-    timeline_.push_back({{"look_ms", looked ? numbers_.look_ms.back() : 0.0},
-                         {"look_at", looked ? Json({band_.begin, band_.end}) : Json()},
-                         {"take_ms", taken_ms},
-                         {"upload_ms", numbers_.take_ms.back() - taken_ms},
-                         {"new", filled},
-                         {"trial_ms", trial_ms},
+    numbers_.gaussians.push_back(static_cast<double>(stream_.gaussians()));
+    const double more = numbers_.gaussians.back() - gaussians;
+    if (changed) numbers_.read_gaussians.push_back(more);
+    timeline_.push_back({{"look_ms", looked ? levels_ms : 0.0},
+                         {"take_ms", looked ? 0.0 : levels_ms},
+                         {"new", more},
                          {"gpu_ms", drawn_ms},
                          {"all_ms", numbers_.all_ms.back()}});
   }
 
   void note_whether_late(Clock::time_point now) {
-    if (levels_.settled()) {
+    if (stream_.settled()) {
       unsettled_.reset();
     } else {
       if (!unsettled_) unsettled_ = now;
@@ -243,10 +214,10 @@ class Flight {
       judged = true;
       const double true_db = finest[k].psnr(frame_.colours());
       numbers_.finest_db.push_back(true_db);
-      if (const auto told = told_db()) {
-        numbers_.told_db.push_back(*told);
-        numbers_.off_db.push_back(*told - true_db);
-        timeline_.back()["told_db"] = *told;
+      if (const auto reported = reported_db()) {
+        numbers_.reported_db.push_back(*reported);
+        numbers_.off_db.push_back(*reported - true_db);
+        timeline_.back()["reported_db"] = *reported;
       }
       timeline_.back()["true_db"] = true_db;
       jump(path_[n]);
@@ -256,8 +227,8 @@ class Flight {
   }
 
   // Of the last frame: of its levels, and of what it left out of them.
-  std::optional<double> told_db() const {
-    const std::optional<double> of_levels = levels_.predicted_psnr();
+  std::optional<double> reported_db() const {
+    const std::optional<double> of_levels = stream_.reported_db();
     if (plan_.settings.quality == 0.0f) return of_levels;
     return of_levels ? psnr_of_both(*of_levels, report_.quality) : report_.quality;
   }
@@ -268,10 +239,7 @@ class Flight {
     before_.clear();
     before_.add(frame_.colours(), pixels_of(views));
     others_ += context_.allocated_bytes() - bytes;
-    const ModelChunks::Changes changes = levels_.take(model_, plan_.gaussians_a_frame);
-    gpu_model_->reload(changes);
-    levels_.take_ahead(model_, plan_.gaussians_a_frame);
-    if (changes.empty()) return;
+    if (!follow(views)) return;
     frame_.draw(views, settings());
     numbers_.jump_db.push_back(before_.psnr(frame_.colours()));
   }
@@ -284,7 +252,7 @@ class Flight {
     frame_.draw(path_.back());
     render::SquaredError drawn(context_);
     drawn.add(frame_.colours(), pixels_of(path_.back()));
-    render::Frame whole(context_, model_);
+    render::Frame whole(context_, stream_.model());
     whole.draw(path_.back());
     if (drawn.mean(whole.colours()) != 0.0) fail("the model on the GPU is not the one that was read");
   }
@@ -292,16 +260,12 @@ class Flight {
   gl::Context& context_;
   const Plan& plan_;
   const std::vector<Views>& path_;
-  Model model_;
-  LevelStream levels_;   // ends before the model
+  Stream stream_;
   std::int64_t others_;  // bytes on the GPU, of what judges
   std::shared_ptr<render::GpuModel> gpu_model_;
   render::Frame frame_;
   render::FrameReport report_;  // of the last frame along the path
-  Sight sight_;
-  PartsTrial trial_;
   render::SquaredError before_;
-  Band band_;  // that was looked at last
   Numbers numbers_;
   Json timeline_ = Json::array();
   std::optional<Clock::time_point> unsettled_;
@@ -331,10 +295,10 @@ Json row_of(const std::string& detail, const Numbers& n) {
           {"all_max_ms", at(n.all_ms, 1.0)},
           {"gpu_most_mb", 1e-6 * quantile(n.gpu_bytes, 1.0)},
           {"quiet_p99_ms", at(n.quiet_ms, 0.99)},
-          {"told_median_db", at(n.told_db, 0.5)},
-          {"told_worst_db", at(n.told_db, 0.0)},
-          {"told_too_good_db", at(n.off_db, 1.0)},
-          {"told_too_bad_db", at(n.off_db, 0.0)},
+          {"reported_median_db", at(n.reported_db, 0.5)},
+          {"reported_worst_db", at(n.reported_db, 0.0)},
+          {"reported_too_good_db", at(n.off_db, 1.0)},
+          {"reported_too_bad_db", at(n.off_db, 0.0)},
           {"finest_median_db", at(n.finest_db, 0.5)},
           {"finest_worst_db", at(n.finest_db, 0.0)},
           {"jumps", n.jump_db.size()},
@@ -393,7 +357,6 @@ int main(int argc, char** argv) {
   app.add_option("--judged", plan.judged, "Frames that are compared with the finest levels (8)")
       ->check(CLI::Range(0, 1000));
   app.add_option("--rate", plan.rate, "Frames a second (90)")->check(CLI::Range(1.0, 1000.0));
-  app.add_option("--a-frame", plan.gaussians_a_frame, "Gaussians that may be new in a frame (262144)");
   app.add_option("--most", plan.most, "Gaussians of the model, at most");
   app.add_option("--all-up-to", plan.all_up_to, "By dB: Gaussians of which all are drawn (524288)");
   app.add_option("--quality", plan.settings.quality, "dB, as of `render`");

@@ -43,13 +43,12 @@ void check(const SogLevels& levels, const nlohmann::json& json) {
       before = chosen;
     }
   };
+  follow([&](double x, const auto& before) { return choose_apart(leaves, {{x, 0, 0}}, most, 0.01, before); });
   follow([&](double x, const auto& before) {
-    return choose_levels(leaves, {{x, 0, 0}}, most, 0.01, before);
-  });
-  follow([&](double x, const auto& before) {
-    DetailSeen seen;
-    if (!before.empty()) seen = {{std::vector<ChunkVisibility>(leaves.size(), {x, x + 1.0})}, before, 700};
-    return choose_levels_within(leaves, {{.eye = {x, 0, 0}}}, 1e-4, most, seen, before).levels;
+    VisibleChunks visible;
+    if (!before.empty()) visible = {{std::vector<ChunkVisibility>(leaves.size(), {x, x + 1.0})}, before};
+    const ErrorBudget budget{.error = 1e-4, .most = most, .most_new = 700};
+    return choose_within(leaves, {{.eye = {x, 0, 0}}}, budget, visible, before).levels;
   });
 }
 

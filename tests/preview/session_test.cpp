@@ -68,11 +68,8 @@ TEST(Session, OtherLevelsTakeThePlaceOfThoseThatAreThere) {
   REQUIRE_FIXTURES(fixtures);
   const test::TempFolder folder;
   const Camera camera = look_at({0, -1, -20}, {0, -1, 0}, {0, -1, 0}, 60, 64, 40);
-  const auto fine = [](const StreamedSog&, std::span<const shared::View>) { return DetailRequest{}; };
-  LevelStream levels(fixtures / "sog/st-lod", fine);
-  Model coarsest = levels.coarsest();
-  const auto session_of = [&](Model model) {
-    auto session = std::make_unique<Session>(test::gl_context(), std::move(model), std::vector{camera},
+  const auto session_of = [&](Loaded loaded) {
+    auto session = std::make_unique<Session>(test::gl_context(), std::move(loaded), std::vector{camera},
                                              glm::dvec3(0, -1, 0), Choices{}, folder.path());
     session->resize({128, 40});
     return session;
@@ -82,15 +79,15 @@ TEST(Session, OtherLevelsTakeThePlaceOfThoseThatAreThere) {
     return load_image(session.save_picture(false));
   };
   const Image of_finest = picture(*session_of(load_model(fixtures / "sog/st-lod", {.lod = 0})));
-  const auto session = session_of(std::move(coarsest));
+  const auto session = session_of(std::make_unique<Stream>(fixtures / "sog/st-lod", StreamSettings{}));
   const Image before = picture(*session);
   EXPECT_GT(apart(before, of_finest), 0.1);
   session->choices.show = SHOW_SPLIT;  // has a frame of the exact picture, too
   session->choices.split = 0.0;
   session->change_show();
   EXPECT_EQ(apart(picture(*session), before), 0.0);
-  do session->follow(levels);
-  while (!levels.settled());
+  do session->follow_levels();
+  while (!session->stream()->settled());
   EXPECT_EQ(apart(picture(*session), of_finest), 0.0);
   session->choices.show = SHOW_PICTURE;
   session->change_show();
@@ -103,18 +100,14 @@ TEST(Session, LevelsGoByWhatItShows) {
   const test::Copy scene(fixtures / "sog/st-lod");
   test::add_level_errors(scene);
   const auto gaussians_for = [&](double db) {
-    const auto need = [db](const StreamedSog&, std::span<const shared::View>) {
-      return DetailRequest{.db = db};
-    };
-    LevelStream levels(scene.path(), need);
-    Session session(test::gl_context(), levels.coarsest(),
-                    {look_at({0, -1, -20}, {0, -1, 0}, {0, -1, 0}, 60, 64, 40)}, glm::dvec3(0, -1, 0), {},
-                    folder.path());
+    Session session(
+        test::gl_context(), std::make_unique<Stream>(scene.path(), StreamSettings{.detail = {.db = db}}),
+        {look_at({0, -1, -20}, {0, -1, 0}, {0, -1, 0}, 60, 64, 40)}, glm::dvec3(0, -1, 0), {}, folder.path());
     session.resize({128, 40});
-    do session.follow(levels);
-    while (!levels.settled());
-    EXPECT_GT(levels.predicted_psnr(), db);
-    return levels.gaussians();
+    do session.follow_levels();
+    while (!session.stream()->settled());
+    EXPECT_GT(session.stream()->reported_db(), db);
+    return session.stream()->gaussians();
   };
   EXPECT_EQ(gaussians_for(60.0), 1000u);
   EXPECT_LT(gaussians_for(5.0), 1000u);

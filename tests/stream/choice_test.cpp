@@ -11,71 +11,71 @@ namespace binosplat {
 namespace {
 
 // Boxes of 1 along x, each with levels of 400, 100 and 25 Gaussians.
-std::vector<LodChunk> row_of_parts(int count) {
-  std::vector<LodChunk> parts;
+std::vector<LodChunk> row_of_chunks(int count) {
+  std::vector<LodChunk> chunks;
   for (int i = 0; i < count; ++i)
-    parts.push_back({{2.0 * i, 0, 0}, {2.0 * i + 1, 1, 1}, {{0, 400}, {1, 100}, {2, 25}}});
-  return parts;
+    chunks.push_back({{2.0 * i, 0, 0}, {2.0 * i + 1, 1, 1}, {{0, 400}, {1, 100}, {2, 25}}});
+  return chunks;
 }
 
-TEST(Detail, WhatIsNearComesFirst) {
-  const std::vector<LodChunk> parts = row_of_parts(6);
-  const std::vector<std::size_t> chosen = choose_levels(parts, {{-1, 0.5, 0.5}}, 899);
+TEST(Choice, WhatIsNearComesFirst) {
+  const std::vector<LodChunk> chunks = row_of_chunks(6);
+  const std::vector<std::size_t> chosen = choose_apart(chunks, {{-1, 0.5, 0.5}}, 899);
   EXPECT_EQ(chosen, (std::vector<std::size_t>{0, 1, 1, 1, 1, 2}));
   // From the other end, and with an eye at either end, one choice for both.
-  EXPECT_EQ(choose_levels(parts, {{12, 0.5, 0.5}}, 899), (std::vector<std::size_t>{2, 1, 1, 1, 1, 0}));
-  EXPECT_EQ(choose_levels(parts, {{-1, 0.5, 0.5}, {12, 0.5, 0.5}}, 1250),
+  EXPECT_EQ(choose_apart(chunks, {{12, 0.5, 0.5}}, 899), (std::vector<std::size_t>{2, 1, 1, 1, 1, 0}));
+  EXPECT_EQ(choose_apart(chunks, {{-1, 0.5, 0.5}, {12, 0.5, 0.5}}, 1250),
             (std::vector<std::size_t>{0, 1, 1, 1, 1, 0}));
 }
 
-TEST(Detail, KeepsToTheBudget) {
-  const std::vector<LodChunk> parts = row_of_parts(6);
+TEST(Choice, KeepsToTheBudget) {
+  const std::vector<LodChunk> chunks = row_of_chunks(6);
   for (std::size_t most = 150; most < 2500; most += 25) {
-    const std::size_t used = test::gaussians_of(parts, choose_levels(parts, {}, most));
+    const std::size_t used = test::gaussians_of(chunks, choose_apart(chunks, {}, most));
     EXPECT_LE(used, most);
     EXPECT_GE(used + 300, std::min<std::size_t>(most, 2400)) << "room for one more step is left";
   }
-  EXPECT_EQ(choose_levels(parts, {}, 2400), std::vector<std::size_t>(6, 0));
-  EXPECT_EQ(choose_levels(parts, {}, 0), std::vector<std::size_t>(6, 2)) << "the coarsest are there anyway";
+  EXPECT_EQ(choose_apart(chunks, {}, 2400), std::vector<std::size_t>(6, 0));
+  EXPECT_EQ(choose_apart(chunks, {}, 0), std::vector<std::size_t>(6, 2)) << "the coarsest are there anyway";
 }
 
 /// Whether each part is as fine as `enough` asks, and no finer.
-bool as_needed(const std::vector<LodChunk>& parts, const std::vector<std::size_t>& chosen,
+bool as_needed(const std::vector<LodChunk>& chunks, const std::vector<std::size_t>& chosen,
                const glm::dvec3& eye, double enough) {
-  for (std::size_t p = 0; p < parts.size(); ++p) {
-    const double distance = glm::distance(eye, glm::clamp(eye, parts[p].low, parts[p].high));
+  for (std::size_t p = 0; p < chunks.size(); ++p) {
+    const double distance = glm::distance(eye, glm::clamp(eye, chunks[p].low, chunks[p].high));
     const auto apart = [&](std::size_t level) {
-      return std::sqrt(3.0 / static_cast<double>(parts[p].levels[level].count)) / distance;
+      return std::sqrt(3.0 / static_cast<double>(chunks[p].levels[level].count)) / distance;
     };
     if (chosen[p] > 0 && apart(chosen[p]) > enough) return false;
-    if (chosen[p] + 1 < parts[p].levels.size() && apart(chosen[p] + 1) <= enough) return false;
+    if (chosen[p] + 1 < chunks[p].levels.size() && apart(chosen[p] + 1) <= enough) return false;
   }
   return true;
 }
 
-TEST(Detail, FineEnoughIsEnough) {
-  const std::vector<LodChunk> parts = row_of_parts(6);
+TEST(Choice, FineEnoughIsEnough) {
+  const std::vector<LodChunk> chunks = row_of_chunks(6);
   const glm::dvec3 eye(-1, 0.5, 0.5);
   std::size_t last = 6 * 400 + 1;
   for (const double enough : {0.005, 0.02, 0.04, 0.08, 0.16, 1.0}) {
-    const std::vector<std::size_t> chosen = choose_levels(parts, {eye}, 10000, enough);
-    EXPECT_TRUE(as_needed(parts, chosen, eye, enough)) << enough;
-    EXPECT_LT(test::gaussians_of(parts, chosen), last) << enough;
-    last = test::gaussians_of(parts, chosen);
+    const std::vector<std::size_t> chosen = choose_apart(chunks, {eye}, 10000, enough);
+    EXPECT_TRUE(as_needed(chunks, chosen, eye, enough)) << enough;
+    EXPECT_LT(test::gaussians_of(chunks, chosen), last) << enough;
+    last = test::gaussians_of(chunks, chosen);
   }
   // Planted faults: what is near as if it were far, and a part that is too fine.
-  std::vector<std::size_t> wrong = choose_levels(parts, {eye}, 10000, 0.04);
+  std::vector<std::size_t> wrong = choose_apart(chunks, {eye}, 10000, 0.04);
   std::reverse(wrong.begin(), wrong.end());
-  EXPECT_FALSE(as_needed(parts, wrong, eye, 0.04));
-  wrong = choose_levels(parts, {eye}, 10000, 0.04);
+  EXPECT_FALSE(as_needed(chunks, wrong, eye, 0.04));
+  wrong = choose_apart(chunks, {eye}, 10000, 0.04);
   --wrong.back();
-  EXPECT_FALSE(as_needed(parts, wrong, eye, 0.04));
+  EXPECT_FALSE(as_needed(chunks, wrong, eye, 0.04));
 }
 
-TEST(Detail, KeepsToWhatWasChosenBefore) {
-  const std::vector<LodChunk> parts = row_of_parts(6);
+TEST(Choice, KeepsToWhatWasChosenBefore) {
+  const std::vector<LodChunk> chunks = row_of_chunks(6);
   const auto choose = [&](double x, std::span<const std::size_t> before) {
-    return choose_levels(parts, {{x, 0.5, 0.5}}, 10000, 0.04, before);
+    return choose_apart(chunks, {{x, 0.5, 0.5}}, 10000, 0.04, before);
   };
   for (double x = -12.0; x < 0.0; x += 0.25) {
     const std::vector<std::size_t> here = choose(x, {});
@@ -88,26 +88,55 @@ TEST(Detail, KeepsToWhatWasChosenBefore) {
   EXPECT_EQ(choose(-12.0, choose(-1.0, {})), far_away);
 }
 
-TEST(Detail, PartsThatLackLevels) {
-  std::vector<LodChunk> parts = row_of_parts(3);
-  parts[0].levels.clear();
-  parts[1].levels = {{1, 100}};
-  const std::vector<std::size_t> chosen = choose_levels(parts, {{0.5, 0.5, 0.5}}, 10000);
+TEST(Choice, PartsThatLackLevels) {
+  std::vector<LodChunk> chunks = row_of_chunks(3);
+  chunks[0].levels.clear();
+  chunks[1].levels = {{1, 100}};
+  const std::vector<std::size_t> chosen = choose_apart(chunks, {{0.5, 0.5, 0.5}}, 10000);
   EXPECT_EQ(chosen[1], 0u);
-  EXPECT_EQ(test::gaussians_of(parts, chosen), 500u);
-  EXPECT_TRUE(choose_levels({}, {}, 10).empty());
+  EXPECT_EQ(test::gaussians_of(chunks, chosen), 500u);
+  EXPECT_TRUE(choose_apart({}, {}, 10).empty());
 }
 
-TEST(Detail, LevelsAndFramesShareABudget) {
-  const auto error = [](double db) { return std::pow(10.0, -0.1 * db); };
+TEST(Choice, LevelsAndFramesShareABudget) {
   const double half = levels_share(40.0);
-  EXPECT_NEAR(error(half), 0.5e-4, 1e-9);
-  EXPECT_NEAR(left_of(40.0, half, half), half, 1e-9);
-  EXPECT_NEAR(psnr_of_both(half, left_of(40.0, half, half)), 40.0, 1e-9);
-  EXPECT_NEAR(psnr_of_both(46.0, left_of(40.0, half, 46.0)), 40.0, 1e-9) << "what levels do not need";
-  EXPECT_NEAR(left_of(40.0, half, 30.0), half, 1e-9) << "finer ones are under way";
-  EXPECT_NEAR(left_of(40.0, 40.0, 40.0), 50.0, 1e-9) << "a tenth at least";
-  EXPECT_NEAR(left_of(40.0, half, INFINITY), 40.0, 1e-9);
+  EXPECT_NEAR(error_of_psnr(half), 0.5e-4, 1e-9);
+  EXPECT_NEAR(left_of(40.0, half), half, 1e-9);
+  EXPECT_NEAR(psnr_of_both(45.0, left_of(40.0, 45.0)), 40.0, 1e-9) << "what levels do not need";
+  EXPECT_NEAR(left_of(40.0, 40.0), 50.0, 1e-9) << "a tenth at least";
+}
+
+/// From -1 along x, with so many px for each radian.
+shared::View along_x(float focal) {
+  shared::View view = test::view_at({-1, 0.5, 0.5}, focal);
+  view.row_x = {0, 0, -1, 0};
+  view.row_y = {0, 1, 0, 0};
+  view.row_z = {1, 0, 0, 0};
+  view.width = view.height = 100;
+  return view;
+}
+
+// By px, by dB, and the coarsest where nobody looks.
+TEST(Choice, IsWhatIsRequested) {
+  std::vector<LodChunk> chunks = row_of_chunks(6);
+  const std::vector<shared::View> views = {along_x(100.0f)};
+  EXPECT_EQ(choose_levels(chunks, views, {.apart_px = 4.0}).levels,
+            choose_apart(chunks, {{-1, 0.5, 0.5}}, any_number, 0.04));
+  EXPECT_NE(choose_levels(chunks, views, {.apart_px = 4.0}).levels,
+            choose_levels(chunks, std::vector{along_x(500.0f)}, {.apart_px = 4.0}).levels)
+      << "planted: as if by a shorter lens";
+  EXPECT_EQ(choose_levels(chunks, {}, {}).levels, std::vector<std::size_t>(6, 2));
+  EXPECT_EQ(choose_levels(chunks, {}, {.db = 40.0}).levels, std::vector<std::size_t>(6, 2));
+  for (LodChunk& chunk : chunks) {
+    chunk.pixels = {0.01};
+    chunk.seen.assign(detail_directions, 1000.0);
+    for (LodChunk::Level& level : chunk.levels) level.errors.assign(detail_directions, level.number);
+  }
+  const LevelChoice choice = choose_levels(chunks, views, {.db = 30.0});
+  EXPECT_LE(choice.error(), error_of_psnr(30.0));
+  EXPECT_LE(choose_levels(chunks, views, {.db = 30.0, .calibration = 8.0}).error(),
+            error_of_psnr(30.0) / 8.0);
+  EXPECT_GT(choice.error(), error_of_psnr(30.0) / 8.0) << "planted: not calibrated";
 }
 
 }  // namespace

@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <random>
 
+#include "base/random.h"
 #include "stream/choice.h"
 #include "support/details.h"
 
@@ -28,19 +30,19 @@ std::vector<double> in_all_directions(const std::vector<double>& by_width) {
 std::vector<LodChunk> row_with_errors(int count, unsigned seed = 1) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> factor(1.5, 6.0);
-  std::vector<LodChunk> parts;
+  std::vector<LodChunk> chunks;
   for (int i = 0; i < count; ++i) {
-    LodChunk part{{2.0 * i, 0, 0}, {2.0 * i + 1, 1, 1}, {}, {0.01, 0.02, 0.04}};
-    part.seen = in_all_directions({6000.0, 1600.0, 400.0});
+    LodChunk chunk{{2.0 * i, 0, 0}, {2.0 * i + 1, 1, 1}, {}, {0.01, 0.02, 0.04}};
+    chunk.seen = in_all_directions({6000.0, 1600.0, 400.0});
     double error = 0.0;
     for (int level = 0; level < 4; ++level) {
-      part.levels.push_back(
+      chunk.levels.push_back(
           {level, std::size_t{400} >> level, in_all_directions({error, 0.3 * error, 0.1 * error})});
       error = factor(random) * std::max(error, 0.2);
     }
-    parts.push_back(std::move(part));
+    chunks.push_back(std::move(chunk));
   }
-  return parts;
+  return chunks;
 }
 
 /// Of a square picture that reaches as far aside for each unit ahead, which is in the xz plane.
@@ -56,41 +58,41 @@ DetailView along_x(double x, double forward = 1.0) {
   return {.eye = {x, 0.5, 0.5}, .inward = inward_of({forward, 0, 0}, 1.0), .focal = 100.0, .pixels = 1e4};
 }
 
-/// What an eye would see of a part that nothing hides.
-ChunkVisibility open_sight(const LodChunk& part, const DetailView& view) {
-  const double distance = std::max(glm::distance(view.eye, glm::clamp(view.eye, part.low, part.high)),
-                                   0.01 * glm::distance(part.low, part.high));
-  const double px = part.pixels.front() * view.focal / distance;
-  return {part.seen.front() * px * px, distance};
+/// What an eye would see of a chunk that nothing hides.
+ChunkVisibility open_view(const LodChunk& chunk, const DetailView& view) {
+  const double distance = std::max(glm::distance(view.eye, glm::clamp(view.eye, chunk.low, chunk.high)),
+                                   0.01 * glm::distance(chunk.low, chunk.high));
+  const double px = chunk.pixels.front() * view.focal / distance;
+  return {chunk.seen.front() * px * px, distance};
 }
 
 /// What an eye loses per pixel that sees all of the row, as far away as it is.
-double loss(const std::vector<LodChunk>& parts, const Levels& chosen, const DetailView& view) {
+double loss(const std::vector<LodChunk>& chunks, const Levels& chosen, const DetailView& view) {
   double sum = 0.0;
-  for (std::size_t p = 0; p < parts.size(); ++p) {
-    const ChunkVisibility seen = open_sight(parts[p], view);
-    const glm::dvec3 along = 0.5 * (parts[p].low + parts[p].high) - view.eye;
-    sum += seen.area * relative_error(parts[p], chosen[p], seen.distance / view.focal, along);
+  for (std::size_t p = 0; p < chunks.size(); ++p) {
+    const ChunkVisibility seen = open_view(chunks[p], view);
+    const glm::dvec3 along = 0.5 * (chunks[p].low + chunks[p].high) - view.eye;
+    sum += seen.area * relative_error(chunks[p], chosen[p], seen.distance / view.focal, along);
   }
   return sum / view.pixels;
 }
 
 /// The fewest Gaussians of all choices that lose no more.
-std::size_t fewest(const std::vector<LodChunk>& parts, const DetailView& view, double error) {
+std::size_t fewest(const std::vector<LodChunk>& chunks, const DetailView& view, double error) {
   std::size_t best = any;
-  Levels chosen(parts.size(), 0);
-  for (std::size_t n = 0; n < std::size_t{1} << (2 * parts.size()); ++n) {
-    for (std::size_t p = 0; p < parts.size(); ++p) chosen[p] = n >> (2 * p) & 3;
-    if (test::gaussians_of(parts, chosen) < best && loss(parts, chosen, view) <= error)
-      best = test::gaussians_of(parts, chosen);
+  Levels chosen(chunks.size(), 0);
+  for (std::size_t n = 0; n < std::size_t{1} << (2 * chunks.size()); ++n) {
+    for (std::size_t p = 0; p < chunks.size(); ++p) chosen[p] = n >> (2 * p) & 3;
+    if (test::gaussians_of(chunks, chosen) < best && loss(chunks, chosen, view) <= error)
+      best = test::gaussians_of(chunks, chosen);
   }
   return best;
 }
 
-TEST(DetailErrors, LieOnLinesBetweenThePixelsThatAreKnown) {
-  LodChunk part{{}, {1, 1, 1}, {{0, 9, in_all_directions({0.0, 0.0, 0.0})}}, {0.5, 1.0, 2.0}};
-  part.seen = in_all_directions({100.0, 25.0, 0.0});
-  part.levels.push_back({1, 4, in_all_directions({8.0, 1.0, 0.0})});
+TEST(ChoiceWithin, LieOnLinesBetweenThePixelsThatAreKnown) {
+  LodChunk chunk{{}, {1, 1, 1}, {{0, 9, in_all_directions({0.0, 0.0, 0.0})}}, {0.5, 1.0, 2.0}};
+  chunk.seen = in_all_directions({100.0, 25.0, 0.0});
+  chunk.levels.push_back({1, 4, in_all_directions({8.0, 1.0, 0.0})});
   for (const auto& [width, error] : {std::pair(0.5, 0.08),
                                      {1.0, 0.04},
                                      {2.0, 0.0},
@@ -99,42 +101,42 @@ TEST(DetailErrors, LieOnLinesBetweenThePixelsThatAreKnown) {
                                      {0.25, 0.08 * std::pow(2.0, 0.3)},
                                      {1e-9, 0.64},
                                      {4.0, 0.0}}) {
-    EXPECT_NEAR(relative_error(part, 1, width, {1, 0, 0}), error, 1e-9) << width;
-    EXPECT_EQ(relative_error(part, 0, width, {1, 0, 0}), 0.0) << width;
+    EXPECT_NEAR(relative_error(chunk, 1, width, {1, 0, 0}), error, 1e-9) << width;
+    EXPECT_EQ(relative_error(chunk, 0, width, {1, 0, 0}), 0.0) << width;
   }
   for (const double width : {0.0, 1e300, std::numeric_limits<double>::infinity()})
-    EXPECT_TRUE(std::isfinite(relative_error(part, 1, width, {0, 0, 1}))) << width;
+    EXPECT_TRUE(std::isfinite(relative_error(chunk, 1, width, {0, 0, 1}))) << width;
 }
 
-TEST(DetailErrors, AreThoseOfTheDirectionsBeside) {
-  LodChunk part{{}, {1, 1, 1}, {{0, 9, {}}}, {0.5}};
-  part.seen = {1, 2, 3, 4, 5, 6};
-  part.levels[0].errors = {0.1, 0.1, 0.2, 0.2, 0.3, 0.6};
+TEST(ChoiceWithin, AreThoseOfTheDirectionsBeside) {
+  LodChunk chunk{{}, {1, 1, 1}, {{0, 9, {}}}, {0.5}};
+  chunk.seen = {1, 2, 3, 4, 5, 6};
+  chunk.levels[0].errors = {0.1, 0.1, 0.2, 0.2, 0.3, 0.6};
   for (std::size_t d = 0; d < detail_directions; ++d)
-    EXPECT_NEAR(relative_error(part, 0, 0.5, 3.0 * detail_direction(d)),
-                part.levels[0].errors[d] / part.seen[d], 1e-12);
-  EXPECT_NEAR(relative_error(part, 0, 0.5, {1, -1, 0}), (0.1 + 0.2) / (1 + 4), 1e-12);
-  EXPECT_NEAR(relative_error(part, 0, 0.5, {-2, 0, -1}), (4 * 0.1 + 0.6) / (4 * 2 + 6), 1e-12);
-  EXPECT_NEAR(relative_error(part, 0, 0.5, {0, 0, 0}), (0.1 + 0.2 + 0.3) / (1 + 3 + 5), 1e-12) << "of none";
+    EXPECT_NEAR(relative_error(chunk, 0, 0.5, 3.0 * detail_direction(d)),
+                chunk.levels[0].errors[d] / chunk.seen[d], 1e-12);
+  EXPECT_NEAR(relative_error(chunk, 0, 0.5, {1, -1, 0}), (0.1 + 0.2) / (1 + 4), 1e-12);
+  EXPECT_NEAR(relative_error(chunk, 0, 0.5, {-2, 0, -1}), (4 * 0.1 + 0.6) / (4 * 2 + 6), 1e-12);
+  EXPECT_NEAR(relative_error(chunk, 0, 0.5, {0, 0, 0}), (0.1 + 0.2 + 0.3) / (1 + 3 + 5), 1e-12) << "of none";
 }
 
-TEST(DetailErrors, KeepTheBoundWithHardlyMoreThanTheFewestGaussians) {
+TEST(ChoiceWithin, KeepTheBoundWithHardlyMoreThanTheFewestGaussians) {
   double worst = 1.0;
   std::size_t planted = 0, cases = 0;
   for (unsigned seed = 0; seed < 12; ++seed) {
-    const std::vector<LodChunk> parts = row_with_errors(6, seed);
+    const std::vector<LodChunk> chunks = row_with_errors(6, seed);
     const DetailView near = along_x(-1.0), far = along_x(-40.0);
     for (const double error : {1e-5, 1e-4, 3e-4, 1e-3}) {
-      const DetailChoice choice = choose_levels_within(parts, {near}, error, any);
-      EXPECT_LE(loss(parts, choice.levels, near), error);
-      EXPECT_NEAR(choice.error(), loss(parts, choice.levels, near), 1e-12);
-      const Levels others(parts.size(), 2);
-      EXPECT_NEAR(choice.error_of(others), loss(parts, others, near), 1e-9 * choice.error_of(others));
-      worst = std::max(worst, static_cast<double>(test::gaussians_of(parts, choice.levels)) /
-                                  static_cast<double>(fewest(parts, near, error)));
+      const LevelChoice choice = choose_within(chunks, {near}, {error, any});
+      EXPECT_LE(loss(chunks, choice.levels, near), error);
+      EXPECT_NEAR(choice.error(), loss(chunks, choice.levels, near), 1e-12);
+      const Levels others(chunks.size(), 2);
+      EXPECT_NEAR(choice.error_of(others), loss(chunks, others, near), 1e-9 * choice.error_of(others));
+      worst = std::max(worst, static_cast<double>(test::gaussians_of(chunks, choice.levels)) /
+                                  static_cast<double>(fewest(chunks, near, error)));
       // Planted faults: levels for another place, and for a bound that is ignored.
-      planted += loss(parts, choose_levels_within(parts, {far}, error, any).levels, near) > error;
-      planted += loss(parts, Levels(parts.size(), 3), near) > error;
+      planted += loss(chunks, choose_within(chunks, {far}, {error, any}).levels, near) > error;
+      planted += loss(chunks, Levels(chunks.size(), 3), near) > error;
       cases += 2;
     }
   }
@@ -142,66 +144,65 @@ TEST(DetailErrors, KeepTheBoundWithHardlyMoreThanTheFewestGaussians) {
   EXPECT_GT(planted, cases * 3 / 4);
 }
 
-TEST(DetailErrors, MoreDecibelsAreMoreGaussians) {
-  const std::vector<LodChunk> parts = row_with_errors(20);
+TEST(ChoiceWithin, MoreDecibelsAreMoreGaussians) {
+  const std::vector<LodChunk> chunks = row_with_errors(20);
   std::size_t last = 0;
   for (double db = 20.0; db <= 80.0; db += 1.0) {
-    const DetailChoice choice = choose_levels_within(parts, {along_x(-1.0)}, std::pow(10, -0.1 * db), any);
-    EXPECT_GE(test::gaussians_of(parts, choice.levels), last) << db;
-    last = test::gaussians_of(parts, choice.levels);
+    const LevelChoice choice = choose_within(chunks, {along_x(-1.0)}, {std::pow(10, -0.1 * db), any});
+    EXPECT_GE(test::gaussians_of(chunks, choice.levels), last) << db;
+    last = test::gaussians_of(chunks, choice.levels);
   }
   EXPECT_EQ(last, 20u * 400);
 }
 
-TEST(DetailErrors, OneChoiceForAllViews) {
-  const std::vector<LodChunk> parts = row_with_errors(8);
+TEST(ChoiceWithin, OneChoiceForAllViews) {
+  const std::vector<LodChunk> chunks = row_with_errors(8);
   const DetailView first = along_x(-1.0), last = along_x(16.0, -1.0);
-  const DetailChoice both = choose_levels_within(parts, {first, last}, 1e-4, any);
-  EXPECT_EQ(both.levels, choose_levels_within(parts, {last, first}, 1e-4, any).levels);
-  EXPECT_LE(std::max(loss(parts, both.levels, first), loss(parts, both.levels, last)), both.error());
+  const LevelChoice both = choose_within(chunks, {first, last}, {1e-4, any});
+  EXPECT_EQ(both.levels, choose_within(chunks, {last, first}, {1e-4, any}).levels);
+  EXPECT_LE(std::max(loss(chunks, both.levels, first), loss(chunks, both.levels, last)), both.error());
   EXPECT_LE(both.error(), 1e-4);
-  EXPECT_GT(loss(parts, choose_levels_within(parts, {first}, 1e-4, any).levels, last), 1e-4)
+  EXPECT_GT(loss(chunks, choose_within(chunks, {first}, {1e-4, any}).levels, last), 1e-4)
       << "planted: the choice for one";
 }
 
-TEST(DetailErrors, WhatIsOutOfSightIsThereForHeadsThatTurn) {
-  const std::vector<LodChunk> parts = row_with_errors(8);
+TEST(ChoiceWithin, WhatIsOutOfSightIsThereForHeadsThatTurn) {
+  const std::vector<LodChunk> chunks = row_with_errors(8);
   const DetailView ahead = along_x(6.5), beside = along_x(-1.0, -1.0);
-  const DetailChoice one = choose_levels_within(parts, {ahead}, 1e-4, any);
+  const LevelChoice one = choose_within(chunks, {ahead}, {1e-4, any});
   EXPECT_LE(one.error(), 1e-4);
   EXPECT_LT(one.levels[2], 3u) << "behind";
   // What it costs is what is seen of it.
-  EXPECT_LT(one.error(), loss(parts, one.levels, ahead));
+  EXPECT_LT(one.error(), loss(chunks, one.levels, ahead));
   // Who sees nothing yet has what the sphere around it asks, which is more than nothing, and not all.
-  const DetailChoice nothing = choose_levels_within(parts, {beside}, 1e-4, any);
+  const LevelChoice nothing = choose_within(chunks, {beside}, {1e-4, any});
   EXPECT_EQ(nothing.error(), 0.0);
   EXPECT_LT(nothing.levels.front(), 3u);
-  EXPECT_LT(test::gaussians_of(parts, nothing.levels),
-            test::gaussians_of(parts, choose_levels_within(parts, {along_x(-1.0)}, 1e-4, any).levels));
+  EXPECT_LT(test::gaussians_of(chunks, nothing.levels),
+            test::gaussians_of(chunks, choose_within(chunks, {along_x(-1.0)}, {1e-4, any}).levels));
   // A single picture needs none of it, and has the same of what it sees.
-  const DetailChoice still = choose_levels_within(parts, {ahead}, 1e-4, any, {}, {}, false);
+  const LevelChoice still = choose_within(chunks, {ahead}, {1e-4, any, false});
   EXPECT_EQ(still.levels[2], 3u);
   EXPECT_EQ(still.levels[7], one.levels[7]);
   EXPECT_LE(still.error(), 1e-4);
-  EXPECT_EQ(choose_levels_within(parts, {beside}, 1e-4, any, {}, {}, false).levels, Levels(parts.size(), 3));
-  // A part beside the picture is seen whose coarsest Gaussians reach into it.
+  EXPECT_EQ(choose_within(chunks, {beside}, {1e-4, any, false}).levels, Levels(chunks.size(), 3));
+  // A chunk beside the picture is seen whose coarsest Gaussians reach into it.
   const std::vector<LodChunk> at_edge = {row_with_errors(1).front()};
   DetailView view{.eye = {0.5, 0.5, -2.0},
                   .inward = inward_of({std::sin(0.79), 0, std::cos(0.79)}, 0.5),
                   .focal = 100.0,
                   .pixels = 1.0};
-  EXPECT_GT(choose_levels_within(at_edge, {view}, 1e9, any).error(), 0.0);
-  DetailSeen seen{{{ChunkVisibility{}}}, {3}};
-  EXPECT_EQ(choose_levels_within(at_edge, {view}, 1e9, any, seen).error(), 0.0)
-      << "they were drawn, and do not";
+  EXPECT_GT(choose_within(at_edge, {view}, {1e9, any}).error(), 0.0);
+  VisibleChunks seen{{{ChunkVisibility{}}}, {3}};
+  EXPECT_EQ(choose_within(at_edge, {view}, {1e9, any}, seen).error(), 0.0) << "they were drawn, and do not";
   seen.drawn = {1};
-  EXPECT_GT(choose_levels_within(at_edge, {view}, 1e9, any, seen).error(), 0.0) << "finer ones were";
+  EXPECT_GT(choose_within(at_edge, {view}, {1e9, any}, seen).error(), 0.0) << "finer ones were";
   view.inward = inward_of({std::sin(0.83), 0, std::cos(0.83)}, 0.5);
-  EXPECT_EQ(choose_levels_within(at_edge, {view}, 1e9, any).error(), 0.0);
+  EXPECT_EQ(choose_within(at_edge, {view}, {1e9, any}).error(), 0.0);
 }
 
 // Of a headset's eye, whose picture is not even about its middle, and which is turned.
-TEST(DetailErrors, GoByThePicturesSides) {
+TEST(ChoiceWithin, GoByThePicturesSides) {
   shared::View view{};
   view.anchor = {1, 2, 3, 0.2f};
   view.row_x = {0, 0, -1, 0};
@@ -226,37 +227,37 @@ TEST(DetailErrors, GoByThePicturesSides) {
 }
 
 // What is hidden, or out of the picture, need not be fine.
-TEST(DetailErrors, GoByWhatIsSeen) {
-  const std::vector<LodChunk> parts = row_with_errors(8);
+TEST(ChoiceWithin, GoByWhatIsSeen) {
+  const std::vector<LodChunk> chunks = row_with_errors(8);
   const DetailView view = along_x(-1.0);
-  const DetailChoice blind = choose_levels_within(parts, {view}, 1e-4, any);
+  const LevelChoice blind = choose_within(chunks, {view}, {1e-4, any});
   std::vector<ChunkVisibility> seen;
-  for (const LodChunk& part : parts) seen.push_back(open_sight(part, view));
-  const Levels coarsest(parts.size(), 3);
+  for (const LodChunk& chunk : chunks) seen.push_back(open_view(chunk, view));
+  const Levels coarsest(chunks.size(), 3);
   const auto by = [&](const std::vector<ChunkVisibility>& found, const Levels& drawn) {
-    return choose_levels_within(parts, {view}, 1e-4, any, {{found}, drawn}, drawn);
+    return choose_within(chunks, {view}, {1e-4, any}, {{found}, drawn}, drawn);
   };
   EXPECT_NEAR(by(seen, Levels()).error(), blind.error(), 1e-12) << "nothing hides anything";
   constexpr double hidden = 1e-9;  // px
-  for (std::size_t p = 1; p < parts.size(); ++p) seen[p].area = hidden;
-  const DetailChoice first_only = by(seen, coarsest);
+  for (std::size_t p = 1; p < chunks.size(); ++p) seen[p].area = hidden;
+  const LevelChoice first_only = by(seen, coarsest);
   EXPECT_EQ(first_only.levels[0], blind.levels[0]);
-  for (std::size_t p = 1; p < parts.size(); ++p) EXPECT_EQ(first_only.levels[p], 3u) << p;
+  for (std::size_t p = 1; p < chunks.size(); ++p) EXPECT_EQ(first_only.levels[p], 3u) << p;
   EXPECT_LT(first_only.error(), blind.error());
-  // A little of a part that is seen loses so much less.
-  for (ChunkVisibility& part : seen) part.area *= 0.5;
-  EXPECT_NEAR(by(seen, coarsest).error(), 0.5 * loss({parts[0]}, {by(seen, coarsest).levels[0]}, view),
+  // A little of a chunk that is seen loses so much less.
+  for (ChunkVisibility& chunk : seen) chunk.area *= 0.5;
+  EXPECT_NEAR(by(seen, coarsest).error(), 0.5 * loss({chunks[0]}, {by(seen, coarsest).levels[0]}, view),
               1e-12);
   // Coarser levels than those that were drawn may show what these do not.
-  for (ChunkVisibility& part : seen) part.area = hidden;
+  for (ChunkVisibility& chunk : seen) chunk.area = hidden;
   EXPECT_LT(by(seen, coarsest).error(), 1e-9);
   EXPECT_EQ(by(seen, coarsest).levels, coarsest);
-  EXPECT_GT(by(seen, Levels(parts.size(), 0)).error(), 1e-6);
-  // And finer ones, where none of these lies in the picture but the part may.
-  const std::vector<ChunkVisibility> nothing(parts.size());
+  EXPECT_GT(by(seen, Levels(chunks.size(), 0)).error(), 1e-6);
+  // And finer ones, where none of these lies in the picture but the chunk may.
+  const std::vector<ChunkVisibility> nothing(chunks.size());
   const DetailView ahead = along_x(6.5);
   const auto ahead_by = [&](const std::vector<ChunkVisibility>& found, double error) {
-    return choose_levels_within(parts, {ahead}, error, any, {{found}, coarsest}, coarsest, false);
+    return choose_within(chunks, {ahead}, {error, any, false}, {{found}, coarsest}, coarsest);
   };
   EXPECT_GT(ahead_by(nothing, 1.0).error(), 1e-6);
   EXPECT_LT(ahead_by(seen, 1.0).error(), 1e-9) << "hidden is not beside the picture";
@@ -265,93 +266,93 @@ TEST(DetailErrors, GoByWhatIsSeen) {
   EXPECT_EQ(finer.front(), 3u) << "behind the eye";
 }
 
-TEST(DetailErrors, KeepToWhatWasChosenBefore) {
-  const std::vector<LodChunk> parts = row_with_errors(20);
+TEST(ChoiceWithin, KeepToWhatWasChosenBefore) {
+  const std::vector<LodChunk> chunks = row_with_errors(20);
   std::size_t anew = 0;
   for (double x = -12.0; x < -0.5; x += 0.25) {
-    Levels here = choose_levels_within(parts, {along_x(x)}, 1e-4, any).levels;
+    Levels here = choose_within(chunks, {along_x(x)}, {1e-4, any}).levels;
     // Trembling by as little switches nothing once it is settled.
-    here = choose_levels_within(parts, {along_x(x)}, 1e-4, any, {}, here).levels;
+    here = choose_within(chunks, {along_x(x)}, {1e-4, any}, {}, here).levels;
     for (const double by : {0.97, 1.03}) {
-      const DetailChoice kept = choose_levels_within(parts, {along_x(x * by)}, 1e-4, any, {}, here);
+      const LevelChoice kept = choose_within(chunks, {along_x(x * by)}, {1e-4, any}, {}, here);
       EXPECT_EQ(kept.levels, here) << x << " times " << by;
       EXPECT_LE(kept.error(), 1.1e-4 * 1.0001);
-      anew += choose_levels_within(parts, {along_x(x * by)}, 1e-4, any).levels != here;
+      anew += choose_within(chunks, {along_x(x * by)}, {1e-4, any}).levels != here;
     }
   }
   EXPECT_GT(anew, 10u) << "without a memory it would switch";
-  const Levels far = choose_levels_within(parts, {along_x(-100.0)}, 1e-4, any).levels;
-  EXPECT_NE(choose_levels_within(parts, {along_x(-1.0)}, 1e-4, any, {}, far).levels, far);
+  const Levels far = choose_within(chunks, {along_x(-100.0)}, {1e-4, any}).levels;
+  EXPECT_NE(choose_within(chunks, {along_x(-1.0)}, {1e-4, any}, {}, far).levels, far);
 }
 
-// Of what does not come in time many parts get some, not a few all.
-TEST(DetailErrors, WantNoMoreThanComesInTime) {
-  const std::vector<LodChunk> parts = row_with_errors(200);
+// Of what does not come in time many chunks get some, not a few all.
+TEST(ChoiceWithin, HasNoMoreReadThanIsAllowed) {
+  const std::vector<LodChunk> chunks = row_with_errors(200);
   const DetailView view = along_x(-1.0);
-  const Levels coarsest(parts.size(), 3);
-  const auto wanted = [&](std::size_t to_come, const Levels& drawn) {
-    return choose_levels_within(parts, {view}, 1e-6, any, {{}, drawn, to_come}, {}, false);
+  const Levels coarsest(chunks.size(), 3);
+  const auto wanted = [&](std::size_t most_new, const Levels& drawn) {
+    return choose_within(chunks, {view}, {1e-6, any, false, most_new}, {{}, drawn});
   };
   const auto gaussians = [&](std::size_t p, const Levels& levels) {
-    return levels[p] < coarsest[p] ? parts[p].levels[levels[p]].count : 0;
+    return levels[p] < coarsest[p] ? chunks[p].levels[levels[p]].count : 0;
   };
-  const DetailChoice all = wanted(any, coarsest);
+  const LevelChoice all = wanted(any, coarsest);
   std::size_t needed = 0;
-  for (std::size_t p = 0; p < parts.size(); ++p) needed += gaussians(p, all.levels);
+  for (std::size_t p = 0; p < chunks.size(); ++p) needed += gaussians(p, all.levels);
   EXPECT_FALSE(all.is_limited);
   EXPECT_FALSE(wanted(needed, coarsest).is_limited);
   EXPECT_EQ(wanted(needed, coarsest).levels, all.levels);
-  Levels order;  // of the parts, what saves most per Gaussian first
-  for (std::size_t p = 0; p < parts.size(); ++p) order.push_back(p);
+  Levels order;  // of the chunks, what saves most per Gaussian first
+  for (std::size_t p = 0; p < chunks.size(); ++p) order.push_back(p);
   std::ranges::sort(order, std::greater<>(), [&](std::size_t p) {
     return all.saved(p, 3, all.levels[p]) / std::max(1.0, static_cast<double>(gaussians(p, all.levels)));
   });
-  for (const std::size_t to_come : {needed / 8, needed / 4, needed / 2}) {
-    const DetailChoice some = wanted(to_come, coarsest);
-    EXPECT_TRUE(some.is_limited) << to_come;
-    std::size_t come = 0, left = to_come;
-    for (std::size_t p = 0; p < parts.size(); ++p) come += gaussians(p, some.levels);
-    EXPECT_LE(come, to_come);
-    EXPECT_GT(come, to_come / 2);
+  for (const std::size_t most_new : {needed / 8, needed / 4, needed / 2}) {
+    const LevelChoice some = wanted(most_new, coarsest);
+    EXPECT_TRUE(some.is_limited) << most_new;
+    std::size_t come = 0, left = most_new;
+    for (std::size_t p = 0; p < chunks.size(); ++p) come += gaussians(p, some.levels);
+    EXPECT_LE(come, most_new);
+    EXPECT_GT(come, most_new / 2);
     Levels few = coarsest;
     for (const std::size_t p : order) {
       if (gaussians(p, all.levels) > left) continue;
       left -= gaussians(p, all.levels);
       few[p] = all.levels[p];
     }
-    EXPECT_LT(some.error(), all.error_of(few)) << to_come << ", planted: one part after another";
+    EXPECT_LT(some.error(), all.error_of(few)) << most_new << ", planted: one chunk after another";
   }
-  EXPECT_EQ(std::ranges::count(wanted(0, coarsest).levels, 3u), 199) << "one part's, or nothing ever comes";
+  EXPECT_EQ(std::ranges::count(wanted(0, coarsest).levels, 3u), 199) << "one chunk's, or nothing ever comes";
   EXPECT_EQ(wanted(needed / 4, all.levels).levels, all.levels) << "all is there";
   EXPECT_FALSE(wanted(needed / 4, all.levels).is_limited);
   EXPECT_FALSE(wanted(0, {}).is_limited) << "nobody looked";
 }
 
-TEST(DetailErrors, TellWhatAnotherLevelSaves) {
-  const std::vector<LodChunk> parts = row_with_errors(4);
+TEST(ChoiceWithin, TellWhatAnotherLevelSaves) {
+  const std::vector<LodChunk> chunks = row_with_errors(4);
   const DetailView near = along_x(-1.0), far = along_x(-9.0), away = along_x(-1.0, -1.0);
-  const DetailChoice choice = choose_levels_within(parts, {near, far}, 1e-3, any);
-  const DetailChoice unseen = choose_levels_within(parts, {away}, 1e-3, any);
-  for (std::size_t p = 0; p < parts.size(); ++p) {
-    Levels coarse(parts.size(), 3), finer = coarse;
+  const LevelChoice choice = choose_within(chunks, {near, far}, {1e-3, any});
+  const LevelChoice unseen = choose_within(chunks, {away}, {1e-3, any});
+  for (std::size_t p = 0; p < chunks.size(); ++p) {
+    Levels coarse(chunks.size(), 3), finer = coarse;
     finer[p] = 1;
-    EXPECT_NEAR(choice.saved(p, 3, 1), loss(parts, coarse, near) - loss(parts, finer, near), 1e-12) << p;
-    EXPECT_LT(loss(parts, coarse, far) - loss(parts, finer, far), 0.9 * choice.saved(p, 3, 1))
+    EXPECT_NEAR(choice.saved(p, 3, 1), loss(chunks, coarse, near) - loss(chunks, finer, near), 1e-12) << p;
+    EXPECT_LT(loss(chunks, coarse, far) - loss(chunks, finer, far), 0.9 * choice.saved(p, 3, 1))
         << "planted: of the view that gains less";
     EXPECT_EQ(choice.saved(p, 1, 3), 0.0);
     EXPECT_GT(unseen.saved(p, 3, 1), 0.0) << "of the sphere";
   }
 }
 
-TEST(DetailErrors, FewGaussiansMayBeAllowedAndPartsUnknown) {
-  std::vector<LodChunk> parts = row_with_errors(6);
+TEST(ChoiceWithin, FewGaussiansMayBeAllowedAndPartsUnknown) {
+  std::vector<LodChunk> chunks = row_with_errors(6);
   for (std::size_t most = 300; most < 2500; most += 50) {
-    Levels chosen = choose_levels_within(parts, {along_x(-1.0)}, 1e-9, most).levels;
-    EXPECT_LE(test::gaussians_of(parts, chosen), most);
+    Levels chosen = choose_within(chunks, {along_x(-1.0)}, {1e-9, most}).levels;
+    EXPECT_LE(test::gaussians_of(chunks, chosen), most);
     for (std::size_t& level : chosen) {
       if (level == 0) continue;
       --level;
-      EXPECT_GT(test::gaussians_of(parts, chosen), most) << "room for a step is left";
+      EXPECT_GT(test::gaussians_of(chunks, chosen), most) << "room for a step is left";
       ++level;
     }
   }
@@ -362,16 +363,44 @@ TEST(DetailErrors, FewGaussiansMayBeAllowedAndPartsUnknown) {
        {{0, 400, std::vector(6, 0.0)}, {1, 200, std::vector(6, 0.9)}, {2, 100, std::vector(6, 1.0)}},
        {0.01},
        std::vector(6, 100.0)}};
-  EXPECT_EQ(choose_levels_within(leap, {along_x(-1.0)}, 1e-9, 400).levels, Levels{0});
-  EXPECT_EQ(choose_levels_within(leap, {along_x(-1.0)}, 1e-9, 399).levels, Levels{1});
-  parts[3].pixels.clear();
-  parts[3].seen.clear();
-  for (LodChunk::Level& level : parts[3].levels) level.errors.clear();
-  parts[4].levels.clear();
-  const DetailChoice choice = choose_levels_within(parts, {along_x(-1.0)}, 1e9, any);
+  EXPECT_EQ(choose_within(leap, {along_x(-1.0)}, {1e-9, 400}).levels, Levels{0});
+  EXPECT_EQ(choose_within(leap, {along_x(-1.0)}, {1e-9, 399}).levels, Levels{1});
+  chunks[3].pixels.clear();
+  chunks[3].seen.clear();
+  for (LodChunk::Level& level : chunks[3].levels) level.errors.clear();
+  chunks[4].levels.clear();
+  const LevelChoice choice = choose_within(chunks, {along_x(-1.0)}, {1e9, any});
   EXPECT_EQ(choice.levels, (Levels{3, 3, 3, 0, 0, 3}));
-  EXPECT_EQ(choose_levels_within(parts, {along_x(-1.0)}, 1e9, 450).levels[3], 1u);
-  EXPECT_TRUE(choose_levels_within({}, {along_x(0.0)}, 1.0, any).levels.empty());
+  EXPECT_EQ(choose_within(chunks, {along_x(-1.0)}, {1e9, 450}).levels[3], 1u);
+  EXPECT_TRUE(choose_within({}, {along_x(0.0)}, {1.0, any}).levels.empty());
+}
+
+// However many change, and whatever views there are.
+TEST(RunningError, IsThatOfTheLevelsFollowed) {
+  constexpr std::size_t parts = 40, levels_of_part = 3, views = 2;
+  Random random(3);
+  auto choice = std::make_shared<LevelChoice>();
+  choice->pixels = {10.0, 20.0};
+  choice->sphere_pixels = 1000.0;
+  choice->first = {0};
+  for (std::size_t p = 0; p < parts; ++p) {
+    for (std::size_t n = 0; n < (views + 1) * levels_of_part; ++n)
+      choice->errors.push_back(n % levels_of_part == 0 ? 0.0 : random.uniform(0.0, 1.0));
+    choice->first.push_back(choice->errors.size());
+  }
+  std::vector<std::size_t> levels(parts, 2);
+  RunningError lost(choice, levels);
+  const double at_first = lost.error();
+  for (std::size_t n = 0; n < 200; ++n) {
+    levels[n * 7 % parts] = n / 3 % levels_of_part;
+    if (n % 4 != 0) continue;
+    lost.follow(levels);
+    EXPECT_NEAR(lost.error(), choice->error_of(levels), 1e-12);
+  }
+  EXPECT_GT(std::abs(lost.error() - at_first), 0.01) << "planted: what it began with";
+  lost.follow(std::vector<std::size_t>(parts, 0));
+  EXPECT_GE(lost.error(), 0.0);
+  EXPECT_NEAR(lost.error(), 0.0, 1e-12);
 }
 
 }  // namespace

@@ -5,15 +5,14 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
+#include <optional>
 #include <set>
-#include <thread>
 
 #include "formats/model_file.h"
 #include "formats/streamed_sog.h"
-#include "scene/model_chunks.h"
 #include "scene/reduce.h"
+#include "stream/chooser.h"
 #include "support/broken.h"
 #include "support/details.h"
 #include "support/fixtures.h"
@@ -29,28 +28,43 @@ using test::Copy;
 using test::far_away;
 using test::view_at;
 
-/// A streamed SOG, and the parts of it that were read, in their order.
+/// A streamed SOG, and the chunks of it that were read.
 struct Followed {
-  StreamedSog scene;
-  std::vector<Model> parts;
+  LodFiles files;
+  Chooser chooser{files};
+  LevelChoice choice;
+  std::vector<std::size_t> levels = std::vector(files.chunks().size(), LodFiles::not_read);
+  std::vector<Model> chunks = std::vector(files.chunks().size(), files.like());
   std::size_t read_at_last = 0;
 
-  explicit Followed(const fs::path& path) : scene(path), parts(scene.parts(), scene.like()) {}
+  explicit Followed(const fs::path& path) : files(path) {}
 
+  bool choose(const std::vector<shared::View>& views, const DetailRequest& request,
+              const VisibleChunks& visible = {}) {
+    choice = chooser.choose(views, request, visible);
+    return choice.levels != levels;
+  }
+  /// Those of the tree, then what belongs to every level.
   Model read() {
     read_at_last = 0;
-    scene.read([&](StreamedSog::Piece piece) {
-      parts.at(piece.part) = std::move(piece.model);
+    const std::vector<std::size_t> from = levels;
+    files.read(from, choice, [&](LodFiles::Piece piece) {
+      levels.at(piece.chunk) = piece.level;
+      chunks.at(piece.chunk) = std::move(piece.model);
       ++read_at_last;
     });
-    Model all = scene.like();
-    for (const Model& part : parts) append(all, part, 0, part.count());
+    Model all = files.like();
+    for (const Model& chunk : chunks) append(all, chunk, 0, chunk.count());
+    const Model environment = files.environment();
+    append(all, environment, 0, environment.count());
     return all;
   }
-
-  Model read(const std::vector<shared::View>& views, const DetailRequest& need) {
-    scene.choose(views, need);
+  Model read(const std::vector<shared::View>& views, const DetailRequest& request) {
+    choose(views, request);
     return read();
+  }
+  std::optional<double> predicted_db() const {
+    return choice.knows_errors() ? std::optional(psnr_of_error(choice.error())) : std::nullopt;
   }
 };
 
@@ -59,15 +73,15 @@ Model read_anew(const fs::path& path, const glm::dvec3& eye, const DetailRequest
   return Followed(path).read({view_at(eye)}, need);
 }
 
-TEST(StreamedSog, FineWhereItIsNearCoarseWhereItIsFar) {
+TEST(LodFiles, FineWhereItIsNearCoarseWhereItIsFar) {
   REQUIRE_FIXTURES(folder);
   const fs::path lod = folder / "sog/st-lod";
   const Model fine = load_model(lod, {.lod = 0}), coarse = load_model(lod, {.lod = 1});
   Followed scene(lod);
-  EXPECT_EQ(scene.scene.like().degree, 3);
-  EXPECT_TRUE(scene.scene.choose({}, {}));
+  EXPECT_EQ(scene.files.like().degree, 3);
+  EXPECT_TRUE(scene.choose({}, {}));
   EXPECT_TRUE(test::equal(scene.read(), coarse)) << "the coarsest, unless somebody looks";
-  EXPECT_FALSE(scene.scene.choose(std::vector{view_at(far_away)}, {30.0}));
+  EXPECT_FALSE(scene.choose({view_at(far_away)}, {30.0}));
   EXPECT_TRUE(test::equal(scene.read({view_at(beside_last)}, {0.0}), fine)) << "0 px: nothing is fine enough";
   EXPECT_TRUE(test::equal(scene.read({view_at(far_away)}, {30.0}), coarse));
   const Model last = scene.read({view_at(beside_last)}, {30.0});
@@ -80,7 +94,7 @@ TEST(StreamedSog, FineWhereItIsNearCoarseWhereItIsFar) {
   EXPECT_TRUE(test::equal(scene.read({view_at(far_away, 1e5f)}, {30.0}), fine));
 }
 
-TEST(StreamedSog, WhatIsTakenFromTheLastModelIsWhatTheFilesSay) {
+TEST(LodFiles, WhatIsTakenFromTheLastModelIsWhatTheFilesSay) {
   REQUIRE_FIXTURES(folder);
   const Copy copy(folder / "sog/st-lod");
   copy.edit("lod-meta.json", [](nlohmann::json& meta) { meta["environment"] = "1_0/meta.json"; });
@@ -95,27 +109,26 @@ TEST(StreamedSog, WhatIsTakenFromTheLastModelIsWhatTheFilesSay) {
   }
 }
 
-TEST(StreamedSog, OnlyWhatSwitchesIsReadAndWhatShrinksFirst) {
+TEST(LodFiles, OnlyWhatSwitchesIsReadAndWhatShrinksFirst) {
   REQUIRE_FIXTURES(folder);
   Followed scene(folder / "sog/st-lod");
   scene.read({view_at(beside_last)}, {30.0});
   EXPECT_EQ(scene.read_at_last, 3u);
   scene.read({view_at(beside_last)}, {30.0});
   EXPECT_EQ(scene.read_at_last, 0u);
-  scene.scene.choose(std::vector{view_at(beside_first)}, {30.0});
+  scene.choose({view_at(beside_first)}, {30.0});
   std::vector<std::size_t> counts;
-  const auto take = [&](const StreamedSog::Piece& piece) { counts.push_back(piece.model.count()); };
-  scene.scene.read(take, [] { return false; });
+  const auto take = [&](const LodFiles::Piece& piece) {
+    counts.push_back(piece.model.count());
+    scene.levels[piece.chunk] = piece.level;
+  };
+  scene.files.read(std::vector(scene.levels), scene.choice, take, [] { return false; });
   EXPECT_EQ(counts, std::vector<std::size_t>{65}) << "a file, and then it was asked to end";
-  EXPECT_TRUE(scene.scene.choose(std::vector{view_at(beside_first)}, {30.0}));
-  scene.scene.read(take);
+  scene.files.read(std::vector(scene.levels), scene.choice, take);
   EXPECT_EQ(counts, (std::vector<std::size_t>{65, 505}));
-  scene.scene.forget();
-  scene.read({view_at(beside_first)}, {30.0});
-  EXPECT_EQ(scene.read_at_last, 3u);
 }
 
-TEST(StreamedSog, OneChoiceForBothEyes) {
+TEST(LodFiles, OneChoiceForBothEyes) {
   REQUIRE_FIXTURES(folder);
   const fs::path lod = folder / "sog/st-lod";
   const shared::View left = view_at(beside_first), right = view_at(beside_last);
@@ -126,25 +139,23 @@ TEST(StreamedSog, OneChoiceForBothEyes) {
   EXPECT_FALSE(test::equal(both, read_anew(lod, beside_first, {30.0}))) << "planted: the left eye's choice";
 }
 
-TEST(StreamedSog, AHeadThatTremblesSwitchesOnce) {
+TEST(LodFiles, AHeadThatTremblesSwitchesOnce) {
   REQUIRE_FIXTURES(folder);
-  StreamedSog scene(folder / "sog/st-lod");
+  Followed scene(folder / "sog/st-lod");
   const auto place = [](int n) { return glm::dvec3(n % 2 == 0 ? -45.0 : -47.0, -1, 3); };
   // The outer leaves are seen 5.6 and 5.5 px coarse from the one place, 5.3 from the other.
   int switches = 0;
   std::set<std::size_t> anew;
   for (int n = 0; n < 20; ++n) {
-    if (scene.choose(std::vector{view_at(place(n))}, {5.4})) {
-      ++switches;
-      scene.read([](const StreamedSog::Piece&) {});
-    }
+    scene.read({view_at(place(n))}, {5.4});
+    switches += scene.read_at_last > 0 ? 1 : 0;
     anew.insert(read_anew(folder / "sog/st-lod", place(n), {5.4}).count());
   }
   EXPECT_EQ(switches, 1) << "the first";
   EXPECT_EQ(anew.size(), 2u) << "without a memory it would switch with each step";
 }
 
-TEST(StreamedSog, KeepsToTheRoomThereIs) {
+TEST(LodFiles, KeepsToTheRoomThereIs) {
   REQUIRE_FIXTURES(folder);
   Followed scene(folder / "sog/st-lod");
   for (const std::size_t most : {1000, 999, 700, 440, 250}) {
@@ -153,19 +164,19 @@ TEST(StreamedSog, KeepsToTheRoomThereIs) {
   }
 }
 
-TEST(StreamedSog, SaysWhatItCannotOpen) {
+TEST(LodFiles, SaysWhatItCannotOpen) {
   REQUIRE_FIXTURES(folder);
   EXPECT_TRUE(is_streamed_sog(folder / "sog/st-lod"));
   for (const char* other : {"sog/st-lod/0_0", "sog/st-train-sh3.sog", "nothing"}) {
     EXPECT_FALSE(is_streamed_sog(folder / other));
-    EXPECT_TRUE(test::fails_saying([&] { StreamedSog scene(folder / other); },
+    EXPECT_TRUE(test::fails_saying([&] { LodFiles files(folder / other); },
                                    {"--detail", "no levels of detail", other}));
   }
   const Copy copy(folder / "sog/st-lod");  // what is not there is not chosen
   fs::remove_all(copy.path() / "0_0");
   EXPECT_EQ(read_anew(copy.path(), beside_first, {0.0}).count(), 250u);
   fs::remove_all(copy.path() / "1_0");
-  EXPECT_TRUE(test::fails_saying([&] { StreamedSog scene(copy.path()); },
+  EXPECT_TRUE(test::fails_saying([&] { LodFiles files(copy.path()); },
                                  {"lod-meta.json", "none of its levels of detail is there"}));
 }
 
@@ -200,36 +211,37 @@ shared::View ahead(const glm::dvec3& eye, float forward = 1.0f) {
   return view;
 }
 
-TEST(StreamedSog, ByErrorsThatItsFileTells) {
+TEST(LodFiles, ByErrorsThatItsFileTells) {
   REQUIRE_FIXTURES(folder);
   const Copy copy(folder / "sog/st-lod");
   copy.edit("lod-meta.json", teach);
   Followed scene(copy.path());
-  EXPECT_FALSE(scene.scene.predicted_psnr());
+  scene.choose({}, {});
+  EXPECT_FALSE(scene.predicted_db());
   // So far away its pixels are 3.8 to 4 wide, and a 10,000th of the pixels is left that the narrowest show.
   const std::size_t coarse = scene.read({ahead(far_away)}, {.db = 40.0}).count();
   EXPECT_EQ(coarse, 250u);
   const double lost = 4000.0 * 0.02 * 0.02 / (3.9 * 3.9) * 21.0 / 1000.0 / 1e4;
-  EXPECT_NEAR(*scene.scene.predicted_psnr(), -10.0 * std::log10(lost), 1.0);
+  EXPECT_NEAR(*scene.predicted_db(), -10.0 * std::log10(lost), 1.0);
   std::size_t last = coarse;
   for (const double db : {60.0, 66.0, 69.0, 72.0, 80.0}) {
     const std::size_t count = scene.read({ahead(far_away)}, {.db = db}).count();
     EXPECT_GE(count, last) << db;
-    EXPECT_GE(*scene.scene.predicted_psnr(), db - 0.5) << db;
+    EXPECT_GE(*scene.predicted_db(), db - 0.5) << db;
     last = count;
   }
   EXPECT_EQ(last, 1000u);
   // Nothing of it is seen: nothing is lost.
   Followed behind(copy.path());
-  behind.scene.choose(std::vector{ahead(far_away, -1.0f)}, {.db = 40.0});
-  EXPECT_TRUE(std::isinf(*behind.scene.predicted_psnr()));
-  EXPECT_TRUE(behind.scene.choose({}, {.db = 40.0}));
-  EXPECT_FALSE(behind.scene.predicted_psnr()) << "the coarsest, unless somebody looks";
+  behind.choose({ahead(far_away, -1.0f)}, {.db = 40.0});
+  EXPECT_TRUE(std::isinf(*behind.predicted_db()));
+  behind.choose({}, {.db = 40.0});
+  EXPECT_FALSE(behind.predicted_db()) << "the coarsest, unless somebody looks";
   EXPECT_EQ(behind.read().count(), 250u);
 }
 
 // Its finest level shows nothing, they say, and another does: nobody knows what that loses of a picture.
-TEST(StreamedSog, WhatIsNotKnownIsRefined) {
+TEST(LodFiles, WhatIsNotKnownIsRefined) {
   REQUIRE_FIXTURES(folder);
   const Copy copy(folder / "sog/st-lod");
   for (const double seen : {4000.0, 1e-20, 0.0}) {
@@ -237,46 +249,14 @@ TEST(StreamedSog, WhatIsNotKnownIsRefined) {
       teach(meta);
       for (nlohmann::json& of : meta["tree"]["children"][0]["seen"]) of[1] = seen;
     });
-    StreamedSog scene(copy.path());
-    scene.choose(std::vector{ahead(far_away)}, {.db = 40.0});
-    EXPECT_EQ(scene.chosen()[0] == 0, seen < 1.0) << seen;
-    EXPECT_NE(scene.chosen()[1], 0u);
+    Followed scene(copy.path());
+    scene.choose({ahead(far_away)}, {.db = 40.0});
+    EXPECT_EQ(scene.choice.levels[0] == 0, seen < 1.0) << seen;
+    EXPECT_NE(scene.choice.levels[1], 0u);
   }
 }
 
-/// What the view shows of each part: so many px, a thousand at most, and 21 units away.
-DetailSeen showing(const StreamedSog& scene, const std::vector<double>& areas) {
-  DetailSeen seen{{std::vector<ChunkVisibility>(scene.parts())}, scene.chosen()};
-  for (std::size_t p = 0; p < areas.size(); ++p) seen.by_view[0][p] = {areas[p], 21.0};
-  return seen;
-}
-
-TEST(StreamedSog, FinerLevelsStayWhereThereIsRoom) {
-  REQUIRE_FIXTURES(folder);
-  const Copy copy(folder / "sog/st-lod");
-  copy.edit("lod-meta.json", teach);
-  const std::vector<shared::View> views = {ahead({0, 0, -20})};
-  const auto count = [&](const DetailRequest& need, int after_ms) {
-    Followed scene(copy.path());
-    scene.scene.choose({}, {});
-    const std::vector<double> all = {1000, 1000, 1000}, first_two = {1000, 1000, 1e-9};
-    scene.scene.choose(views, need, showing(scene.scene, all));
-    EXPECT_EQ(scene.read().count(), need.most == 999 ? 615u : 1000u);
-    const auto chosen = scene.scene.chooser().choose(views, need, showing(scene.scene, first_two));
-    EXPECT_EQ(chosen->lingers, need.stays_s > 0.0 && need.most != 999);
-    scene.scene.choose(chosen);
-    scene.read();
-    std::this_thread::sleep_for(std::chrono::milliseconds(after_ms));
-    scene.scene.choose(views, need, showing(scene.scene, first_two));
-    return scene.read().count();
-  };
-  EXPECT_EQ(count({.db = 42.0}, 0), 817u) << "none stays";
-  EXPECT_EQ(count({.db = 42.0, .stays_s = 100.0}, 0), 1000u);
-  EXPECT_EQ(count({.most = 999, .db = 42.0, .stays_s = 100.0}, 0), 817u) << "no room";
-  EXPECT_EQ(count({.db = 42.0, .stays_s = 0.05}, 100), 817u) << "not for ever";
-}
-
-TEST(StreamedSog, WhatSavesMostIsReadFirst) {
+TEST(LodFiles, WhatSavesMostIsReadFirst) {
   REQUIRE_FIXTURES(folder);
   const Copy copy(folder / "sog/st-lod");
   fs::copy(copy.path() / "0_0", copy.path() / "0_1", fs::copy_options::recursive);
@@ -285,33 +265,35 @@ TEST(StreamedSog, WhatSavesMostIsReadFirst) {
     meta["filenames"].push_back("0_1/meta.json");
     meta["tree"]["children"][1]["children"][1]["lods"]["0"]["file"] = 2;
   });
-  const std::vector<shared::View> views = {ahead({0, 0, -20})};
+  const double much = 1000.0, little = 100.0;  // px that are seen of each chunk
   for (const bool last_is_first : {false, true}) {
     Followed scene(copy.path());
-    scene.scene.choose({}, {});
-    scene.read();
-    const double much = 1000.0, little = 100.0;
-    scene.scene.choose(
-        views, {.db = 80.0},
-        showing(scene.scene, {last_is_first ? little : much, little, last_is_first ? much : little}));
+    scene.read({}, {});
+    VisibleChunks visible{{std::vector<ChunkVisibility>(3, {little, 21.0})}, scene.levels};
+    visible.by_view[0][last_is_first ? 2 : 0].area = much;
+    scene.choose({ahead({0, 0, -20})}, {.db = 80.0}, visible);
     std::vector<std::size_t> order;
-    std::vector<double> worth;
-    scene.scene.read([&](const StreamedSog::Piece& piece) {
-      order.push_back(piece.part);
-      worth.push_back(scene.scene.worth(piece));
-    });
+    scene.files.read(scene.levels, scene.choice,
+                     [&](const LodFiles::Piece& piece) { order.push_back(piece.chunk); });
     ASSERT_EQ(order.size(), 3u);
     EXPECT_EQ(order[last_is_first ? 0 : 2], 2u);
-    EXPECT_GT(worth[last_is_first ? 0 : 1], 0.0);
-    EXPECT_EQ(std::ranges::max_element(worth) - worth.begin(), 0);
-    scene.scene.choose({}, {});
-    scene.scene.read([&](const StreamedSog::Piece& piece) {
-      EXPECT_TRUE(std::isinf(scene.scene.worth(piece))) << "what shrinks comes before all";
-    });
   }
 }
 
-TEST(StreamedSog, SaysWhatIsWrongWithErrors) {
+TEST(LodFiles, FinestLevelsOfSome) {
+  REQUIRE_FIXTURES(folder);
+  const LodFiles files(folder / "sog/st-lod");
+  const Model fine = load_model(folder / "sog/st-lod", {.lod = 0});
+  const ChunkModels finest = files.finest_of(std::vector<std::size_t>{2, 0});
+  ASSERT_EQ(finest.chunks.size(), 2u);
+  for (std::size_t k = 0; k < 2; ++k) {
+    const std::size_t first = finest.chunks[k] == 0 ? 0 : 752;
+    EXPECT_EQ(finest.models[k].count(), finest.chunks[k] == 0 ? 505u : 248u);
+    EXPECT_EQ(finest.models[k].position.front(), fine.position[first]);
+  }
+}
+
+TEST(LodFiles, SaysWhatIsWrongWithErrors) {
   REQUIRE_FIXTURES(folder);
   const auto says = [&](auto edit, std::initializer_list<std::string> parts) {
     const Copy copy(folder / "sog/st-lod");
@@ -319,7 +301,7 @@ TEST(StreamedSog, SaysWhatIsWrongWithErrors) {
       teach(meta);
       edit(meta["tree"]["children"][0]);
     });
-    return test::fails_saying([&] { StreamedSog(copy.path()).choose({}, {.db = 40.0}); }, parts);
+    return test::fails_saying([&] { LodFiles(copy.path()).check({.db = 40.0}); }, parts);
   };
   using Json = nlohmann::json;
   const std::string leaf_key = "lod-meta.json, key 'tree.children[0].";
@@ -358,22 +340,21 @@ TEST(StreamedSog, SaysWhatIsWrongWithErrors) {
   EXPECT_TRUE(says([](Json& leaf) { leaf.erase("seen"); }, {"the key 'tree.children[0].seen' is missing"}));
   // Without widths they are nobody's, and without any there is nothing to go by.
   EXPECT_FALSE(says([](Json& leaf) { leaf.erase("pixels"), leaf["lods"]["1"]["errors"] = -1; }, {""}));
-  StreamedSog none(folder / "sog/st-lod");
+  const LodFiles none(folder / "sog/st-lod");
   EXPECT_TRUE(
-      test::fails_saying([&] { none.choose(std::vector{ahead(far_away)}, {.db = 40.0}); },
+      test::fails_saying([&] { none.check({.db = 40.0}); },
                          {"--detail 40dB", "st-lod/lod-meta.json has no errors of its levels to go by",
                           "`binosplat levels` writes them", "--detail PX"}));
 }
 
-TEST(StreamedSog, RoomIsMadeForWhatIsThere) {
+TEST(LodFiles, RoomIsMadeForWhatIsThere) {
   REQUIRE_FIXTURES(folder);
   const Copy copy(folder / "sog/st-lod");
   copy.edit("lod-meta.json", [](nlohmann::json& meta) {
     meta["tree"]["children"][1]["children"][1]["lods"]["0"]["count"] = 4'000'000'000u;
   });
-  StreamedSog scene(copy.path());
-  scene.choose(std::vector{view_at(beside_last)}, {0.0});
-  EXPECT_TRUE(test::fails_saying([&] { scene.read([](const StreamedSog::Piece&) {}); },
+  Followed scene(copy.path());
+  EXPECT_TRUE(test::fails_saying([&] { scene.read({view_at(beside_last)}, {0.0}); },
                                  {"Gaussians 752 to 4000000751 of", "0_0/meta.json", "which has 1000"}));
 }
 

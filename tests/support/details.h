@@ -1,5 +1,5 @@
 #pragma once
-// What tests of levels of detail ask of parts.
+// What tests of levels of detail ask of chunks.
 
 #include <vector>
 
@@ -7,12 +7,11 @@
 
 namespace binosplat::test {
 
-/// How many Gaussians the parts have at the levels that were chosen; parts without levels have none.
-inline std::size_t gaussians_of(const std::vector<LodChunk>& parts,
-                                const std::vector<std::size_t>& chosen) {
+/// How many Gaussians the chunks have at the levels that were chosen; chunks without levels have none.
+inline std::size_t gaussians_of(const std::vector<LodChunk>& chunks, const std::vector<std::size_t>& chosen) {
   std::size_t sum = 0;
-  for (std::size_t i = 0; i < parts.size(); ++i) {
-    if (!parts[i].levels.empty()) sum += parts[i].levels[chosen[i]].count;
+  for (std::size_t i = 0; i < chunks.size(); ++i) {
+    if (!chunks[i].levels.empty()) sum += chunks[i].levels[chosen[i]].count;
   }
   return sum;
 }

@@ -1,0 +1,44 @@
+#pragma once
+// A streamed SOG of any size, for tests of what follows its levels.
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "formats/content.h"
+#include "lab/streamed_sog_writer.h"
+#include "support/models.h"
+#include "support/program.h"
+
+namespace binosplat::test {
+
+/// So many Gaussians in leaves of 200 at three levels, of which each loses more, the same from everywhere.
+inline void write_levels(const TempFolder& folder, std::size_t count) {
+  const auto path = [&](const std::string& name) { return folder / name; };
+  const auto learn = [](std::span<const std::vector<Model>> leaves) {
+    std::vector<LeafErrors> errors;
+    for (const std::vector<Model>& levels : leaves) {
+      LeafErrors& leaf = errors.emplace_back();
+      leaf.pixels = {0.1};
+      leaf.seen.assign(detail_directions, {100.0});
+      for (std::size_t level = 0; level < levels.size(); ++level)
+        leaf.of_level.emplace_back(detail_directions, std::vector{2.0 * static_cast<double>(level)});
+    }
+    return errors;
+  };
+  const auto together = [](std::span<const std::vector<Model>>, std::span<const LeafErrors>, int) {
+    return std::vector<LossTogether>{{1.0, 1.0}};
+  };
+  Model model = random_model(1, static_cast<int>(count), 0);
+  model.name = "model";
+  write_streamed_sog(model, {.leaf = 200, .levels = 3},
+                     {[&](const std::string& name) { return std::filesystem::exists(path(name)); },
+                      [&](const std::string& name) { return read_text(path(name)); },
+                      [&](const std::string& name, std::span<const std::byte> bytes) {
+                        std::filesystem::create_directories(std::filesystem::path(path(name)).parent_path());
+                        write_text(path(name), std::string(as_text(bytes)));
+                      }},
+                     {learn, together});
+}
+
+}  // namespace binosplat::test

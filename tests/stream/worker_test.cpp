@@ -1,0 +1,166 @@
+// The thread that chooses and reads levels: leaves of 505 and 120, 247 and 65, 248 and 65 Gaussians.
+
+#include "stream/worker.h"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <random>
+#include <set>
+#include <thread>
+
+#include "stream/stream_levels.h"
+#include "support/broken.h"
+#include "support/details.h"
+#include "support/fixtures.h"
+
+namespace binosplat {
+namespace {
+
+using Levels = std::vector<std::size_t>;
+using test::beside_first;
+using test::beside_last;
+using test::far_away;
+using test::view_at;
+
+StreamWorker::Request from(const glm::dvec3& eye) { return {{view_at(eye)}, {30.0}, {}}; }
+
+/// Takes all that comes; in its order.
+std::vector<LodFiles::Piece> all_of(StreamWorker& worker) {
+  std::vector<LodFiles::Piece> all;
+  const auto start = std::chrono::steady_clock::now();
+  while (!worker.is_idle() && !testing::Test::HasFailure()) {
+    worker.check();
+    for (LodFiles::Piece& piece : worker.take(1)) all.push_back(std::move(piece));
+    if (std::chrono::steady_clock::now() - start > std::chrono::seconds(60)) ADD_FAILURE() << "it hangs";
+    std::this_thread::yield();
+  }
+  return all;
+}
+
+void put(const std::vector<LodFiles::Piece>& pieces, Levels& levels) {
+  for (const LodFiles::Piece& piece : pieces) levels[piece.chunk] = piece.level;
+}
+
+TEST(StreamWorker, ReadsWhatSwitchesAndWhatShrinksFirst) {
+  REQUIRE_FIXTURES(folder);
+  const LodFiles files(folder / "sog/st-lod");
+  StreamWorker worker(files, {1, 1, 1});
+  EXPECT_TRUE(worker.is_idle());
+  worker.request(from(far_away));
+  EXPECT_TRUE(all_of(worker).empty());
+  worker.request(from(beside_last));
+  const auto finer = all_of(worker);
+  ASSERT_EQ(finer.size(), 1u);
+  EXPECT_EQ(finer[0].model.count(), 248u);
+  worker.request(from(beside_first));
+  const auto both = all_of(worker);
+  ASSERT_EQ(both.size(), 2u);
+  EXPECT_EQ(both[0].model.count(), 65u);
+  EXPECT_EQ(both[1].model.count(), 505u);
+  worker.request(from(beside_first));
+  EXPECT_TRUE(all_of(worker).empty());
+}
+
+// However often it is asked for something else, and whatever was taken by then.
+TEST(StreamWorker, EndsWithWhatWasRequestedLast) {
+  REQUIRE_FIXTURES(folder);
+  const LodFiles files(folder / "sog/st-lod");
+  const std::vector<glm::dvec3> places = {far_away, beside_first, beside_last, {-8, 0, 4}, {0, 0, 12}};
+  std::vector<Levels> alone;
+  for (const glm::dvec3& place : places)
+    alone.push_back(choose_levels(files.chunks(), std::vector{view_at(place)}, {30.0}).levels);
+  std::mt19937 random(5);
+  Levels levels = {1, 1, 1};
+  StreamWorker worker(files, levels);
+  std::set<Levels> met;
+  for (int n = 0; n < 400; ++n) {
+    const std::size_t place = random() % places.size();
+    worker.request(from(places[place]));
+    for (std::size_t k = random() % 4; k > 0; --k) {
+      std::this_thread::sleep_for(std::chrono::microseconds(random() % 2000));
+      put(worker.take(1), levels);
+    }
+    if (n % 5 != 0) continue;
+    put(all_of(worker), levels);
+    ASSERT_EQ(levels, alone[place]) << n;
+    met.insert(levels);
+  }
+  EXPECT_GE(met.size(), 3u) << "planted: always the same";
+}
+
+TEST(StreamWorker, ALevelWithoutGaussiansIsALevel) {
+  REQUIRE_FIXTURES(folder);
+  const test::Copy copy(folder / "sog/st-lod");
+  copy.edit("lod-meta.json", [](nlohmann::json& meta) {
+    meta["tree"]["children"][1]["children"][1]["lods"]["1"]["count"] = 0;
+  });
+  const LodFiles files(copy.path());
+  StreamWorker worker(files, {1, 1, 0});
+  worker.request(from(far_away));
+  const auto pieces = all_of(worker);
+  ASSERT_EQ(pieces.size(), 1u);
+  EXPECT_EQ(pieces[0].level, 1u);
+  EXPECT_EQ(pieces[0].model.count(), 0u);
+}
+
+TEST(StreamWorker, ReportsWhatViewsLose) {
+  const test::TempFolder folder;
+  test::write_levels(folder, 3000);
+  const LodFiles files(folder.path());
+  const std::size_t chunks = files.chunks().size();
+  StreamWorker worker(files, Levels(chunks, 2));
+  shared::View view = view_at({0, 0, -30});
+  view.row_x = {1, 0, 0, 0};
+  view.row_y = {0, 1, 0, 0};
+  view.row_z = {0, 0, 1, 0};
+  view.width = view.height = 100;
+  EXPECT_FALSE(worker.error());
+  const VisibleChunks visible{{std::vector<ChunkVisibility>(chunks, {50.0, 30.0})}, Levels(chunks, 2)};
+  worker.request({{view}, {.db = 100.0, .most_new = 400}, visible});
+  Levels levels(chunks, 2);
+  put(all_of(worker), levels);
+  ASSERT_TRUE(worker.error());
+  EXPECT_TRUE(worker.is_limited());
+  const double before = worker.error()->error();
+  worker.error()->follow(levels);
+  EXPECT_LT(worker.error()->error(), before) << "planted: of the levels that were drawn";
+  EXPECT_GT(worker.error()->error(), 0.0);
+  worker.request({{view}, {.db = 100.0}, visible});
+  put(all_of(worker), levels);
+  EXPECT_FALSE(worker.is_limited());
+  EXPECT_EQ(levels, Levels(chunks, 0));
+}
+
+TEST(StreamWorker, EndsInTheMidstOfIt) {
+  REQUIRE_FIXTURES(folder);
+  const LodFiles files(folder / "sog/st-lod");
+  for (int n = 0; n < 20; ++n) {
+    StreamWorker worker(files, {1, 1, 1});
+    for (int k = 0; k < n; ++k) {
+      worker.request(from(k % 2 == 0 ? beside_first : beside_last));
+      worker.take(1);
+    }
+  }
+}
+
+TEST(StreamWorker, TellsWhatIsWrong) {
+  REQUIRE_FIXTURES(folder);
+  const test::Copy copy(folder / "sog/st-lod");
+  const LodFiles files(copy.path());
+  StreamWorker worker(files, {1, 1, 1});
+  std::filesystem::resize_file(copy.path() / "0_0/means_l.webp", 100);
+  worker.request(from(beside_first));
+  const auto waits = [&] {
+    for (int n = 0; n < 60'000; ++n) {
+      worker.check();
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+  };
+  EXPECT_TRUE(test::fails_saying(waits, {"0_0", "means_l.webp"}));
+  EXPECT_TRUE(test::fails_saying([&] { worker.check(); }, {"0_0", "means_l.webp"})) << "still";
+  EXPECT_FALSE(worker.is_idle());
+}
+
+}  // namespace
+}  // namespace binosplat
