@@ -154,8 +154,10 @@ class RunningError {
   RunningError(std::shared_ptr<const LevelChoice> choice, std::vector<std::size_t> levels);
   /// Goes by these levels of the chunks from now on.
   void follow(std::span<const std::size_t> levels);
-  /// LevelChoice::error_of them, but for rounding.
-  double error() const;
+  /// What that of some views, from `begin` to before `end`, loses which loses most (LevelChoice::error_of),
+  /// but for rounding.
+  double error(std::size_t begin, std::size_t end) const;
+  std::size_t views() const { return lost_.size(); }
 
  private:
   std::shared_ptr<const LevelChoice> choice_;

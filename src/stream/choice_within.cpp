@@ -266,9 +266,9 @@ void RunningError::follow(std::span<const std::size_t> levels) {
 }
 
 // Rounding may leave a little less than nothing.
-double RunningError::error() const {
+double RunningError::error(std::size_t begin, std::size_t end) const {
   double most = 0.0;
-  for (const double lost : lost_) most = std::max(most, lost);
+  for (std::size_t v = begin; v < end; ++v) most = std::max(most, lost_[v]);
   return most;
 }
 

@@ -9,10 +9,9 @@ namespace binosplat {
 namespace {
 
 constexpr double between_passes_ms = 100.0;
-constexpr int passes_most = 3;  // at the same views: after them a choice hardly changes any more
-// Of a frame's time for levels what copying may take: uploading takes as long.
-constexpr double copying_share = 0.5;
-constexpr std::size_t put_at_once = 1 << 14;  // Gaussians, before the time is looked at
+constexpr int passes_most = 3;              // at the same views: after them a choice hardly changes any more
+constexpr double lead_s = 0.5;              // ahead of a head that moves: until what is requested is drawn
+constexpr std::size_t put_least = 1 << 14;  // Gaussians: fewer do not tell how long more would take
 // A request goes on while the next one is made, which takes as long as from one to the next; and it has so
 // many Gaussians, however few frames there were.
 constexpr double requests_at_once = 2.0, requested_least = 1 << 14;
@@ -76,10 +75,14 @@ double Stream::quality_left(double together_db) const {
 }
 
 std::optional<double> Stream::reported_db() const {
-  const auto error = worker_ ? worker_->error() : error_;
-  if (!error) return std::nullopt;
-  error->follow(drawn_);
-  return reported(error->error());
+  const StreamWorker::Loss loss = worker_ ? worker_->loss() : loss_;
+  if (!loss.error) return std::nullopt;
+  loss.error->follow(drawn_);
+  const double here = loss.error->error(0, loss.here);
+  if (loss.here == loss.error->views()) return reported(here);
+  // What comes nearer loses the more the nearer it is.
+  const double share = std::min(1e-3 * ms_since(loss.at) / lead_s, 1.0);
+  return reported(std::lerp(here, loss.error->error(loss.here, loss.error->views()), share * share));
 }
 
 double Stream::reported(double error) const {
@@ -91,33 +94,40 @@ bool Stream::begin_frame(std::span<const shared::View> views, const render::Fram
   if (views.empty()) return false;
   if (!worker_) {
     worker_ = std::make_unique<StreamWorker>(files_, drawn_);
-    calibration_ = {};
     sample_error_ = 0.0;
     views_.clear();
   }
   worker_->check();
+  motion_.note(views);
   if (!same(views, views_) || settings.quality != quality_) {
     if (views.size() != views_.size() || settings.quality != quality_) pass_.views.clear();
     views_.assign(views.begin(), views.end());
     quality_ = settings.quality;
     passes_ = 0;
     is_due_ = true;
+    is_calibrated_ = false;
   }
   is_due_ = is_due_ || needs_another_pass();
   if (is_due_ && !db_for(quality_)) {
-    request(views_, {});
+    request({.views = views_});
     is_due_ = false;
   }
-  could_put_ += copying_share * ms * put_a_ms_;
+  could_put_ += ms * put_a_ms_;
   const bool made_pass = std::exchange(made_pass_, false), is_due = pass_is_due();
   // For both no frame has time: they take turns.
   if ((!is_due || made_pass) && put_some(ms)) return true;
-  if (is_due) make_pass(settings);
+  if (is_due) {
+    make_pass(settings);
+  } else if (db_for(quality_) && !is_calibrated_ && has_all()) {
+    calibrate_at_rest(settings);
+  }
   return false;
 }
 
-bool Stream::settled() const {
-  return !worker_ || (worker_->is_idle() && !is_due_ && pass_.views.empty() && !needs_another_pass());
+bool Stream::settled() const { return !worker_ || (has_all() && (is_calibrated_ || !db_for(quality_))); }
+
+bool Stream::has_all() const {
+  return worker_->is_idle() && !is_due_ && pass_.views.empty() && !needs_another_pass();
 }
 
 // Coarse chunks hide what fine ones do not.
@@ -135,47 +145,60 @@ bool Stream::pass_is_due() const {
 // At one more of the views, each as it is by then.
 void Stream::make_pass(const render::FrameSettings& settings) {
   if (!visibility_) visibility_.emplace(gpu_model_);
-  if (pass_.views.empty()) pass_ = {.began = Clock::now()};
-  const shared::View view = views_[pass_.views.size()];
+  const std::vector<shared::View> ahead = motion_.ahead(lead_s);
+  if (pass_.views.empty()) {
+    const bool moves = !same(ahead, views_);
+    pass_ = {.all = std::max<std::size_t>(views_.size(), moves ? 2 : 1), .began = Clock::now()};
+    pass_.here = moves ? (pass_.all + 1) / 2 : pass_.all;
+  }
+  const std::size_t k = pass_.views.size();
+  const shared::View view = k < pass_.here ? views_[k] : ahead[k % ahead.size()];
   pass_.views.push_back(view);
   pass_.visible.by_view.push_back(std::move(visibility_->measure({&view, 1}, settings, chunks_).front()));
   made_pass_ = true;
-  if (pass_.views.size() < views_.size()) return;
+  if (pass_.views.size() < pass_.all) return;
   is_due_ = !same(pass_.views, views_);
   pass_.visible.drawn = drawn_;
-  request(std::exchange(pass_.views, {}), std::move(pass_.visible));
+  request({.views = std::exchange(pass_.views, {}),
+           .visible = std::move(pass_.visible),
+           .here = pass_.here,
+           .at = *pass_.began});
   ++passes_;
 }
 
 // While a head moves no more is requested than frames can take in time: then all that is seen gets better by
 // a little, before some of it has all that it needs.
-void Stream::request(std::vector<shared::View> views, VisibleChunks visible) {
-  DetailRequest detail = request_for(views);
+void Stream::request(StreamWorker::Request request) {
+  request.detail = request_for(views_);
   const double in_time = requests_at_once * std::exchange(could_put_, 0.0);
-  if (passes_ == 0 && worker_->error())
-    detail.most_new = static_cast<std::size_t>(std::clamp(in_time, requested_least, 1e15));
-  worker_->request({std::move(views), detail, std::move(visible)});
+  if (passes_ == 0 && worker_->loss().error)
+    request.detail.most_new = static_cast<std::size_t>(std::clamp(in_time, requested_least, 1e15));
+  worker_->request(std::move(request));
 }
 
 bool Stream::put_some(double ms) {
+  const auto most = static_cast<std::size_t>(ms * put_a_ms_);
+  const std::vector<LodFiles::Piece> pieces = worker_->take(std::max(most, put_least));
+  if (pieces.empty()) return false;
   const auto start = Clock::now();
-  std::size_t gaussians = 0;
-  bool has_any = false;
-  double took_ms = 0.0;
-  do {
-    const std::vector<LodFiles::Piece> pieces = worker_->take(put_at_once);
-    if (pieces.empty()) break;
-    put(pieces);
-    for (const LodFiles::Piece& piece : pieces) gaussians += piece.model.count();
-    has_any = true;
-    took_ms = ms_since(start);
-  } while (took_ms < copying_share * ms);
-  if (!has_any) return false;
-  if (gaussians >= put_at_once)
-    put_a_ms_ = std::lerp(put_a_ms_, static_cast<double>(gaussians) / took_ms, 0.1);
+  put(pieces);
   gpu_model_->reload(chunks_.take_changes());
+  std::size_t gaussians = 0;
+  for (const LodFiles::Piece& piece : pieces) gaussians += piece.model.count();
+  if (gaussians >= put_least)
+    put_a_ms_ = std::lerp(put_a_ms_, static_cast<double>(gaussians) / std::max(ms_since(start), 1e-3), 0.2);
   pass_.is_outdated = true;
   return true;
+}
+
+// What is drawn then is chosen anew by it.
+void Stream::calibrate_at_rest(const render::FrameSettings& settings) {
+  is_calibrated_ = is_due_ = true;
+  if (!visibility_) visibility_.emplace(gpu_model_);
+  chooser_.forget();
+  LevelChoice choice = chooser_.choose(views_, request_for(views_), measure(views_, settings));
+  calibrate(views_, settings, choice);
+  sample_error_ = 0.0;
 }
 
 void Stream::put(std::span<const LodFiles::Piece> pieces) {

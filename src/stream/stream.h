@@ -15,6 +15,7 @@
 #include "scene/model_chunks.h"
 #include "stream/calibration.h"
 #include "stream/chooser.h"
+#include "stream/head_motion.h"
 #include "stream/lod_files.h"
 #include "stream/visibility.h"
 #include "stream/worker.h"
@@ -75,7 +76,8 @@ class Stream {
   /// Gaussians of the model.
   std::size_t gaussians() const { return chunks_.gaussians(); }
   /// PSNR in dB that the views are predicted to have against the finest levels with the levels that the model
-  /// has now, by the calibration: of those that were measured last. None where dB are not gone by, or nothing
+  /// has now, by the calibration: of those that were measured last, where they were and ahead of that, by how
+  /// long ago it was. None where dB are not gone by, or nothing
   /// was measured yet.
   std::optional<double> reported_db() const;
   /// How many dB are left for a frame of so many dB for frame and levels together.
@@ -92,9 +94,11 @@ class Stream {
   std::optional<double> db_for(double quality) const;
   void put(std::span<const LodFiles::Piece> pieces);
   bool put_some(double ms);
+  void calibrate_at_rest(const render::FrameSettings& settings);
   bool pass_is_due() const;
   void make_pass(const render::FrameSettings& settings);
-  void request(std::vector<shared::View> views, VisibleChunks visible);
+  void request(StreamWorker::Request request);
+  bool has_all() const;
   bool needs_another_pass() const;
   // Of settle():
   void start_over();
@@ -117,17 +121,20 @@ class Stream {
 
   // Of begin_frame():
   struct Pass {
-    std::vector<shared::View> views;  // that were measured
+    std::vector<shared::View> views;  // that were measured, here first, and those ahead,
+    std::size_t here = 0, all = 0;    // of so many;
     VisibleChunks visible;            // by them
     std::optional<Clock::time_point> began;
     bool is_outdated = false;  // the model has changed since
   };
-  Pass pass_;                  // the last one, or that under way
-  int passes_ = 0;             // at these views, each of all of them
-  bool is_due_ = false;        // a request for these views
-  bool made_pass_ = false;     // in the last frame
-  double could_put_ = 0.0;     // Gaussians, since the last request,
-  double put_a_ms_ = 1 << 14;  // by the last frames
+  HeadMotion motion_;
+  Pass pass_;                   // the last one, or that under way
+  int passes_ = 0;              // at these views, each of all of them
+  bool is_due_ = false;         // a request for these views
+  bool is_calibrated_ = false;  // for these views
+  bool made_pass_ = false;      // in the last frame
+  double could_put_ = 0.0;      // Gaussians, since the last request,
+  double put_a_ms_ = 1 << 14;   // by the last frames
   std::unique_ptr<StreamWorker> worker_;
 
   // Of settle():
@@ -136,7 +143,7 @@ class Stream {
   unsigned samples_ = 0;
   double sample_error_ = 0.0;  // that the last one was measured to have
   Times times_;
-  std::shared_ptr<RunningError> error_;
+  StreamWorker::Loss loss_;
 };
 
 /// Of a frame, for begin_frame().

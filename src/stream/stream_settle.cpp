@@ -71,9 +71,10 @@ bool Stream::settle(std::span<const shared::View> views, const render::FrameSett
     if (choice.levels == drawn_) break;
     change(choice);
   }
-  error_.reset();
+  loss_ = {.here = views.size()};
   if (request.db)
-    error_ = std::make_shared<RunningError>(std::make_shared<const LevelChoice>(std::move(choice)), drawn_);
+    loss_.error =
+        std::make_shared<RunningError>(std::make_shared<const LevelChoice>(std::move(choice)), drawn_);
   visibility_.reset();  // it takes the memory of a small frame
   return changed;
 }

@@ -45,9 +45,9 @@ bool StreamWorker::is_idle() const {
   return !request_ && !is_at_work_ && pieces_.empty() && !trouble_;
 }
 
-std::shared_ptr<RunningError> StreamWorker::error() const {
+StreamWorker::Loss StreamWorker::loss() const {
   const std::lock_guard lock(mutex_);
-  return error_;
+  return loss_;
 }
 
 bool StreamWorker::is_limited() const {
@@ -82,11 +82,11 @@ void StreamWorker::run(const std::stop_token& stop) {
 void StreamWorker::work(const Request& request, const std::stop_token& stop) {
   const auto choice =
       std::make_shared<const LevelChoice>(chooser_.choose(request.views, request.detail, request.visible));
-  std::shared_ptr<RunningError> error;
-  if (choice->knows_errors()) error = std::make_shared<RunningError>(choice, request.visible.drawn);
+  Loss loss{.here = request.here, .at = request.at};
+  if (choice->knows_errors()) loss.error = std::make_shared<RunningError>(choice, request.visible.drawn);
   {
     const std::lock_guard lock(mutex_);
-    error_.swap(error);  // the one before is freed when no frame waits for the lock any more
+    std::swap(loss_, loss);  // the one before is freed when no frame waits for the lock any more
     is_limited_ = choice->is_limited;
   }
   files_.read(

@@ -10,6 +10,7 @@
 #include <thread>
 #include <vector>
 
+#include "base/clock.h"
 #include "shared/types.h"
 #include "stream/choice.h"
 #include "stream/chooser.h"
@@ -26,6 +27,14 @@ class StreamWorker {
     std::vector<shared::View> views;
     DetailRequest detail;
     VisibleChunks visible;
+    std::size_t here = 0;       // of the views: they come first, and others lie ahead
+    Clock::time_point at = {};  // when the eyes were there
+  };
+  /// What the views of a choice by dB lose.
+  struct Loss {
+    std::shared_ptr<RunningError> error;  // none where there was no such choice
+    std::size_t here = 0;                 // as the request says
+    Clock::time_point at = {};
   };
 
   /// Of files, which must outlive it, whose chunks are `there` at these levels.
@@ -39,8 +48,8 @@ class StreamWorker {
   std::vector<LodFiles::Piece> take(std::size_t gaussians);
   /// Whether all that was requested has been taken.
   bool is_idle() const;
-  /// What the views of the last choice by dB lose; none where there was none.
-  std::shared_ptr<RunningError> error() const;
+  /// By the last choice.
+  Loss loss() const;
   /// Whether the last choice needs more than it was allowed to have read.
   bool is_limited() const;
   /// Throws what choosing or reading threw.
@@ -62,7 +71,7 @@ class StreamWorker {
   bool is_at_work_ = false, is_limited_ = false;
   std::deque<LodFiles::Piece> pieces_;
   std::size_t waiting_ = 0;  // their Gaussians
-  std::shared_ptr<RunningError> error_;
+  Loss loss_;
   std::exception_ptr trouble_;
   std::jthread thread_;  // last: it ends first
 };

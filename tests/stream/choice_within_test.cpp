@@ -390,17 +390,18 @@ TEST(RunningError, IsThatOfTheLevelsFollowed) {
   }
   std::vector<std::size_t> levels(parts, 2);
   RunningError lost(choice, levels);
-  const double at_first = lost.error();
+  const double at_first = lost.error(0, views);
   for (std::size_t n = 0; n < 200; ++n) {
     levels[n * 7 % parts] = n / 3 % levels_of_part;
     if (n % 4 != 0) continue;
     lost.follow(levels);
-    EXPECT_NEAR(lost.error(), choice->error_of(levels), 1e-12);
+    EXPECT_NEAR(lost.error(0, views), choice->error_of(levels), 1e-12);
+    EXPECT_NEAR(lost.error(1, 2), choice->error_of_view(1, levels), 1e-12);
   }
-  EXPECT_GT(std::abs(lost.error() - at_first), 0.01) << "planted: what it began with";
+  EXPECT_GT(std::abs(lost.error(0, views) - at_first), 0.01) << "planted: what it began with";
   lost.follow(std::vector<std::size_t>(parts, 0));
-  EXPECT_GE(lost.error(), 0.0);
-  EXPECT_NEAR(lost.error(), 0.0, 1e-12);
+  EXPECT_GE(lost.error(0, views), 0.0);
+  EXPECT_NEAR(lost.error(0, views), 0.0, 1e-12);
 }
 
 }  // namespace
