@@ -8,10 +8,10 @@ namespace binosplat {
 
 namespace {
 
-constexpr double between_passes_ms = 100.0;
-constexpr int passes_most = 3;              // at the same views: after them a choice hardly changes any more
-constexpr double lead_s = 0.5;              // ahead of a head that moves: until what is requested is drawn
-constexpr std::size_t put_least = 1 << 14;  // Gaussians: fewer do not tell how long more would take
+constexpr double between_passes_ms = 100.0;  // in which the worker reads what was chosen by the last one
+constexpr int passes_most = 3;               // at the same views: after them a choice hardly changes any more
+constexpr double lead_s = 0.5;               // ahead of a head that moves: until what is requested is drawn
+constexpr std::size_t put_least = 1 << 14;   // Gaussians: fewer do not tell how long more would take
 // A request goes on while the next one is made, which takes as long as from one to the next; and it has so
 // many Gaussians, however few frames there were.
 constexpr double requests_at_once = 2.0, requested_least = 1 << 14;
@@ -75,14 +75,14 @@ double Stream::quality_left(double together_db) const {
 }
 
 std::optional<double> Stream::reported_db() const {
-  const StreamWorker::Loss loss = worker_ ? worker_->loss() : loss_;
-  if (!loss.error) return std::nullopt;
-  loss.error->follow(drawn_);
-  const double here = loss.error->error(0, loss.here);
-  if (loss.here == loss.error->views()) return reported(here);
+  const StreamWorker::Chosen chosen = worker_ ? worker_->chosen() : chosen_;
+  if (!chosen.error) return std::nullopt;
+  chosen.error->follow(drawn_);
+  const double here = chosen.error->error(0, chosen.here);
+  if (chosen.here == chosen.error->views()) return reported(here);
   // What comes nearer loses the more the nearer it is.
-  const double share = std::min(1e-3 * ms_since(loss.at) / lead_s, 1.0);
-  return reported(std::lerp(here, loss.error->error(loss.here, loss.error->views()), share * share));
+  const double share = std::min(1e-3 * ms_since(chosen.at) / lead_s, 1.0);
+  return reported(std::lerp(here, chosen.error->error(chosen.here, chosen.error->views()), share * share));
 }
 
 double Stream::reported(double error) const {
@@ -133,13 +133,13 @@ bool Stream::has_all() const {
 // Coarse chunks hide what fine ones do not.
 bool Stream::needs_another_pass() const {
   return db_for(quality_) && worker_->is_idle() &&
-         (worker_->is_limited() || (pass_.is_outdated && passes_ < passes_most));
+         (worker_->chosen().is_limited || (pass_.is_outdated && passes_ < passes_most));
 }
 
 bool Stream::pass_is_due() const {
   if (!db_for(quality_)) return false;
-  const bool waits = pass_.began && ms_since(*pass_.began) < between_passes_ms;
-  return !pass_.views.empty() || (is_due_ && !waits);
+  if (!pass_.views.empty()) return true;
+  return is_due_ && !worker_->is_choosing() && ms_since(worker_->chosen().made_at) >= between_passes_ms;
 }
 
 // At one more of the views, each as it is by then.
@@ -162,7 +162,7 @@ void Stream::make_pass(const render::FrameSettings& settings) {
   request({.views = std::exchange(pass_.views, {}),
            .visible = std::move(pass_.visible),
            .here = pass_.here,
-           .at = *pass_.began});
+           .at = pass_.began});
   ++passes_;
 }
 
@@ -171,7 +171,7 @@ void Stream::make_pass(const render::FrameSettings& settings) {
 void Stream::request(StreamWorker::Request request) {
   request.detail = request_for(views_);
   const double in_time = requests_at_once * std::exchange(could_put_, 0.0);
-  if (passes_ == 0 && worker_->loss().error)
+  if (passes_ == 0 && worker_->chosen().error)
     request.detail.most_new = static_cast<std::size_t>(std::clamp(in_time, requested_least, 1e15));
   worker_->request(std::move(request));
 }

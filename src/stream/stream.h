@@ -124,7 +124,7 @@ class Stream {
     std::vector<shared::View> views;  // that were measured, here first, and those ahead,
     std::size_t here = 0, all = 0;    // of so many;
     VisibleChunks visible;            // by them
-    std::optional<Clock::time_point> began;
+    Clock::time_point began = {};
     bool is_outdated = false;  // the model has changed since
   };
   HeadMotion motion_;
@@ -143,7 +143,7 @@ class Stream {
   unsigned samples_ = 0;
   double sample_error_ = 0.0;  // that the last one was measured to have
   Times times_;
-  StreamWorker::Loss loss_;
+  StreamWorker::Chosen chosen_;
 };
 
 /// Of a frame, for begin_frame().

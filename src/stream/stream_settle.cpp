@@ -71,9 +71,9 @@ bool Stream::settle(std::span<const shared::View> views, const render::FrameSett
     if (choice.levels == drawn_) break;
     change(choice);
   }
-  loss_ = {.here = views.size()};
+  chosen_ = {.here = views.size()};
   if (request.db)
-    loss_.error =
+    chosen_.error =
         std::make_shared<RunningError>(std::make_shared<const LevelChoice>(std::move(choice)), drawn_);
   visibility_.reset();  // it takes the memory of a small frame
   return changed;

@@ -45,14 +45,14 @@ bool StreamWorker::is_idle() const {
   return !request_ && !is_at_work_ && pieces_.empty() && !trouble_;
 }
 
-StreamWorker::Loss StreamWorker::loss() const {
+StreamWorker::Chosen StreamWorker::chosen() const {
   const std::lock_guard lock(mutex_);
-  return loss_;
+  return chosen_;
 }
 
-bool StreamWorker::is_limited() const {
+bool StreamWorker::is_choosing() const {
   const std::lock_guard lock(mutex_);
-  return is_limited_;
+  return request_ || is_choosing_;
 }
 
 void StreamWorker::check() const {
@@ -64,7 +64,7 @@ void StreamWorker::run(const std::stop_token& stop) {
   std::unique_lock lock(mutex_);
   while (changed_.wait(lock, stop, [&] { return request_.has_value(); })) {
     const Request request = *std::exchange(request_, std::nullopt);
-    is_at_work_ = true;
+    is_at_work_ = is_choosing_ = true;
     lock.unlock();
     std::exception_ptr trouble;
     try {
@@ -73,7 +73,7 @@ void StreamWorker::run(const std::stop_token& stop) {
       trouble = std::current_exception();
     }
     lock.lock();
-    is_at_work_ = false;
+    is_at_work_ = is_choosing_ = false;
     trouble_ = trouble;
     if (trouble) return;
   }
@@ -82,12 +82,13 @@ void StreamWorker::run(const std::stop_token& stop) {
 void StreamWorker::work(const Request& request, const std::stop_token& stop) {
   const auto choice =
       std::make_shared<const LevelChoice>(chooser_.choose(request.views, request.detail, request.visible));
-  Loss loss{.here = request.here, .at = request.at};
-  if (choice->knows_errors()) loss.error = std::make_shared<RunningError>(choice, request.visible.drawn);
+  Chosen chosen{.is_limited = choice->is_limited, .here = request.here, .at = request.at};
+  if (choice->knows_errors()) chosen.error = std::make_shared<RunningError>(choice, request.visible.drawn);
+  chosen.made_at = Clock::now();
   {
     const std::lock_guard lock(mutex_);
-    std::swap(loss_, loss);  // the one before is freed when no frame waits for the lock any more
-    is_limited_ = choice->is_limited;
+    std::swap(chosen_, chosen);  // the one before is freed when no frame waits for the lock any more
+    is_choosing_ = false;
   }
   files_.read(
       keep_wanted(*choice), *choice, [&](LodFiles::Piece piece) { add(std::move(piece), stop); },

@@ -30,11 +30,13 @@ class StreamWorker {
     std::size_t here = 0;       // of the views: they come first, and others lie ahead
     Clock::time_point at = {};  // when the eyes were there
   };
-  /// What the views of a choice by dB lose.
-  struct Loss {
-    std::shared_ptr<RunningError> error;  // none where there was no such choice
+  /// The last choice.
+  struct Chosen {
+    std::shared_ptr<RunningError> error;  // that its views lose; none where it is not by dB
+    bool is_limited = false;              // more is needed than it was allowed to have read
     std::size_t here = 0;                 // as the request says
     Clock::time_point at = {};
+    Clock::time_point made_at = {};
   };
 
   /// Of files, which must outlive it, whose chunks are `there` at these levels.
@@ -48,10 +50,9 @@ class StreamWorker {
   std::vector<LodFiles::Piece> take(std::size_t gaussians);
   /// Whether all that was requested has been taken.
   bool is_idle() const;
-  /// By the last choice.
-  Loss loss() const;
-  /// Whether the last choice needs more than it was allowed to have read.
-  bool is_limited() const;
+  Chosen chosen() const;
+  /// Whether the choice that was requested last is still to be made.
+  bool is_choosing() const;
   /// Throws what choosing or reading threw.
   void check() const;
 
@@ -68,10 +69,10 @@ class StreamWorker {
   std::condition_variable_any changed_;
   std::vector<std::size_t> there_;  // levels, of chunks that were taken
   std::optional<Request> request_;
-  bool is_at_work_ = false, is_limited_ = false;
+  bool is_at_work_ = false, is_choosing_ = false;
   std::deque<LodFiles::Piece> pieces_;
   std::size_t waiting_ = 0;  // their Gaussians
-  Loss loss_;
+  Chosen chosen_;
   std::exception_ptr trouble_;
   std::jthread thread_;  // last: it ends first
 };

@@ -115,20 +115,20 @@ TEST(StreamWorker, ReportsWhatViewsLose) {
   view.row_y = {0, 1, 0, 0};
   view.row_z = {0, 0, 1, 0};
   view.width = view.height = 100;
-  EXPECT_FALSE(worker.loss().error);
+  EXPECT_FALSE(worker.chosen().error);
   const VisibleChunks visible{{std::vector<ChunkVisibility>(chunks, {50.0, 30.0})}, Levels(chunks, 2)};
   worker.request({{view}, {.db = 100.0, .most_new = 400}, visible});
   Levels levels(chunks, 2);
   put(all_of(worker), levels);
-  ASSERT_TRUE(worker.loss().error);
-  EXPECT_TRUE(worker.is_limited());
-  const double before = worker.loss().error->error(0, 1);
-  worker.loss().error->follow(levels);
-  EXPECT_LT(worker.loss().error->error(0, 1), before) << "planted: of the levels that were drawn";
-  EXPECT_GT(worker.loss().error->error(0, 1), 0.0);
+  ASSERT_TRUE(worker.chosen().error);
+  EXPECT_TRUE(worker.chosen().is_limited);
+  const double before = worker.chosen().error->error(0, 1);
+  worker.chosen().error->follow(levels);
+  EXPECT_LT(worker.chosen().error->error(0, 1), before) << "planted: of the levels that were drawn";
+  EXPECT_GT(worker.chosen().error->error(0, 1), 0.0);
   worker.request({{view}, {.db = 100.0}, visible});
   put(all_of(worker), levels);
-  EXPECT_FALSE(worker.is_limited());
+  EXPECT_FALSE(worker.chosen().is_limited);
   EXPECT_EQ(levels, Levels(chunks, 0));
 }
 
