@@ -56,9 +56,11 @@ class Stream {
   /// the context must be current in all that follows, and frames of it must end before the stream.
   std::shared_ptr<render::GpuModel> gpu_model(gl::Context& context, int precision);
 
-  /// For frames that must not wait, a call each: within about so many ms puts what was read meanwhile into
-  /// the model and onto the GPU, or measures what one of the views shows; reads what the views need in a
-  /// thread of its own. The views are those of one frame in the model's frame. Returns whether the model has
+  /// For frames that must not wait, a call each: within about so many ms it puts what was read meanwhile into
+  /// the model and onto the GPU, or measures what one of the views shows; what the views need is chosen and
+  /// read by a thread of its own. While the views move, half of them are measured where they will be by the
+  /// time that levels are there; once they rest and all has come, one frame takes longer, and calibrates what
+  /// levels lose. The views are those of one frame in the model's frame. Returns whether the model has
   /// changed. Of the settings count quality and those of a visibility pass. Throws what reading threw; then
   /// nothing more is read.
   bool begin_frame(std::span<const shared::View> views, const render::FrameSettings& settings, double ms);
@@ -77,8 +79,7 @@ class Stream {
   std::size_t gaussians() const { return chunks_.gaussians(); }
   /// PSNR in dB that the views are predicted to have against the finest levels with the levels that the model
   /// has now, by the calibration: of those that were measured last, where they were and ahead of that, by how
-  /// long ago it was. None where dB are not gone by, or nothing
-  /// was measured yet.
+  /// long ago it was. None where dB are not gone by, or nothing was measured yet.
   std::optional<double> reported_db() const;
   /// How many dB are left for a frame of so many dB for frame and levels together.
   double quality_left(double together_db) const;
@@ -100,10 +101,10 @@ class Stream {
   void request(StreamWorker::Request request);
   bool has_all() const;
   bool needs_another_pass() const;
+  double reported(double error) const;
   // Of settle():
   void start_over();
   void bring_to(const LevelChoice& choice);
-  double reported(double error) const;
   VisibleChunks measure(std::span<const shared::View> views, const render::FrameSettings& settings);
   VisibleChunks calibrate(std::span<const shared::View> views, const render::FrameSettings& settings,
                           LevelChoice& choice);

@@ -37,6 +37,11 @@ bool Stream::settle(std::span<const shared::View> views, const render::FrameSett
   worker_.reset();
   views_.assign(views.begin(), views.end());
   quality_ = settings.quality;
+  if (!settings_.detail.heads_turn) {  // nothing counts that was found for other pictures
+    chooser_.forget();
+    calibration_ = {};
+    samples_ = 0;
+  }
   const DetailRequest request = request_for(views);
   if (settings_.room) model_.room = std::min(request.most, files_.finest()) + files_.spare();
   bool changed = false;
@@ -45,7 +50,6 @@ bool Stream::settle(std::span<const shared::View> views, const render::FrameSett
     bring_to(choice);
   };
   if (!settings_.detail.heads_turn) {
-    chooser_.forget();
     if (request.db) {  // what is measured first is the coarsest
       start_over();
       change(chooser_.choose({}, {}, {}));
@@ -111,11 +115,8 @@ VisibleChunks Stream::measure(std::span<const shared::View> views, const render:
   return {visibility_->measure(views, settings, chunks_), drawn_};
 }
 
-/// As if nothing had been read but what belongs to every level.
+/// As if nothing had been read yet but what belongs to every level.
 void Stream::start_over() {
-  chooser_.forget();
-  calibration_ = {};
-  samples_ = 0;
   model_.resize(0);
   chunks_ = ModelChunks(chunks_.size());
   drawn_.assign(files_.chunks().size(), LodFiles::not_read);
