@@ -118,10 +118,11 @@ TEST(StreamedSogArchives, AreTheSameAsFolders) {
     EXPECT_TRUE(test::equal(load_within(archives.path(), budget), load_within(folders.path(), budget)));
     // As it is read while frames are drawn.
     const auto read = [](const fs::path& path) {
-      StreamedSog scene(path);
-      scene.choose({}, {});
-      Model all = scene.like();
-      scene.read([&](const StreamedSog::Piece& piece) { append(all, piece.model, 0, piece.model.count()); });
+      const LodFiles files(path);
+      const std::vector<std::size_t> none(files.chunks().size(), LodFiles::not_read);
+      Model all = files.environment();
+      files.read(none, choose_levels(files.chunks(), {}, {}),
+                 [&](const LodFiles::Piece& piece) { append(all, piece.model, 0, piece.model.count()); });
       return all;
     };
     EXPECT_TRUE(is_streamed_sog(archives.path()));
@@ -137,7 +138,7 @@ TEST(StreamedSogArchives, ThatAreDamagedAreNamed) {
   const auto with = [&](const std::string& bytes, std::initializer_list<std::string> parts) {
     copy.write(bytes, "0_0.sog");
     return test::fails_saying([&] { load_model(copy.path()); }, parts) &&
-           test::fails_saying([&] { StreamedSog scene(copy.path()); }, parts);
+           test::fails_saying([&] { LodFiles files(copy.path()); }, parts);
   };
   EXPECT_TRUE(with(good.substr(0, good.size() / 2), {"0_0.sog: the zip archive is damaged or cut short"}));
   EXPECT_TRUE(with(test::zipped({{"a", "b"}}), {"0_0.sog is a zip archive without a meta.json"}));

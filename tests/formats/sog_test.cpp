@@ -273,9 +273,10 @@ TEST(SogErrors, ManyFilesThatPromiseMuch) {
                                                     "cannot hold them"};
   EXPECT_EQ(load_model(folder / "0").count(), 614400u);
   EXPECT_TRUE(test::fails_saying([&] { load_model(folder / "lod-meta.json"); }, parts));
-  StreamedSog followed(folder / "lod-meta.json");
-  followed.choose({}, {});
-  EXPECT_TRUE(test::fails_saying([&] { followed.read([](const StreamedSog::Piece&) {}); }, parts));
+  const LodFiles files(folder / "lod-meta.json");
+  const LevelChoice choice = choose_levels(files.chunks(), {}, {});
+  const std::vector<std::size_t> none(2, LodFiles::not_read);
+  EXPECT_TRUE(test::fails_saying([&] { files.read(none, choice, [](const LodFiles::Piece&) {}); }, parts));
 }
 
 TEST(SogErrors, Archives) {
