@@ -50,7 +50,7 @@ struct LevelsStudyTest : testing::Test {
     for (std::size_t k = 0; k < 2; ++k) {
       following.push_back({30.0 + 10.0 * static_cast<double>(k),
                            std::make_shared<render::GpuModel>(context, models[k]),
-                           [k](render::Frame&, std::span<const shared::View>) {
+                           [k](std::span<const shared::View>) {
                              return LevelsBrought{100 + k, 33.0};
                            }});
     }
