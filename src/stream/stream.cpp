@@ -177,14 +177,15 @@ void Stream::request(StreamWorker::Request request) {
 }
 
 bool Stream::put_some(double ms) {
-  const auto most = static_cast<std::size_t>(ms * put_a_ms_);
-  const std::vector<LodFiles::Piece> pieces = worker_->take(std::max(most, put_least));
-  if (pieces.empty()) return false;
   const auto start = Clock::now();
+  const auto most = static_cast<std::size_t>(ms * put_a_ms_);
+  std::vector<LodFiles::Piece> pieces = worker_->take(std::max(most, put_least));
+  if (pieces.empty()) return false;
   put(pieces);
   gpu_model_->reload(chunks_.take_changes());
   std::size_t gaussians = 0;
   for (const LodFiles::Piece& piece : pieces) gaussians += piece.model.count();
+  pieces.clear();  // which takes time, too
   if (gaussians >= put_least)
     put_a_ms_ = std::lerp(put_a_ms_, static_cast<double>(gaussians) / std::max(ms_since(start), 1e-3), 0.2);
   pass_.is_outdated = true;
