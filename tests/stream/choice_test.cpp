@@ -107,7 +107,7 @@ TEST(Choice, LevelsAndFramesShareABudget) {
 }
 
 /// From -1 along x, with so many px for each radian.
-shared::View along_x(float focal) {
+shared::View view_along_x(float focal) {
   shared::View view = test::view_at({-1, 0.5, 0.5}, focal);
   view.row_x = {0, 0, -1, 0};
   view.row_y = {0, 1, 0, 0};
@@ -119,11 +119,11 @@ shared::View along_x(float focal) {
 // By px, by dB, and the coarsest where nobody looks.
 TEST(Choice, IsWhatIsRequested) {
   std::vector<LodChunk> chunks = row_of_chunks(6);
-  const std::vector<shared::View> views = {along_x(100.0f)};
+  const std::vector<shared::View> views = {view_along_x(100.0f)};
   EXPECT_EQ(choose_levels(chunks, views, {.apart_px = 4.0}).levels,
             choose_apart(chunks, {{-1, 0.5, 0.5}}, any_number, 0.04));
   EXPECT_NE(choose_levels(chunks, views, {.apart_px = 4.0}).levels,
-            choose_levels(chunks, std::vector{along_x(500.0f)}, {.apart_px = 4.0}).levels)
+            choose_levels(chunks, std::vector{view_along_x(500.0f)}, {.apart_px = 4.0}).levels)
       << "planted: as if by a shorter lens";
   EXPECT_EQ(choose_levels(chunks, {}, {}).levels, std::vector<std::size_t>(6, 2));
   EXPECT_EQ(choose_levels(chunks, {}, {.db = 40.0}).levels, std::vector<std::size_t>(6, 2));

@@ -55,15 +55,6 @@ struct Frames {
   }
 };
 
-/// Along x, of all Gaussians that are drawn, in order.
-std::vector<float> positions(const Model& model) {
-  std::vector<float> found;
-  for (std::size_t i = 0; i < model.count(); ++i)
-    if (model.opacity[i] > 0.0f) found.push_back(model.position[i].x);
-  std::ranges::sort(found);
-  return found;
-}
-
 std::vector<Picture> pictures(const Model& model, const shared::View& view) {
   render::Frame frame(test::gl_context(), model);
   frame.draw({&view, 1}, {});

@@ -23,7 +23,7 @@ using test::beside_last;
 using test::far_away;
 using test::view_at;
 
-StreamWorker::Request from(const glm::dvec3& eye) { return {{view_at(eye)}, {30.0}, {}}; }
+StreamWorker::Request request_from(const glm::dvec3& eye) { return {{view_at(eye)}, {30.0}, {}}; }
 
 /// Takes all that comes; in its order.
 std::vector<LodFiles::Piece> all_of(StreamWorker& worker) {
@@ -38,7 +38,7 @@ std::vector<LodFiles::Piece> all_of(StreamWorker& worker) {
   return all;
 }
 
-void put(const std::vector<LodFiles::Piece>& pieces, Levels& levels) {
+void note_levels(const std::vector<LodFiles::Piece>& pieces, Levels& levels) {
   for (const LodFiles::Piece& piece : pieces) levels[piece.chunk] = piece.level;
 }
 
@@ -47,18 +47,18 @@ TEST(StreamWorker, ReadsWhatSwitchesAndWhatShrinksFirst) {
   const LodFiles files(folder / "sog/st-lod");
   StreamWorker worker(files, {1, 1, 1});
   EXPECT_TRUE(worker.is_idle());
-  worker.request(from(far_away));
+  worker.request(request_from(far_away));
   EXPECT_TRUE(all_of(worker).empty());
-  worker.request(from(beside_last));
+  worker.request(request_from(beside_last));
   const auto finer = all_of(worker);
   ASSERT_EQ(finer.size(), 1u);
   EXPECT_EQ(finer[0].model.count(), 248u);
-  worker.request(from(beside_first));
+  worker.request(request_from(beside_first));
   const auto both = all_of(worker);
   ASSERT_EQ(both.size(), 2u);
   EXPECT_EQ(both[0].model.count(), 65u);
   EXPECT_EQ(both[1].model.count(), 505u);
-  worker.request(from(beside_first));
+  worker.request(request_from(beside_first));
   EXPECT_TRUE(all_of(worker).empty());
 }
 
@@ -76,13 +76,13 @@ TEST(StreamWorker, EndsWithWhatWasRequestedLast) {
   std::set<Levels> met;
   for (int n = 0; n < 400; ++n) {
     const std::size_t place = random() % places.size();
-    worker.request(from(places[place]));
+    worker.request(request_from(places[place]));
     for (std::size_t k = random() % 4; k > 0; --k) {
       std::this_thread::sleep_for(std::chrono::microseconds(random() % 2000));
-      put(worker.take(1), levels);
+      note_levels(worker.take(1), levels);
     }
     if (n % 5 != 0) continue;
-    put(all_of(worker), levels);
+    note_levels(all_of(worker), levels);
     ASSERT_EQ(levels, alone[place]) << n;
     met.insert(levels);
   }
@@ -97,7 +97,7 @@ TEST(StreamWorker, ALevelWithoutGaussiansIsALevel) {
   });
   const LodFiles files(copy.path());
   StreamWorker worker(files, {1, 1, 0});
-  worker.request(from(far_away));
+  worker.request(request_from(far_away));
   const auto pieces = all_of(worker);
   ASSERT_EQ(pieces.size(), 1u);
   EXPECT_EQ(pieces[0].level, 1u);
@@ -119,7 +119,7 @@ TEST(StreamWorker, ReportsWhatViewsLose) {
   const VisibleChunks visible{{std::vector<ChunkVisibility>(chunks, {50.0, 30.0})}, Levels(chunks, 2)};
   worker.request({{view}, {.db = 100.0, .most_new = 400}, visible});
   Levels levels(chunks, 2);
-  put(all_of(worker), levels);
+  note_levels(all_of(worker), levels);
   ASSERT_TRUE(worker.chosen().error);
   EXPECT_TRUE(worker.chosen().is_limited);
   const double before = worker.chosen().error->error(0, 1);
@@ -127,7 +127,7 @@ TEST(StreamWorker, ReportsWhatViewsLose) {
   EXPECT_LT(worker.chosen().error->error(0, 1), before) << "planted: of the levels that were drawn";
   EXPECT_GT(worker.chosen().error->error(0, 1), 0.0);
   worker.request({{view}, {.db = 100.0}, visible});
-  put(all_of(worker), levels);
+  note_levels(all_of(worker), levels);
   EXPECT_FALSE(worker.chosen().is_limited);
   EXPECT_EQ(levels, Levels(chunks, 0));
 }
@@ -138,7 +138,7 @@ TEST(StreamWorker, EndsInTheMidstOfIt) {
   for (int n = 0; n < 20; ++n) {
     StreamWorker worker(files, {1, 1, 1});
     for (int k = 0; k < n; ++k) {
-      worker.request(from(k % 2 == 0 ? beside_first : beside_last));
+      worker.request(request_from(k % 2 == 0 ? beside_first : beside_last));
       worker.take(1);
     }
   }
@@ -150,7 +150,7 @@ TEST(StreamWorker, TellsWhatIsWrong) {
   const LodFiles files(copy.path());
   StreamWorker worker(files, {1, 1, 1});
   std::filesystem::resize_file(copy.path() / "0_0/means_l.webp", 100);
-  worker.request(from(beside_first));
+  worker.request(request_from(beside_first));
   const auto waits = [&] {
     for (int n = 0; n < 60'000; ++n) {
       worker.check();
