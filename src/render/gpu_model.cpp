@@ -8,7 +8,7 @@
 #include <numeric>
 #include <span>
 
-#include "base/frame_crew.h"
+#include "base/worker_pool.h"
 #include "base/parallel.h"
 #include "render/halves.h"
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <bit>
 
-#include "base/frame_crew.h"
+#include "base/worker_pool.h"
 #include "shared/limits.h"
 
 namespace binosplat::render {

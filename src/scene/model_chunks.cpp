@@ -4,7 +4,7 @@
 #include <bit>
 #include <utility>
 
-#include "base/frame_crew.h"
+#include "base/worker_pool.h"
 #include "scene/reduce.h"
 
 namespace binosplat {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstddef>
 
-#include "base/frame_crew.h"
+#include "base/worker_pool.h"
 #include "render/stages.h"
 
 namespace binosplat {

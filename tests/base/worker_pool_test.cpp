@@ -1,4 +1,4 @@
-#include "base/frame_crew.h"
+#include "base/worker_pool.h"
 
 #include <gtest/gtest.h>
 
@@ -9,55 +9,55 @@
 namespace binosplat {
 namespace {
 
-std::vector<int> times_called(FrameCrew& crew, std::size_t count, std::size_t chunk) {
+std::vector<int> times_called(WorkerPool& pool, std::size_t count, std::size_t chunk) {
   std::vector<std::atomic<int>> times(count);
-  crew.run(count, chunk, [&](std::size_t begin, std::size_t end) {
+  pool.run(count, chunk, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) ++times[i];
   });
   return {times.begin(), times.end()};
 }
 
-TEST(FrameCrew, WorksOnEachOnce) {
+TEST(WorkerPool, WorksOnEachOnce) {
   for (const int threads : {-1, 0, 1, 3}) {
-    FrameCrew crew(threads);
+    WorkerPool pool(threads);
     for (const std::size_t count : {0, 1, 2, 7, 1000, 12345}) {
       for (const std::size_t chunk : {1, 3, 1000, 20000}) {
-        EXPECT_EQ(times_called(crew, count, chunk), std::vector<int>(count, 1))
+        EXPECT_EQ(times_called(pool, count, chunk), std::vector<int>(count, 1))
             << threads << " threads, " << count << " by " << chunk;
       }
     }
   }
 }
 
-TEST(FrameCrew, IsOfAllItsThreads) {
-  FrameCrew crew(1);
+TEST(WorkerPool, IsOfAllItsThreads) {
+  WorkerPool pool(1);
   std::atomic<int> there = 0;
-  crew.run(2, 1, [&](std::size_t, std::size_t) {
+  pool.run(2, 1, [&](std::size_t, std::size_t) {
     ++there;
     while (there < 2) std::this_thread::yield();  // alone it would wait forever
   });
   EXPECT_EQ(there, 2);
 }
 
-TEST(FrameCrew, WorksForSeveralThreadsAtATime) {
-  FrameCrew crew(2);
+TEST(WorkerPool, WorksForSeveralThreadsAtATime) {
+  WorkerPool pool(2);
   std::atomic<int> wrong = 0;
   {
     std::vector<std::jthread> threads;
     for (int k = 0; k < 3; ++k) {
       threads.emplace_back([&] {
-        for (int n = 0; n < 300; ++n) wrong += times_called(crew, 500, 7) != std::vector<int>(500, 1);
+        for (int n = 0; n < 300; ++n) wrong += times_called(pool, 500, 7) != std::vector<int>(500, 1);
       });
     }
   }
   EXPECT_EQ(wrong, 0);
 }
 
-TEST(FrameCrew, WorksWhereItIsAtWorkAlready) {
-  FrameCrew crew(2);
+TEST(WorkerPool, WorksWhereItIsAtWorkAlready) {
+  WorkerPool pool(2);
   std::atomic<int> inner = 0;
-  crew.run(8, 1, [&](std::size_t, std::size_t) {
-    crew.run(10, 1, [&](std::size_t begin, std::size_t end) { inner += static_cast<int>(end - begin); });
+  pool.run(8, 1, [&](std::size_t, std::size_t) {
+    pool.run(10, 1, [&](std::size_t begin, std::size_t end) { inner += static_cast<int>(end - begin); });
   });
   EXPECT_EQ(inner, 80);
 }

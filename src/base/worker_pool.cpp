@@ -1,4 +1,4 @@
-#include "base/frame_crew.h"
+#include "base/worker_pool.h"
 
 #include <algorithm>
 
@@ -6,12 +6,12 @@
 
 namespace binosplat {
 
-FrameCrew::FrameCrew(int threads) {
+WorkerPool::WorkerPool(int threads) {
   for (int k = 0; k < threads; ++k)
     threads_.emplace_back([this](const std::stop_token& stop) { help(stop); });
 }
 
-void FrameCrew::run(std::size_t count, std::size_t chunk, const Body& body) {
+void WorkerPool::run(std::size_t count, std::size_t chunk, const Body& body) {
   if (count == 0) return;
   if (threads_.empty() || count <= chunk || is_called_.exchange(true)) return body(0, count);
   {
@@ -31,7 +31,7 @@ void FrameCrew::run(std::size_t count, std::size_t chunk, const Body& body) {
   is_called_ = false;
 }
 
-void FrameCrew::help(const std::stop_token& stop) {
+void WorkerPool::help(const std::stop_token& stop) {
   std::unique_lock lock(mutex_);
   while (changed_.wait(lock, stop, [&] { return body_ != nullptr && next_ < count_; })) {
     ++helping_;
@@ -44,15 +44,15 @@ void FrameCrew::help(const std::stop_token& stop) {
 }
 
 // Nothing is handed over from chunk to chunk: relaxed, so that the thread sanitizer sees where bodies do.
-void FrameCrew::work(const Body& body) {
+void WorkerPool::work(const Body& body) {
   const auto next = [&] { return next_.fetch_add(chunk_, std::memory_order_relaxed); };
   for (std::size_t begin = next(); begin < count_; begin = next())
     body(begin, std::min(begin + chunk_, count_));
 }
 
-void frame_chunks(std::size_t count, std::size_t chunk, const FrameCrew::Body& body) {
-  static FrameCrew crew(core_count() / 4 - 1);
-  crew.run(count, chunk, body);
+void frame_chunks(std::size_t count, std::size_t chunk, const WorkerPool::Body& body) {
+  static WorkerPool pool(core_count() / 4 - 1);
+  pool.run(count, chunk, body);
 }
 
 }  // namespace binosplat

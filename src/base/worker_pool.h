@@ -13,12 +13,12 @@ namespace binosplat {
 
 /// Threads that work for frames only. Those of parallel_chunks may be others' for some ms, and have given
 /// way to others once they worked in the background: a frame that waits for them has no time for that.
-class FrameCrew {
+class WorkerPool {
  public:
   /// That many beside the thread that calls.
-  explicit FrameCrew(int threads);
-  FrameCrew(const FrameCrew&) = delete;
-  FrameCrew& operator=(const FrameCrew&) = delete;
+  explicit WorkerPool(int threads);
+  WorkerPool(const WorkerPool&) = delete;
+  WorkerPool& operator=(const WorkerPool&) = delete;
 
   /// Calls body(begin, end) for chunks of `chunk` at most that make up [0, count), by this thread and those
   /// that are free, or by this one alone while another call is at work. `body` must not throw.
@@ -39,8 +39,8 @@ class FrameCrew {
   std::vector<std::jthread> threads_;  // last: they end first
 };
 
-/// By a crew for all, of a quarter of the cores with the one that calls.
-void frame_chunks(std::size_t count, std::size_t chunk, const FrameCrew::Body& body);
+/// By one pool for all frames, of a quarter of the cores with the one that calls.
+void frame_chunks(std::size_t count, std::size_t chunk, const WorkerPool::Body& body);
 
 /// Numbers of 4 bytes to copy that are worth a thread's while: some 20 us.
 inline constexpr std::size_t frame_chunk_numbers = std::size_t{1} << 15;
