@@ -14,8 +14,8 @@
 #include <thread>
 #include <vector>
 
-#include "base/worker_pool.h"
 #include "base/parallel_sort.h"
+#include "base/worker_pool.h"
 
 namespace binosplat {
 namespace {
