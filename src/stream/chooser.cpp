@@ -13,8 +13,8 @@ LevelChoice Chooser::choose(std::span<const shared::View> views, const DetailReq
   LevelChoice choice = choose_levels(files_.chunks(), views, of_chunks, visible, before_);
   before_ = views.empty() ? std::vector<std::size_t>() : choice.levels;
   const std::size_t total = files_.count(choice.levels);
-  if (total > request.most && !told_no_room_) warn_of_no_room(files_.name(), total, request.most);
-  told_no_room_ = total > request.most;
+  if (total > request.most && !warned_) warn_of_no_room(files_.name(), total, request.most);
+  warned_ = total > request.most;
   return choice;
 }
 

@@ -2,6 +2,7 @@
 // Choices of levels one after the other.
 
 #include <span>
+#include <string>
 #include <vector>
 
 #include "stream/choice.h"
@@ -9,7 +10,7 @@
 
 namespace binosplat {
 
-/// Each choice goes by the one before it (choose_levels), and is told where there is too little room for it.
+/// Each choice goes by the one before it (choose_levels). Warns where even the coarsest levels do not fit.
 class Chooser {
  public:
   /// Of files that must outlive it.
@@ -23,7 +24,7 @@ class Chooser {
  private:
   const LodFiles& files_;
   std::vector<std::size_t> before_;
-  bool told_no_room_ = false;
+  bool warned_ = false;
 };
 
 /// That not even the coarsest levels fit.

@@ -17,7 +17,7 @@ struct DetailBudget {
   std::vector<glm::dvec3> eyes;                      // in the model's frame; empty: as if from far away
 };
 
-/// Reads each leaf of a streamed SOG at a level of its own (choose_levels), among those whose files are
+/// Reads each leaf of a streamed SOG at a level of its own (choose_apart), among those whose files are
 /// there. `path`: a lod-meta.json or the folder of one. Throws Error as load_streamed_sog() does, and where
 /// it is anything else.
 Model load_within(const std::filesystem::path& path, const DetailBudget& budget);
