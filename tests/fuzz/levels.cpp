@@ -6,6 +6,7 @@
 #include "formats/content.h"
 #include "formats/sog_levels.h"
 #include "fuzz/input.h"
+#include "stream/choice.h"
 
 namespace binosplat::fuzz {
 
