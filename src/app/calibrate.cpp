@@ -1,5 +1,5 @@
-// binosplat calibrate: the light by depth and the tolerances of a model, in a file that render and bench
-// take.
+// binosplat calibrate: the transmittance by depth and the tolerances of a model, in a file that render and
+// bench take.
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
@@ -32,7 +32,7 @@ void print_calibration(const lab::Calibration& c, const CalibrateOptions& o) {
   fmt::print("{} views of {} x {} px; {}\n", c.views.size(), c.width, c.height,
              drop ? fmt::format("target: at most {} dB lost against the photos", c.target.db)
                   : fmt::format("target: {} dB against the exact pictures", c.target.db));
-  fmt::print("light by depth: {} bins over [0, {:.4g}], {:.2f} s\n\n", c.depth_table.bounds.size(),
+  fmt::print("transmittance by depth: {} bins over [0, {:.4g}], {:.2f} s\n\n", c.depth_table.bounds.size(),
              c.depth_table.far, c.depth_table_seconds);
   fmt::print("{:<12}{:<8}{:>12}{:>10}{:>10}  {:<14}{:>8}{:>8}\n", "th", "source", "tolerance",
              drop ? "drop dB" : "PSNR dB", "worst dB", "in view", "pairs", "s");
@@ -92,7 +92,7 @@ void add_calibrate(CLI::App& program, Command& command) {
       ->type_name("N")
       ->check(range(1, 10000));
   add_size_option(*sub, o->camera.lens);
-  sub->add_option("--bins", o->table.bins, "Of the light by depth (20)")
+  sub->add_option("--bins", o->table.bins, "Of the transmittance by depth (20)")
       ->type_name("N")
       ->check(range(1, 10000));
   sub->add_option("--far", o->table.far,

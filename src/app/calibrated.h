@@ -19,8 +19,8 @@ class CalibratedSettings {
   /// A file of another model is not gone by: a warning says so. To be called before of().
   void check_model(const Model& model);
 
-  /// `settings` with the file's tolerance and light by depth; as they are without a file. Exact for a shot
-  /// that is far from the calibrated views, and for another model: a warning says so.
+  /// `settings` with the file's tolerance and transmittance by depth; as they are without a file. Exact for a
+  /// shot that is far from the calibrated views, and for another model: a warning says so.
   render::FrameSettings of(const Shot& shot, render::FrameSettings settings) const;
 
  private:

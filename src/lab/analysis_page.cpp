@@ -120,13 +120,13 @@ Section section_by_depth(const Analysis& a, Spread DepthBin::*value, const char*
 }
 
 /// How many of the bins, of those that hold Gaussians, have a largest max(T) above a half.
-std::string lit_bins(const Analysis& a) {
-  int lit = 0, all = 0;
+std::string bright_bins(const Analysis& a) {
+  int bright = 0, all = 0;
   for (const DepthBin& bin : a.contributions.by_depth) {
     all += bin.gaussians > 0;
-    lit += bin.transmittance.largest > 0.5;
+    bright += bin.transmittance.largest > 0.5;
   }
-  return fmt::format("{} of {}", lit, all);
+  return fmt::format("{} of {}", bright, all);
 }
 
 Section real_drops(const Analysis& a) {
@@ -199,10 +199,11 @@ Page analysis_page(const Analysis& a) {
           "largest alpha T of a Gaussian",
           "What each Gaussian contributes to the pixel that shows it best, by its depth in the view."),
       section_by_depth(
-          a, &DepthBin::transmittance, "light", "Light against depth (figure 6)", "max(T) of a Gaussian",
-          fmt::format("In {} bins of depth some Gaussian is lit by more than half: there a table by "
+          a, &DepthBin::transmittance, "light", "Transmittance against depth (figure 6)",
+          "max(T) of a Gaussian",
+          fmt::format("In {} bins of depth some Gaussian has a transmittance above a half: there a table by "
                       "depth can tell little, and what each Gaussian measured tells much.",
-                      lit_bins(a))),
+                      bright_bins(a))),
       real_drops(a),
       removed(a),
       speed(a)};

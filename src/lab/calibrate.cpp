@@ -32,9 +32,10 @@ Picture as_picture(const Image& photo) {
 
 }  // namespace
 
-/// What a view should look like, on the GPU, and what its exact picture is worth.
-struct Calibrator::Wanted {
-  Wanted(gl::Context& context, std::span<const Picture> pictures, std::uint32_t levels, std::uint64_t pairs)
+/// The picture that a view is compared with, on the GPU, and the dB of its exact picture.
+struct Calibrator::Reference {
+  Reference(gl::Context& context, std::span<const Picture> pictures, std::uint32_t levels,
+            std::uint64_t pairs)
       : error(context, pictures, levels), exact_pairs(pairs) {}
 
   render::SquaredError error;  // against the exact picture, or the photo
@@ -55,9 +56,10 @@ Calibrator::Calibrator(gl::Context& context, const Model& model, const std::vect
     names_.push_back(view.camera.name);
     views_.push_back(make_view(into_axes(view.camera, model.axes), near_plane));
     const std::uint64_t pairs = frame_.draw(std::span(&views_.back(), 1)).pairs;
-    const std::vector<Picture> wanted = drop ? std::vector{as_picture(*view.photo)} : frame_.read_pictures();
-    wanted_.push_back(std::make_unique<Wanted>(context, wanted, drop ? 255u : 0u, pairs));
-    wanted_.back()->exact_db = psnr_of(wanted_.back()->error.mean(frame_.colours()));
+    const std::vector<Picture> reference =
+        drop ? std::vector{as_picture(*view.photo)} : frame_.read_pictures();
+    references_.push_back(std::make_unique<Reference>(context, reference, drop ? 255u : 0u, pairs));
+    references_.back()->exact_db = psnr_of(references_.back()->error.mean(frame_.colours()));
   }
 }
 
@@ -91,8 +93,8 @@ Calibrator::Cost Calibrator::cost(render::Frame& frame, const render::FrameSetti
     }
     cost.ms += quantile(std::move(ms), 0.5) / count;
     cost.pairs += static_cast<double>(report.pairs) / count;
-    const double db = psnr_of(wanted_[v]->error.mean(frame.colours())),
-                 value = drop ? wanted_[v]->exact_db - db : db;
+    const double db = psnr_of(references_[v]->error.mean(frame.colours())),
+                 value = drop ? references_[v]->exact_db - db : db;
     const bool worse = drop ? value > cost.worst_db : value < cost.worst_db;
     if (v == 0 || worse) {
       cost.worst_db = value;
@@ -100,7 +102,7 @@ Calibrator::Cost Calibrator::cost(render::Frame& frame, const render::FrameSetti
     }
     cost.view_db.push_back(value);
     cost.mean_db += value / count;
-    const double pairs = static_cast<double>(wanted_[v]->exact_pairs);
+    const double pairs = static_cast<double>(references_[v]->exact_pairs);
     if (pairs > 0) cost.pairs_removed += (1.0 - static_cast<double>(report.pairs) / pairs) / count;
     if (after_view) after_view(v + 1);
   }
@@ -109,8 +111,8 @@ Calibrator::Cost Calibrator::cost(render::Frame& frame, const render::FrameSetti
 
 double Calibrator::exact_photo_db() const {
   double sum = 0.0;
-  for (const auto& wanted : wanted_) sum += wanted->exact_db;
-  return sum / static_cast<double>(wanted_.size());
+  for (const auto& reference : references_) sum += reference->exact_db;
+  return sum / static_cast<double>(references_.size());
 }
 
 render::DepthTable Calibrator::depth_table(const measure::DepthTableSettings& settings) {

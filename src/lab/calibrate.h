@@ -75,13 +75,13 @@ class Calibrator {
   Cost cost(render::Frame& frame, const render::FrameSettings& settings, int drawings,
             const std::function<void(std::size_t)>& after_view = {});
 
-  struct Wanted;
+  struct Reference;
   gl::Context& context_;
   render::Frame frame_;
   CalibrationTarget::Kind kind_;
   std::vector<std::string> names_;
   std::vector<shared::View> views_;
-  std::vector<std::unique_ptr<Wanted>> wanted_;
+  std::vector<std::unique_ptr<Reference>> references_;
 };
 
 /// The ways to draw that a calibration has entries for: both rules by every source that one eye has.

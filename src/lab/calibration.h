@@ -35,7 +35,7 @@ struct CalibrationEntry {
   double worst_db = 0.0;                  // of the worst view
   std::string worst_view;
   double pairs_removed = 0.0;  // share of the exact frames' pairs, mean over the views
-  int evaluations = 0;         // tolerances tried
+  int evaluations = 0;         // tolerances drawn
   double seconds = 0.0;
 };
 

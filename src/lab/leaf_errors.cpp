@@ -35,8 +35,8 @@ nlohmann::ordered_json json_of(const std::vector<LeafErrors>& leaves) {
 
 std::vector<LeafErrors> leaf_errors(const std::string& name, const std::string& text, std::size_t leaves,
                                     std::size_t levels) {
-  const nlohmann::json told = parse_json(name, text);
-  const JsonValue list = JsonValue(name, told).list_of(leaves);
+  const nlohmann::json json = parse_json(name, text);
+  const JsonValue list = JsonValue(name, json).list_of(leaves);
   std::vector<LeafErrors> errors(leaves);
   for (std::size_t k = 0; k < leaves; ++k) {
     const JsonValue leaf = list.at(k);
@@ -59,17 +59,17 @@ std::vector<LeafErrors> leaf_errors(const std::string& name, const std::string& 
 nlohmann::ordered_json json_of(const std::vector<LossTogether>& pictures) {
   nlohmann::ordered_json json = nlohmann::ordered_json::array();
   for (const LossTogether& picture : pictures) {
-    json.push_back(picture.drawn ? nlohmann::ordered_json{picture.predicted, picture.found} : nullptr);
+    json.push_back(picture.drawn ? nlohmann::ordered_json{picture.predicted, picture.measured} : nullptr);
   }
   return json;
 }
 
 std::vector<double> loss_shares(const std::string& name, const std::string& text) {
-  const nlohmann::json told = parse_json(name, text);
-  const JsonValue pictures(name, told);
+  const nlohmann::json json = parse_json(name, text);
+  const JsonValue pictures(name, json);
   std::vector<double> shares;
   for (std::size_t k = 0; k < pictures.size(); ++k) {
-    if (told[k].is_null()) continue;
+    if (json[k].is_null()) continue;
     const JsonValue picture = pictures.at(k).list_of(2);
     const double predicted = picture.at(0).number();
     if (predicted > 0.0) shares.push_back(picture.at(1).number() / predicted);
@@ -78,8 +78,8 @@ std::vector<double> loss_shares(const std::string& name, const std::string& text
 }
 
 bool all_drawn(const std::string& name, const std::string& text) {
-  const nlohmann::json told = parse_json(name, text);
-  return !told.empty() && std::ranges::none_of(told, [](const nlohmann::json& one) { return one.is_null(); });
+  const nlohmann::json json = parse_json(name, text);
+  return !json.empty() && std::ranges::none_of(json, [](const nlohmann::json& one) { return one.is_null(); });
 }
 
 }  // namespace binosplat

@@ -20,12 +20,12 @@ namespace binosplat::lab {
 namespace {
 
 constexpr double asked_db = 40.0;
-constexpr int looks = 3;  // at the levels of a picture; then a choice hardly changes any more
+constexpr int passes = 3;  // of visibility and choice, after which a choice hardly changes any more
 // Pictures: a headset's field in few pixels, so that each shows many parts.
 constexpr int side = 512;     // px
 constexpr double fov = 95.0;  // degrees
-// Eyes are tried in small pictures of the coarsest levels.
-constexpr int tried_side = 128, tries_for_one = 24, tried_at_once = 8;
+// Candidate eyes are checked in small pictures of the coarsest levels.
+constexpr int candidate_side = 128, candidates_for_one = 24, candidates_at_once = 8;
 constexpr double shows_least = 0.35;  // of a picture, that is not empty,
 constexpr double as_far_least = 0.4;  // on the whole, of how far away what it looks at is
 constexpr double hidden = 0.01;       // px of a part that is shown; of hundreds of thousands
@@ -105,14 +105,15 @@ class Leaves {
       const Model& level = leaves_[random.bits() % leaves_.size()].back();
       return glm::dvec3(level.position[random.bits() % level.count()]);
     };
-    for (int k = 0; k < tries_for_one * pictures && std::ssize(views) < pictures; k += tried_at_once) {
-      std::vector<Try> tries(tried_at_once);
-      for (Try& one : tries) {
+    for (int k = 0; k < candidates_for_one * pictures && std::ssize(views) < pictures;
+         k += candidates_at_once) {
+      std::vector<Candidate> candidates(candidates_at_once);
+      for (Candidate& one : candidates) {
         one.at = any();
         one.eye = glm::mix(one.at, any(), random.uniform(0.3, 1.0));
       }
-      std::erase_if(tries, [](const Try& one) { return one.eye == one.at; });
-      for (const Try& one : those_that_show(tries, room)) {
+      std::erase_if(candidates, [](const Candidate& one) { return one.eye == one.at; });
+      for (const Candidate& one : those_that_show(candidates, room)) {
         if (std::ssize(views) < pictures) views.push_back(from(one.eye, one.at, side));
       }
     }
@@ -127,7 +128,7 @@ class Leaves {
     bring_to(coarsest());
     LevelChoice choice;
     shows_.assign(leaves_.size(), 0.0);
-    for (int look = 0; look < looks; ++look) {
+    for (int pass = 0; pass < passes; ++pass) {
       const VisibleChunks seen{visibility_->measure({&view, 1}, {}, layout_), levels_};
       for (std::size_t i = 0; i < shows_.size(); ++i)
         shows_[i] = std::max(shows_[i], seen.by_view[0][i].area);
@@ -156,31 +157,31 @@ class Leaves {
     layout_.replace(model_, replacements);
   }
 
-  struct Try {
+  struct Candidate {
     glm::dvec3 eye, at;
   };
 
   /// Those whose views have much to show, and nothing close before what they look at.
-  std::vector<Try> those_that_show(std::span<const Try> tries, bool& room) {
+  std::vector<Candidate> those_that_show(std::span<const Candidate> candidates, bool& room) {
     std::vector<shared::View> views;
-    for (const Try& one : tries) views.push_back(from(one.eye, one.at, tried_side));
+    for (const Candidate& one : candidates) views.push_back(from(one.eye, one.at, candidate_side));
     std::vector<std::vector<ChunkVisibility>> seen;
     if (views.empty()) return {};
     if (!can_draw([&] { seen = visibility_->measure(views, {}, layout_); })) {
       room = false;
       return {};
     }
-    std::vector<Try> found;
-    for (std::size_t k = 0; k < tries.size(); ++k) {
+    std::vector<Candidate> found;
+    for (std::size_t k = 0; k < candidates.size(); ++k) {
       double area = 0.0, logarithms = 0.0;
       for (const ChunkVisibility& part : seen[k]) {
         if (part.area == 0.0) continue;
         area += part.area;
         logarithms += part.area * std::log(part.distance);
       }
-      if (area > shows_least * tried_side * tried_side &&
-          std::exp(logarithms / area) > as_far_least * glm::distance(tries[k].eye, tries[k].at))
-        found.push_back(tries[k]);
+      if (area > shows_least * candidate_side * candidate_side &&
+          std::exp(logarithms / area) > as_far_least * glm::distance(candidates[k].eye, candidates[k].at))
+        found.push_back(candidates[k]);
     }
     return found;
   }
@@ -213,7 +214,7 @@ std::vector<LossTogether> loss_together(gl::Context& context, std::span<const st
       error.add(leaves.colours(), side * side);
       leaves.refine();
       leaves.draw(view);
-      loss.found = error.mean(leaves.colours());
+      loss.measured = error.mean(leaves.colours());
     };
     loss.drawn = can_draw(draw);
     if (!loss.drawn) leaves.start_again();

@@ -23,7 +23,7 @@ namespace {
 constexpr std::size_t table_views = 16;
 
 using nlohmann::ordered_json;
-using Tell = std::function<void(const std::string&, std::size_t, std::size_t)>;
+using ProgressOf = std::function<void(const std::string&, std::size_t, std::size_t)>;
 
 MotionPath without_stops(MotionPath path) {
   for (MotionSegment& segment : path.segments) {
@@ -42,9 +42,9 @@ void summarise(const MotionPath& path, MovedPass& pass) {
 /// The frames of one model, along one path after the other.
 class Drive {
  public:
-  Drive(gl::Context& context, const Model& model, const MotionSettings& settings, const Tell& tell)
+  Drive(gl::Context& context, const Model& model, const MotionSettings& settings, const ProgressOf& progress)
       : settings_(settings),
-        tell_(tell),
+        progress_(progress),
         frame_(context, model),
         exact_(frame_.model(), settings.exact_bytes) {}
 
@@ -66,7 +66,7 @@ class Drive {
   void time(MotionResult& result);
 
   const MotionSettings& settings_;
-  const Tell& tell_;
+  const ProgressOf& progress_;
   render::Frame frame_;
   ExactFrames exact_;
   render::DepthTable table_;
@@ -93,7 +93,7 @@ MovedPass Drive::judged(const MotionPath& path, const Rule& rule, float request)
     for (std::size_t n = 0; n < path.segments[s].frames.size(); ++n) {
       const render::FrameReport report = frame_.draw(path.segments[s].frames[n], settings);
       frames.push_back({.view_db = exact_.psnr(frame_, s, n),
-                        .told_db = report.quality,
+                        .reported_db = report.quality,
                         .pairs = static_cast<double>(report.pairs),
                         .exact_pairs = exact_.pairs(s, n),
                         .tolerance = report.tolerance,
@@ -112,7 +112,7 @@ MovedPass Drive::exact_pass(const MotionPath& path) const {
       const std::vector<double> equal(path.segments[s].frames[n].size(),
                                       std::numeric_limits<double>::infinity());
       frames.push_back({.view_db = equal,
-                        .told_db = std::numeric_limits<double>::infinity(),
+                        .reported_db = std::numeric_limits<double>::infinity(),
                         .pairs = exact_.pairs(s, n),
                         .exact_pairs = exact_.pairs(s, n)});
     }
@@ -162,7 +162,7 @@ void Drive::time(MotionResult& result) {
   }
   std::size_t done = 0, differs = 0;
   const auto rounds = timed_rounds(frame_.model()->context(), settings_.rounds, all, [&] {
-    tell_(result.path.name + ": timing", ++done, settings_.rounds * all.size());
+    progress_(result.path.name + ": timing", ++done, settings_.rounds * all.size());
   });
   for (std::size_t k = 0; k < all.size(); ++k) {
     auto& frames = passes[k % passes.size()].into->frames[k / passes.size()];
@@ -190,7 +190,7 @@ MotionResult Drive::along(const MotionPath& path, const std::vector<Rule>& rules
   for (const Rule& rule : rules) {
     MovedRule& moved = result.rules.emplace_back(MovedRule{rule, judged(path, rule, settings_.quality)});
     if (settings_.equal) bring_to_target(path, moved);
-    tell_(path.name + ": rules", ++done, rules.size());
+    progress_(path.name + ": rules", ++done, rules.size());
   }
   time(result);
   return result;
@@ -237,7 +237,7 @@ ordered_json path_json(const MotionResult& result) {
 
 std::vector<MotionResult> measure_motion(gl::Context& context, const Model& model,
                                          const std::vector<MotionPath>& paths, std::vector<Rule> rules,
-                                         const MotionSettings& settings, const Tell& progress) {
+                                         const MotionSettings& settings, const ProgressOf& progress) {
   std::erase_if(rules, [](const Rule& rule) { return render::is_exact(rule.th); });
   Drive drive(context, model, settings, progress);
   const auto by_depth = [](const Rule& rule) { return rule.transmittance == TRANSMITTANCE_DEPTH; };

@@ -31,7 +31,7 @@ double MovedFrame::true_db() const {
   return std::min(equal_db, *std::min_element(view_db.begin(), view_db.end()));
 }
 
-double MovedFrame::told() const { return std::min(equal_db, told_db); }
+double MovedFrame::reported() const { return std::min(equal_db, reported_db); }
 
 std::vector<MovedFrame> frames_of(const MotionPath& path, const MovedFrames& frames, MotionPart part) {
   std::vector<MovedFrame> chosen;
@@ -55,7 +55,7 @@ MotionSummary summary_of(std::span<const MovedFrame> frames) {
   std::vector<double> db, beyond, pairs, exact_pairs, drawn, ms, once;
   for (const MovedFrame& frame : frames) {
     db.push_back(frame.true_db());
-    beyond.push_back(frame.told() - frame.true_db());
+    beyond.push_back(frame.reported() - frame.true_db());
     pairs.push_back(frame.pairs);
     exact_pairs.push_back(frame.exact_pairs);
     ms.push_back(frame.ms);
@@ -67,9 +67,9 @@ MotionSummary summary_of(std::span<const MovedFrame> frames) {
   summary.true_db = mean(db);
   summary.tenth_db = quantile(db, 0.1);
   summary.worst_db = *std::min_element(db.begin(), db.end());
-  summary.told_beyond = mean(beyond);
-  summary.told_worst = *std::max_element(beyond.begin(), beyond.end(),
-                                         [](double a, double b) { return std::abs(a) < std::abs(b); });
+  summary.reported_beyond = mean(beyond);
+  summary.reported_worst = *std::max_element(beyond.begin(), beyond.end(),
+                                             [](double a, double b) { return std::abs(a) < std::abs(b); });
   summary.pairs = mean(pairs);
   summary.removed = 1.0 - mean(pairs) / mean(exact_pairs);
   summary.drawn = mean(drawn);
@@ -81,9 +81,9 @@ MotionSummary summary_of(std::span<const MovedFrame> frames) {
 
 ordered_json to_json(const MotionSummary& s) {
   return object("frames", s.frames, "true_db", s.true_db, "tenth_percentile_db", s.tenth_db, "worst_db",
-                s.worst_db, "told_minus_true_db", s.told_beyond, "told_minus_true_farthest_db", s.told_worst,
-                "pairs", s.pairs, "pairs_removed", s.removed, "drawn", s.drawn, "frame_ms", s.ms,
-                "drawn_once_ms", s.once_ms, "most_ms", s.most_ms, "equal_frames", s.equal);
+                s.worst_db, "told_minus_true_db", s.reported_beyond, "told_minus_true_farthest_db",
+                s.reported_worst, "pairs", s.pairs, "pairs_removed", s.removed, "drawn", s.drawn, "frame_ms",
+                s.ms, "drawn_once_ms", s.once_ms, "most_ms", s.most_ms, "equal_frames", s.equal);
 }
 
 ordered_json to_json(const MovedFrames& frames) {
@@ -95,7 +95,7 @@ ordered_json to_json(const MovedFrames& frames) {
       for (const double db : frame.view_db) views.push_back(std::min(equal_db, db));
       one["true_db"].push_back(frame.true_db());
       one["view_db"].push_back(std::move(views));
-      one["told_db"].push_back(frame.told());
+      one["told_db"].push_back(frame.reported());
       one["pairs"].push_back(frame.pairs);
       one["pairs_removed"].push_back(1.0 - frame.pairs / frame.exact_pairs);
       one["tolerance"].push_back(frame.tolerance);

@@ -1,5 +1,5 @@
 #pragma once
-// What is told of frames that follow one another, and what many of them come to.
+// What is reported and measured of frames that follow one another, and what many of them come to.
 
 #include <functional>
 #include <nlohmann/json_fwd.hpp>
@@ -13,7 +13,7 @@ namespace binosplat::lab {
 /// One frame of a rule beside the exact one.
 struct MovedFrame {
   std::vector<double> view_db;  // each eye's, of 8-bit pictures; infinite for equal ones
-  double told_db = 0.0;         // what the frame said of itself
+  double reported_db = 0.0;     // what the frame said of itself
   double pairs = 0.0;           // its probe's included
   double exact_pairs = 0.0;
   double tolerance = 0.0;
@@ -22,7 +22,7 @@ struct MovedFrame {
 
   /// The worse eye's; for equal pictures equal_db of settings.h, which is in no case exceeded.
   double true_db() const;
-  double told() const;  // likewise
+  double reported() const;  // likewise
 };
 
 /// By segment.
@@ -34,8 +34,8 @@ struct MotionSummary {
   double true_db = 0.0;
   double tenth_db = 0.0;  // a tenth of the frames are no better
   double worst_db = 0.0;
-  double told_beyond = 0.0;  // told minus true
-  double told_worst = 0.0;   // the one of these that is farthest from 0
+  double reported_beyond = 0.0;  // reported minus true
+  double reported_worst = 0.0;   // the one of these that is farthest from 0
   double pairs = 0.0;
   double removed = 0.0;  // share of the exact frames' pairs, all frames together
   double drawn = 0.0;    // times

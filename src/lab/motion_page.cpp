@@ -41,7 +41,7 @@ Section words_kept(const MotionStudy& study) {
   };
   add_columns(study, "true dB", moving(&MotionSummary::true_db), table);
   add_columns(study, "worst dB", moving(&MotionSummary::worst_db), table);
-  add_columns(study, "reported minus true dB", moving(&MotionSummary::told_beyond), table);
+  add_columns(study, "reported minus true dB", moving(&MotionSummary::reported_beyond), table);
   const MovedRule* worst = nullptr;
   std::string where;
   for (const MotionResult& path : study.paths) {
@@ -136,7 +136,7 @@ std::vector<std::pair<std::string, const MovedFrames*>> passes_of(const MotionRe
 Section asked(const MotionStudy& study, const MotionResult& path) {
   const std::pair<std::string, Number> numbers[] = {
       {": true dB", [](const MovedFrame& frame) { return frame.true_db(); }},
-      {": reported dB", [](const MovedFrame& frame) { return frame.told(); }}};
+      {": reported dB", [](const MovedFrame& frame) { return frame.reported(); }}};
   const std::string& name = path.path.name;
   return frames_section(
       "asked-" + name, fmt::format("{}: true and reported", name),
@@ -188,11 +188,12 @@ Table asked_table(const MotionResult& path) {
   for (const MovedRule& rule : path.rules) {
     const MotionSummary &moving = rule.asked.moving, &stop = rule.asked.stop;
     const MovedShares part = shares(path, rule, false);
-    table.rows.push_back(row(
-        rule.name(), moving.true_db, moving.tenth_db, moving.worst_db, moving.told_beyond, moving.told_worst,
-        of_part(rule.asked.lead, &MotionSummary::worst_db), of_part(stop, &MotionSummary::true_db),
-        of_part(stop, &MotionSummary::worst_db), 1e-6 * moving.pairs, 100.0 * moving.removed, moving.drawn,
-        moving.ms, part.ms_of_exact, part.ms_of_one, moving.once_ms, moving.most_ms));
+    table.rows.push_back(row(rule.name(), moving.true_db, moving.tenth_db, moving.worst_db,
+                             moving.reported_beyond, moving.reported_worst,
+                             of_part(rule.asked.lead, &MotionSummary::worst_db),
+                             of_part(stop, &MotionSummary::true_db), of_part(stop, &MotionSummary::worst_db),
+                             1e-6 * moving.pairs, 100.0 * moving.removed, moving.drawn, moving.ms,
+                             part.ms_of_exact, part.ms_of_one, moving.once_ms, moving.most_ms));
   }
   return table;
 }

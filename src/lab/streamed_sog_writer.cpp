@@ -33,8 +33,10 @@ constexpr double pixel_share = 0.2;
 // Which pairs are merged is judged once for all levels, as this one sees them.
 constexpr int judged_level = 3;
 
-constexpr int pictures_in_all = 12;  // that tell what levels lose together; one of each scene, at least
-constexpr double more_most = 4.0;    // that they may lose more or less than each by itself
+// Pictures that say what levels lose together: one for so many leaves, so many in all at most, and one of
+// each scene.
+constexpr std::size_t leaves_a_picture = 4, pictures_most = 12;
+constexpr double more_most = 4.0;  // that they may lose more or less than each by itself
 
 constexpr const char* meta_name = "/meta.json";
 
@@ -62,7 +64,7 @@ struct File {
 
 /// Leaves that are worked on together, and the files in which all their levels lie.
 struct Piece {
-  std::string errors;  // the file that tells what its levels lose
+  std::string errors;  // the file of what its levels lose
   std::size_t first_leaf = 0, leaves = 0;
   std::vector<File> files;
 };
@@ -71,7 +73,7 @@ using Levels = std::vector<Model>;  // of a leaf, from the finest
 
 /// Pieces that are drawn together, as a model they may be.
 struct Scene {
-  std::string losses;  // the file that tells what its pictures lose
+  std::string losses;  // the file of what its pictures lose
   std::size_t first_piece = 0, pieces = 0, count = 0;
 };
 
@@ -125,7 +127,7 @@ class LevelsWriter {
     }
     Progress progress("writing levels of detail", work);
     write_pieces(progress);
-    tell_errors();
+    add_errors();
     std::size_t leaf = 0;
     const ordered_json meta = {
         {"version", 1},
@@ -272,7 +274,8 @@ class LevelsWriter {
         std::ranges::move(kept ? std::move(kept.mapped()) : written(piece), std::back_inserter(leaves));
         std::ranges::move(errors_of(piece), std::back_inserter(errors));
       }
-      const int pictures = std::max(1, pictures_in_all / static_cast<int>(scenes_.size()));
+      const std::size_t all = std::min(pictures_most, leaves_.size() / leaves_a_picture);
+      const int pictures = std::max(1, static_cast<int>(all / scenes_.size()));
       write(scene.losses, json_of(settings_.levels > 1 ? judge_.together(leaves, errors, pictures)
                                                        : std::vector<LossTogether>()));
     }
@@ -328,16 +331,16 @@ class LevelsWriter {
     });
   }
 
-  void tell_errors() {
+  void add_errors() {
     const double more = lost_together();
     for (const Piece& piece : pieces_) {
-      const std::vector<LeafErrors> told = errors_of(piece);
+      const std::vector<LeafErrors> errors = errors_of(piece);
       for (std::size_t i = 0; i < piece.leaves; ++i) {
         Leaf& leaf = leaves_[piece.first_leaf + i];
-        leaf.pixels = json_of(told[i].pixels);
-        leaf.seen = json_of(told[i].seen);
+        leaf.pixels = json_of(errors[i].pixels);
+        leaf.seen = json_of(errors[i].seen);
         for (std::size_t level = 0; level < gaussians_.size(); ++level)
-          leaf.lods[std::to_string(level)]["errors"] = json_of(told[i].of_level[level], more);
+          leaf.lods[std::to_string(level)]["errors"] = json_of(errors[i].of_level[level], more);
       }
     }
   }

@@ -29,7 +29,7 @@ struct LeafErrors {
 
 /// The squared error of a picture, as what leaves lose by themselves predicts it, and as it is.
 struct LossTogether {
-  double predicted = 0.0, found = 0.0;
+  double predicted = 0.0, measured = 0.0;
   bool drawn = true;  // false: there was no room for the picture
 };
 
@@ -63,9 +63,9 @@ struct LevelsWritten {
 /// pictures, and lod-meta.json when all are there: SOGs whose meta.json the folder has already, from a run
 /// with the same model and settings that was interrupted, are left as they are, and the result has the same
 /// bytes, if memory suffices for the same pictures. What levels lose is kept beside the SOGs, in
-/// errors_0.json and together_0.json and so on, and told in lod-meta.json: a leaf has "pixels" and "seen",
-/// and each of its lods "errors", as much larger or smaller as the median picture of many leaves is found to
-/// lose more or less than predicted. Progress is shown.
+/// errors_0.json and together_0.json and so on, and written to lod-meta.json: a leaf has "pixels" and "seen",
+/// and each of its lods "errors", as much larger or smaller as the median picture of many leaves is measured
+/// to lose more or less than predicted. Progress is shown.
 LevelsWritten write_streamed_sog(const Model& model, const LevelSettings& settings, const LevelFolder& folder,
                                  const JudgeLevels& judge);
 

@@ -20,7 +20,7 @@ namespace binosplat::lab {
 
 namespace {
 
-constexpr int drawings = 3;                                 // of a view whose time is told
+constexpr int drawings = 3;                                 // of a view whose time is reported
 constexpr int trial_rounds = 4;                             // that colours of a candidate are fitted in
 constexpr std::size_t some = 256;                           // Gaussians that a thread takes at a time
 constexpr double after_bits = 0.25, after_harmonics = 0.5;  // shares of the bound
@@ -38,7 +38,7 @@ class Trimmer {
     judge_own_ = open(views.held_back_own);
     test_ = open(views.test);
     test_own_ = open(views.test_own);
-    tell("as it was", model, 0);
+    add_step("as it was", model, 0);
   }
 
   Trimmed run() {
@@ -46,7 +46,7 @@ class Trimmer {
       refitted_ = original_;
       found_.less = fit(*refitted_, {}, judge());
       start_ = judged(*refitted_);
-      tell("colours fitted", *refitted_, 0);
+      add_step("colours fitted", *refitted_, 0);
     }
     const bool has_harmonics = whole().degree > 0 && settings_.format != ModelFormat::splat;
     weights_ = weigh(context_, whole(), views_.training, views_.near_plane, has_harmonics);
@@ -56,12 +56,12 @@ class Trimmer {
     const bool packs = settings_.format == ModelFormat::spz;
     if (!holds(cost(model_, 8), 1.0)) {
       found_.fits = false;
-      tell_written("as " + name);
+      add_written_step("as " + name);
     } else {
       if (packs && has_harmonics) lower_bits();
-      tell_written(packs && has_harmonics
-                       ? fmt::format("as {}, {} bits a harmonic", name, found_.harmonic_bits)
-                       : "as " + name);
+      add_written_step(packs && has_harmonics
+                           ? fmt::format("as {}, {} bits a harmonic", name, found_.harmonic_bits)
+                           : "as " + name);
       if (has_harmonics) lower_harmonics(packs);
       drop_gaussians();
     }
@@ -73,7 +73,7 @@ class Trimmer {
   /// What the bound is on: the mean of the views held back, in the size that loses more.
   double judged(const Model& model) {
     const std::size_t views = views_.held_back.size();
-    Progress progress(fmt::format("trying {} Gaussians of degree {}", model.count(), model.degree),
+    Progress progress(fmt::format("judging {} Gaussians of degree {}", model.count(), model.degree),
                       views + views_.held_back_own.size());
     const double db = judge_->cost(model, 1, [&](std::size_t done) { progress.update(done); }).mean_db;
     if (!judge_own_) return db;
@@ -243,15 +243,15 @@ class Trimmer {
 
   void take(const std::string& name) {
     found_.less = true;
-    tell_written(name);
+    add_written_step(name);
   }
 
-  void tell_written(const std::string& name) {
+  void add_written_step(const std::string& name) {
     const WrittenModel written = settings_.write(model_, found_.harmonic_bits);
-    tell(name, written.model, written.bytes);
+    add_step(name, written.model, written.bytes);
   }
 
-  void tell(const std::string& name, const Model& model, std::uintmax_t bytes) {
+  void add_step(const std::string& name, const Model& model, std::uintmax_t bytes) {
     TrimStep& step =
         found_.steps.emplace_back(TrimStep{name, model.count(), model.degree, bytes, {}, {}, {}, {}});
     step.held_back = judge_->cost(model, drawings);

@@ -41,11 +41,11 @@ struct TrimStep {
 };
 
 struct Trimmed {
-  Model model;                  // what to write, with
-  int harmonic_bits = 8;        // of spz
-  bool fits = true;             // the bound allows for what the format itself costs; else nothing was tried
-  bool less = false;            // anything could be left out, or colours fitted
-  std::size_t unseen = 0;       // Gaussians that touch no pixel of the training views
+  Model model;             // what to write, with
+  int harmonic_bits = 8;   // of spz
+  bool fits = true;        // the bound allows for what the format itself costs; else nothing was left out
+  bool less = false;       // anything could be left out, or colours fitted
+  std::size_t unseen = 0;  // Gaussians that touch no pixel of the training views
   std::vector<TrimStep> steps;  // from the whole model on, which has the bytes of no file
 };
 

@@ -16,7 +16,7 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 
 MovedFrame frame(double left, double right, double told, double pairs = 50.0) {
   return {.view_db = {left, right},
-          .told_db = told,
+          .reported_db = told,
           .pairs = pairs,
           .exact_pairs = 100.0,
           .tolerance = 0.1,
@@ -41,8 +41,8 @@ TEST(MotionNumbers, SayWhatSeriesComeTo) {
       << "the worse eye's; equal ones capped";
   EXPECT_EQ(s.tenth_db, 36.0);
   EXPECT_EQ(s.worst_db, 36.0);
-  EXPECT_DOUBLE_EQ(s.told_beyond, 0.3);
-  EXPECT_EQ(s.told_worst, 3.0);
+  EXPECT_DOUBLE_EQ(s.reported_beyond, 0.3);
+  EXPECT_EQ(s.reported_worst, 3.0);
   EXPECT_EQ(s.pairs, 50.0);
   EXPECT_DOUBLE_EQ(s.removed, 0.5);
   EXPECT_EQ(s.ms, 3.0);
@@ -63,8 +63,8 @@ TEST(MotionNumbers, SayWhatSeriesComeTo) {
 
 TEST(MotionNumbers, ATellerWhoSaysTooLittleIsFarOffToo) {
   const MotionSummary s = summary_of(std::vector{frame(44.0, 45.0, 39.0), frame(40.0, 41.0, 42.0)});
-  EXPECT_EQ(s.told_worst, -5.0);
-  EXPECT_EQ(s.told_beyond, -1.5);
+  EXPECT_EQ(s.reported_worst, -5.0);
+  EXPECT_EQ(s.reported_beyond, -1.5);
 }
 
 TEST(MotionNumbers, OfNoFramesAreNone) {

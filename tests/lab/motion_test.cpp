@@ -1,4 +1,4 @@
-// Rules along a moving head: what is told of them is what a second look at the same pictures finds.
+// Rules along a moving head: what is reported of them is what a second look at the same pictures finds.
 
 #include "lab/motion.h"
 
@@ -109,17 +109,17 @@ TEST_F(Motions, SeriesAreWhatASecondLookFinds) {
       const render::FrameReport report = frame.draw(views, settings);
       const auto drawn = frame.read_pictures();
       const auto db = looked_at(exact, drawn);
-      const MovedFrame& told = pass.frames[s][n];
-      for (std::size_t v = 0; v < 2; ++v) EXPECT_NEAR(told.view_db[v], db[v], 1e-4);
-      EXPECT_EQ(told.true_db(), std::min({told.view_db[0], told.view_db[1], equal_db}));
-      EXPECT_EQ(told.told_db, report.quality);
-      EXPECT_EQ(told.pairs, static_cast<double>(report.pairs));
-      EXPECT_EQ(told.exact_pairs, exact_pairs);
-      EXPECT_EQ(told.tolerance, report.tolerance);
-      EXPECT_GT(told.ms, 0.0);
+      const MovedFrame& made = pass.frames[s][n];
+      for (std::size_t v = 0; v < 2; ++v) EXPECT_NEAR(made.view_db[v], db[v], 1e-4);
+      EXPECT_EQ(made.true_db(), std::min({made.view_db[0], made.view_db[1], equal_db}));
+      EXPECT_EQ(made.reported_db, report.quality);
+      EXPECT_EQ(made.pairs, static_cast<double>(report.pairs));
+      EXPECT_EQ(made.exact_pairs, exact_pairs);
+      EXPECT_EQ(made.tolerance, report.tolerance);
+      EXPECT_GT(made.ms, 0.0);
       // The fault that this must see: the frame before is what it is compared with.
       const bool moves = n > 0 && n < path.segments[s].frames.size() - path.segments[s].stop;
-      if (moves) neighbours_off = std::max(neighbours_off, told.view_db[0] - looked_at(before, drawn)[0]);
+      if (moves) neighbours_off = std::max(neighbours_off, made.view_db[0] - looked_at(before, drawn)[0]);
       before = exact;
     }
   }
@@ -156,7 +156,8 @@ TEST_F(Motions, WhatHasNoRoomIsDrawnAgain) {
 }
 
 TEST_F(Motions, RulesComeToOneTrueQuality) {
-  const MotionPath path = small_path();
+  MotionPath path = small_path();
+  path.segments.pop_back();
   const MotionSettings settings{.quality = 44.0f, .target = 37.0, .rounds = 1};
   const MotionResult result = measured(path, {one, last}, settings);
   ASSERT_EQ(result.rules.size(), 2u);
@@ -167,7 +168,7 @@ TEST_F(Motions, RulesComeToOneTrueQuality) {
     EXPECT_NEAR(rule.equal->moving.true_db, 37.0, settings.equal_within);
     EXPECT_GT(std::abs(rule.asked.moving.true_db - 37.0), settings.equal_within);
     EXPECT_LT(rule.equal->request, 44.0f);
-    EXPECT_EQ(rule.equal->moving.frames, 8u);
+    EXPECT_EQ(rule.equal->moving.frames, 4u);
     EXPECT_EQ(rule.equal->stop.frames, 0u);
     EXPECT_GT(rule.equal->moving.ms, 0.0);
     EXPECT_LT(rule.equal->moving.pairs, rule.asked.moving.pairs);
@@ -180,7 +181,7 @@ TEST_F(Motions, RulesComeToOneTrueQuality) {
             result.rules[1].equal->moving.pairs / result.rules[0].equal->moving.pairs);
   EXPECT_EQ(second["ms_of_exact"], result.rules[1].equal->moving.ms / result.exact.moving.ms);
   EXPECT_EQ(second["segments"][0]["true_db"].size(), 6u);
-  EXPECT_EQ(json["rules"][1]["asked"]["segments"][1]["view_db"][7].size(), 2u);
+  EXPECT_EQ(json["rules"][1]["asked"]["segments"][0]["view_db"][7].size(), 2u);
   EXPECT_FALSE(json["rules"][1]["settings"].contains("tolerance"));
 }
 

@@ -27,7 +27,7 @@ namespace stability {
 constexpr int width = 128, height = 96;
 constexpr double focal = 96.0;
 constexpr double sh_c0 = 0.28209479177387814;
-constexpr std::size_t sway_frames = 24, still_frames = 300, turn_frames = 30;
+constexpr std::size_t sway_frames = 24, still_frames = 90, turn_frames = 30;
 
 inline void add_gaussian(Model& model, const glm::vec3& position, const glm::vec3& scale, float opacity,
                          const glm::vec3& colour) {
