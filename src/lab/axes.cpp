@@ -168,8 +168,7 @@ Axes parse_axes(const std::string& name, const std::string& text) {
     fail("{}: expected a list 'settings' of blocks", name);
   int number = 0;
   for (const nlohmann::json& object : root["settings"]) {
-    const nlohmann::json present = with_present_names(object);
-    const Block block(fmt::format("{}, settings, block {} (counted from 1)", name, ++number), present,
+    const Block block(fmt::format("{}, settings, block {} (counted from 1)", name, ++number), object,
                       {"tiles", "tile", "th", "precision", "transmittance", "inset", "context", "tolerance"});
     const std::size_t before = axes.settings.size();
     add_settings(block, axes.settings);

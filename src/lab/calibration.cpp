@@ -39,101 +39,56 @@ class Hash {
   std::uint64_t state_ = 0xcbf29ce484222325ull;
 };
 
-/// An object of the file; errors name the file and the key.
-class Reader {
- public:
-  Reader(std::string place, const nlohmann::json& object) : place_(std::move(place)), object_(object) {
-    if (!object_.is_object()) fail("{}: expected an object in braces", place_);
-  }
+double at_least(double low, const JsonValue& value) {
+  const double number = value.number();
+  if (number < low) value.fail_here("{}: expected a number of {} or more", number, low);
+  return number;
+}
 
-  const nlohmann::json& need(const char* key) const {
-    if (!object_.contains(key)) fail("{}: '{}' is missing", place_, key);
-    return object_.at(key);
-  }
-  double number(const char* key, double low = -std::numeric_limits<double>::infinity()) const {
-    const nlohmann::json& value = need(key);
-    const double v = value.is_number() ? value.get<double>() : NAN;
-    if (!(std::isfinite(v) && v >= low))
-      fail("{}: '{}' {}: expected a number of {} or more", place_, key, value.dump(), low);
-    return v;
-  }
-  std::string text(const char* key) const {
-    if (!need(key).is_string()) fail("{}: '{}' {}: expected a text", place_, key, need(key).dump());
-    return need(key).get<std::string>();
-  }
-  const nlohmann::json& list(const char* key) const {
-    if (!need(key).is_array()) fail("{}: '{}': expected a list", place_, key);
-    return need(key);
-  }
-  int choice(const char* key, std::span<const Choice> choices) const {
-    return find_choice(place_ + ", '" + key + "'", text(key), choices);
-  }
-  Reader object(const char* key) const { return {place_ + ", '" + key + "'", need(key)}; }
-  bool has(const char* key) const { return object_.contains(key); }
-  const std::string& place() const { return place_; }
+int pixels(const JsonValue& value) { return static_cast<int>(std::min(1e6, at_least(1.0, value))); }
 
- private:
-  std::string place_;
-  const nlohmann::json& object_;
-};
-
-std::uint64_t parse_hash(const Reader& model) {
-  const std::string text = model.text("hash");
+std::uint64_t parse_hash(const JsonValue& value) {
+  const std::string text = value.text();
   const bool good = text.size() == 16 && text.find_first_not_of("0123456789abcdef") == std::string::npos;
-  if (!good) fail("{}: 'hash' {}: expected 16 hexadecimal digits", model.place(), text);
+  if (!good) value.fail_here("{}: expected 16 hexadecimal digits", text);
   return std::stoull(text, nullptr, 16);
 }
 
-render::DepthTable parse_table(const Reader& table) {
-  render::DepthTable out{static_cast<float>(table.number("far", 1e-30)), {}};
-  for (const nlohmann::json& value : table.list("upper")) {
-    const double v = value.is_number() ? value.get<double>() : NAN;
-    if (!(v >= 0.0 && v <= 1.0))
-      fail("{}: 'upper' {}: expected numbers from 0 to 1", table.place(), value.dump());
-    out.bounds.push_back(static_cast<float>(v));
+render::DepthTable parse_table(const JsonValue& table) {
+  render::DepthTable out{static_cast<float>(at_least(1e-30, table.at("far"))), {}};
+  const JsonValue upper = table.at("upper");
+  if (upper.size() == 0 || upper.size() > table_max || !std::isfinite(out.far))
+    table.fail_here("expected 1 to {} bins over a finite depth", table_max);
+  for (std::size_t k = 0; k < upper.size(); ++k) {
+    const double bound = at_least(0.0, upper.at(k));
+    if (bound > 1.0) upper.at(k).fail_here("{}: expected a number from 0 to 1", bound);
+    out.bounds.push_back(static_cast<float>(bound));
   }
-  if (out.bounds.empty() || out.bounds.size() > table_max || !std::isfinite(out.far))
-    fail("{}: expected 1 to {} bins over a finite depth", table.place(), table_max);
   return out;
 }
 
-/// Files of earlier versions may hold rules that are gone.
-void refuse_gone(const Reader& entry) {
-  const auto refuse = [&](const char* key) {
-    fail("{}: '{}' '{}': there is no such rule any more: make the file anew with binosplat calibrate",
-         entry.place(), key, entry.text(key));
-  };
-  if (entry.has("contrast") && entry.text("contrast") != "off") refuse("contrast");
-  const std::string source = entry.text("transmittance");
-  if (source == "other-eye" || source == "both") refuse("transmittance");
+int parse_choice(const JsonValue& entry, const char* key, std::span<const Choice> choices) {
+  return find_choice(fmt::format("{}, '{}'", entry.source(), key), entry.at(key).text(), choices);
 }
 
-CalibrationEntry parse_entry(const Reader& entry) {
-  refuse_gone(entry);
+CalibrationEntry parse_entry(const JsonValue& entry) {
   CalibrationEntry e;
-  e.th = entry.choice("th", th_choices);
-  e.transmittance = entry.choice("transmittance", transmittance_choices);
-  const char* key = entry.has("tolerance") ? "tolerance" : "loss";  // its name until 2026-11-22
-  e.tolerance = entry.number(key, 0.0);
-  if (!std::isfinite(static_cast<float>(e.tolerance))) fail("{}: '{}' is too large", entry.place(), key);
-  e.reached_db = entry.number("reached_db");
-  e.worst_db = entry.number("worst_db");
-  e.worst_view = entry.text("worst_view");
-  e.pairs_removed = entry.number("pairs_removed");
-  e.evaluations = static_cast<int>(std::min(1e9, entry.number("evaluations", 0.0)));
-  e.seconds = entry.number("seconds", 0.0);
+  e.th = parse_choice(entry, "th", th_choices);
+  e.transmittance = parse_choice(entry, "transmittance", transmittance_choices);
+  e.tolerance = at_least(0.0, entry.at("tolerance"));
+  if (!std::isfinite(static_cast<float>(e.tolerance))) entry.at("tolerance").fail_here("is too large");
+  e.reached_db = entry.at("reached_db").number();
+  e.worst_db = entry.at("worst_db").number();
+  e.worst_view = entry.at("worst_view").text();
+  e.pairs_removed = entry.at("pairs_removed").number();
+  e.evaluations = static_cast<int>(std::min(1e9, at_least(0.0, entry.at("evaluations"))));
+  e.seconds = at_least(0.0, entry.at("seconds"));
   return e;
 }
 
-CalibratedView parse_view(const Reader& view) {
-  const nlohmann::json& p = view.list("position");
-  const bool good = p.size() == 3 && p[0].is_number() && p[1].is_number() && p[2].is_number();
-  if (!good) fail("{}: 'position' {}: expected three numbers", view.place(), p.dump());
-  return {view.text("name"), {p[0].get<double>(), p[1].get<double>(), p[2].get<double>()}};
-}
-
-int pixels(const Reader& reader, const char* key) {
-  return static_cast<int>(std::min(1e6, reader.number(key, 1.0)));
+CalibratedView parse_view(const JsonValue& view) {
+  const JsonValue p = view.at("position").list_of(3);
+  return {view.at("name").text(), {p.at(0).number(), p.at(1).number(), p.at(2).number()}};
 }
 
 }  // namespace
@@ -177,31 +132,26 @@ ordered_json to_json(const Calibration& c) {
 
 Calibration parse_calibration(const std::string& name, const std::string& text) {
   const nlohmann::json root = parse_json(name, text);
-  const Reader top(name, root);
-  if (top.text("format") != "binosplat calibration" || top.number("version") != 1)
+  const JsonValue top(name, root);
+  if (top.at("format").text() != "binosplat calibration" || top.at("version").number() != 1)
     fail("{}: not a calibration of this version: make it with binosplat calibrate", name);
   Calibration c;
-  const Reader model = top.object("model");
-  c.model_name = model.text("name");
-  c.gaussians = static_cast<std::size_t>(std::min(1e12, model.number("gaussians", 0.0)));
-  c.hash = parse_hash(model);
-  c.width = pixels(top, "width");
-  c.height = pixels(top, "height");
-  c.focal = top.number("focal_px", 1e-9);
-  c.near_plane = top.number("near", 0.0);
-  const Reader target = top.object("target");
-  const bool drop = top.need("target").contains("drop_db");
+  const JsonValue model = top.at("model"), target = top.at("target"), table = top.at("depth_table");
+  c.model_name = model.at("name").text();
+  c.gaussians = static_cast<std::size_t>(std::min(1e12, at_least(0.0, model.at("gaussians"))));
+  c.hash = parse_hash(model.at("hash"));
+  c.width = pixels(top.at("width"));
+  c.height = pixels(top.at("height"));
+  c.focal = at_least(1e-9, top.at("focal_px"));
+  c.near_plane = at_least(0.0, top.at("near"));
+  const bool drop = target.has("drop_db");
   c.target = {drop ? CalibrationTarget::Kind::drop : CalibrationTarget::Kind::quality,
-              target.number(drop ? "drop_db" : "psnr_db")};
-  const Reader table = top.object("depth_table");
+              target.at(drop ? "drop_db" : "psnr_db").number()};
   c.depth_table = parse_table(table);
-  c.depth_table_seconds = table.number("seconds", 0.0);
-  int number = 0;
-  for (const nlohmann::json& view : top.list("views"))
-    c.views.push_back(parse_view({fmt::format("{}, view {}", name, ++number), view}));
-  number = 0;
-  for (const nlohmann::json& entry : top.list("entries"))
-    c.entries.push_back(parse_entry({fmt::format("{}, entry {}", name, ++number), entry}));
+  c.depth_table_seconds = at_least(0.0, table.at("seconds"));
+  const JsonValue views = top.at("views"), entries = top.at("entries");
+  for (std::size_t k = 0; k < views.size(); ++k) c.views.push_back(parse_view(views.at(k)));
+  for (std::size_t k = 0; k < entries.size(); ++k) c.entries.push_back(parse_entry(entries.at(k)));
   return c;
 }
 

@@ -33,10 +33,7 @@ static void fields(const auto& io, Some<NamedSettings> auto& s) {
 }
 
 void to_json(ordered_json& json, const NamedSettings& settings) { fields(FieldWriter{json}, settings); }
-void from_json(const ordered_json& json, NamedSettings& settings) {
-  const ordered_json present = with_present_names(json);
-  fields(FieldReader{present}, settings);
-}
+void from_json(const ordered_json& json, NamedSettings& settings) { fields(FieldReader{json}, settings); }
 ordered_json to_json(const BenchSettings& settings) { return named(settings); }
 
 std::string describe_family(const BenchSettings& s) {

@@ -38,16 +38,6 @@ struct NamedSettings {
 
 NamedSettings named(const BenchSettings& settings);
 
-/// Settings of a file with a tolerance where it says `loss`, which was its name until 2026-11-22.
-template <typename Json>
-Json with_present_names(Json settings) {
-  if (settings.is_object() && settings.contains("loss") && !settings.contains("tolerance")) {
-    settings["tolerance"] = settings["loss"];
-    settings.erase("loss");
-  }
-  return settings;
-}
-
 void to_json(nlohmann::ordered_json& json, const NamedSettings& settings);
 void from_json(const nlohmann::ordered_json& json, NamedSettings& settings);
 /// Of named().

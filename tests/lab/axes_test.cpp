@@ -33,15 +33,6 @@ TEST(Axes, AreEveryCombination) {
             R"({"tiles":"ellipse","tile":16,"th":"squared","transmittance":"last","tolerance":2.0})");
 }
 
-TEST(Axes, ATolerancesFormerNameIsRead) {
-  const Axes axes = parse_axes("a", R"({"settings": [{"th": "squared", "loss": [0.5, 2]}]})");
-  ASSERT_EQ(axes.settings.size(), 2);
-  EXPECT_EQ(axes.settings[1].tolerance, 2.0f);
-  EXPECT_TRUE(test::fails_saying(
-      [] { parse_axes("a", R"({"settings": [{"th": "squared", "loss": 2, "tolerance": 1}]})"); },
-      {"'loss'"}));
-}
-
 TEST(Axes, HalfPrecisionIsOneAndNotExact) {
   const Axes axes = parse_axes("a", R"({"settings": [{"precision": ["full", "half"]}]})");
   ASSERT_EQ(axes.settings.size(), 2);
