@@ -1,5 +1,5 @@
 #pragma once
-// Views that see nothing of a model: whatever is done to it, they look equal, and say nothing.
+// Finds views that see nothing of a model: they show no error of anything, and would only dilute means.
 
 #include <span>
 #include <vector>
@@ -10,9 +10,9 @@
 
 namespace binosplat::lab {
 
-/// Of each camera of the world, whether its exact picture has anything of the model in it. Where no
-/// Gaussian's middle tells, a small picture is drawn, and one in its own size only where that is empty.
-/// `near_plane` in world units.
+/// Whether the exact picture of each camera of the world shows anything of the model. A Gaussian whose middle
+/// is in view proves it; otherwise a small picture is drawn, and if that is empty one in the camera's own
+/// size. `near_plane` in world units.
 std::vector<bool> seeing(gl::Context& context, const Model& model, std::span<const Camera> cameras,
                          double near_plane);
 

@@ -23,12 +23,12 @@ struct CalibrationView {
   std::optional<Image> photo;  // RGB in the camera's size
 };
 
-/// Views of three tasks: what is learned in some is judged in others, since a model that was made for the
-/// views that it is judged in would look better than it is.
+/// Views of three tasks. A model that was fitted to some views has to be judged in others, or its error would
+/// be underestimated.
 struct ViewSplit {
   std::vector<Camera> training;            // of the world
   std::vector<CalibrationView> held_back;  // at least one; their mean decides
-  std::vector<CalibrationView> test;       // decide nothing: what they show is stated; may be empty
+  std::vector<CalibrationView> test;       // decide nothing: their numbers are only reported; may be empty
   // The same two in the cameras' own size, where that is larger; else empty. A bound holds in both sizes.
   std::vector<CalibrationView> held_back_own, test_own;
   double near_plane = near_default;  // world units
@@ -87,7 +87,7 @@ class Calibrator {
 /// The ways to draw that a calibration has entries for: both rules by every source that one eye has.
 std::vector<render::FrameSettings> calibrated_settings();
 
-/// Everything: the table, then every entry; `done(entries, of)` after each.
+/// Measures the table of bounds by depth, then finds every entry, and calls `done(entries, of)` after each.
 Calibration calibrate(gl::Context& context, const Model& model, const std::vector<CalibrationView>& views,
                       double near_plane, const CalibrationTarget& target,
                       const measure::DepthTableSettings& table = {},

@@ -1,6 +1,5 @@
 #pragma once
-// What a Gaussian's harmonics become where they end with a lower degree: those that come nearest to its
-// colours towards the views that show it.
+// Fits harmonics of a lower degree to the colours that a Gaussian has towards the views that show it.
 
 #include <array>
 #include <glm/glm.hpp>
@@ -16,8 +15,8 @@ class ColourFit {
   /// A colour that harmonics of `basis` (sh_basis) make, less 0.5, and how much of the picture it is, px.
   void add(const std::array<double, 16>& basis, const glm::dvec3& colour, double weight);
 
-  /// Those of a degree that come nearest. Where no view tells, they stay near `now`, the coefficients that
-  /// there are.
+  /// The least-squares coefficients of a degree. Those that no view determines stay near `now`, the present
+  /// ones.
   Coefficients fitted(int degree, const Coefficients& now) const;
 
   /// How much the colours then change, px * squared colour, in the mean of the channels.

@@ -1,5 +1,6 @@
 #pragma once
-// The exact frames of a path: their pairs, and their pictures on the GPU to compare others with.
+// The exact frames of a path: their pair counts, and their pictures, kept on the GPU to compare other frames
+// with.
 
 #include <memory>
 #include <vector>

@@ -1,5 +1,5 @@
 #pragma once
-// What levels of leaves lose, as files have it.
+// The JSON of the errors of leaves, as errors_N.json and together_N.json keep them.
 
 #include <nlohmann/json.hpp>
 #include <string>
@@ -9,7 +9,7 @@
 
 namespace binosplat {
 
-/// Numbers times a factor, to three digits: more than six directions tell.
+/// Numbers times a factor, to three digits: six directions do not determine more.
 nlohmann::ordered_json json_of(double number, double factor = 1.0);
 template <typename Item>
 nlohmann::ordered_json json_of(const std::vector<Item>& list, double factor = 1.0) {

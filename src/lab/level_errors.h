@@ -1,5 +1,5 @@
 #pragma once
-// What levels of detail lose, as pictures show it.
+// Measures the error of levels of detail (LOD): the difference between their pictures and the finest level's.
 
 #include <span>
 #include <vector>
@@ -10,11 +10,11 @@
 
 namespace binosplat::lab {
 
-/// Draws each leaf by itself over what looks much like its mean colour, exactly, by each of its levels, from
-/// afar and from six directions, and compares with its finest level, in pixels of two widths. Many leaves lie
-/// side by side in a picture. Each has its levels from the finest on; none is without Gaussians. In the wide
-/// pixels both sides are taken to look alike, and in the narrow ones levels beyond the second to lose as much
-/// of each area as in the wide.
+/// Draws every level of each leaf by itself, before a background of about its mean colour, from far away and
+/// from six directions, in pixels of two widths, and compares it with the leaf's finest level. A picture
+/// holds many leaves side by side. `leaves` have their levels from the finest on, none without Gaussians. To
+/// draw less, opposite directions share one measurement in the wide pixels, and levels beyond the second are
+/// drawn in the wide pixels alone, whose error per area is taken for the narrow ones, too.
 std::vector<LeafErrors> level_errors(gl::Context& context, std::span<const std::vector<Model>> leaves);
 
 }  // namespace binosplat::lab

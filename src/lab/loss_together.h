@@ -1,5 +1,6 @@
 #pragma once
-// What levels of detail lose in pictures of many parts, beside what each is known to lose by itself.
+// Measures the error of levels of detail in pictures of many leaves, beside the error that each leaf's own
+// predicts.
 
 #include <span>
 #include <vector>
@@ -10,11 +11,11 @@
 
 namespace binosplat::lab {
 
-/// Draws so many pictures of the leaves from among them, at levels that are predicted to have 40 dB by what
-/// each loses by itself (`errors`, of level_errors), and compares with the finest of what is seen: parts that
-/// overlap lose more, walls that are seen at an angle less. Eyes lie between two Gaussians and look at one of
-/// them which nothing hides. Few pictures or none where such eyes are not found; those for which memory does
-/// not suffice are there, and not drawn. The same for the same leaves.
+/// Draws `pictures` pictures of the leaves, from eyes among them, at levels that `errors` (of level_errors)
+/// predict to come to 40 dB, and compares each with the picture of the finest levels of what it shows. Leaves
+/// that overlap lose more than predicted, walls that are seen at an angle less. An eye lies between two
+/// Gaussians and sees one of them. Returns fewer pictures where such eyes are not found; one for which memory
+/// did not suffice has `drawn` false. Deterministic.
 std::vector<LossTogether> loss_together(gl::Context& context, std::span<const std::vector<Model>> leaves,
                                         std::span<const LeafErrors> errors, int pictures);
 

@@ -1,6 +1,6 @@
 #pragma once
-// Rules along moving heads: what each really comes to, frame by frame against exact frames, what it says of
-// itself, and what it costs; at one request, and at one true quality.
+// Measures rules along moving heads: the true quality of every frame against the exact one, the quality that
+// the frame reports, and its cost; with every rule at one request, and with every rule at one true quality.
 
 #include <functional>
 #include <nlohmann/json_fwd.hpp>

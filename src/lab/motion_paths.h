@@ -1,5 +1,6 @@
 #pragma once
-// What a head does while rules are measured: stretches of a path, each from a cut on, and a stop after it.
+// The head's path along which rules are measured: segments, each after a camera cut and with a stop at its
+// end.
 
 #include <cstddef>
 #include <string>
@@ -9,8 +10,8 @@
 
 namespace binosplat::lab {
 
-/// Frames that follow one another after a cut: the lead, in which a rule finds its way, then those that move
-/// and count, then the stop at the last pose.
+/// Successive frames after a camera cut: the lead, in which a rule finds its tolerance, then the moving
+/// frames, which count, then the stop at the last pose.
 struct MotionSegment {
   std::vector<std::vector<shared::View>> frames;  // the views of each
   std::size_t lead = 0;                           // frames

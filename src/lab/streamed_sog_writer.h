@@ -20,23 +20,24 @@ struct LevelSettings {
   std::size_t together = 5242880;  // of the finest level, at most, or a piece, in pictures of many leaves
 };
 
-/// What the levels of a leaf lose (stream/choice.h), in lists of a number for each width of a pixel.
+/// The errors of a leaf's levels (stream/choice.h); the innermost lists have a number for each width of a
+/// pixel.
 struct LeafErrors {
   std::vector<double> pixels;                              // world units, from the narrowest
   std::vector<std::vector<double>> seen;                   // by direction, px
   std::vector<std::vector<std::vector<double>>> of_level;  // by level and direction, px times squared colour
 };
 
-/// The squared error of a picture, as what leaves lose by themselves predicts it, and as it is.
+/// The squared error of a picture of many leaves: as the leaves' own errors predict it, and as measured.
 struct LossTogether {
   double predicted = 0.0, measured = 0.0;
   bool drawn = true;  // false: there was no room for the picture
 };
 
-/// What levels of leaves lose, given from the finest, as the files have them.
+/// Measures errors of leaves, whose levels are given from the finest on, as they read back from the files.
 struct JudgeLevels {
   std::function<std::vector<LeafErrors>(std::span<const std::vector<Model>> leaves)> alone;
-  /// In pictures of all of them: so many, or fewer where there are no eyes for more.
+  /// The errors of `pictures` pictures of all leaves, or of fewer (lab/loss_together.h).
   std::function<std::vector<LossTogether>(std::span<const std::vector<Model>> leaves,
                                           std::span<const LeafErrors> errors, int pictures)>
       together;

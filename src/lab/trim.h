@@ -1,6 +1,6 @@
 #pragma once
-// The smallest model that keeps the pictures: in three steps, each searched against what it costs in views
-// that had no say in what goes.
+// Finds the smallest model whose pictures stay within a bound, in three steps. Each is a search whose result
+// is judged in views that were not used to choose what goes.
 
 #include <algorithm>
 #include <functional>
@@ -23,7 +23,7 @@ struct WrittenModel {
 /// Writes a model to a file of the wanted format and reads it back.
 using TrialWriter = std::function<WrittenModel(const Model&, int harmonic_bits)>;
 
-/// A model on its way.
+/// The model after one step.
 struct TrimStep {
   std::string name;  // what was done last
   std::size_t gaussians = 0;

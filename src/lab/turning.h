@@ -1,5 +1,6 @@
 #pragma once
-// What turning a head does to what it sees: the same place, the same rays, another direction of the head.
+// Measures how a picture changes when the head turns at its place: colours along the same rays before and
+// after.
 
 #include <cstddef>
 #include <functional>
