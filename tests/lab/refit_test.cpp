@@ -56,7 +56,7 @@ Refitted fitted(const Model& start, const Model& right, RefitSettings settings) 
 
 TEST(Refit, FindsTheColoursThatThePicturesAreOf) {
   const Model right = truth(), start = changed(right);
-  const RefitSettings settings{.rounds = 30, .rounds_linear = 30, .damping = 0.0},
+  const RefitSettings settings{.rounds = 40, .rounds_linear = 40, .damping = 0.0},
       few{.rounds = 8, .rounds_linear = 8, .damping = 0.0};
   const Refitted found = fitted(start, right, settings);
   const double best = found.judged[static_cast<std::size_t>(found.best_round)];
