@@ -205,29 +205,32 @@ void add_motion_options(CLI::App& sub, MotionOptions& options) {
   const std::vector<std::string> names = all_motions();
   sub.add_flag("--motion", options.chosen,
                "Rules along moving heads, frame by frame: true quality, pairs and time");
-  sub.add_option("--motions", options.motions, fmt::format("Which; default: {}", fmt::join(names, ",")))
+  sub.add_option("--motions", options.motions,
+                 fmt::format("With --motion: which; default: {}", fmt::join(names, ",")))
       ->delimiter(',')
       ->type_name("NAME,...")
       ->check(CLI::IsMember(names).description(""));
   sub.add_option("--rule", options.rules,
-                 "TH,SOURCE as --th and --transmittance name them; may be given again;\ndefault: all")
+                 "With --motion: TH,SOURCE as `render --th` and `--transmittance` name them;\nmay be given "
+                 "again; default: all")
       ->type_name("RULE")
       ->allow_extra_args(false);
   const auto count = [&](const char* name, std::size_t& into, const char* help) {
     sub.add_option(name, into, fmt::format("{} ({})", help, into))->type_name("N")->check(range(0, 10000));
   };
-  sub.add_option(
-         "--segments", options.segments,
-         fmt::format("Stretches, spread evenly along a tour through the cameras ({})", segments_default))
+  sub.add_option("--segments", options.segments,
+                 fmt::format("With --motion: stretches, spread evenly along a tour through the cameras ({})",
+                             segments_default))
       ->type_name("N")
       ->check(range(1, 1000));
-  count("--lead", options.lengths.lead, "Frames of a segment before those that count");
-  count("--stop", options.lengths.stop, "Frames at the last pose of a segment that moves");
-  sub.add_option("--rounds", options.rounds, fmt::format("In which frames are timed ({})", options.rounds))
+  count("--lead", options.lengths.lead, "With --motion: frames of a segment before those that count");
+  count("--stop", options.lengths.stop, "With --motion: frames at the last pose of a segment that moves");
+  sub.add_option("--rounds", options.rounds,
+                 fmt::format("With --motion: in which frames are timed ({})", options.rounds))
       ->type_name("N")
       ->check(range(1, 100));
   sub.add_flag("--no-equal", options.no_equal,
-               "Without the comparison at one true quality, which takes longest");
+               "With --motion: without the comparison at one true quality, which takes longest");
 }
 
 void study_motion(const StudyOptions& options) {
