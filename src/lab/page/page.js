@@ -60,7 +60,7 @@ function seriesOf(section) {
     const name = chart.y.length === 1 ? group ?? column : groups.length === 1 ? column : `${group}: ${column}`;
     const points = rows.filter((row) => at(row, chart.by) === group).map((row) => ({
       x: at(row, chart.x), y: at(row, column), filled: at(row, chart.filled) === "yes",
-      label: [at(row, chart.label)].flat().map((value) => typeof value === "string" ? value : shown(value)).join() }));
+      label: chart.label ? shown(at(row, chart.label)) : "" }));
     const good = points.filter(fits);
     const bad = chart.y.length > 1 ? [] : points.filter((p) => !fits(p) && p.y !== "" && typeof p.x !== "string");
     return { name, column, good, bad, line: chart.line, steps: chart.steps, dots: chart.dots };
@@ -74,7 +74,7 @@ const titleOf = (chart) => chart.title || chart.y[0];
 
 const pointText = (chart, series, p) =>
   [p.label, series.name, `${chart.x}: ${shown(p.x)}`, `${series.column ?? titleOf(chart)}: ${shown(p.y)}`]
-    .filter((line) => line && line !== "–").join("\n");
+    .filter((line) => line).join("\n");
 
 function scale(label, log) {
   return { label, labelArrow: "none", grid: true, ...(log ? { type: "log", tickFormat: "~g" } : {}) };
