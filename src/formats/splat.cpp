@@ -60,7 +60,7 @@ Model load_splat(const std::string& source, std::span<const std::byte> bytes) {
       sh[c] = static_cast<float>((std::to_integer<int>(record[24 + c]) / 255.0 - 0.5) / sh_c0);
     const float opacity = static_cast<float>(std::to_integer<int>(record[27]) / 255.0);
     kept[i] =
-        place(model, i, load_vec3(record), load_vec3(record + 12), load_rotation(record + 28), opacity, sh);
+        place(model, i, {load_vec3(record), load_vec3(record + 12), load_rotation(record + 28), opacity, sh});
   };
   parallel_for(kept.size(), decode, 2048);
   keep_only(model, kept);

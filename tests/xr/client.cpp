@@ -1,6 +1,6 @@
 // A small application of OpenXR that does all by the book, but for the faults that its arguments name: for
 // the tests of the runtime. Says which calls failed and how. Words that are no faults: depth (hands in depth,
-// too), quad (four views), actions (hands are read; gaze: eyes, too), mask, xlib (the binding), again (a
+// too), quad (four views), actions (hands are read; gaze: eyes, too), mask, again (a
 // second session after a lost one), sizes (what is recommended), depth24 and stencil (formats), array (one
 // swapchain with a layer for each view), stage or floor (the space of the layer).
 #include <EGL/egl.h>
@@ -15,7 +15,6 @@
 #include <vector>
 
 #include "xr/client_actions.h"
-#include "xr/client_glx.h"
 #include "xr/client_images.h"
 
 namespace binosplat::xr_test {
@@ -41,13 +40,7 @@ struct Client {
 
   bool at(const char* word) const { return frame == 1 && has(word); }
 
-  XlibBinding xlib{};
-
   void make_context() {
-    if (has("xlib")) {
-      xlib = make_glx_context();
-      return;
-    }
     display = eglGetPlatformDisplay(EGL_PLATFORM_SURFACELESS_MESA, nullptr, nullptr);
     const EGLint attributes[] = {EGL_CONTEXT_MAJOR_VERSION, 4, EGL_CONTEXT_MINOR_VERSION, 5, EGL_NONE};
     eglInitialize(display, nullptr, nullptr);
@@ -81,9 +74,6 @@ struct Client {
     if (has("bad_path")) {
       XrPath path = 0;
       XR(xrStringToPath, instance, "no/slash", &path);
-      char text[64];
-      std::uint32_t count = 0;
-      XR(xrPathToString, instance, XrPath{77}, 64, &count, text);
     }
     std::uint32_t count = 0;
     const auto mono = XR_VIEW_CONFIGURATION_TYPE_PRIMARY_MONO;
@@ -104,7 +94,6 @@ struct Client {
     const XrGraphicsBindingEGLMNDX binding = {
         XR_TYPE_GRAPHICS_BINDING_EGL_MNDX, nullptr, eglGetProcAddress, display, nullptr, context};
     XrSessionCreateInfo info = {XR_TYPE_SESSION_CREATE_INFO, &binding, 0, system};
-    if (has("xlib")) info.next = &xlib;
     if (has("no_binding")) info.next = nullptr;
     if (XR(xrCreateSession, instance, &info, &session) != XR_SUCCESS) return false;
     XrSession second = XR_NULL_HANDLE;
@@ -165,8 +154,6 @@ struct Client {
       if (event.type == XR_TYPE_EVENT_DATA_SESSION_STATE_CHANGED) {
         state = reinterpret_cast<const XrEventDataSessionStateChanged&>(event).state;
         on_state();
-      } else if (event.type == XR_TYPE_EVENT_DATA_INTERACTION_PROFILE_CHANGED) {
-        actions.say_profile();
       } else if (event.type == XR_TYPE_EVENT_DATA_VISIBILITY_MASK_CHANGED_KHR) {
         const auto& changed = reinterpret_cast<const XrEventDataVisibilityMaskChangedKHR&>(event);
         say_mask(session, type, changed.viewIndex, frame);

@@ -52,26 +52,13 @@ class Actions {
       say_place(gaze_space_, base, time);
     }
     if (has("wrong_action_type")) {
-      XrActionStateFloat wrong = {XR_TYPE_ACTION_STATE_FLOAT};
-      get(xrGetActionStateFloat, select_, hands_[0], wrong);
+      XrActionStateVector2f wrong = {XR_TYPE_ACTION_STATE_VECTOR2F};
+      get(xrGetActionStateVector2f, select_, hands_[0], wrong);
     }
     if (has("unknown_user")) {
       XrActionStateBoolean state = {XR_TYPE_ACTION_STATE_BOOLEAN};
       get(xrGetActionStateBoolean, select_, path("/user/head"), state);
     }
-    vibrate();
-  }
-
-  /// The interaction profile of the left hand.
-  void say_profile() const {
-    XrInteractionProfileState state = {XR_TYPE_INTERACTION_PROFILE_STATE};
-    XR(xrGetCurrentInteractionProfile, session_, hands_[0], &state);
-    char text[XR_MAX_PATH_LENGTH] = "none";
-    std::uint32_t count = 0;
-    if (state.interactionProfile != XR_NULL_PATH) {
-      XR(xrPathToString, instance, state.interactionProfile, sizeof(text), &count, text);
-    }
-    std::printf("profile %s\n", text);
   }
 
  private:
@@ -111,10 +98,8 @@ class Actions {
     hands_[1] = path("/user/hand/right");
     const std::vector<XrPath> both = {hands_[0], hands_[1]};
     select_ = make_action("select", XR_ACTION_TYPE_BOOLEAN_INPUT, both);
-    trigger_ = make_action("trigger", XR_ACTION_TYPE_FLOAT_INPUT, both);
     stick_ = make_action("stick", XR_ACTION_TYPE_VECTOR2F_INPUT, both);
     aim_ = make_action("aim", XR_ACTION_TYPE_POSE_INPUT, both);
-    haptic_ = make_action("haptic", XR_ACTION_TYPE_VIBRATION_OUTPUT, both);
     if (has("gaze")) gaze_ = make_action("gaze", XR_ACTION_TYPE_POSE_INPUT, {});
     if (has("second_action")) make_action("aim", XR_ACTION_TYPE_POSE_INPUT, both);
     if (has("unknown_hand")) make_action("foot", XR_ACTION_TYPE_POSE_INPUT, {path("/user/foot/left")});
@@ -135,23 +120,19 @@ class Actions {
 
   void suggest() const {
     suggest_for("/interaction_profiles/khr/simple_controller",
-                {{select_, "/input/select/click"}, {aim_, "/input/aim/pose"}, {haptic_, "/output/haptic"}});
-    suggest_for("/interaction_profiles/oculus/touch_controller", {{select_, "/input/thumbstick/click"},
-                                                                  {trigger_, "/input/trigger"},
-                                                                  {stick_, "/input/thumbstick"},
-                                                                  {aim_, "/input/aim/pose"},
-                                                                  {haptic_, "/output/haptic"}});
+                {{select_, "/input/select/click"}, {aim_, "/input/aim/pose"}});
     suggest_for(
-        "/interaction_profiles/valve/index_controller",
-        {{select_, "/input/a/click"}, {trigger_, "/input/squeeze/force"}, {aim_, "/input/grip/pose"}});
+        "/interaction_profiles/oculus/touch_controller",
+        {{select_, "/input/thumbstick/click"}, {stick_, "/input/thumbstick"}, {aim_, "/input/aim/pose"}});
+    suggest_for("/interaction_profiles/valve/index_controller",
+                {{select_, "/input/a/click"}, {aim_, "/input/grip/pose"}});
     suggest_for("/interaction_profiles/microsoft/motion_controller", {{stick_, "/input/trackpad"}});
-    suggest_for("/interaction_profiles/htc/vive_controller", {{trigger_, "/input/trigger/value"}});
     if (has("gaze")) {
       suggest_for("/interaction_profiles/ext/eye_gaze_interaction",
                   {{gaze_, "/user/eyes_ext/input/gaze_ext/pose"}});
     }
     if (has("bad_binding")) {
-      suggest_for("/interaction_profiles/khr/simple_controller", {{trigger_, "/input/trigger/value"}});
+      suggest_for("/interaction_profiles/khr/simple_controller", {{select_, "/input/trigger/value"}});
     }
     if (has("bad_profile"))
       suggest_for("/interaction_profiles/none/at_all", {{select_, "/input/select/click"}});
@@ -178,13 +159,10 @@ class Actions {
   void read_hand(XrPath hand) const {
     XrActionStateBoolean select = {XR_TYPE_ACTION_STATE_BOOLEAN};
     get(xrGetActionStateBoolean, select_, hand, select);
-    XrActionStateFloat trigger = {XR_TYPE_ACTION_STATE_FLOAT};
-    get(xrGetActionStateFloat, trigger_, hand, trigger);
     XrActionStateVector2f stick = {XR_TYPE_ACTION_STATE_VECTOR2F};
     get(xrGetActionStateVector2f, stick_, hand, stick);
     if (select.isActive == XR_TRUE)
       std::printf(" select %u%s", select.currentState, select.changedSinceLastSync ? "!" : "");
-    if (trigger.isActive == XR_TRUE) std::printf(" trigger %g", trigger.currentState);
     if (stick.isActive == XR_TRUE) std::printf(" stick %g,%g", stick.currentState.x, stick.currentState.y);
   }
 
@@ -199,20 +177,10 @@ class Actions {
     }
   }
 
-  void vibrate() const {
-    const XrHapticVibration vibration = {XR_TYPE_HAPTIC_VIBRATION, nullptr, XR_MIN_HAPTIC_DURATION, 0,
-                                         has("strong_vibration") ? 2.0f : 0.5f};
-    const XrHapticActionInfo info = {XR_TYPE_HAPTIC_ACTION_INFO, nullptr,
-                                     has("vibrating_button") ? select_ : haptic_, hands_[1]};
-    XR(xrApplyHapticFeedback, session_, &info, reinterpret_cast<const XrHapticBaseHeader*>(&vibration));
-    XR(xrStopHapticFeedback, session_, &info);
-  }
-
   XrSession session_ = XR_NULL_HANDLE;
   XrActionSet set_ = XR_NULL_HANDLE;
   XrPath hands_[2] = {};
-  XrAction select_ = XR_NULL_HANDLE, trigger_ = XR_NULL_HANDLE, stick_ = XR_NULL_HANDLE,
-           aim_ = XR_NULL_HANDLE, gaze_ = XR_NULL_HANDLE, haptic_ = XR_NULL_HANDLE;
+  XrAction select_ = XR_NULL_HANDLE, stick_ = XR_NULL_HANDLE, aim_ = XR_NULL_HANDLE, gaze_ = XR_NULL_HANDLE;
   XrSpace spaces_[2] = {}, gaze_space_ = XR_NULL_HANDLE;
 };
 

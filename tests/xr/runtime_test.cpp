@@ -5,7 +5,6 @@
 
 #include <chrono>
 
-#include "support/display.h"
 #include "xr/xr_script.h"
 
 namespace binosplat::test {
@@ -224,25 +223,6 @@ TEST(XrRuntime, KhronosValidationAgrees) {
   EXPECT_EQ(good.log().frames().size(), 3u);
   EXPECT_NE(run(bad, "view_layer_type").find("VUID-XrCompositionLayerProjectionView-type-type"),
             std::string::npos);
-}
-
-TEST(XrRuntime, ContextsOfXlibAreAsGood) {
-  const VirtualDisplay display;
-  if (display.name().empty()) GTEST_SKIP() << "Xvfb is not installed";
-  XrStage stage;
-  stage.script = {{"frames", 2}};
-  auto variables = stage.validated_variables();
-  variables["DISPLAY"] = display.name();
-  variables["XR_ENABLE_API_LAYERS"] = "XR_APILAYER_LUNARG_core_validation";
-  const Outcome outcome =
-      run_program({"xlib", "depth"}, {.variables = variables, .program = BINOSPLAT_XR_CLIENT});
-  EXPECT_EQ(outcome.code, 0) << outcome.err;
-  EXPECT_EQ(stage.validation(outcome), "");
-  const XrLog log = stage.log();
-  EXPECT_EQ(log.faults(), Strings()) << log.text();
-  EXPECT_TRUE(log.clean()) << log.text();
-  EXPECT_EQ(log.all("session").at(0)["binding"], "xlib");
-  for (const Json& frame : log.frames()) expect_painted(log, frame, 1, {96, 80}, true);
 }
 
 }  // namespace

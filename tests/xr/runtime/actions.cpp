@@ -34,17 +34,14 @@ bool fits(XrActionType type, const std::string& component) {
   const auto ends = [&](const std::string& end) {
     return component.size() >= end.size() && component.substr(component.size() - end.size()) == end;
   };
-  const bool pose = ends("/pose"), haptic = ends("/haptic"),
-             vector = ends("/thumbstick") || ends("/trackpad");
+  const bool pose = ends("/pose"), vector = ends("/thumbstick") || ends("/trackpad");
   switch (type) {
     case XR_ACTION_TYPE_POSE_INPUT:
       return pose;
-    case XR_ACTION_TYPE_VIBRATION_OUTPUT:
-      return haptic;
     case XR_ACTION_TYPE_VECTOR2F_INPUT:
       return vector;
     default:
-      return !pose && !haptic && !vector;
+      return !pose && !vector;
   }
 }
 

@@ -114,8 +114,7 @@ XrResult end_frame(XrSession handle, const XrFrameEndInfo* info) {
     require(info->displayTime == frame.time, XR_ERROR_TIME_INVALID,
             "display time " + std::to_string(info->displayTime) + " where " + std::to_string(frame.time) +
                 " was predicted");
-    const auto& modes = r.script.blend_modes;
-    require(std::count(modes.begin(), modes.end(), info->environmentBlendMode) != 0,
+    require(info->environmentBlendMode == XR_ENVIRONMENT_BLEND_MODE_OPAQUE,
             XR_ERROR_ENVIRONMENT_BLEND_MODE_UNSUPPORTED,
             "blend mode " + std::to_string(info->environmentBlendMode));
     for (const auto& [id, object] : r.objects) {

@@ -109,17 +109,6 @@ ActionState state_of(const Action& action, XrPath user) {
   return out;
 }
 
-/// The profiles that the application is to know of have changed.
-void tell_profiles(Session& session) {
-  std::map<std::string, std::string> now;
-  for (const std::string user : {"/user/hand/left", "/user/hand/right", gaze_user})
-    now[user] = profile_of(user);
-  if (now == session.profiles) return;
-  session.profiles = now;
-  runtime().queue(XrEventDataInteractionProfileChanged{XR_TYPE_EVENT_DATA_INTERACTION_PROFILE_CHANGED,
-                                                       nullptr, handle_of<XrSession>(session)});
-}
-
 }  // namespace
 
 std::optional<Pose> pose_of_action(const Space& space, XrTime time) {
@@ -150,7 +139,6 @@ XrResult sync_actions(XrSession handle, const XrActionsSyncInfo* info) {
     active.insert(set.id);
   }
   const bool focused = session.state == XR_SESSION_STATE_FOCUSED;
-  if (focused) tell_profiles(session);
   for (const auto& [id, object] : r.objects) {
     if (auto* action = dynamic_cast<Action*>(object.get())) {
       sync(*action, focused && active.count(action->parent) != 0);
@@ -177,15 +165,6 @@ XrResult get_action_state_boolean(XrSession handle, const XrActionStateGetInfo* 
   return XR_SUCCESS;
 }
 
-XrResult get_action_state_float(XrSession handle, const XrActionStateGetInfo* info, XrActionStateFloat* out) {
-  const Action& action = action_of(handle, info, XR_ACTION_TYPE_FLOAT_INPUT);
-  checked(out, XR_TYPE_ACTION_STATE_FLOAT);
-  const ActionState state = state_of(action, info->subactionPath);
-  out->currentState = static_cast<float>(number(state.value));
-  tell_change(state, *out);
-  return XR_SUCCESS;
-}
-
 XrResult get_action_state_vector2f(XrSession handle, const XrActionStateGetInfo* info,
                                    XrActionStateVector2f* out) {
   const Action& action = action_of(handle, info, XR_ACTION_TYPE_VECTOR2F_INPUT);
@@ -201,76 +180,6 @@ XrResult get_action_state_pose(XrSession handle, const XrActionStateGetInfo* inf
   const Action& action = action_of(handle, info, XR_ACTION_TYPE_POSE_INPUT);
   checked(out, XR_TYPE_ACTION_STATE_POSE);
   out->isActive = state_of(action, info->subactionPath).active ? XR_TRUE : XR_FALSE;
-  return XR_SUCCESS;
-}
-
-XrResult get_current_interaction_profile(XrSession handle, XrPath user, XrInteractionProfileState* state) {
-  const auto& session = runtime().get<Session>(handle);
-  checked(state, XR_TYPE_INTERACTION_PROFILE_STATE);
-  require(session.attached, XR_ERROR_ACTIONSET_NOT_ATTACHED, "no action set is attached");
-  const auto found = session.profiles.find(text_of(user));
-  const bool there = found != session.profiles.end() && !found->second.empty();
-  state->interactionProfile = there ? path_of(found->second) : XR_NULL_PATH;
-  return XR_SUCCESS;
-}
-
-XrResult enumerate_bound_sources_for_action(XrSession handle,
-                                            const XrBoundSourcesForActionEnumerateInfo* info,
-                                            std::uint32_t capacity, std::uint32_t* count, XrPath* sources) {
-  Runtime& r = runtime();
-  const auto& session = r.get<Session>(handle);
-  checked(info, XR_TYPE_BOUND_SOURCES_FOR_ACTION_ENUMERATE_INFO);
-  require(session.attached, XR_ERROR_ACTIONSET_NOT_ATTACHED, "no action set is attached");
-  const auto& action = r.get<Action>(info->action);
-  std::vector<std::string> all;
-  for (const std::string user : {"/user/hand/left", "/user/hand/right", gaze_user}) {
-    for (const std::string& component : bound(action, user)) all.push_back(component);
-  }
-  return fill(all.size(), capacity, count, sources, [&](std::size_t k) { sources[k] = path_of(all[k]); });
-}
-
-XrResult get_input_source_localized_name(XrSession handle, const XrInputSourceLocalizedNameGetInfo* info,
-                                         std::uint32_t capacity, std::uint32_t* count, char* buffer) {
-  const auto& session = runtime().get<Session>(handle);
-  checked(info, XR_TYPE_INPUT_SOURCE_LOCALIZED_NAME_GET_INFO);
-  require(session.attached, XR_ERROR_ACTIONSET_NOT_ATTACHED, "no action set is attached");
-  require(info->whichComponents != 0, XR_ERROR_VALIDATION_FAILURE, "the name of nothing");
-  return fill_text(text_of(info->sourcePath), capacity, count, buffer);
-}
-
-namespace {
-
-void check_haptic(XrSession handle, const XrHapticActionInfo* info) {
-  Runtime& r = runtime();
-  r.get<Session>(handle);
-  checked(info, XR_TYPE_HAPTIC_ACTION_INFO);
-  const auto& action = r.get<Action>(info->action);
-  require(action.type == XR_ACTION_TYPE_VIBRATION_OUTPUT, XR_ERROR_ACTION_TYPE_MISMATCH,
-          "action " + action.name + " is no vibration");
-  require(dynamic_cast<ActionSet&>(*r.objects.at(action.parent)).attached, XR_ERROR_ACTIONSET_NOT_ATTACHED,
-          "the set of action " + action.name + " is not attached");
-}
-
-}  // namespace
-
-XrResult apply_haptic_feedback(XrSession handle, const XrHapticActionInfo* info,
-                               const XrHapticBaseHeader* feedback) {
-  Runtime& r = runtime();
-  check_haptic(handle, info);
-  const auto& vibration =
-      checked(reinterpret_cast<const XrHapticVibration*>(feedback), XR_TYPE_HAPTIC_VIBRATION);
-  require(vibration.amplitude >= 0 && vibration.amplitude <= 1, XR_ERROR_VALIDATION_FAILURE,
-          "an amplitude of " + std::to_string(vibration.amplitude));
-  r.log({{"what", "haptic"},
-         {"frame", r.frame()},
-         {"user", info->subactionPath == XR_NULL_PATH ? "" : text_of(info->subactionPath)},
-         {"amplitude", vibration.amplitude},
-         {"duration", vibration.duration}});
-  return r.session()->state == XR_SESSION_STATE_FOCUSED ? XR_SUCCESS : XR_SESSION_NOT_FOCUSED;
-}
-
-XrResult stop_haptic_feedback(XrSession handle, const XrHapticActionInfo* info) {
-  check_haptic(handle, info);
   return XR_SUCCESS;
 }
 

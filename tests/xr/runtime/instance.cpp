@@ -89,12 +89,6 @@ XrResult result_to_string(XrInstance handle, XrResult value, char* buffer) {
   return XR_SUCCESS;
 }
 
-XrResult structure_type_to_string(XrInstance handle, XrStructureType value, char* buffer) {
-  runtime().get<Instance>(handle, true);
-  std::strncpy(buffer, name_of(value), XR_MAX_STRUCTURE_NAME_SIZE - 1);
-  return XR_SUCCESS;
-}
-
 XrResult string_to_path(XrInstance handle, const char* text, XrPath* path) {
   Runtime& r = runtime();
   r.get<Instance>(handle);
@@ -105,12 +99,6 @@ XrResult string_to_path(XrInstance handle, const char* text, XrPath* path) {
   require(good, XR_ERROR_PATH_FORMAT_INVALID, "'" + name + "' is no path");
   *path = path_of(name);
   return XR_SUCCESS;
-}
-
-XrResult path_to_string(XrInstance handle, XrPath path, std::uint32_t capacity, std::uint32_t* count,
-                        char* buffer) {
-  runtime().get<Instance>(handle);
-  return fill_text(text_of(path), capacity, count, buffer);
 }
 
 }  // namespace api

@@ -11,7 +11,7 @@ using Paths = std::set<std::string>;
 
 // As the specification lists them, below /user/hand/left and right; "left:" and "right:": of one hand only.
 const std::map<std::string, Paths>& profiles() {
-  static const Paths all_have = {"input/grip/pose", "input/aim/pose", "output/haptic"};
+  static const Paths all_have = {"input/grip/pose", "input/aim/pose"};
   static const std::map<std::string, Paths> own = {
       {"khr/simple_controller", {"input/select/click", "input/menu/click"}},
       {"oculus/touch_controller",

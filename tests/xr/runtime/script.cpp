@@ -30,14 +30,9 @@ const std::map<std::string, XrReferenceSpaceType> spaces = {
     {"local", XR_REFERENCE_SPACE_TYPE_LOCAL},
     {"stage", XR_REFERENCE_SPACE_TYPE_STAGE},
     {"local_floor", XR_REFERENCE_SPACE_TYPE_LOCAL_FLOOR_TEST}};
-const std::map<std::string, XrEnvironmentBlendMode> blend_modes = {
-    {"opaque", XR_ENVIRONMENT_BLEND_MODE_OPAQUE},
-    {"additive", XR_ENVIRONMENT_BLEND_MODE_ADDITIVE},
-    {"alpha", XR_ENVIRONMENT_BLEND_MODE_ALPHA_BLEND}};
 const std::map<std::string, XrVisibilityMaskTypeKHR> mask_types = {
     {"hidden", XR_VISIBILITY_MASK_TYPE_HIDDEN_TRIANGLE_MESH_KHR},
-    {"visible", XR_VISIBILITY_MASK_TYPE_VISIBLE_TRIANGLE_MESH_KHR},
-    {"loop", XR_VISIBILITY_MASK_TYPE_LINE_LOOP_KHR}};
+    {"visible", XR_VISIBILITY_MASK_TYPE_VISIBLE_TRIANGLE_MESH_KHR}};
 const std::map<std::string, XrViewStateFlags> flags = {
     {"orientation_valid", XR_VIEW_STATE_ORIENTATION_VALID_BIT},
     {"position_valid", XR_VIEW_STATE_POSITION_VALID_BIT},
@@ -129,11 +124,7 @@ const std::map<std::string, Setter>& setters() {
       {"views", set_views},
       {"masks", set_masks},
       {"spaces", [](Script& s, const Json& j) { s.spaces = all_of(spaces, j); }},
-      {"stage", [](Script& s, const Json& j) { s.stage = pose_from(j); }},
-      {"local", [](Script& s, const Json& j) { s.local = pose_from(j); }},
       {"heads", set_heads},
-      {"blend_modes", [](Script& s, const Json& j) { s.blend_modes = all_of(blend_modes, j); }},
-      {"first_time", plain(&Script::first_time)},
       {"period", plain(&Script::period)},
       {"frames", plain(&Script::frames)},
       {"invisible_frames", plain(&Script::invisible_frames)},
@@ -141,8 +132,6 @@ const std::map<std::string, Setter>& setters() {
       {"sleep", plain(&Script::sleep)},
       {"immutable", plain(&Script::immutable)},
       {"unordered_srgb", plain(&Script::unordered_srgb)},
-      {"colour_images", plain(&Script::colour_images)},
-      {"depth_images", plain(&Script::depth_images)},
       {"pixels", [](Script& s, const Json& j) { s.pixels = j.get<std::set<int>>(); }},
       {"flags", [](Script& s, const Json& j) { s.flags = flags_from(j); }},
       {"profile", plain(&Script::profile)},
@@ -203,8 +192,6 @@ Pose pose_from(const Json& json) {
 void patch(ViewSpec& view, const Json& json) {
   if (json.contains("width")) view.width = json["width"];
   if (json.contains("height")) view.height = json["height"];
-  if (json.contains("max_width")) view.max_width = json["max_width"];
-  if (json.contains("max_height")) view.max_height = json["max_height"];
   if (json.contains("fov")) view.fov = fov_from(json["fov"]);
   if (json.contains("position") || json.contains("orientation")) view.pose = pose_from(json);
 }
@@ -223,16 +210,13 @@ Mask mask_from(const Json& json) {
 
 XrViewConfigurationType configuration_from(const std::string& name) {
   static const std::map<std::string, XrViewConfigurationType> types = {
-      {"mono", XR_VIEW_CONFIGURATION_TYPE_PRIMARY_MONO},
       {"stereo", XR_VIEW_CONFIGURATION_TYPE_PRIMARY_STEREO},
       {"quad", XR_VIEW_CONFIGURATION_TYPE_PRIMARY_QUAD_VARJO}};
   return one_of(types, name);
 }
 
 std::string name_of(XrViewConfigurationType type) {
-  return type == XR_VIEW_CONFIGURATION_TYPE_PRIMARY_QUAD_VARJO ? "quad"
-         : type == XR_VIEW_CONFIGURATION_TYPE_PRIMARY_MONO     ? "mono"
-                                                               : "stereo";
+  return type == XR_VIEW_CONFIGURATION_TYPE_PRIMARY_QUAD_VARJO ? "quad" : "stereo";
 }
 
 XrViewStateFlags flags_from(const Json& json) {

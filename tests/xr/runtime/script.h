@@ -58,7 +58,6 @@ struct Script {
   // Poses are given in a world of the script's own.
   Pose stage, local = {.position = {0.0, 1.6, 0.0}};
   std::vector<Pose> heads = {{.position = {0.0, 1.6, 0.0}}};  // by frame; the last one stays
-  std::vector<XrEnvironmentBlendMode> blend_modes = {XR_ENVIRONMENT_BLEND_MODE_OPAQUE};
   XrTime first_time = 1'000'000'000;
   XrDuration period = 11'111'111;  // ns
   int frames = 3;                  // that are ended before the runtime asks to stop

@@ -83,8 +83,6 @@ void apply(Session& session, int frame, const Json& event) {
     } else if (key == "instance_loss") {
       r.queue(XrEventDataInstanceLossPending{XR_TYPE_EVENT_DATA_INSTANCE_LOSS_PENDING, nullptr,
                                              r.time_of(frame + 1)});
-    } else if (key == "events_lost") {
-      r.queue(XrEventDataEventsLost{XR_TYPE_EVENT_DATA_EVENTS_LOST, nullptr, value.get<std::uint32_t>()});
     } else if (key == "input") {
       for (const auto& [path, state] : value.items()) r.input[path] = state;
     } else if (key == "gaze") {

@@ -80,17 +80,6 @@ XrResult create_reference_space(XrSession handle, const XrReferenceSpaceCreateIn
   return XR_SUCCESS;
 }
 
-XrResult get_reference_space_bounds_rect(XrSession handle, XrReferenceSpaceType type, XrExtent2Df* bounds) {
-  runtime().get<Session>(handle);
-  check_offered(type);
-  if (type != XR_REFERENCE_SPACE_TYPE_STAGE) {
-    *bounds = {0, 0};
-    return XR_SPACE_BOUNDS_UNAVAILABLE;
-  }
-  *bounds = {2, 2};
-  return XR_SUCCESS;
-}
-
 XrResult create_action_space(XrSession handle, const XrActionSpaceCreateInfo* info, XrSpace* out) {
   const auto& session = runtime().get<Session>(handle);
   checked(info, XR_TYPE_ACTION_SPACE_CREATE_INFO);

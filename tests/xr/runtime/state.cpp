@@ -116,9 +116,4 @@ void Runtime::fault(const std::string& text, XrResult result) {
        {"text", text}});
 }
 
-XrResult fill_text(const std::string& text, std::uint32_t capacity, std::uint32_t* count_out, char* buffer) {
-  return fill(text.size() + 1, capacity, count_out, buffer,
-              [&](std::size_t k) { buffer[k] = text.c_str()[k]; });
-}
-
 }  // namespace binosplat::xr_test

@@ -59,7 +59,6 @@ struct Session : Object {
   std::optional<FrameRecord> waited, begun;  // not yet begun, not yet ended
   std::map<std::size_t, std::pair<std::uint64_t, std::uint32_t>> depth_of_view;  // swapchain, array index
   bool attached = false;
-  std::map<std::string, std::string> profiles;  // by user path, as the application was last told
 };
 
 struct Swapchain : Object {
@@ -251,7 +250,6 @@ XrResult fill(std::size_t count, std::uint32_t capacity, std::uint32_t* count_ou
   for (std::size_t k = 0; k < count; ++k) put(k);
   return XR_SUCCESS;
 }
-XrResult fill_text(const std::string& text, std::uint32_t capacity, std::uint32_t* count_out, char* buffer);
 
 template <typename Handle>
 Handle handle_of(const Object& object) {

@@ -56,8 +56,7 @@ XrResult enumerate_environment_blend_modes(XrInstance handle, XrSystemId system,
   runtime().get<Instance>(handle);
   check_system(system);
   views_of(type);
-  const auto& all = runtime().script.blend_modes;
-  return fill(all.size(), capacity, count, modes, [&](std::size_t k) { modes[k] = all[k]; });
+  return fill(1, capacity, count, modes, [&](std::size_t) { *modes = XR_ENVIRONMENT_BLEND_MODE_OPAQUE; });
 }
 
 XrResult enumerate_view_configurations(XrInstance handle, XrSystemId system, std::uint32_t capacity,
@@ -74,17 +73,6 @@ XrResult enumerate_view_configurations(XrInstance handle, XrSystemId system, std
     }
   }
   return fill(all.size(), capacity, count, types, [&](std::size_t k) { types[k] = all[k]; });
-}
-
-XrResult get_view_configuration_properties(XrInstance handle, XrSystemId system, XrViewConfigurationType type,
-                                           XrViewConfigurationProperties* properties) {
-  runtime().get<Instance>(handle);
-  check_system(system);
-  checked(properties, XR_TYPE_VIEW_CONFIGURATION_PROPERTIES);
-  views_of(type);
-  properties->viewConfigurationType = type;
-  properties->fovMutable = XR_TRUE;
-  return XR_SUCCESS;
 }
 
 XrResult enumerate_view_configuration_views(XrInstance handle, XrSystemId system,
