@@ -49,9 +49,8 @@ void add_tower(Builder& builder, const Tower& tower) {
   for (int k = 0; k < tower.tiers; ++k) {
     const double half = 0.5 * tower.width * (1.0 - 0.17 * k);
     const double top = tower.height * (k + 1) / tower.tiers;
-    builder.box(
-        {tower.foot, dmat3(1)}, {-half, -top, -half}, {half, k == 0 ? 12.0 : -below, half},
-        {.texture = [&tower](double u, double v) { return tower_at(tower, u, v); }, .coarseness = 0.8});
+    builder.box({tower.foot, dmat3(1)}, {-half, -top, -half}, {half, k == 0 ? 12.0 : -below, half},
+                {.texture = texture_of<tower_at>(tower), .coarseness = 0.8});
     below = top;
   }
 }

@@ -145,8 +145,7 @@ class HouseBuilder {
     if (neighbour > house_.eave + 0.5 * house_.roof_rise) return;
     const dvec3 along = house_.frame.axes[2] * (left ? -row_depth : row_depth);
     const dvec3 low = house_.frame.at(left ? 0.0 : house_.width, 0.0, left ? row_depth : 0.0);
-    const auto masonry = [&house = house_](double u, double v) { return masonry_at(house, u, v); };
-    Surface side{.texture = masonry, .coarseness = hidden};
+    Surface side{.texture = texture_of<masonry_at>(house_), .coarseness = hidden};
     if (neighbour > 0.0 && neighbour < house_.eave) {
       side.corner = low + house_.frame.axes[1] * -neighbour;
       side.u = along;
@@ -172,8 +171,7 @@ class HouseBuilder {
     const dvec3 right = house_.frame.axes[0] * house_.width;
     const unsigned ends = (house_.left_eave < house_.eave ? border_left : 0u) |
                           (house_.right_eave < house_.eave ? border_right : 0u);
-    const auto tiles = [&house = house_](double u, double v) { return roof_at(house, u, v); };
-    Surface roof{.u = right, .texture = tiles, .coarseness = roof_coarseness};
+    Surface roof{.u = right, .texture = texture_of<roof_at>(house_), .coarseness = roof_coarseness};
     if (house_.roof_rise == 0.0) {
       roof.corner = house_.frame.at(0.0, -house_.eave + 0.15, 0.0);
       roof.v = house_.frame.axes[2] * row_depth;

@@ -33,10 +33,10 @@ void add_city_tree(Builder& builder, const Tree& tree) {
   const dvec3 up(0, -1, 0);
   builder.ball({.corner = tree.foot + up * (tree.trunk + tree.radius),
                 .u = tree.radius * dvec3(1.0, 1.12, 1.0),
-                .texture = [&tree](double reach, double out) { return leaves_at(tree, reach, out); },
+                .texture = texture_of<leaves_at>(tree),
                 .seed = tree.number});
   if (grain > grain_of_trunks) return;
-  const auto bark = [&tree](double u, double v) { return bark_at(tree, u, v); };
+  const Texture bark = texture_of<bark_at>(tree);
   const double thick = 0.075 * tree.radius;
   if (grain > 2.0 * thick) {
     builder.wire(tree.foot, tree.foot + up * (tree.trunk + 0.5 * tree.radius), thick, bark);

@@ -196,7 +196,7 @@ void add_bookshelf(Stage& stage) {
   };
   part({x0, top, z0 - board}, {x1, 0, z0});
   part({x0, top, z1}, {x1, 0, z1 + board});
-  stage.sheet({x1 - 0.01, 0, z0}, {0, top, 0}, {0, 0, z1 - z0}, {0.08, 0.04}, plank, Border::overlaps);
+  stage.sheet({x1 - 0.01, 0, z0}, {0, top, 0}, {0, 0, z1 - z0}, {0.08, 0.04, Border::overlaps}, plank);
   stage.block(Shape::box, world, {x1 - 0.005, top, z0 - board}, {x1 + 0.04, 0, z1 + board});
   constexpr int shelves = 5;
   for (int shelf = 0; shelf <= shelves; ++shelf) {

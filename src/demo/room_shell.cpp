@@ -62,8 +62,8 @@ void add_bricks(Stage& stage) {
   for (int j = 0; j < rows; ++j) {
     const dvec3 row = corner - course * j * down;
     const double shift = (j % 2) * 0.5 * brick;
-    stage.sheet(row - joint * down, depth * away, joint * down, {0.13, joint},
-                Material{.colour = {0.72, 0.67, 0.60}}, Border::overlaps);
+    stage.sheet(row - joint * down, depth * away, joint * down, {0.13, joint, Border::overlaps},
+                Material{.colour = {0.72, 0.67, 0.60}});
     for (int i = -1; i <= static_cast<int>(depth / brick); ++i) {
       const double from = std::max(0.0, i * brick + shift),
                    to = std::min(depth, (i + 1) * brick + shift - joint);
@@ -72,15 +72,13 @@ void add_bricks(Stage& stage) {
       const dvec3 colour =
           mix(dvec3(0.52, 0.26, 0.19), dvec3(0.76, 0.47, 0.35), tone) * (0.92 + 0.16 * hash(j, i + 99));
       const dvec3 start = row - course * down + from * away;
-      stage.sheet(
-          start, (to - from) * away, (course - joint) * down, {0.055, 0.032},
-          [&](double u, double v) {
-            return Material{.colour =
-                                colour * (0.88 + 0.24 * fractal(40.0 * u + 9.0 * i, 40.0 * v + 7.0 * j))};
-          },
-          Border::overlaps);
-      stage.sheet(start + (to - from) * away, joint * away, (course - joint) * down, {joint, course},
-                  Material{.colour = {0.72, 0.67, 0.60}}, Border::overlaps);
+      stage.sheet(start, (to - from) * away, (course - joint) * down, {0.055, 0.032, Border::overlaps},
+                  [&](double u, double v) {
+                    return Material{
+                        .colour = colour * (0.88 + 0.24 * fractal(40.0 * u + 9.0 * i, 40.0 * v + 7.0 * j))};
+                  });
+      stage.sheet(start + (to - from) * away, joint * away, (course - joint) * down,
+                  {joint, course, Border::overlaps}, Material{.colour = {0.72, 0.67, 0.60}});
     }
   }
 }
@@ -117,14 +115,13 @@ void add_floor(Stage& stage) {
     const double x = room_low.x + k * plank, across = std::min(plank, room_high.x - x) - gap;
     const double joint = 2.0 * hash(k, 7);  // where one board ends and the next one starts
     stage.sheet(
-        {x, 0, room_high.z}, -depth * away, across * right, {0.08, 0.036},
+        {x, 0, room_high.z}, -depth * away, across * right, {0.08, 0.036, Border::overlaps},
         [&](double u, double v) {
           const double seed = k * 10 + std::floor((u + joint) / 2.0);
           return Material{.colour = wood({0.60, 0.41, 0.25}, u, v, seed), .gloss = 3.5, .sharpness = 14};
-        },
-        Border::overlaps);
-    stage.sheet({x + across, 0, room_high.z}, -depth * away, gap * right, {0.08, gap},
-                Material{.colour = {0.22, 0.14, 0.09}}, Border::overlaps);
+        });
+    stage.sheet({x + across, 0, room_high.z}, -depth * away, gap * right, {0.08, gap, Border::overlaps},
+                Material{.colour = {0.22, 0.14, 0.09}});
   }
 }
 
@@ -154,38 +151,34 @@ void add_walls(Stage& stage) {
     const double x = room_low.x + u, y = -up;
     return x > window_low.x && x < window_high.x && y > window_low.y && y < window_high.y;
   };
-  stage.sheet(
-      back, room_width * right, -panelling * down, {0.028, 0.035},
-      [&](double u, double up) { return in_window(u, up) ? hole : boarding(u, up); }, Border::overlaps);
-  stage.sheet(
-      back - panelling * down, room_width * right, (panelling - height) * down, Grain(0.028),
-      [&](double u, double v) { return in_window(u, panelling + v) ? hole : wallpaper(u, panelling + v); },
-      Border::overlaps);
+  stage.sheet(back, room_width * right, -panelling * down, {0.028, 0.035, Border::overlaps},
+              [&](double u, double up) { return in_window(u, up) ? hole : boarding(u, up); });
+  stage.sheet(back - panelling * down, room_width * right, (panelling - height) * down,
+              {0.028, 0.028, Border::overlaps}, [&](double u, double v) {
+                return in_window(u, panelling + v) ? hole : wallpaper(u, panelling + v);
+              });
   // Left: plaster above the same boards.
   const dvec3 left(room_low.x, 0, room_low.z);
-  stage.sheet(left, depth * away, -panelling * down, {0.028, 0.040}, boarding, Border::overlaps);
-  stage.sheet(
-      left - panelling * down, depth * away, (panelling - height) * down, Grain(0.075),
-      [](double u, double v) { return plaster(u, panelling + v); }, Border::overlaps);
+  stage.sheet(left, depth * away, -panelling * down, {0.028, 0.040, Border::overlaps}, boarding);
+  stage.sheet(left - panelling * down, depth * away, (panelling - height) * down,
+              {0.075, 0.075, Border::overlaps}, [](double u, double v) { return plaster(u, panelling + v); });
   add_bricks(stage);
   // Behind the default camera: plaster, with a door.
-  stage.sheet(
-      {room_low.x, room_low.y, room_low.z}, room_width * right, height * down, Grain(0.090),
-      [](double u, double v) {
-        const double up = height - v, x = std::abs(u - 3.6);
-        if (x < 0.45 && up < 2.05) {
-          const bool panel = x < 0.32 && std::abs(std::remainder(up - 0.55, 0.95)) < 0.36;
-          return Material{.colour = dvec3(0.36, 0.44, 0.40) * (panel ? 0.88 : 1.0), .gloss = 0.3};
-        }
-        if (x < 0.53 && up < 2.13) return Material{.colour = off_white};
-        return plaster(u, up);
-      },
-      Border::overlaps);
+  stage.sheet({room_low.x, room_low.y, room_low.z}, room_width * right, height * down,
+              {0.090, 0.090, Border::overlaps}, [](double u, double v) {
+                const double up = height - v, x = std::abs(u - 3.6);
+                if (x < 0.45 && up < 2.05) {
+                  const bool panel = x < 0.32 && std::abs(std::remainder(up - 0.55, 0.95)) < 0.36;
+                  return Material{.colour = dvec3(0.36, 0.44, 0.40) * (panel ? 0.88 : 1.0), .gloss = 0.3};
+                }
+                if (x < 0.53 && up < 2.13) return Material{.colour = off_white};
+                return plaster(u, up);
+              });
 }
 
 void add_ceiling(Stage& stage) {
-  stage.sheet({room_low.x, room_low.y, room_low.z}, depth * away, room_width * right, Grain(0.14),
-              Material{.colour = {0.93, 0.92, 0.89}}, Border::overlaps);
+  stage.sheet({room_low.x, room_low.y, room_low.z}, depth * away, room_width * right,
+              {0.14, 0.14, Border::overlaps}, Material{.colour = {0.93, 0.92, 0.89}});
   const Frame world;
   const auto stucco = Material{.colour = {0.94, 0.93, 0.90}};
   for (int step = 0; step < 2; ++step) {  // a moulding of two steps

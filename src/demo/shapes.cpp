@@ -113,11 +113,11 @@ void Stage::disc(const dvec3& position, const dmat3& axes, const dvec3& scale, c
 }
 
 void Stage::sheet(const dvec3& corner, const dvec3& edge_u, const dvec3& edge_v, Grain grain,
-                  const Texture& texture, Border border) {
+                  const Texture& texture) {
   const double length_u = glm::length(edge_u), length_v = glm::length(edge_v);
   const dvec3 u = edge_u / length_u, v = edge_v / length_v;
   const dmat3 axes = axes_from_normal(glm::normalize(glm::cross(u, v)), u);
-  const double margin = border == Border::ends ? margin_at_border : 0.5;
+  const double margin = grain.border == Border::ends ? margin_at_border : 0.5;
   const Row row_u(length_u, grain.u, margin), row_v(length_v, grain.v, margin);
   const double su = room_overlap * row_u.size, sv = room_overlap * row_v.size;
   for (int j = 0; j < row_v.count; ++j) {

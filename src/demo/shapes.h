@@ -62,6 +62,12 @@ class Texture {
   std::function<Material(double u, double v)> at_;
 };
 
+/// The texture that a function of (subject, u, v) is for one subject, which must outlive it.
+template <auto at, typename Subject>
+Texture texture_of(const Subject& subject) {
+  return [&subject](double u, double v) { return at(subject, u, v); };
+}
+
 /// One Gaussian-to-be. Its axes are tangent, bitangent (their cross product points away from the surface) and
 /// normal.
 struct Disc {
@@ -113,17 +119,18 @@ struct Cells {
   }
 };
 
-/// How far apart the discs of a surface lie.
-struct Grain {
-  double u;
-  double v;
-  explicit Grain(double both) : u(both), v(both) {}
-  Grain(double along_u, double along_v) : u(along_u), v(along_v) {}
-};
-
 /// Whether a sheet ends at its border (silhouettes) or reaches over it (walls that must close at their
 /// corners).
 enum class Border { ends, overlaps };
+
+/// How far apart the discs of a surface lie, and where its outermost ones do.
+struct Grain {
+  double u, v;
+  Border border = Border::ends;
+  explicit Grain(double both) : u(both), v(both) {}
+  Grain(double along_u, double along_v, Border where = Border::ends)
+      : u(along_u), v(along_v), border(where) {}
+};
 
 /// Where the discs and solids of a scene are collected.
 class Stage {
@@ -132,7 +139,7 @@ class Stage {
 
   /// A parallelogram; its front is where cross(edge_u, edge_v) points.
   void sheet(const dvec3& corner, const dvec3& edge_u, const dvec3& edge_v, Grain grain,
-             const Texture& texture, Border border = Border::ends);
+             const Texture& texture);
 
   /// The faces of a box from `low` to `high` in a frame; a texture's u runs along the longer side of each
   /// face. The face on the floor is left out where `low` or `high` touch y = 0 of the frame.
