@@ -24,7 +24,7 @@ class OutputFile {
   OutputFile(const OutputFile&) = delete;
   OutputFile& operator=(const OutputFile&) = delete;
 
-  /// The temporary file, for those who want to write it by name; what write() is given may not be in it
+  /// The temporary file, for libraries that write by name; what write() is given may not be in it
   /// before commit().
   const std::filesystem::path& path() const { return temporary_; }
 
@@ -32,8 +32,8 @@ class OutputFile {
   void write(std::span<const std::byte> bytes);
   void write(std::string_view text);
 
-  /// What was written so far is in the temporary file, for those who want to read it before it is committed,
-  /// or instead. Throws Error as write() does.
+  /// Puts all that was written into the temporary file, so that it can be read before commit(). Throws Error
+  /// as write() does.
   void flush();
 
   /// Flushes, closes and renames to the target, replacing what stood there; a loss of power from then on

@@ -1,6 +1,6 @@
 #pragma once
 // Progress of long work: a line that is rewritten on a terminal, a line every few seconds in a log, nothing
-// for work that is over within a second or for a program that is to be quiet. After five seconds it tells how
+// for work that is over within a second or for a program that is to be quiet. After five seconds it says how
 // long the rest will take at this pace.
 
 #include <chrono>
@@ -17,7 +17,8 @@ class Progress {
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
-  /// Tells how much of `total` is done so far. Cheap enough for every few thousand elements; one thread only.
+  /// Reports how much of `total` is done so far. Cheap enough for every few thousand elements; one thread
+  /// only.
   void update(std::uint64_t done);
 
  private:

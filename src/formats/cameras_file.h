@@ -28,11 +28,11 @@ std::filesystem::path resolve_cameras(const std::filesystem::path& path);
 /// kept to the digit. Of a file that lacks_lenses() pictures are `fov_degrees` high, or 60. Throws
 /// UndrawableLens (formats/distortion.h) where no camera's lens can be drawn, and Error naming the file, the
 /// camera's number in the list and its key; for broken JSON the line and byte; for a name that two cameras
-/// have, since photos and pictures are told apart by it, the name.
+/// have, since photos and pictures are matched by it, the name.
 std::vector<Camera> load_cameras(const std::filesystem::path& path,
                                  const std::optional<double>& fov_degrees = {});
 
-/// Whether a file tells where cameras are, but nothing of their lenses (formats/nerfstudio.h).
+/// Whether a file has the poses of cameras, but nothing of their lenses (formats/nerfstudio.h).
 bool lacks_lenses(const std::filesystem::path& path);
 
 /// Throws Error: `source` has no camera of the name that was `asked` for, and names some that it has.

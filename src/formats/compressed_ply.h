@@ -4,7 +4,7 @@
 // Its first element is `chunk` (bounds of positions, logarithms of scales and, but for old SuperSplat, base
 // colours), then `vertex` with packed_position, packed_rotation, packed_scale and packed_color, and perhaps
 // `sh` with the higher harmonics, a byte each and channel-major as in a plain ply. Always binary, least byte
-// first. Frame: as a plain ply's (RDF). Comments tell of anti-aliasing as there.
+// first. Frame: as a plain ply's (RDF). Comments say whether it is anti-aliased, as there.
 
 #include <filesystem>
 #include <span>

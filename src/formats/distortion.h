@@ -35,7 +35,8 @@ struct UndrawableLens : Error {
   explicit UndrawableLens(const std::string& text) : Error(ExitCode::bad_input, text) {}
 };
 
-/// What the lenses of a file are drawn as. Each camera is told of; finish() says all in one warning each.
+/// What the lenses of a file are drawn as. Every camera is noted; finish() reports each kind of lens in one
+/// warning.
 class DrawnLenses {
  public:
   /// `remedy` follows what is said of lenses that are bent, as ". Undistort ...".

@@ -5,7 +5,7 @@
 // `coverage`. Without: associated alpha, R, G, B = A * EOTF(C/A), A = 1 - T. EOTF is sRGB's, which goes on
 // above 1 by the same power law; nothing is clamped. Z is view-space depth Z/A where A > 0.5, +infinity
 // elsewhere, always FLOAT. The header's attribute `binosplatEncoding`, "linear" or "display" (EOTF left out),
-// tells readers which it is.
+// says which it is.
 //
 // Both eyes go into one file as OpenEXR's multi-view standard has it: the attribute `multiView` lists left
 // and right, the left eye is the default view with the channels above, the right eye's are right.R, right.Z

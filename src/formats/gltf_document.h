@@ -36,7 +36,7 @@ class GltfDocument {
   std::vector<float> read(std::size_t index, std::size_t components, std::size_t count,
                           const char* like = "the positions");
 
-  /// Whether any of an accessor's numbers are in the file, and not zeros for want of others.
+  /// Whether any of an accessor's numbers are in the file, and not zeros because there are no others.
   bool has_numbers(std::size_t accessor) const;
 
   /// The files that its buffers name, whether they are there or not.

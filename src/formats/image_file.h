@@ -30,7 +30,7 @@ struct PictureLimit {
 Image load_image(const std::filesystem::path& path, const PictureLimit& limit = {});
 
 /// Width and height in px of what load_image() would read. Throws Error as that does, as far as the file's
-/// header and end tell: a photo in milliseconds.
+/// header and end show: a photo takes milliseconds.
 glm::ivec2 picture_size(const std::filesystem::path& path);
 
 /// Writes round(255 clamp(v)), or 65535 for 16 `bits`, of 1, 3 or 4 channels. No gamma is applied: the values

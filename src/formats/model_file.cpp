@@ -84,7 +84,8 @@ Model load_json_model(const fs::path& path, std::string_view text, const ModelOp
        path.string(), root.is_array() ? "; it may hold cameras, which --cameras takes" : "");
 }
 
-/// Formats without a mark of their own. A name helps to say what is wrong, not to tell what a file is.
+/// Formats without a mark of their own. A name helps to say what is wrong, but does not decide what a file
+/// is.
 Model load_unmarked(const fs::path& path, std::span<const std::byte> bytes) {
   if (is_ksplat(bytes) || path.extension() == ".ksplat") return load_ksplat(path.string(), bytes);
   if (is_splat(bytes) || path.extension() == ".splat") return load_splat(path.string(), bytes);

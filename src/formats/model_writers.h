@@ -57,7 +57,7 @@ void count_lost(Losses& losses, const Model& model, const char* what, const Lost
   if (count > 0) losses.push_back(fmt::format("{} of {} Gaussians have {}", count, model.count(), what));
 }
 
-/// Whether a ply can tell the low-pass by Mip-Splatting's filter, which is in the scales already.
+/// Whether a ply can express the low-pass by Mip-Splatting's filter, which is in the scales already.
 inline bool is_mip_splatting(const Model& model) {
   return model.antialiased && model.kernel_px2 == mip_splatting_kernel_px2;
 }

@@ -36,8 +36,8 @@ std::array<double, 16> sixteen_numbers(const JsonValue& value) {
 }
 
 /// Turns and moves a camera to where a camera-to-world matrix with OpenGL's axes has it: y is up there and z
-/// backwards. A row, or in a matrix of columns a column, of 0 0 0 1 is the last; of keyframes it tells the
-/// order of the numbers, and where it does not, quotes do.
+/// backwards. A row, or in a matrix of columns a column, of 0 0 0 1 is the last; of keyframes it decides the
+/// order of the numbers, and where it is none of the two, quotes do.
 void place(Camera& camera, const JsonValue& value, bool is_keyframe) {
   const std::array<double, 16> n = sixteen_numbers(value);
   const auto is_last = [&](std::size_t first, std::size_t step) {
@@ -62,14 +62,14 @@ void set_vertical_fov(Camera& camera, double degrees) {
   camera.cy = 0.5 * camera.height;
 }
 
-/// Seconds from one frame to the next, where the path tells.
+/// Seconds from one frame to the next, where the path has them.
 std::optional<double> seconds_a_frame(const JsonValue& root, std::size_t frames) {
   if (root.has("seconds")) return root.at("seconds").above_zero() / static_cast<double>(frames);
   if (root.has("fps")) return 1.0 / root.at("fps").above_zero();
   return std::nullopt;
 }
 
-/// Seconds from the keyframe before, where the path tells.
+/// Seconds from the keyframe before, where the path has them.
 std::optional<double> transition(const JsonValue& root, const JsonValue& keyframe) {
   const bool overrides = keyframe.has("override_transition_enabled") &&
                          keyframe.at("override_transition_enabled").value() == true;

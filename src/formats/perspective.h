@@ -1,5 +1,5 @@
 #pragma once
-// The words by which files tell how a model is sorted and projected: those of glTF's KHR_gaussian_splatting
+// The words by which files say how a model is sorted and projected: those of glTF's KHR_gaussian_splatting
 // and of OpenUSD's ParticleField3DGaussianSplat.
 
 #include <string>

@@ -1,5 +1,5 @@
 #pragma once
-// The camera that a model's own ply tells: SHARP (apple/ml-sharp) makes a model of one photo, and leaves in
+// The camera in a model's own ply: SHARP (apple/ml-sharp) makes a model of one photo, and leaves in
 // the file how it was taken.
 //
 // Beside the vertices are elements with one number in each row: `intrinsic` (9: a matrix, row by row, px),

@@ -15,7 +15,7 @@ namespace binosplat {
 
 namespace {
 
-// A shader tells the Gaussians of an anchor by the bits of a word.
+// Shaders have a bit for each Gaussian of an anchor, in one word.
 constexpr std::size_t offsets_max = 31;
 constexpr std::size_t features_max = 256;
 

@@ -86,8 +86,8 @@ SogSource::SogSource(std::string source, const nlohmann::json& json, ReadFile re
     read_tables_v1(meta);
   }
   if (meta.has("shN")) read_harmonics(meta.at("shN"));
-  // The low bytes of positions are noise, which no picture packs: they tell how many Gaussians there may be.
-  // What takes less than a byte for 256 of them is forged, however few they are.
+  // The low bytes of positions are noise, which no picture packs: their size limits how many Gaussians there
+  // may be. What takes less than a byte for 256 of them is forged, however few they are.
   const std::vector<std::byte> low = read_(files_[means_l]);
   bytes_ = low.size();
   const WebpSize size = webp_size(named(files_[means_l]), low);

@@ -66,10 +66,10 @@ class SogWriter {
     write_perspective(model.perspective, meta_);
   }
 
-  using Tell = std::function<void(std::size_t done, std::size_t all)>;
+  using Report = std::function<void(std::size_t done, std::size_t all)>;
 
-  /// Tells of each picture, one at a time.
-  ZipEntries files(const Tell& tell) {
+  /// Calls `report` after each picture, from one thread at a time.
+  ZipEntries files(const Report& report) {
     add_positions();
     add_scales();
     add_rotations();
@@ -85,7 +85,7 @@ class SogWriter {
       const TableTexture& t = textures_[k];
       entries[k + 1] = {t.name, webp_file(t.texels, t.width, t.height)};
       const std::lock_guard lock(counting);
-      tell(++done, textures_.size());
+      report(++done, textures_.size());
     });
     return entries;
   }

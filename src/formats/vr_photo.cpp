@@ -87,7 +87,7 @@ void save_vr_photo(const std::filesystem::path& path, const Image& left, const I
   const std::string rest =
       described("xmlns:GImage=\"http://ns.google.com/photos/1.0/image/\" GImage:Data=\"" +
                 base64(jpeg_of(path, right)) + "\"");
-  // XMP asks for an MD5 as this name; readers compare it only, and any digest tells two apart.
+  // XMP asks for an MD5 as this name; readers compare it only, and any digest does for that.
   const XXH128_hash_t hash = XXH3_128bits(rest.data(), rest.size());
   const std::string name = fmt::format("{:016X}{:016X}", hash.high64, hash.low64);
   // After the marks of a JPEG and of JFIF, as cameras have it.

@@ -26,7 +26,8 @@ Core core_of(const Model& model) {
     core.radius =
         std::max({static_cast<double>(s.x), static_cast<double>(s.y), static_cast<double>(s.z), 1e-3});
   }
-  // Far from the origin floats tell no less apart, and a camera must stand beside what it looks at.
+  // Far from the origin the steps between floats are as large as this, and a camera must stand beside what it
+  // looks at.
   core.radius = std::max(core.radius, 1e-7 * glm::length(core.middle));
   return core;
 }

@@ -12,7 +12,7 @@ namespace binosplat {
 
 namespace {
 
-/// More of them tell no more.
+/// Samples of so many are enough.
 constexpr std::size_t most_gaussians = 20000, most_cameras = 64;
 /// Where fewer are in view, cameras look at something else.
 constexpr double least_seen = 0.01;

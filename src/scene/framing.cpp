@@ -16,9 +16,9 @@ namespace binosplat {
 
 namespace {
 
-/// Cameras look down on the model by this angle, unless others tell of a better one.
+/// Cameras look down on the model by this angle, unless known cameras have a better one.
 constexpr double elevation_degrees = 15.0;
-/// More Gaussians than this tell no more about what stands in the way.
+/// A sample of so many Gaussians is enough to find what stands in the way.
 constexpr std::size_t framing_sample = 200000;
 
 /// The place on the circle around the core where a camera at `turn` radians stands.

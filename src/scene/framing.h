@@ -36,7 +36,7 @@ struct Capture {
 /// Nothing for no cameras, and for those that have no common up, unless `up` says what is up.
 std::optional<Capture> capture_of(std::span<const Camera> cameras, const std::optional<glm::dvec3>& up = {});
 
-/// The same for a model that no cameras tell of, with the ground that was found in it. In a place it is stood
+/// The same for a model without cameras, with the ground that was found in it. In a place it is stood
 /// on the floor, with the `eyes` so high above it (world units; less in a tiny model), among what the model
 /// is about and where the least stands in the way of looking at that; or, where much does, in an open space.
 /// Throws Error if the model is empty.

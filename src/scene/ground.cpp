@@ -16,7 +16,7 @@ namespace binosplat {
 
 namespace {
 
-/// More Gaussians than this tell no more.
+/// A sample of so many Gaussians is enough.
 constexpr std::size_t ground_sample = 50000;
 /// Flat is what is at most so thick beside its second axis; of less opacity it is air.
 constexpr float flat = 0.3f, opaque = 0.5f;

@@ -1,5 +1,5 @@
 #pragma once
-// How a model lies, found in the model itself where no camera tells.
+// Which way is up in a model and where its floor is, found in the model itself, for those without cameras.
 
 #include <glm/glm.hpp>
 #include <optional>

@@ -88,7 +88,7 @@ KeyPath::KeyPath(std::span<const Camera> keys, const std::optional<double>& seco
 }
 
 // A way takes the longer, the farther it goes beside the others and the more it turns; a radian counts as
-// much as the usual way from key to key, since keys tell of no metre.
+// much as the usual way from key to key, since keys do not say how long a metre is.
 void KeyPath::pace(double seconds) {
   std::vector<double> ways, turns;
   double all = 0.0;

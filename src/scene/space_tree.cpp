@@ -43,7 +43,7 @@ std::size_t split_at(const Plane& plane, std::span<const glm::vec3> positions, s
   const auto beyond = std::stable_partition(
       chunk.begin(), chunk.end(), [&](std::uint32_t i) { return positions[i][plane.axis] < plane.at; });
   const auto first = static_cast<std::size_t>(beyond - chunk.begin());
-  return first > 0 ? first : half;  // all are at one place, or as near as numbers tell
+  return first > 0 ? first : half;  // all are at one place, or as near as floats can be
 }
 
 void split(SpaceNode& node, std::span<const glm::vec3> positions, std::span<std::uint32_t> order,

@@ -1,5 +1,5 @@
 #pragma once
-// What a model is made of, in numbers that tell a good one from a damaged one.
+// What a model is made of, in numbers by which a damaged one is found.
 
 #include <array>
 #include <cstddef>

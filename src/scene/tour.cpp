@@ -39,7 +39,7 @@ struct Stop {
   glm::dquat turned{1, 0, 0, 0};  // the camera's axes in the world
 };
 
-/// The angle between two orientations in radians; by the chord, which tells small angles, too.
+/// The angle between two orientations in radians; by the chord, which is exact for small angles, too.
 double turn_between(const glm::dquat& a, const glm::dquat& b) {
   const double chord = std::min(glm::length(a - b), glm::length(a + b));
   return 4.0 * std::asin(std::min(1.0, 0.5 * chord));
@@ -183,7 +183,7 @@ double time_between(const Stop& a, const Stop& b, const Motion& motion) {
 /// The curve as places so near to each other that the ways between are straight, with `at`; at least as far
 /// as the head gets in so many seconds, and so much farther that what comes after has no say in them.
 std::vector<Sample> samples_of(const std::vector<Knot>& knots, const Motion& motion, double seconds) {
-  constexpr double too_near = 1e-9;  // s: no direction could be told
+  constexpr double too_near = 1e-9;  // s: the direction would be noise
   const double enough = seconds + 2.0 * seconds_to_full_speed;
   const auto stop_at = [](const glm::dvec3& place, const glm::dvec4& turned) {
     const glm::dvec4 q = glm::normalize(turned);

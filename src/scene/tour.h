@@ -26,7 +26,7 @@ struct Motion {
 /// does not do, for what must hold all the same).
 const std::vector<Motion>& head_motions();
 
-/// World units that may be taken for a metre where nothing tells of a scale, as who takes photos goes about a
+/// World units that may be taken for a metre where no scale is known, as who takes photos goes about a
 /// step between two: from each camera to its nearest neighbour elsewhere, in the median. 1 for fewer than two
 /// places. Of heads_of() the cameras, as tours are.
 double metre_of(std::span<const Camera> cameras);
