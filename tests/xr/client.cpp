@@ -1,8 +1,8 @@
 // A small application of OpenXR that does all by the book, but for the faults that its arguments name: for
 // the tests of the runtime. Says which calls failed and how. Words that are no faults: depth (hands in depth,
 // too), quad (four views), actions (hands are read; gaze: eyes, too), mask, again (a
-// second session after a lost one), sizes (what is recommended), depth24 and stencil (formats), array (one
-// swapchain with a layer for each view), stage or floor (the space of the layer).
+// second session after a lost one), sizes (what is recommended), depth24 (a
+// format), stage or floor (the space of the layer).
 #include <EGL/egl.h>
 #include <EGL/eglext.h>
 
@@ -114,7 +114,7 @@ struct Client {
     return XR(xrCreateReferenceSpace, session, &where, &other_space) == XR_SUCCESS;
   }
 
-  bool make_chain(Chain& chain, const XrViewConfigurationView& size, bool depth, std::uint32_t layers) const {
+  bool make_chain(Chain& chain, const XrViewConfigurationView& size, bool depth) const {
     XrSwapchainCreateInfo info = {XR_TYPE_SWAPCHAIN_CREATE_INFO};
     info.usageFlags = depth != has("wrong_usage") ? XR_SWAPCHAIN_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT
                                                   : XR_SWAPCHAIN_USAGE_COLOR_ATTACHMENT_BIT;
@@ -123,8 +123,7 @@ struct Client {
     info.width = has("big_swapchain") ? 5000 : size.recommendedImageRectWidth;
     info.height = size.recommendedImageRectHeight;
     if (depth && has("depth_size")) info.height /= 2;
-    info.faceCount = info.mipCount = 1;
-    info.arraySize = layers;
+    info.faceCount = info.mipCount = info.arraySize = 1;
     if (XR(xrCreateSwapchain, session, &info, &chain.handle) != XR_SUCCESS) return false;
     std::uint32_t count = 0;
     XR(xrEnumerateSwapchainImages, chain.handle, 0, &count, nullptr);
@@ -137,13 +136,12 @@ struct Client {
   }
 
   bool make_chains() {
-    const std::size_t count = has("array") ? 1 : sizes.size();
-    const auto layers = static_cast<std::uint32_t>(has("array") ? sizes.size() : 1);
+    const std::size_t count = sizes.size();
     colours.resize(count);
     depths.resize(has("depth") ? count : 0);
     for (std::size_t k = 0; k < count; ++k) {
-      if (!make_chain(colours[k], sizes[k], false, layers)) return false;
-      if (has("depth") && !make_chain(depths[k], sizes[k], true, layers)) return false;
+      if (!make_chain(colours[k], sizes[k], false)) return false;
+      if (has("depth") && !make_chain(depths[k], sizes[k], true)) return false;
     }
     return true;
   }
@@ -193,14 +191,10 @@ struct Client {
     while (XR(xrWaitSwapchainImage, chain.handle, &wait) == XR_TIMEOUT_EXPIRED) {
     }
     if (hit && at("wait_image_twice")) XR(xrWaitSwapchainImage, chain.handle, &wait);
-    const std::size_t layers = has("array") ? sizes.size() : 1;
-    for (std::size_t k = 0; k < layers; ++k) {
-      const std::size_t view = has("pictures_swapped") ? 1 - (first + k) : first + k;
-      paint(chain, view, depth, static_cast<std::uint32_t>(k), frame);
-    }
+    paint(chain, has("pictures_swapped") ? 1 - first : first, depth, frame);
     if (hit && at("not_released")) return;
     XR(xrReleaseSwapchainImage, chain.handle, nullptr);
-    if (hit && at("drawn_after_release")) paint(chain, first + 1, depth, 0, frame);
+    if (hit && at("drawn_after_release")) paint(chain, first + 1, depth, frame);
   }
 
   std::vector<XrView> locate(XrTime time) const {
@@ -218,10 +212,8 @@ struct Client {
   }
 
   XrSwapchainSubImage image_of(const std::vector<Chain>& chains, std::size_t view) const {
-    const Chain& chain = chains[has("array") ? 0 : view];
-    return {chain.handle,
-            {{0, 0}, {chain.width, chain.height}},
-            static_cast<std::uint32_t>(has("array") ? view : 0)};
+    const Chain& chain = chains[view];
+    return {chain.handle, {{0, 0}, {chain.width, chain.height}}, 0};
   }
 
   std::vector<XrCompositionLayerDepthInfoKHR> depth_infos() const {

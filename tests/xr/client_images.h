@@ -20,30 +20,23 @@ struct Chain {
   int width = 0, height = 0;
 };
 
-inline GLenum depth_format() {
-  return has("depth24") ? GL_DEPTH_COMPONENT24 : has("stencil") ? GL_DEPTH24_STENCIL8 : GL_DEPTH_COMPONENT32F;
-}
+inline GLenum depth_format() { return has("depth24") ? GL_DEPTH_COMPONENT24 : GL_DEPTH_COMPONENT32F; }
 
 /// The upper half in one colour, the lower half in another: both tell eye and frame.
-inline void paint(const Chain& chain, std::size_t view, bool depth, std::uint32_t layer, int frame) {
+inline void paint(const Chain& chain, std::size_t view, bool depth, int frame) {
   const bool turned = has("upside_down");
   for (int half = 0; half < 2; ++half) {
     const bool upper = (half == 1) != turned;
     const GLuint image = chain.images[chain.index].image;
     const int y = half * chain.height / 2, rows = chain.height - chain.height / 2;
-    const auto z = static_cast<GLint>(layer);
     if (depth) {
       const float value = (upper ? 0.5f : 0.25f) + static_cast<float>(view) / 16;
-      const auto packed = static_cast<GLuint>(value * 0xFFFFFF) << 8;
-      const bool stencil = has("stencil");
-      glClearTexSubImage(
-          image, 0, 0, y, z, chain.width, rows, 1, stencil ? GL_DEPTH_STENCIL : GL_DEPTH_COMPONENT,
-          stencil ? GL_UNSIGNED_INT_24_8 : GL_FLOAT, stencil ? static_cast<const void*>(&packed) : &value);
+      glClearTexSubImage(image, 0, 0, y, 0, chain.width, rows, 1, GL_DEPTH_COMPONENT, GL_FLOAT, &value);
     } else {
       const std::array<GLubyte, 4> value = {static_cast<GLubyte>(upper ? 200 : 100),
                                             static_cast<GLubyte>(10 * view), static_cast<GLubyte>(frame),
                                             255};
-      glClearTexSubImage(image, 0, 0, y, z, chain.width, rows, 1, GL_RGBA, GL_UNSIGNED_BYTE, value.data());
+      glClearTexSubImage(image, 0, 0, y, 0, chain.width, rows, 1, GL_RGBA, GL_UNSIGNED_BYTE, value.data());
     }
   }
 }

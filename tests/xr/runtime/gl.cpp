@@ -84,10 +84,6 @@ class PackState {
   std::array<GLint, names.size()> kept_{};
 };
 
-bool has_stencil(std::int64_t format) {
-  return format == GL_DEPTH24_STENCIL8 || format == GL_DEPTH32F_STENCIL8;
-}
-
 }  // namespace
 
 Binding binding_from(const void* next, bool egl_enabled, bool xlib_enabled) {
@@ -135,52 +131,36 @@ XrVersion version_of(const Binding& gl) {
 }
 
 bool is_depth(std::int64_t format) {
-  return has_stencil(format) || format == GL_DEPTH_COMPONENT16 || format == GL_DEPTH_COMPONENT24 ||
-         format == GL_DEPTH_COMPONENT32F;
+  return format == GL_DEPTH_COMPONENT16 || format == GL_DEPTH_COMPONENT24 || format == GL_DEPTH_COMPONENT32F;
 }
 
 std::uint32_t make_texture(const Binding& gl, const XrSwapchainCreateInfo& info, bool immutable) {
   const auto format = static_cast<GLenum>(info.format);
-  const auto levels = static_cast<GLsizei>(info.mipCount), width = static_cast<GLsizei>(info.width),
-             height = static_cast<GLsizei>(info.height), layers = static_cast<GLsizei>(info.arraySize);
-  const GLenum target = layers > 1 ? GL_TEXTURE_2D_ARRAY : GL_TEXTURE_2D;
+  const auto width = static_cast<GLsizei>(info.width), height = static_cast<GLsizei>(info.height);
   GLuint texture = 0;
   if (immutable) {
-    gl.CreateTextures(target, 1, &texture);
-    if (layers > 1) {
-      gl.TextureStorage3D(texture, levels, format, width, height, layers);
-    } else {
-      gl.TextureStorage2D(texture, levels, format, width, height);
-    }
+    gl.CreateTextures(GL_TEXTURE_2D, 1, &texture);
+    gl.TextureStorage2D(texture, static_cast<GLsizei>(info.mipCount), format, width, height);
     return texture;
   }
   GLint bound = 0;
-  gl.GetIntegerv(layers > 1 ? GL_TEXTURE_BINDING_2D_ARRAY : GL_TEXTURE_BINDING_2D, &bound);
+  gl.GetIntegerv(GL_TEXTURE_BINDING_2D, &bound);
   gl.GenTextures(1, &texture);
-  gl.BindTexture(target, texture);
-  const GLenum data = has_stencil(info.format) ? GL_DEPTH_STENCIL
-                      : is_depth(info.format)  ? GL_DEPTH_COMPONENT
-                                               : GL_RGBA;
-  const GLenum type = info.format == GL_DEPTH24_STENCIL8    ? GL_UNSIGNED_INT_24_8
-                      : info.format == GL_DEPTH32F_STENCIL8 ? GL_FLOAT_32_UNSIGNED_INT_24_8_REV
-                                                            : GL_FLOAT;
-  if (layers > 1) {
-    gl.TexImage3D(target, 0, static_cast<GLint>(format), width, height, layers, 0, data, type, nullptr);
-  } else {
-    gl.TexImage2D(target, 0, static_cast<GLint>(format), width, height, 0, data, type, nullptr);
-  }
-  gl.TexParameteri(target, GL_TEXTURE_MAX_LEVEL, 0);
-  gl.BindTexture(target, static_cast<GLuint>(bound));
+  gl.BindTexture(GL_TEXTURE_2D, texture);
+  gl.TexImage2D(GL_TEXTURE_2D, 0, static_cast<GLint>(format), width, height, 0,
+                is_depth(info.format) ? GL_DEPTH_COMPONENT : GL_RGBA, GL_FLOAT, nullptr);
+  gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAX_LEVEL, 0);
+  gl.BindTexture(GL_TEXTURE_2D, static_cast<GLuint>(bound));
   return texture;
 }
 
 std::vector<std::uint8_t> read_texture(const Binding& gl, std::uint32_t texture,
-                                       const XrSwapchainCreateInfo& info, std::uint32_t layer) {
+                                       const XrSwapchainCreateInfo& info) {
   const PackState state(gl);
   std::vector<std::uint8_t> bytes(std::size_t{4} * info.width * info.height);
   const bool depth = is_depth(info.format);
   gl.MemoryBarrier(GL_TEXTURE_UPDATE_BARRIER_BIT | GL_FRAMEBUFFER_BARRIER_BIT);
-  gl.GetTextureSubImage(texture, 0, 0, 0, static_cast<GLint>(layer), static_cast<GLsizei>(info.width),
+  gl.GetTextureSubImage(texture, 0, 0, 0, 0, static_cast<GLsizei>(info.width),
                         static_cast<GLsizei>(info.height), 1, depth ? GL_DEPTH_COMPONENT : GL_RGBA,
                         depth ? GL_FLOAT : GL_UNSIGNED_BYTE, static_cast<GLsizei>(bytes.size()),
                         bytes.data());

@@ -22,10 +22,8 @@ namespace binosplat::xr_test {
   X(MemoryBarrier, MEMORYBARRIER)           \
   X(PixelStorei, PIXELSTOREI)               \
   X(TexImage2D, TEXIMAGE2D)                 \
-  X(TexImage3D, TEXIMAGE3D)                 \
   X(TexParameteri, TEXPARAMETERI)           \
-  X(TextureStorage2D, TEXTURESTORAGE2D)     \
-  X(TextureStorage3D, TEXTURESTORAGE3D)
+  X(TextureStorage2D, TEXTURESTORAGE2D)
 
 /// What xrCreateSession was given.
 struct Binding {
@@ -64,6 +62,6 @@ bool is_depth(std::int64_t format);
 std::uint32_t make_texture(const Binding& gl, const XrSwapchainCreateInfo& info, bool immutable);
 /// RGBA8, or float32 of depth; the lowest row first.
 std::vector<std::uint8_t> read_texture(const Binding& gl, std::uint32_t texture,
-                                       const XrSwapchainCreateInfo& info, std::uint32_t layer);
+                                       const XrSwapchainCreateInfo& info);
 
 }  // namespace binosplat::xr_test

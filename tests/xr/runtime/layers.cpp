@@ -37,18 +37,16 @@ Swapchain& check_image(const XrSwapchainSubImage& image) {
   require(inside, XR_ERROR_SWAPCHAIN_RECT_INVALID,
           "rectangle " + rectangle(rect).dump() + " of a swapchain of " +
               text_of({static_cast<int>(swapchain.info.width), static_cast<int>(swapchain.info.height)}));
-  require(image.imageArrayIndex < swapchain.info.arraySize, XR_ERROR_VALIDATION_FAILURE,
-          "array index " + std::to_string(image.imageArrayIndex) + " of " +
-              std::to_string(swapchain.info.arraySize));
+  require(image.imageArrayIndex == 0, XR_ERROR_VALIDATION_FAILURE,
+          "array index " + std::to_string(image.imageArrayIndex) + " of 1");
   return swapchain;
 }
 
 /// Of this frame, and as it was released.
-void check_fresh(Swapchain& swapchain, const FrameRecord& frame, std::uint32_t layer) {
+void check_fresh(Swapchain& swapchain, const FrameRecord& frame) {
   Runtime& r = runtime();
   const std::string name = "swapchain " + std::to_string(swapchain.id);
-  if (swapchain.released_frame != frame.number &&
-      (swapchain.info.createFlags & XR_SWAPCHAIN_CREATE_STATIC_IMAGE_BIT) == 0) {
+  if (swapchain.released_frame != frame.number) {
     const std::string text =
         name + " shows an image that was released in frame " + std::to_string(swapchain.released_frame);
     if (frame.should_render) return r.fault(text);
@@ -58,8 +56,7 @@ void check_fresh(Swapchain& swapchain, const FrameRecord& frame, std::uint32_t l
   if (swapchain.pixels.empty()) return;
   const Binding& gl = r.session()->binding;
   const Current current(gl);
-  if (read_texture(gl, swapchain.textures[*swapchain.released], swapchain.info, layer) !=
-      swapchain.pixels[layer]) {
+  if (read_texture(gl, swapchain.textures[*swapchain.released], swapchain.info) != swapchain.pixels) {
     r.fault("the image of " + name + " was written to after its release");
   }
 }
@@ -76,8 +73,7 @@ Json write_pixels(const Swapchain& swapchain, const XrSwapchainSubImage& image, 
     const std::size_t at = (static_cast<std::size_t>(rect.offset.y + row) * swapchain.info.width +
                             static_cast<std::size_t>(rect.offset.x)) *
                            4;
-    out.write(reinterpret_cast<const char*>(&swapchain.pixels[image.imageArrayIndex][at]),
-              4 * rect.extent.width);
+    out.write(reinterpret_cast<const char*>(&swapchain.pixels[at]), 4 * rect.extent.width);
   }
   return name;
 }
@@ -113,24 +109,22 @@ Json check_depth(Session& session, FrameRecord& frame, const XrCompositionLayerP
   Swapchain& swapchain = check_image(depth->subImage);
   require(swapchain.depth, XR_ERROR_VALIDATION_FAILURE, "depth from a swapchain of colours");
   check_numbers(*depth);
-  check_fresh(swapchain, frame, depth->subImage.imageArrayIndex);
+  check_fresh(swapchain, frame);
   const XrExtent2Di &size = depth->subImage.imageRect.extent, &colours = view.subImage.imageRect.extent;
   if (!same_shape(size, colours)) {
     r.fault("view " + std::to_string(index) + " has depth of " + text_of(size) + " and colours of " +
             text_of(colours));
   }
   // One view's depth stays one view's depth, whichever had it first.
-  const std::pair place(swapchain.id, depth->subImage.imageArrayIndex);
   bool others = false;
   for (const auto& [other, at] : session.depth_of_view) {
-    if (other == index || at != place) continue;
+    if (other == index || at != swapchain.id) continue;
     others = true;
     r.fault("view " + std::to_string(index) + " has the depth of view " + std::to_string(other));
   }
-  if (!others) session.depth_of_view[index] = place;
+  if (!others) session.depth_of_view[index] = swapchain.id;
   return {{"swapchain", swapchain.id},
           {"image", *swapchain.released},
-          {"layer", depth->subImage.imageArrayIndex},
           {"rect", rectangle(depth->subImage.imageRect)},
           {"min", depth->minDepth},
           {"max", depth->maxDepth},
@@ -189,12 +183,11 @@ Json check_projection(Session& session, FrameRecord& frame, const XrCompositionL
     Swapchain& swapchain = check_image(view.subImage);
     require(!swapchain.depth, XR_ERROR_VALIDATION_FAILURE, "colours from a swapchain of depth");
     check_pose(frame, located, view, k);
-    check_fresh(swapchain, frame, view.subImage.imageArrayIndex);
+    check_fresh(swapchain, frame);
     views.push_back({{"pose", to_json(view.pose)},
                      {"fov", to_json(view.fov)},
                      {"swapchain", swapchain.id},
                      {"image", *swapchain.released},
-                     {"layer", view.subImage.imageArrayIndex},
                      {"rect", rectangle(view.subImage.imageRect)},
                      {"colour", write_pixels(swapchain, view.subImage, frame.number, first + k)},
                      {"depth", check_depth(session, frame, view, first + k)}});
@@ -213,18 +206,11 @@ void check_layers(Session& session, FrameRecord& frame, const XrFrameEndInfo& in
   for (std::uint32_t k = 0; k < info.layerCount; ++k) {
     const XrCompositionLayerBaseHeader* layer = info.layers[k];
     require(layer != nullptr, XR_ERROR_LAYER_INVALID, "layer " + std::to_string(k) + " is none");
-    if (layer->type == XR_TYPE_COMPOSITION_LAYER_PROJECTION) {
-      const auto& projection = *reinterpret_cast<const XrCompositionLayerProjection*>(layer);
-      layers.push_back(check_projection(session, frame, projection, views));
-      views += projection.viewCount;
-    } else {
-      require(layer->type == XR_TYPE_COMPOSITION_LAYER_QUAD, XR_ERROR_LAYER_INVALID,
-              std::string("a layer of type ") + name_of(layer->type));
-      const auto& quad = *reinterpret_cast<const XrCompositionLayerQuad*>(layer);
-      const auto& space = runtime().get<Space>(quad.space);
-      check_image(quad.subImage);
-      layers.push_back({{"type", "quad"}, {"space", space.id}, {"flags", quad.layerFlags}});
-    }
+    require(layer->type == XR_TYPE_COMPOSITION_LAYER_PROJECTION, XR_ERROR_LAYER_INVALID,
+            std::string("a layer of type ") + name_of(layer->type));
+    const auto& projection = *reinterpret_cast<const XrCompositionLayerProjection*>(layer);
+    layers.push_back(check_projection(session, frame, projection, views));
+    views += projection.viewCount;
   }
 }
 

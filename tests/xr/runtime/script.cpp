@@ -21,8 +21,6 @@ const std::map<std::string, std::int64_t> formats = {
     {"GL_DEPTH_COMPONENT16", GL_DEPTH_COMPONENT16},
     {"GL_DEPTH_COMPONENT24", GL_DEPTH_COMPONENT24},
     {"GL_DEPTH_COMPONENT32F", GL_DEPTH_COMPONENT32F},
-    {"GL_DEPTH24_STENCIL8", GL_DEPTH24_STENCIL8},
-    {"GL_DEPTH32F_STENCIL8", GL_DEPTH32F_STENCIL8},
 };
 
 const std::map<std::string, XrReferenceSpaceType> spaces = {
@@ -80,8 +78,7 @@ Script defaults() {
                            XR_VARJO_QUAD_VIEWS_EXTENSION_NAME, XR_LOCAL_FLOOR_NAME}) {
     script.extensions.insert(name);
   }
-  script.formats = {GL_SRGB8_ALPHA8,      GL_RGBA8,           GL_RGBA16F, GL_DEPTH_COMPONENT32F,
-                    GL_DEPTH_COMPONENT24, GL_DEPTH24_STENCIL8};
+  script.formats = {GL_SRGB8_ALPHA8, GL_RGBA8, GL_RGBA16F, GL_DEPTH_COMPONENT32F, GL_DEPTH_COMPONENT24};
   script.views[XR_VIEW_CONFIGURATION_TYPE_PRIMARY_STEREO] = {eye(-1), eye(1)};
   return script;
 }

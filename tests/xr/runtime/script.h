@@ -59,14 +59,13 @@ struct Script {
   Pose stage, local = {.position = {0.0, 1.6, 0.0}};
   std::vector<Pose> heads = {{.position = {0.0, 1.6, 0.0}}};  // by frame; the last one stays
   XrTime first_time = 1'000'000'000;
-  XrDuration period = 11'111'111;  // ns
-  int frames = 3;                  // that are ended before the runtime asks to stop
-  int invisible_frames = 0;        // at the beginning
-  std::set<int> not_rendered;      // frames whose shouldRender is false
-  bool sleep = false;              // for a period in each xrWaitFrame
-  bool immutable = true;           // textures made by glTextureStorage*
-  bool unordered_srgb = true;      // unordered access to sRGB
-  std::uint32_t colour_images = 3, depth_images = 2;
+  XrDuration period = 11'111'111;       // ns
+  int frames = 3;                       // that are ended before the runtime asks to stop
+  int invisible_frames = 0;             // at the beginning
+  std::set<int> not_rendered;           // frames whose shouldRender is false
+  bool sleep = false;                   // for a period in each xrWaitFrame
+  bool immutable = true;                // textures made by glTextureStorage*
+  bool unordered_srgb = true;           // unordered access to sRGB
   std::optional<std::set<int>> pixels;  // frames whose pixels are kept; none: all
   XrViewStateFlags flags = 15;
   std::string profile = "/interaction_profiles/khr/simple_controller";

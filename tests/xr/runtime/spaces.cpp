@@ -103,10 +103,6 @@ XrResult locate_space(XrSpace handle, XrSpace base, XrTime time, XrSpaceLocation
   const auto& from = r.get<Space>(base);
   checked(location, XR_TYPE_SPACE_LOCATION);
   check_time(time);
-  auto* velocity = chained<XrSpaceVelocity>(location->next, XR_TYPE_SPACE_VELOCITY);
-  if (velocity != nullptr) velocity->velocityFlags = 0;
-  auto* sample = chained<XrEyeGazeSampleTimeEXT>(location->next, XR_TYPE_EYE_GAZE_SAMPLE_TIME_EXT);
-  if (sample != nullptr) sample->time = time;
   const auto pose = pose_of(space, time), base_pose = pose_of(from, time);
   location->locationFlags = 0;
   if (!pose || !base_pose) return XR_SUCCESS;

@@ -56,8 +56,8 @@ struct Session : Object {
   bool running = false, lost = false;
   std::string then = "exiting";  // what comes after STOPPING: "exiting" or "ready"
   XrViewConfigurationType configuration = XR_VIEW_CONFIGURATION_TYPE_PRIMARY_STEREO;
-  std::optional<FrameRecord> waited, begun;  // not yet begun, not yet ended
-  std::map<std::size_t, std::pair<std::uint64_t, std::uint32_t>> depth_of_view;  // swapchain, array index
+  std::optional<FrameRecord> waited, begun;            // not yet begun, not yet ended
+  std::map<std::size_t, std::uint64_t> depth_of_view;  // the swapchain
   bool attached = false;
 };
 
@@ -71,7 +71,7 @@ struct Swapchain : Object {
   std::uint32_t next = 0;
   std::optional<std::uint32_t> released;  // the image that a layer shows
   int released_frame = -1;
-  std::vector<std::vector<std::uint8_t>> pixels;  // by array index, as released; empty: not kept
+  std::vector<std::uint8_t> pixels;  // as released; empty: not kept
 };
 
 struct Space : Object {

@@ -24,8 +24,8 @@ XrResult create_swapchain(XrSession handle, const XrSwapchainCreateInfo* info, X
           "a swapchain of " + std::to_string(info->width) + " x " + std::to_string(info->height));
   require(info->arraySize > 0 && info->mipCount > 0 && info->faceCount > 0 && info->sampleCount > 0,
           XR_ERROR_VALIDATION_FAILURE, "a swapchain of no layers, levels, faces or samples");
-  require(info->sampleCount == 1 && info->faceCount == 1, XR_ERROR_FEATURE_UNSUPPORTED,
-          "a swapchain of several samples or faces");
+  require(info->sampleCount == 1 && info->faceCount == 1 && info->arraySize == 1,
+          XR_ERROR_FEATURE_UNSUPPORTED, "a swapchain of several samples, faces or layers");
   const bool depth = is_depth(info->format);
   const XrSwapchainUsageFlags wrong =
       depth ? XR_SWAPCHAIN_USAGE_COLOR_ATTACHMENT_BIT : XR_SWAPCHAIN_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT;
@@ -39,10 +39,8 @@ XrResult create_swapchain(XrSession handle, const XrSwapchainCreateInfo* info, X
   swapchain.info.next = nullptr;
   swapchain.depth = depth;
   const Current current(session.binding);
-  const std::uint32_t images = (info->createFlags & XR_SWAPCHAIN_CREATE_STATIC_IMAGE_BIT) != 0 ? 1
-                               : depth ? r.script.depth_images
-                                       : r.script.colour_images;
-  for (std::uint32_t k = 0; k < images; ++k) {
+  const int images = depth ? 2 : 3;
+  for (int k = 0; k < images; ++k) {
     swapchain.textures.push_back(make_texture(session.binding, *info, r.script.immutable));
   }
   r.log({{"what", "swapchain"},
@@ -50,7 +48,6 @@ XrResult create_swapchain(XrSession handle, const XrSwapchainCreateInfo* info, X
          {"format", info->format},
          {"width", info->width},
          {"height", info->height},
-         {"layers", info->arraySize},
          {"usage", info->usageFlags},
          {"images", images}});
   *out = handle_of<XrSwapchain>(swapchain);
@@ -79,9 +76,8 @@ XrResult acquire_swapchain_image(XrSwapchain handle, const XrSwapchainImageAcqui
   auto& swapchain = runtime().get<Swapchain>(handle);
   check_if_any(info, XR_TYPE_SWAPCHAIN_IMAGE_ACQUIRE_INFO);
   require(index != nullptr, XR_ERROR_VALIDATION_FAILURE, "nowhere to put an index");
-  const bool once = (swapchain.info.createFlags & XR_SWAPCHAIN_CREATE_STATIC_IMAGE_BIT) != 0;
-  require(swapchain.acquired.size() < swapchain.textures.size() && !(once && swapchain.released),
-          XR_ERROR_CALL_ORDER_INVALID, "all images are acquired already");
+  require(swapchain.acquired.size() < swapchain.textures.size(), XR_ERROR_CALL_ORDER_INVALID,
+          "all images are acquired already");
   *index = swapchain.next;
   swapchain.acquired.push_back(swapchain.next);
   swapchain.next = (swapchain.next + 1) % static_cast<std::uint32_t>(swapchain.textures.size());
@@ -111,10 +107,7 @@ XrResult release_swapchain_image(XrSwapchain handle, const XrSwapchainImageRelea
   if (!r.script.keeps_pixels(r.frame())) return XR_SUCCESS;
   const Binding& gl = r.session()->binding;
   const Current current(gl);
-  for (std::uint32_t layer = 0; layer < swapchain.info.arraySize; ++layer) {
-    swapchain.pixels.push_back(
-        read_texture(gl, swapchain.textures[*swapchain.released], swapchain.info, layer));
-  }
+  swapchain.pixels = read_texture(gl, swapchain.textures[*swapchain.released], swapchain.info);
   return XR_SUCCESS;
 }
 
