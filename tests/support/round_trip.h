@@ -61,8 +61,11 @@ inline Model hard_model(int degree, std::size_t count, std::uint32_t seed = 1) {
     const auto part = [&] { return pick({0, 1, -1, 0.5, -0.5}, -3, 3); };
     for (std::size_t k = 0; k < sh.size(); ++k)
       sh[k] = k < 3 ? pick({0, 1.8, -1.8, 4, -4}, -2, 2) : pick({0, 1, -1, 4, -4, 5}, -1, 1);
-    append_raw(model, {{number(), number(), number()}, {scale(), scale(), scale()},
-               {part(), part(), part(), part()}, pick({-100, 100, 17, -17, 0}, -8, 8), sh.data()});
+    append_raw(model, {{number(), number(), number()},
+                       {scale(), scale(), scale()},
+                       {part(), part(), part(), part()},
+                       pick({-100, 100, 17, -17, 0}, -8, 8),
+                       sh.data()});
   }
   model.left_out = 0;
   return model;
