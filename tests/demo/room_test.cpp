@@ -4,7 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
+
+#include "support/round_trip.h"
 
 namespace binosplat {
 namespace {
@@ -14,21 +15,11 @@ const Demo& room() {
   return demo;
 }
 
-template <typename T>
-bool same_bits(const std::vector<T>& a, const std::vector<T>& b) {
-  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0;
-}
-
-bool same_bits(const Model& a, const Model& b) {
-  return same_bits(a.position, b.position) && same_bits(a.scale, b.scale) &&
-         same_bits(a.rotation, b.rotation) && same_bits(a.opacity, b.opacity) && same_bits(a.sh, b.sh);
-}
-
 TEST(DemoRoom, IsTheSameEveryTime) {
   Model again = demo_room().model;
-  EXPECT_TRUE(same_bits(room().model, again));
+  EXPECT_TRUE(test::same_bits(room().model, again));
   again.sh.back() = std::nextafter(again.sh.back(), 1.0f);
-  EXPECT_FALSE(same_bits(room().model, again)) << "a difference in the last bit goes unnoticed";
+  EXPECT_FALSE(test::same_bits(room().model, again)) << "a difference in the last bit goes unnoticed";
 }
 
 TEST(DemoRoom, IsAsLargeAsPromised) {
