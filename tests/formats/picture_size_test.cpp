@@ -85,11 +85,13 @@ TEST_F(PictureSize, WhatIsNoPictureIsNamed) {
   EXPECT_TRUE(refused("no picture at all\n", {"picture", "expected PNG, JPEG or OpenEXR", "a text file"}));
   EXPECT_TRUE(refused("ply\nformat ascii 1.0\n", {"a ply file"}));
   EXPECT_TRUE(refused("", {"an empty file"}));
+  EXPECT_TRUE(refused("version https://git-lfs.github.com/spec/v1", {"git lfs pull"}));
   EXPECT_TRUE(refused(jpeg_of(TJPF_CMYK, TJSAMP_444), {"a CMYK JPEG; convert it to RGB"}));
   EXPECT_TRUE(refused("\x89PNG\r\n\x1a\n", {"broken PNG"}));
   EXPECT_TRUE(refused("\xff\xd8\xff\xe0", {"broken JPEG"}));
   EXPECT_TRUE(refused("\x76\x2f\x31\x01", {"broken OpenEXR"}));
   EXPECT_TRUE(test::fails_saying([&] { picture_size(folder / "missing.png"); }, {"missing.png"}));
+  EXPECT_TRUE(test::fails_saying([] { load_image("/nowhere/a.png"); }, {"/nowhere/a.png", "No such file"}));
 }
 
 }  // namespace
