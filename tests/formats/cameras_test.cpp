@@ -88,11 +88,6 @@ TEST(Cameras, RotationsAreKeptToTheDigit) {
   EXPECT_EQ(camera.rotation[0], glm::dvec3(0, 0.0003, 0.9999));
 }
 
-TEST(Cameras, NamesTellThemApart) {
-  EXPECT_TRUE(
-      refuses_list(json::array({one_camera(), one_camera()}).dump(), {"two cameras are called '0001'"}));
-}
-
 TEST(Cameras, ErrorsNameTheCameraAndTheKey) {
   EXPECT_TRUE(
       refuses_with({{"width", 0}}, {"camera 1 (counted from 0)", "'width'", "0 is no number of pixels"}));

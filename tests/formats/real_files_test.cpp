@@ -10,7 +10,6 @@
 #include "formats/cameras_file.h"
 #include "formats/image_file.h"
 #include "formats/model_file.h"
-#include "support/errors.h"
 #include "support/fixtures.h"
 #include "support/truth.h"
 
@@ -81,14 +80,6 @@ TEST(RealFiles, ModelsAgreeWithAnIndependentDecoder) {
     ++files;
   }
   EXPECT_EQ(files, 51);
-}
-
-TEST(RealFiles, OtherFormatsAreNamed) {
-  REQUIRE_FIXTURES(folder);
-  const auto refuses = [&](const char* name, const char* part) {
-    return test::fails_saying([&] { load_model(folder / name); }, {name, part});
-  };
-  EXPECT_TRUE(refuses("cameras/inria-cameras.json", "JSON"));
 }
 
 TEST(RealFiles, ScenesLoadQuickly) {
