@@ -4,8 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <filesystem>
-#include <fstream>
 #include <map>
 #include <regex>
 #include <set>
@@ -13,10 +11,11 @@
 #include <string>
 #include <vector>
 
+#include "support/sources.h"
+
 namespace {
 
-namespace fs = std::filesystem;
-using Files = std::map<std::string, std::string>;  // path below the root of the tree -> text
+using Files = binosplat::test::Sources;
 using Texts = std::vector<std::string>;
 
 // What each room may include from, besides itself. formats, gl and reference do not see each other, render
@@ -137,26 +136,11 @@ Texts breaches(const Files& files) {
   return found;
 }
 
-Files tree() {
-  Files files;
-  const fs::path root = BINOSPLAT_SOURCE_DIR;
-  for (const char* folder : {"include", "src", "stereo", "shaders", "tests", "cmake"}) {
-    for (const auto& entry : fs::recursive_directory_iterator(root / folder)) {
-      static const std::set<std::string> sources = {".cpp", ".h", ".comp", ".glsl", ".txt", ".cmake"};
-      if (!entry.is_regular_file() || !sources.count(entry.path().extension().string())) continue;
-      std::ifstream in(entry.path(), std::ios::binary);
-      std::ostringstream text;
-      text << in.rdbuf();
-      files[fs::relative(entry.path(), root).generic_string()] = text.str();
-    }
-  }
-  return files;
-}
-
 TEST(Floors, TheTreeKeepsThem) {
-  const Files files = tree();
-  EXPECT_TRUE(files.count("src/base/error.h")) << "the sources were not found in " << BINOSPLAT_SOURCE_DIR;
-  for (const std::string& breach : breaches(files)) ADD_FAILURE() << breach;
+  for (const std::string& breach :
+       breaches(binosplat::test::sources_of_tree({"include", "src", "stereo", "shaders", "tests", "cmake"},
+                                                 {".cpp", ".h", ".comp", ".glsl", ".txt", ".cmake"})))
+    ADD_FAILURE() << breach;
 }
 
 // A house of one file a room, and one file more that must be found at fault (or not).

@@ -3,13 +3,13 @@
 
 #include <gtest/gtest.h>
 
-#include <filesystem>
-#include <fstream>
 #include <map>
 #include <regex>
 #include <sstream>
 #include <string>
 #include <vector>
+
+#include "support/sources.h"
 
 namespace {
 
@@ -24,7 +24,7 @@ std::string declared(const std::string& line) {
   return "";
 }
 
-using Sources = std::map<std::string, std::string>;  // path below the root of the tree -> text
+using binosplat::test::Sources;
 
 std::vector<std::string> clashes(const Sources& sources) {
   std::map<std::string, std::string> first;  // folder and name -> file
@@ -47,19 +47,11 @@ std::vector<std::string> clashes(const Sources& sources) {
 }
 
 TEST(Names, AreOneFilesWithinItsFolder) {
-  Sources sources;
-  const std::filesystem::path root = BINOSPLAT_SOURCE_DIR;
-  for (const char* folder : {"src", "stereo", "tests"}) {
-    for (const auto& entry : std::filesystem::recursive_directory_iterator(root / folder)) {
-      const std::string path = std::filesystem::relative(entry.path(), root).generic_string();
-      // Programs of one file each.
-      if (!path.ends_with(".cpp") || path.starts_with("tests/bench/") || path.starts_with("tests/fuzz/"))
-        continue;
-      std::ifstream in(entry.path());
-      sources[path] = std::string(std::istreambuf_iterator<char>(in), {});
-    }
-  }
-  EXPECT_GT(sources.size(), 400u) << "the sources were not found in " << root;
+  Sources sources = binosplat::test::sources_of_tree({"src", "stereo", "tests"}, {".cpp"});
+  // Programs of one file each.
+  std::erase_if(sources, [](const auto& source) {
+    return source.first.starts_with("tests/bench/") || source.first.starts_with("tests/fuzz/");
+  });
   for (const std::string& clash : clashes(sources)) ADD_FAILURE() << clash;
 }
 

@@ -6,12 +6,12 @@
 
 #include <algorithm>
 #include <cctype>
-#include <filesystem>
-#include <fstream>
 #include <map>
 #include <set>
 #include <string>
 #include <vector>
+
+#include "support/sources.h"
 
 namespace {
 
@@ -289,7 +289,7 @@ class Reader {
   std::vector<Finding> findings_;
 };
 
-using Sources = std::map<std::string, std::string>;  // path below the root of the tree -> text
+using binosplat::test::Sources;
 
 /// What is over a bound: the findings by "room name", and where and how much.
 std::map<std::string, std::string> too_large(const Sources& sources) {
@@ -306,19 +306,8 @@ std::map<std::string, std::string> too_large(const Sources& sources) {
 }
 
 TEST(Sizes, AreWhatAReaderCanHold) {
-  Sources sources;
-  const std::filesystem::path root = BINOSPLAT_SOURCE_DIR;
-  for (const char* folder : {"src", "stereo", "shaders/shared", "include"}) {
-    if (!std::filesystem::exists(root / folder)) continue;
-    for (const auto& entry : std::filesystem::recursive_directory_iterator(root / folder)) {
-      const std::string path = std::filesystem::relative(entry.path(), root).generic_string();
-      if (!path.ends_with(".cpp") && !path.ends_with(".h")) continue;
-      std::ifstream in(entry.path());
-      sources[path] = std::string(std::istreambuf_iterator<char>(in), {});
-    }
-  }
-  EXPECT_GT(sources.size(), 400u) << "the sources were not found in " << root;
-  const auto found = too_large(sources);
+  const auto found = too_large(
+      binosplat::test::sources_of_tree({"src", "stereo", "shaders/shared", "include"}, {".cpp", ".h"}));
   for (const auto& [name, places] : found) {
     if (!not_mended.count(name) && !larger.count(name)) ADD_FAILURE() << name << ": " << places;
   }
