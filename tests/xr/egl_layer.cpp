@@ -6,15 +6,10 @@
 
 namespace {
 
+using binosplat::xr_test::LoaderInfo;
 using binosplat::xr_test::XlibBinding;
 
 // As the loader's specification has them.
-struct LoaderInfo {
-  std::uint32_t type, version;
-  std::size_t size;
-  std::uint32_t min_interface, max_interface;
-  XrVersion min_api, max_api;
-};
 struct LayerInfo;
 using CreateInstance = XrResult (*)(const XrInstanceCreateInfo*, const LayerInfo*, XrInstance*);
 struct LayerRequest {

@@ -8,13 +8,7 @@
 namespace binosplat::xr_test {
 namespace {
 
-// As the loader's specification has them; no package has its header.
-struct LoaderInfo {
-  std::uint32_t type, version;
-  std::size_t size;
-  std::uint32_t min_interface, max_interface;
-  XrVersion min_api, max_api;
-};
+// As the loader's specification has it.
 struct RuntimeRequest {
   std::uint32_t type, version;
   std::size_t size;
