@@ -45,13 +45,13 @@ int main(int argc, char** argv) try {
   renderer.draw(views, placement, {.background = glm::vec3(0.0f)});
 
   for (int eye = 0; eye < 2; ++eye) {
-    std::vector<unsigned char> bytes(4 * width * height);
-    glGetTextureImage(textures[eye], 0, GL_RGBA, GL_UNSIGNED_BYTE, 4 * width * height, bytes.data());
+    std::vector<unsigned char> bytes(3 * width * height);
+    glGetTextureImage(textures[eye], 0, GL_RGB, GL_UNSIGNED_BYTE, 3 * width * height, bytes.data());
     const std::string path = std::string(argv[2]) + (eye == 0 ? "/left.png" : "/right.png");
     png_image image = {
-        .version = PNG_IMAGE_VERSION, .width = width, .height = height, .format = PNG_FORMAT_RGBA};
+        .version = PNG_IMAGE_VERSION, .width = width, .height = height, .format = PNG_FORMAT_RGB};
     // A step below zero: OpenGL's rows begin at the bottom.
-    if (png_image_write_to_file(&image, path.c_str(), 0, bytes.data(), -4 * width, nullptr) == 0)
+    if (png_image_write_to_file(&image, path.c_str(), 0, bytes.data(), -3 * width, nullptr) == 0)
       throw std::runtime_error(path + ": " + image.message);
   }
 } catch (const std::exception& error) {  // binosplat::Error tells which kind, too
