@@ -5,18 +5,6 @@
 
 namespace binosplat::app {
 
-namespace {
-
-const CLI::Validator below_half_turn(
-    [](std::string& text) {
-      double value = 0.0;
-      const bool good = CLI::detail::lexical_cast(text, value) && value > 0.0 && value < 180.0;
-      return good ? std::string() : text + ": expected degrees between 0 and 180";
-    },
-    "");
-
-}  // namespace
-
 void add_camera_options(CLI::App& sub, CameraOptions& o) {
   const auto three = [&sub](const char* name, std::optional<glm::dvec3>& into, const char* help) {
     return sub
@@ -45,7 +33,7 @@ void add_camera_options(CLI::App& sub, CameraOptions& o) {
         "and models without cameras");
   sub.add_option("--fov", o.fov, "Vertical field of view of such cameras (60)")
       ->type_name("DEGREES")
-      ->check(below_half_turn);
+      ->check(between(1e-6, 179.999999, "degrees between 0 and 180"));
   sub.add_option("--orbit", o.orbit, "N cameras around the model instead")
       ->type_name("N")
       ->check(range(1, 10000));

@@ -16,8 +16,7 @@ RenderOptions with_eyes_of_demo(RenderOptions o) {
     o.rig.ipd = 0.020;
     o.rig.convergence = 1.2;
     log_info(
-        "{}: eyes 20 mm apart and the screen at 1.2 m, which is comfortable so near to its plant (--ipd "
-        "63mm "
+        "{}: eyes 20 mm apart and the screen at 1.2 m, which is comfortable so near to its plant (--ipd 63mm "
         "--convergence inf: as a head sees it)",
         o.scene.name);
   } else if (o.scene.name == demo_city_name) {

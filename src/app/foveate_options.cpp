@@ -84,11 +84,9 @@ stereo::Foveation parse_foveation(const std::string& text) {
 void add_foveate_option(CLI::App& sub, std::optional<stereo::Foveation>& foveate) {
   sub.add_option_function<std::string>(
          "--foveate", [&foveate](const std::string& text) { foveate = parse_foveation(text); },
-         "Draw exactly an inset of so many degrees across where the eyes look, and\naround it a share of "
-         "the "
+         "Draw exactly an inset of so many degrees across where the eyes look, and\naround it a share of the "
          "pixels along each axis: inset=20deg,context=0.4;\ngaze=RIGHT,UP, degrees from straight ahead "
-         "(0,0), "
-         "or those of both eyes;\nseam, of the inset (0.1). --tolerance is for what lies around")
+         "(0,0), or those of both eyes;\nseam, of the inset (0.1). --tolerance is for what lies around")
       ->type_name("inset=DEGREES,context=SHARE,...")
       ->group("Drawing");
 }

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <map>
 #include <memory>
 #include <numeric>
 
@@ -64,23 +65,10 @@ std::optional<SeenOfViews> see(const InfoOptions& o, const Model& model) {
 
 /// Where the three axes point in the cameras' world, in words.
 std::string axes_in_words(const Model& model) {
-  const auto word = [](char letter) {
-    switch (letter) {
-      case 'R':
-        return "right";
-      case 'L':
-        return "left";
-      case 'U':
-        return "up";
-      case 'D':
-        return "down";
-      case 'F':
-        return "forward";
-      default:
-        return "back";
-    }
-  };
-  return fmt::format("x {}, y {}, z {}", word(model.axes[0]), word(model.axes[1]), word(model.axes[2]));
+  static const std::map<char, const char*> words = {{'R', "right"}, {'L', "left"},    {'U', "up"},
+                                                    {'D', "down"},  {'F', "forward"}, {'B', "back"}};
+  return fmt::format("x {}, y {}, z {}", words.at(model.axes[0]), words.at(model.axes[1]),
+                     words.at(model.axes[2]));
 }
 
 /// What a headset's frame of a model starts with, seen so that the model fills the eyes.
@@ -248,8 +236,7 @@ void add_info(CLI::App& program, Command& command) {
   sub->add_option("--json", options->json, "Write everything printed as JSON")->type_name("FILE");
   sub->footer(
       "Odd ones: never visible: opacity below 1/255; flat, needles: a hundred times thinner or longer than "
-      "wide;\n"
-      "far outside: over five diagonals from the box of 98 %; huge: larger than its diagonal.");
+      "wide;\nfar outside: over five diagonals from the box of 98 %; huge: larger than its diagonal.");
   sub->callback([options, &command] { command = [options] { return info(*options); }; });
 }
 

@@ -163,11 +163,6 @@ bool is_anothers(const fs::path& folder, const fs::path& model) {
 // The name, or where that is another model's one that tells the two apart.
 std::string free_name(std::string name, const fs::path& model) {
   const auto is_taken = [&](const std::string& asked) { return is_anothers(fs::path("out") / asked, model); };
-  const std::string ending = lowered_ending(model);
-  // Beside each other they differ in the ending; elsewhere in the name of a folder, at some height.
-  if (is_taken(name) && !ending.empty() &&
-      owner_of(fs::path("out") / name).parent_path() == model.parent_path())
-    name += "_" + ending.substr(1);
   for (fs::path path = model.parent_path(); is_taken(name) && path.has_relative_path();
        path = path.parent_path())
     name = path.filename().string() + "_" + name;

@@ -40,7 +40,7 @@ void print_widest(const std::vector<Drawn>& all) {
 
 }  // namespace
 
-double told_psnr(const Drawn& drawn) {
+double reported_psnr(const Drawn& drawn) {
   const bool shares = drawn.levels && drawn.levels->predicted_psnr;
   const double frame = drawn.report.quality;
   return shares ? psnr_of_both(frame, *drawn.levels->predicted_psnr) : frame;
@@ -61,11 +61,11 @@ bool is_way(const RenderReport& report) {
 
 void print_way(const RenderReport& report) {
   const std::vector<Drawn>& all = report.drawn;
-  std::vector<double> pairs, ms, told, shown;
+  std::vector<double> pairs, ms, reported, shown;
   for (const Drawn& drawn : all) {
     pairs.push_back(static_cast<double>(drawn.report.pairs));
     ms.push_back(drawn.report.total_ms);
-    told.push_back(told_psnr(drawn));
+    reported.push_back(reported_psnr(drawn));
     if (drawn.most_shown) shown.push_back(*drawn.most_shown);
   }
   const std::string &first = all.front().files.front(), &last = all.back().files.back();
@@ -75,7 +75,8 @@ void print_way(const RenderReport& report) {
               ? "  (by the float64 reference, on the CPU"
               : fmt::format("  ({:.0f} pairs, {:.3f} ms, medians", quantile(pairs, 0.5), quantile(ms, 0.5));
   if (report.options.drawing.quality)
-    line += fmt::format("; about {:.1f} dB, {:.1f} at worst", quantile(told, 0.5), quantile(told, 0.0));
+    line +=
+        fmt::format("; about {:.1f} dB, {:.1f} at worst", quantile(reported, 0.5), quantile(reported, 0.0));
   fmt::print("{}{})\n", line, report.options.output.json.empty() ? "; each by itself: --json FILE" : "");
   if (!shown.empty())
     fmt::print("  colours: {}: 0 (dark blue) to {} to {} and more (yellow), by frame\n",
@@ -95,8 +96,7 @@ void tell_whether_quality_pays(const RenderReport& report) {
   if (report.exact_ms && ms > *report.exact_ms) {
     log_warning(
         "--quality {:g} does not pay here: a frame took {:.3g} ms in the mean, the first one's search "
-        "included, "
-        "and an exact one takes {:.3g} ms: leave it out",
+        "included, and an exact one takes {:.3g} ms: leave it out",
         *o.drawing.quality, ms, *report.exact_ms);
   } else if (!o.camera.along_path() && o.drawing.frames == 1) {
     log_info(

@@ -1,12 +1,12 @@
 #pragma once
-// What is told of many frames together, and of a run as a whole.
+// What is printed of many frames together, and of a run as a whole.
 
 #include "app/render_report.h"
 
 namespace binosplat::app {
 
 /// dB that a frame says of itself: with what its levels lose, where they share --quality.
-double told_psnr(const Drawn& drawn);
+double reported_psnr(const Drawn& drawn);
 
 /// Prints how the disparities of a pair lie.
 void print_comfort(const Drawn& drawn);

@@ -49,15 +49,13 @@ void add_tour_options(CLI::App& sub, CameraOptions& o) {
   sub.add_option_function<std::string>(
          "--tour", [&o](const std::string& text) { o.tour = parse_motion(text); },
          "Go through all of the cameras as a head does, --fps frames a second\n(90; videos: 30), in metres "
-         "of "
-         "--units-per-metre; M,DEG: at other speeds" +
+         "of --units-per-metre; M,DEG: at other speeds" +
              motions_help())
       ->type_name("calm|walk|fast|M,DEG");
   sub.add_flag("--keys", o.keys, "Draw the keys of --path alone, and not the way through them");
-  sub.add_option(
-         "--seconds", o.seconds,
-         "The first S seconds of the tour (all); or go through the keys of\n--path in S seconds, at an "
-         "even pace (by their times)")
+  sub.add_option("--seconds", o.seconds,
+                 "The first S seconds of the tour (all); or go through the keys of\n--path in S seconds, at "
+                 "an even pace (by their times)")
       ->type_name("S")
       ->check(positive);
 }
@@ -77,8 +75,7 @@ CameraList go_on_tour(const SceneOptions& scene, const CameraOptions& camera, co
   if (!list.known.units_per_metre && !is_built_in(scene.name))
     log_info(
         "--tour: a metre is one world unit, as for pictures; from each camera to the next are {0:.4g} units, "
-        "in "
-        "the median: --units-per-metre {0:.4g} takes that for a metre",
+        "in the median: --units-per-metre {0:.4g} takes that for a metre",
         metre_of(list.cameras));
   const std::size_t count = list.cameras.size();
   TourSettings settings{*camera.tour, fps, rig_settings(rig, list.known).units_per_metre};
@@ -105,8 +102,8 @@ CameraList go_along_path(const CameraOptions& camera, const std::optional<double
     const bool timed = std::any_of(heads.begin(), heads.end(), [](const Camera& c) { return c.time; });
     if (timed && !times_rise(heads)) {
       log_info(
-          "--path: {} frames of {} as they are (not all have times that rise: render --seconds S "
-          "goes through them as keys)",
+          "--path: {} frames of {} as they are (not all have times that rise: render --seconds S goes "
+          "through them as keys)",
           list.cameras.size(), list.source);
     }
     return list;

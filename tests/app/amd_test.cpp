@@ -13,6 +13,7 @@
 namespace binosplat {
 namespace {
 
+using test::has;
 namespace fs = std::filesystem;
 using test::Outcome;
 using test::read_text;
@@ -42,60 +43,45 @@ struct AmdRun {
   int code = 0;
 };
 
-// What `render` can be asked for; the models and cameras are those of AmdTest.
-constexpr const char* amd_drawings[] = {
-    "",
-    "--mono --antialias",
-    "--tiles aabb",
-    "--tiles all",
-    "--tiles obb",
-    "--tiles snug",
-    "--order distance",
-    "--projection tangent --order distance",
-    "--projection tangent --tiles aabb",
-    "--projection tangent --tiles all",
-    "--projection tangent --tiles obb",
-    "--projection tangent --tiles snug",
-    "--tile 8",
-    "--tile 32",
-    "--precision half",
-    "--precision half --projection tangent",
-    "--precision half --tiles snug --tile 32",
-    "--frames 3 --tolerance 0.1 --th peripheral",
-    "--frames 3 --tolerance 0.1 --th peripheral --transmittance depth",
-    "--frames 3 --tolerance 0.1 --th peripheral --transmittance last",
-    "--frames 3 --tolerance 0.1 --th squared",
-    "--frames 3 --tolerance 0.1 --th squared --transmittance depth",
-    "--frames 3 --tolerance 0.1 --th squared --transmittance last",
-    "--frames 3 --tolerance 0.1 --tiles aabb",
-    "--frames 3 --tolerance 0.1 --tiles all",
-    "--frames 3 --tolerance 0.1 --tiles obb",
-    "--frames 3 --tolerance 0.1 --tiles snug",
-    "--frames 3 --tolerance 0.1 --transmittance last --projection tangent --precision half",
-    "--frames 5 --quality 40",
-    "--frames 5 --quality 40 --th peripheral --transmittance depth",
-    "--frames 5 --quality 40 --transmittance last --tile 32",
-    "--frames 5 --quality 40 --projection tangent --precision half",
-    "--foveate inset=20deg,context=0.4",
-    "--foveate inset=20deg,context=0.4 --tolerance 0.1",
-    "--foveate inset=20deg,context=0.4 --tolerance 0.1 --transmittance last --precision half",
-    "--foveate inset=20deg,context=0.4 --projection tangent --order distance",
-    "--show split --tolerance 0.1",
-    "--show difference --tolerance 0.1",
-    "--show disagreement --tolerance 0.1",
-    "--show depth",
-    "--show alphas",
-    "--show visible",
-    "--show pairs",
-    "--show light",
-    "--show median-depth",
-    "--show alphas --projection tangent --tolerance 0.1",
-    "--exr float --exr-depth mean --background none",
-    "--exr half --exr-depth median",
-    "--exr half --exr-depth median --projection tangent",
-    "--vr180 --size 64x64",
-    "--reference-until order",
-};
+/// What `render` can be asked for; the models and cameras are those of AmdTest.
+std::vector<std::string> amd_drawings() {
+  std::vector<std::string> all = {
+      "",
+      "--mono --antialias",
+      "--order distance",
+      "--tile 8",
+      "--tile 32",
+      "--precision half",
+      "--precision half --projection tangent",
+      "--precision half --tiles snug --tile 32",
+      "--frames 3 --tolerance 0.1 --transmittance last --projection tangent --precision half",
+      "--frames 5 --quality 40",
+      "--frames 5 --quality 40 --th peripheral --transmittance depth",
+      "--frames 5 --quality 40 --transmittance last --tile 32",
+      "--frames 5 --quality 40 --projection tangent --precision half",
+      "--foveate inset=20deg,context=0.4",
+      "--foveate inset=20deg,context=0.4 --tolerance 0.1 --transmittance last --precision half",
+      "--foveate inset=20deg,context=0.4 --projection tangent --order distance",
+      "--show alphas --projection tangent --tolerance 0.1",
+      "--exr float --exr-depth mean --background none",
+      "--exr half --exr-depth median --projection tangent",
+      "--vr180 --size 64x64",
+      "--reference-until order",
+  };
+  for (const char* tiles : {"aabb", "all", "obb", "snug", "ellipse"}) {
+    for (const char* more : {"", "--projection tangent --order distance", "--frames 3 --tolerance 0.1"})
+      all.push_back(fmt::format("--tiles {} {}", tiles, more));
+  }
+  for (const char* th : {"peripheral", "squared"}) {
+    for (const char* from : {"one", "depth", "last"})
+      all.push_back(fmt::format("--frames 3 --tolerance 0.1 --th {} --transmittance {}", th, from));
+  }
+  for (const char* view : {"split", "difference", "disagreement", "depth", "alphas", "visible", "pairs",
+                           "light", "median-depth"}) {
+    for (const char* more : {"", "--tolerance 0.1"}) all.push_back(fmt::format("--show {} {}", view, more));
+  }
+  return all;
+}
 
 constexpr AmdRun amd_runs[] = {
     {"render trained -o out.png"},
@@ -188,13 +174,13 @@ struct AmdTest : test::SceneTest, testing::WithParamInterface<const char*> {
     const auto list = nlohmann::json::parse(read_text(folder / "devices.json"));
     const auto& device = list.at(0);
     EXPECT_EQ(device.at("options"), "--backend device --device 0");
-    EXPECT_NE(device.at("renderer").get<std::string>().find("AMD"), std::string::npos) << device;
+    EXPECT_TRUE(has(device.at("renderer").get<std::string>(), "AMD")) << device;
     EXPECT_FALSE(device.at("software").get<bool>());
     EXPECT_GT(device.at("limits").at("program_binaries").get<int>(), 0);
     // By which nothing is drawn.
     EXPECT_FALSE(device.at("limits").at("subgroups").get<bool>());
     EXPECT_EQ(device.at("limits").at("why_no_subgroups"), "its subgroups have 64 invocations");
-    EXPECT_NE(device.at("lacks").dump().find("64 invocations"), std::string::npos) << device;
+    EXPECT_TRUE(has(device.at("lacks").dump(), "64 invocations")) << device;
   }
 
   /// Of a shader's lines the most that no #include parts: as they are, they stand in a program's source.
@@ -229,7 +215,7 @@ struct AmdTest : test::SceneTest, testing::WithParamInterface<const char*> {
 
 TEST_P(AmdTest, EveryModeCompiles) {
   expect_devices_name_it();
-  for (const std::string more : amd_drawings) {
+  for (const std::string& more : amd_drawings()) {
     const std::string size = more.find("--size") == std::string::npos ? " --size 48x32 " : " ";
     EXPECT_EQ(trouble(run("render model.ply --backend device -o out.png" + size + more), 0), "") << more;
   }
@@ -261,7 +247,7 @@ TEST_P(AmdFault, IsFound) {
   const char* const name = "primitives/sort_scatter.comp";
   write_text(folder / "shaders" / name, read_text(folder / "shaders" / name) + "float planted = missing;\n");
   const std::string found = trouble(run(line), 0);
-  EXPECT_NE(found.find(std::string("shader ") + name + " does not compile"), std::string::npos) << found;
+  EXPECT_TRUE(has(found, std::string("shader ") + name + " does not compile"));
   fs::remove_all(folder / "cache");
   EXPECT_FALSE(run(line).code == 0 || never_compiled().size() < 20) << "programs never compiled go unnoticed";
 }

@@ -8,6 +8,7 @@
 namespace binosplat {
 namespace {
 
+using test::has;
 struct Antialias : test::SceneTest {
   Antialias() {
     add_cameras();
@@ -18,13 +19,11 @@ struct Antialias : test::SceneTest {
   }
 
   /// The picture of `file` with the options; what was said goes to `said`.
-  Image drawn(const std::vector<std::string>& more = {}) {
+  Image drawn(const test::Words& more = {}) {
     test::write_text(model, to_bytes(file));
-    std::vector<std::string> arguments = {"--view",         "front",  "--mono", "-o",
-                                          folder / "a.png", "--bits", "16"};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    const test::Outcome outcome = render(arguments);
-    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    const test::Outcome outcome =
+        render(joined(more, {"--view", "front", "--mono", "-o", folder / "a.png", "--bits", "16"}));
+    EXPECT_TRUE(test::good(outcome));
     said = outcome.err;
     return load_image(folder / "a.png");
   }
@@ -41,12 +40,12 @@ double sum(const Image& image) {
 
 TEST_F(Antialias, TagsAndOptionsMeanTheSame) {
   const Image plain = drawn();
-  EXPECT_EQ(said.find("anti-aliasing"), std::string::npos);
+  EXPECT_FALSE(has(said, "anti-aliasing"));
   const Image forced = drawn({"--antialias"});
   EXPECT_LT(sum(forced), 0.5 * sum(plain));
   file.comments = "comment SplatRenderMode: mip\n";
   EXPECT_EQ(drawn().data, forced.data);
-  EXPECT_NE(said.find("was trained with anti-aliasing and is drawn so"), std::string::npos);
+  EXPECT_TRUE(has(said, "was trained with anti-aliasing and is drawn so"));
   EXPECT_EQ(drawn({"--no-antialias"}).data, plain.data);
   const Image narrow = drawn({"--kernel-px2", "0.1"});
   EXPECT_NE(narrow.data, forced.data);
@@ -56,11 +55,6 @@ TEST_F(Antialias, TagsAndOptionsMeanTheSame) {
   for (auto& row : file.rows) row.push_back(0.0);
   EXPECT_EQ(drawn().data, narrow.data);
   EXPECT_EQ(drawn({"--kernel-px2", "0.3"}).data, forced.data);
-}
-
-TEST_F(Antialias, KernelsMustBePositive) {
-  for (const char* kernel : {"0", "-1", "nan", "x"})
-    EXPECT_EQ(render({"--kernel-px2", kernel}).code, 2) << kernel;
 }
 
 }  // namespace

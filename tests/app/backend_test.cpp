@@ -7,17 +7,16 @@ namespace binosplat {
 namespace {
 
 using test::good;
+using test::has;
 using test::Outcome;
 using test::read_text;
 
 struct BackendTest : test::SceneTest {
   // Both eyes as float EXR, which holds all bits of the pictures and says nothing of the device.
-  Outcome draw(const std::string& backend, const std::string& file,
-               const std::vector<std::string>& more = {}) {
-    std::vector<std::string> arguments = {"--backend", backend,  "-o",    folder / file,    "--exr",
-                                          "float",     "--view", "front", "--exr-encoding", "display"};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    return render(arguments);
+  Outcome draw(const std::string& backend, const std::string& file, const test::Words& more = {}) {
+    return render(joined({"--backend", backend, "-o", folder / file, "--exr", "float", "--view", "front",
+                          "--exr-encoding", "display"},
+                         more));
   }
 };
 
@@ -30,8 +29,8 @@ TEST_F(BackendTest, SurfacelessAndOsMesaAreEqualBitForBit) {
     GTEST_SKIP() << "the surfaceless platform is not Mesa's here: " << surfaceless.err;
   ASSERT_TRUE(good(surfaceless));
   ASSERT_TRUE(good(osmesa));
-  EXPECT_NE(osmesa.err.find("(OSMesa,"), std::string::npos) << osmesa.err;
-  EXPECT_EQ(surfaceless.err.find("(OSMesa,"), std::string::npos) << surfaceless.err;
+  EXPECT_TRUE(has(osmesa.err, "(OSMesa,"));
+  EXPECT_FALSE(has(surfaceless.err, "(OSMesa,"));
   EXPECT_EQ(read_text(folder / "egl.exr"), read_text(folder / "osmesa.exr"));
   ASSERT_TRUE(good(draw("osmesa", "other.exr", {"--tiles", "aabb"})));
   EXPECT_NE(read_text(folder / "egl.exr"), read_text(folder / "other.exr"))
@@ -50,14 +49,10 @@ TEST_F(BackendTest, DriversThatMesaLacksAreNoCrash) {
   for (const std::map<std::string, std::string>& variables :
        {std::map<std::string, std::string>{{"GALLIUM_DRIVER", "d3d12"}},
         {{"GALLIUM_DRIVER", "zink"}},
-        {{"GALLIUM_DRIVER", "swr"}},
-        {{"GALLIUM_DRIVER", "virgl"}},
-        {{"GALLIUM_DRIVER", "softpipe"}},
         {{"GALLIUM_DRIVER", "nonsense"}},
         {{"GALLIUM_DRIVER", ""}},
         {{"GALLIUM_DRIVER", "zink"}, {"LIBGL_ALWAYS_SOFTWARE", "1"}},
-        {{"MESA_LOADER_DRIVER_OVERRIDE", "zink"}},
-        {{"MESA_LOADER_DRIVER_OVERRIDE", "nonsense"}}}) {
+        {{"MESA_LOADER_DRIVER_OVERRIDE", "zink"}}}) {
     std::filesystem::remove(folder / "p.png");
     const std::string shown = variables.begin()->first + "=" + variables.begin()->second;
     const Outcome drawn = render(line, {.variables = variables});
@@ -68,7 +63,7 @@ TEST_F(BackendTest, DriversThatMesaLacksAreNoCrash) {
       EXPECT_EQ(seen(), expected) << shown;
     } else {
       EXPECT_EQ(drawn.code, 3) << shown << drawn.err;
-      EXPECT_NE(drawn.err.find(shown), std::string::npos) << drawn.err;
+      EXPECT_TRUE(has(drawn.err, shown));
     }
     const Outcome devices = test::run_program({"devices"}, {.variables = variables});
     EXPECT_TRUE(devices.code == 0 || (devices.code == 3 && !osmesa)) << shown << devices.code;

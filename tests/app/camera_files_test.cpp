@@ -11,6 +11,7 @@ namespace {
 
 using test::ended;
 using test::good;
+using test::has;
 using test::Outcome;
 using test::write_text;
 
@@ -33,18 +34,15 @@ struct CameraFiles : test::SceneTest {
   /// Photos in `images`: what the views themselves show.
   void take_photos() const { ASSERT_TRUE(good(mono({"--view", "all", "-o", folder / "images"}))); }
 
-  Outcome mono(std::vector<std::string> arguments) const {
-    arguments.insert(arguments.end(), {"--mono", "--json", report});
-    if (std::find(arguments.begin(), arguments.end(), "-o") == arguments.end())
-      arguments.insert(arguments.end(), {"-o", out});
-    return render(arguments);
+  Outcome mono(const test::Words& words) const {
+    return render(joined(words, {"--mono", "--json", report}));
   }
 
   /// The PSNR of each view against its photo; -1 without one.
   std::vector<double> photo_psnr() const {
-    const json report_json = json::parse(test::read_text(report));
+    const json drawn = test::load_json(report);
     std::vector<double> all;
-    for (const json& view : report_json.at("views")) {
+    for (const json& view : drawn.at("views")) {
       const auto db = view.find("photo_psnr_db");
       all.push_back(db == view.end() ? -1.0 : db->is_null() ? INFINITY : db->get<double>());
     }
@@ -134,7 +132,7 @@ TEST_F(CameraFiles, DistortionOfZeroIsDrawnAndMoreIsDrawnWithAWarning) {
   save_colmap(pinhole, {"a.jpg"});
   const std::vector<float> expected = picture({});
   save_colmap("FULL_OPENCV 72 48 60 60 36 24 0 0 0 0 0 0 0 0", {"a.jpg"});
-  EXPECT_EQ(mono({}).err.find("distorted"), std::string::npos);
+  EXPECT_FALSE(has(mono({}).err, "distorted"));
   fs::remove_all(out);
   EXPECT_TRUE(picture({}) == expected);
   save_colmap("SIMPLE_RADIAL 72 48 60 36 24 0.1", {"a.jpg"});

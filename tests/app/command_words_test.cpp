@@ -8,6 +8,7 @@ namespace binosplat {
 namespace {
 
 using test::good;
+using test::has;
 using test::run_program;
 
 std::string printed(const char* what) {
@@ -44,14 +45,14 @@ TEST(CommandWords, HaveEveryOption) {
     const std::set<std::string> options = options_of(command);
     EXPECT_GT(options.size(), 5u) << command;
     for (const std::string& option : options) {
-      EXPECT_NE(page.find(in_roff(option)), std::string::npos) << command << " " << option;
-      EXPECT_NE(words.find(option), std::string::npos) << command << " " << option;
-      EXPECT_NE(of_zsh.find("'" + option + "["), std::string::npos) << command << " " << option;
-      EXPECT_NE(fish.find("-l " + option.substr(2) + " "), std::string::npos) << command << " " << option;
+      EXPECT_TRUE(has(page, in_roff(option))) << command << " " << option;
+      EXPECT_TRUE(has(words, option)) << command << " " << option;
+      EXPECT_TRUE(has(of_zsh, "'" + option + "[")) << command << " " << option;
+      EXPECT_TRUE(has(fish, "-l " + option.substr(2) + " ")) << command << " " << option;
     }
-    EXPECT_EQ(page.find(in_roff("--no-such-option")), std::string::npos);
+    EXPECT_FALSE(has(page, in_roff("--no-such-option")));
   }
-  EXPECT_NE(man.find(in_roff("--convergence"), man.find(".SH binosplat view")), std::string::npos)
+  EXPECT_TRUE(has(man.substr(man.find(".SH binosplat view")), in_roff("--convergence")))
       << "the preview's, a program of its own";
 }
 
@@ -101,7 +102,7 @@ TEST(CommandWords, CompleteInZsh) {
 
 TEST(CommandWords, AreOfTextsThatThereAre) {
   EXPECT_TRUE(test::ended(run_program({"--print", "csh"}), 2, "--print"));
-  EXPECT_EQ(run_program({"--help"}).out.find("--print"), std::string::npos) << "for packages only";
+  EXPECT_FALSE(has(run_program({"--help"}).out, "--print")) << "for packages only";
 }
 
 }  // namespace

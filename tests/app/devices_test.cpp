@@ -1,26 +1,24 @@
 // binosplat devices.
 
-#include <gtest/gtest.h>
-
-#include <nlohmann/json.hpp>
-
-#include "support/program.h"
+#include "app/scene.h"
 
 namespace binosplat {
 namespace {
+
+using test::has;
 
 TEST(Devices, ListsWaysToDrawThatRenderTakes) {
   const test::TempFolder folder;
   const test::Outcome outcome = test::run_program({"devices", "--json", folder / "devices.json"});
   ASSERT_EQ(outcome.code, 0) << outcome.err;
-  EXPECT_NE(outcome.out.find("--backend surfaceless"), std::string::npos) << outcome.out;
-  const auto list = nlohmann::json::parse(test::read_text(folder / "devices.json"));
+  EXPECT_TRUE(has(outcome.out, "--backend surfaceless"));
+  const auto list = test::load_json(folder / "devices.json");
   bool any = false;
   for (const auto& device : list) {
     if (!device.at("usable").get<bool>()) continue;
     any = true;
     EXPECT_GE(device.at("limits").at("storage_blocks").get<int>(), 13);
-    EXPECT_NE(outcome.out.find(device.at("renderer").get<std::string>()), std::string::npos);
+    EXPECT_TRUE(has(outcome.out, device.at("renderer").get<std::string>()));
   }
   EXPECT_TRUE(any);
 }
@@ -32,14 +30,14 @@ TEST(Devices, WithoutEglOsMesaDraws) {
   const test::Outcome outcome = test::run_program({"devices", "--json", folder / "devices.json"}, none);
   if (outcome.code == 3) GTEST_SKIP() << "no OSMesa: apt install libosmesa6";
   ASSERT_EQ(outcome.code, 0) << outcome.out << outcome.err;
-  const auto list = nlohmann::json::parse(test::read_text(folder / "devices.json"));
+  const auto list = test::load_json(folder / "devices.json");
   ASSERT_EQ(list.size(), 2u);
   EXPECT_FALSE(list[0].at("usable").get<bool>());
   EXPECT_EQ(list[1].at("options"), "--backend osmesa");
   const test::Outcome render =
       test::run_program({"render", "demo:room", "--size", "48x32", "-o", folder / "out"}, none);
   EXPECT_EQ(render.code, 0) << render.err;
-  EXPECT_NE(render.err.find("(OSMesa,"), std::string::npos) << render.err;
+  EXPECT_TRUE(has(render.err, "(OSMesa,"));
 }
 
 TEST(Devices, WithoutAnySaysWhatToInstall) {
@@ -50,11 +48,11 @@ TEST(Devices, WithoutAnySaysWhatToInstall) {
   const test::Surroundings none = {.variables = {{"LD_LIBRARY_PATH", folder.path().string()}}};
   const test::Outcome devices = test::run_program({"devices"}, none);
   EXPECT_EQ(devices.code, 3) << devices.out << devices.err;
-  EXPECT_NE(devices.out.find("apt install libegl1"), std::string::npos) << devices.out;
+  EXPECT_TRUE(has(devices.out, "apt install libegl1"));
   const test::Outcome render = test::run_program({"render", "demo:room", "-o", folder / "out"}, none);
   EXPECT_EQ(render.code, 3) << render.err;
-  EXPECT_NE(render.err.find("apt install libegl1"), std::string::npos) << render.err;
-  EXPECT_NE(render.err.find("apt install libosmesa6"), std::string::npos) << render.err;
+  EXPECT_TRUE(has(render.err, "apt install libegl1"));
+  EXPECT_TRUE(has(render.err, "apt install libosmesa6"));
 }
 
 TEST(Devices, WithoutProgramBinariesSaysWhatThatCosts) {
@@ -62,7 +60,7 @@ TEST(Devices, WithoutProgramBinariesSaysWhatThatCosts) {
       test::run_program({"devices"}, {.variables = {{"MESA_SHADER_CACHE_DISABLE", "true"}}});
   EXPECT_EQ(outcome.code, 0);
   if (outcome.out.find("llvmpipe") == std::string::npos) GTEST_SKIP() << "no Mesa here";
-  EXPECT_NE(outcome.out.find("lacks program binaries"), std::string::npos) << outcome.out;
+  EXPECT_TRUE(has(outcome.out, "lacks program binaries"));
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 namespace binosplat {
 namespace {
 
+using test::has;
 using Info = test::SceneTest;
 
 TEST_F(Info, SaysTheSameInTextAndJson) {
@@ -28,17 +29,7 @@ TEST_F(Info, SaysTheSameInTextAndJson) {
   for (const char* part :
        {"model.ply (ply)", "Gaussians      300\n", "degree 1", "x right, y down, z forward", "98 % within",
         "GPU memory", "as a file      ply 0.0 MB", "never visible"})
-    EXPECT_NE(outcome.out.find(part), std::string::npos) << part << " in:\n" << outcome.out;
-}
-
-TEST_F(Info, TellsWhatWasLeftOutAndRefusesWhatIsNoModel) {
-  test::PlyFile file = test::small_model();
-  file.at(7, "x") = std::nan("");
-  test::write_text(model, to_bytes(file));
-  const test::Outcome outcome = test::run_program({"info", model});
-  EXPECT_NE(outcome.out.find("299 (1 more left out"), std::string::npos) << outcome.out;
-  test::write_text(model, "no model");
-  EXPECT_EQ(test::run_program({"info", model}).code, 2);
+    EXPECT_TRUE(has(outcome.out, part)) << part;
 }
 
 TEST_F(Info, TreesTakeNoMoreThanTheirNodes) {
@@ -52,7 +43,7 @@ TEST_F(Info, TreesTakeNoMoreThanTheirNodes) {
   const test::Outcome outcome = test::run_program({"info", folder / "lod-meta.json"});
   const double ms = ms_since(start);
   EXPECT_EQ(outcome.code, 2);
-  EXPECT_NE(outcome.err.find("lod-meta.json holds no Gaussians"), std::string::npos) << outcome.err;
+  EXPECT_TRUE(has(outcome.err, "lod-meta.json holds no Gaussians"));
 #if !defined(__SANITIZE_ADDRESS__)
   EXPECT_LT(ms, 5000.0);                   // 0.3 s; 9 with a walk for each of 100 levels
   EXPECT_LT(outcome.peak_kib, 300 << 10);  // 1.2 GB with the ways spelled out
@@ -72,7 +63,7 @@ TEST(InfoOfFixtures, KnowsTheirFormats) {
   for (const auto& [file, part] : expected) {
     const test::Outcome outcome = test::run_program({"info", folder / file});
     EXPECT_EQ(outcome.code, 0) << outcome.err;
-    EXPECT_NE(outcome.out.find(part), std::string::npos) << file << ":\n" << outcome.out;
+    EXPECT_TRUE(has(outcome.out, part)) << file << ":\n";
   }
 }
 

@@ -9,6 +9,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using test::good;
+using test::has;
 using test::Outcome;
 using test::read_text;
 using test::run_program;
@@ -51,7 +52,7 @@ TEST_F(Memory, LevelsSayWhatTheyLeaveOut) {
     const Outcome outcome = with_memory(line, megabytes);
     EXPECT_TRUE(ends_well(outcome)) << megabytes;
     if (outcome.code == 0 && read_text(out + "/lod-meta.json") != whole) {
-      EXPECT_NE(outcome.err.find("there was no memory for"), std::string::npos) << megabytes << outcome.err;
+      EXPECT_TRUE(has(outcome.err, "there was no memory for")) << megabytes;
     }
     short_of_memory += outcome.code == 0 ? 0 : 1;
     // What is there counts as far as it is whole.

@@ -20,8 +20,8 @@ using test::Outcome;
 using test::Program;
 using test::read_text;
 using test::run_program;
+using test::Words;
 using test::write_text;
-using Arguments = std::vector<std::string>;
 using Files = std::map<std::string, std::string>;
 
 Files contents_of_folder(const fs::path& folder) {
@@ -39,9 +39,19 @@ struct Runs : test::SceneTest {
     write_text(other, test::to_bytes(file));
   }
 
-  /// Both at once, into one folder, as often as `rounds`: one is done, with the files that it has alone, and
-  /// the other is told whose folder it is.
-  void expect_one_of(const Arguments& a, const Arguments& b, const std::string& said) const {
+  /// Both at once, into one folder: one is done, and the other is told whose folder it is. Whether that was
+  /// the first.
+  static bool expect_one_is_told(const Words& a, const Words& b, const std::string& said) {
+    Program first(a), second(b);
+    const Outcome outcomes[] = {first.wait(), second.wait()};
+    const bool first_won = outcomes[0].code == 0;
+    EXPECT_TRUE(good(outcomes[first_won ? 0 : 1]));
+    EXPECT_TRUE(ended(outcomes[first_won ? 1 : 0], 2, said));
+    return first_won;
+  }
+
+  /// The one that is done leaves the files that it has alone, whichever begins.
+  void expect_one_of(const Words& a, const Words& b, const std::string& said) const {
     Files alone[2];
     for (int k = 0; k < 2; ++k) {
       ASSERT_TRUE(good(run_program(k == 0 ? a : b)));
@@ -49,24 +59,19 @@ struct Runs : test::SceneTest {
       fs::remove_all(out);
     }
     ASSERT_NE(alone[0], alone[1]) << "planted: files of both would go unnoticed";
-    for (int round = 0; round < 2; ++round) {
-      Program first(round % 2 == 0 ? a : b), second(round % 2 == 0 ? b : a);
-      const Outcome outcomes[] = {first.wait(), second.wait()};
-      const bool first_won = outcomes[0].code == 0;
-      EXPECT_TRUE(good(outcomes[first_won ? 0 : 1]));
-      EXPECT_TRUE(ended(outcomes[first_won ? 1 : 0], 2, said));
-      EXPECT_EQ(contents_of_folder(out), alone[first_won == (round % 2 == 0) ? 0 : 1]);
+    for (const bool swapped : {false, true}) {
+      const bool first_won = expect_one_is_told(swapped ? b : a, swapped ? a : b, said);
+      EXPECT_EQ(contents_of_folder(out), alone[first_won == swapped ? 1 : 0]);
       fs::remove_all(out);
     }
   }
 
-  Arguments levels_of(const std::string& of) const {
+  Words levels_of(const std::string& of) const {
     return {"levels", of, "-o", out, "--leaf", "64", "--levels", "2"};
   }
-  Arguments pictures(const Arguments& more = {}) const {
-    Arguments all = {"render", model, "--view", "all", "--mono", "--size", "36x24", "--resume", "-o", out};
-    all.insert(all.end(), more.begin(), more.end());
-    return all;
+  Words pictures(const Words& more = {}) const {
+    return joined({"render", model, "--view", "all", "--mono", "--size", "36x24", "--resume", "-o", out},
+                  more);
   }
 
   const std::string other = folder / "other.ply";
@@ -84,18 +89,14 @@ TEST_F(Runs, PointsOfTwoScenesDoNotMix) {
   write_text(folder / "axes.json", R"({"eyes": [1], "sizes": ["32x24"], "views": 1, "frames": 1, "repeats": 1,
                                        "settings": [{"tiles": ["ellipse"]}]})");
   const auto bench = [&](const std::string& of) {
-    return Arguments{"bench", of, "--axes", folder / "axes.json", "-o", out};
+    return Words{"bench", of, "--axes", folder / "axes.json", "-o", out};
   };
-  Program first(bench(model)), second(bench(other));
-  const Outcome outcomes[] = {first.wait(), second.wait()};
-  const bool first_won = outcomes[0].code == 0;
-  EXPECT_TRUE(good(outcomes[first_won ? 0 : 1]));
-  EXPECT_TRUE(ended(outcomes[first_won ? 1 : 0], 2, "holds the points of another run"));
+  expect_one_is_told(bench(model), bench(other), "holds the points of another run");
 }
 
 // Work is done twice, and no harm.
 TEST_F(Runs, OfOneKindShareAFolder) {
-  for (const Arguments& line : {levels_of(model), pictures()}) {
+  for (const Words& line : {levels_of(model), pictures()}) {
     ASSERT_TRUE(good(run_program(line)));
     const Files alone = contents_of_folder(out);
     fs::remove_all(out);
@@ -116,7 +117,7 @@ TEST_F(Runs, ThatDrawOverOneAnotherSaySo) {
 
 /// Each of a run's files cut, one after the other, and what the next run makes of it.
 struct CutRuns : Runs {
-  void expect_whole_again(const Arguments& line, const std::string& run_file) const {
+  void expect_whole_again(const Words& line, const std::string& run_file) const {
     ASSERT_TRUE(good(run_program(line)));
     const Files whole = contents_of_folder(out);
     std::size_t made_again = 0;

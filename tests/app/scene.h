@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -11,6 +12,7 @@
 
 #include "base/output_file.h"
 #include "formats/model_output.h"
+#include "support/fixtures.h"
 #include "support/ply.h"
 #include "support/program.h"
 
@@ -66,6 +68,35 @@ inline Model floor_model() {
   return model;
 }
 
+using Words = std::vector<std::string>;
+
+/// Whether a run ended well; shows what it said.
+inline testing::AssertionResult good(const Outcome& outcome) {
+  if (outcome.code == 0) return testing::AssertionSuccess();
+  return testing::AssertionFailure() << "exit code " << outcome.code << ": " << outcome.err;
+}
+
+/// Whether a text has a part; shows it.
+inline testing::AssertionResult has(const std::string& text, const std::string& part) {
+  const bool is = text.find(part) != std::string::npos;
+  return (is ? testing::AssertionSuccess() : testing::AssertionFailure())
+         << "'" << part << "' is " << (is ? "" : "not ") << "in:\n"
+         << text;
+}
+
+/// Whether a run ended with this code and said this on standard error.
+inline testing::AssertionResult ended(const Outcome& outcome, int code, const std::string& said) {
+  if (outcome.code == code && outcome.err.find(said) != std::string::npos) return testing::AssertionSuccess();
+  return testing::AssertionFailure() << "exit code " << outcome.code << ", expected " << code << " and '"
+                                     << said << "' in: " << outcome.err;
+}
+
+/// What `render` is asked for, and what it says of that.
+struct Refusal {
+  Words words;
+  std::string said;
+};
+
 struct SceneTest : testing::Test {
   TempFolder folder;
   const std::string model = folder / "model.ply";
@@ -105,23 +136,31 @@ struct SceneTest : testing::Test {
     return asked("ffprobe -v error -count_frames -show_streams " + video);
   }
 
-  Outcome render(std::vector<std::string> arguments, const Surroundings& surroundings = {}) const {
-    arguments.insert(arguments.begin(), {"render", model});
-    return run_program(arguments, surroundings);
+  /// Both, one behind the other.
+  static Words joined(Words words, const Words& more) {
+    words.insert(words.end(), more.begin(), more.end());
+    return words;
+  }
+
+  /// Into `out`, where no -o says otherwise.
+  Outcome render(Words words, const Surroundings& surroundings = {}) const {
+    words.insert(words.begin(), {"render", model});
+    if (std::find(words.begin(), words.end(), "-o") == words.end()) words.insert(words.end(), {"-o", out});
+    return run_program(words, surroundings);
+  }
+
+  /// The report of a run that ends well.
+  nlohmann::json reported(const Words& words) const {
+    EXPECT_TRUE(good(render(joined(words, {"--json", folder / "r.json"}))));
+    return load_json(folder / "r.json");
+  }
+
+  /// Expects that each is refused and leaves nothing, all of them with `more`.
+  void expect_refused(const std::vector<Refusal>& refusals, const Words& more = {}) const {
+    const auto before = folder.files();
+    for (const Refusal& one : refusals) EXPECT_TRUE(ended(render(joined(one.words, more)), 2, one.said));
+    EXPECT_EQ(folder.files(), before);
   }
 };
-
-/// Whether a run ended well; shows what it said.
-inline testing::AssertionResult good(const Outcome& outcome) {
-  if (outcome.code == 0) return testing::AssertionSuccess();
-  return testing::AssertionFailure() << "exit code " << outcome.code << ": " << outcome.err;
-}
-
-/// Whether a run ended with this code and said this on standard error.
-inline testing::AssertionResult ended(const Outcome& outcome, int code, const std::string& said) {
-  if (outcome.code == code && outcome.err.find(said) != std::string::npos) return testing::AssertionSuccess();
-  return testing::AssertionFailure() << "exit code " << outcome.code << ", expected " << code << " and '"
-                                     << said << "' in: " << outcome.err;
-}
 
 }  // namespace binosplat::test

@@ -10,25 +10,22 @@ namespace {
 
 using test::ended;
 using test::good;
+using test::has;
 using test::Outcome;
 using test::Program;
 using test::read_text;
+using test::Words;
 using test::write_text;
-using Arguments = std::vector<std::string>;
 
 constexpr const char* run_file = "render-run.json";
 
 struct Shards : test::SceneTest {
   Shards() { add_row_of_cameras(5); }
 
-  Arguments line(const std::string& to, const Arguments& more) const {
-    Arguments all = {"render", model, "-o", to};
-    all.insert(all.end(), more.begin(), more.end());
-    return all;
+  Words line(const std::string& to, const Words& more) const {
+    return joined({"render", model, "-o", to}, more);
   }
-  Outcome draw(const std::string& to, const Arguments& more) const {
-    return test::run_program(line(to, more));
-  }
+  Outcome draw(const std::string& to, const Words& more) const { return test::run_program(line(to, more)); }
   /// The files of a folder, by name.
   static std::map<std::string, std::string> contents(const std::filesystem::path& of) {
     std::map<std::string, std::string> all;
@@ -44,21 +41,16 @@ struct Shards : test::SceneTest {
 
 // In whichever order and company they are drawn, also where a frame goes by what the last one left.
 TEST_F(Shards, AreTheFilesOfOneRun) {
-  for (const Arguments& settings :
-       {Arguments{"--view", "all"},
-        {"--view", "all", "--mono", "--exr", "half", "--resume"},
-        {"--view", "all", "--layout", "multi-view"},
-        {"--view", "all", "--mono", "--quality", "38"},
-        {"--view", "all", "--mono", "--tolerance", "1", "--transmittance", "last"},
-        {"--orbit", "5", "--size", "36x24"},
-        {"--path", folder / "cameras.json", "--mono", "--tolerance", "1"}}) {
+  for (const Words& settings : {Words{"--view", "all"},
+                                {"--view", "all", "--mono", "--exr", "half", "--resume"},
+                                {"--view", "all", "--mono", "--tolerance", "1", "--transmittance", "last"},
+                                {"--orbit", "5", "--size", "36x24"},
+                                {"--path", folder / "cameras.json", "--mono", "--tolerance", "1"}}) {
     const std::string whole = folder / "whole", parts = folder / "parts",
                       shown = fmt::format("{}", settings[1]);
     ASSERT_TRUE(good(draw(whole, settings)));
-    Arguments first = settings, second = settings;
-    first.insert(first.end(), {"--shard", "1/2"});
-    second.insert(second.end(), {"--shard", "2/2"});
-    Program one(line(parts, first)), two(line(parts, second));
+    const Words second = joined(settings, {"--shard", "2/2"});
+    Program one(line(parts, joined(settings, {"--shard", "1/2"}))), two(line(parts, second));
     EXPECT_TRUE(good(one.wait()));
     EXPECT_TRUE(good(two.wait()));
     EXPECT_EQ(contents(parts), contents(whole)) << shown;
@@ -73,51 +65,21 @@ TEST_F(Shards, AreTheFilesOfOneRun) {
 
 // What is refused would come out differently, and so would views if they were carried as a path is.
 TEST_F(Shards, FramesThatAreCarriedAreNotOneRunApart) {
-  const Arguments last = {"--mono", "--tolerance", "1", "--transmittance", "last", "--path"};
-  Arguments whole = last, half = last;
-  whole.push_back(folder / "cameras.json");
-  ASSERT_TRUE(good(draw(folder / "whole", whole)));
-  nlohmann::json cameras = nlohmann::json::parse(read_text(folder / "cameras.json"));
+  const Words last = {"--mono", "--tolerance", "1", "--transmittance", "last", "--path"};
+  ASSERT_TRUE(good(draw(folder / "whole", joined(last, {folder / "cameras.json"}))));
+  nlohmann::json cameras = test::load_json(folder / "cameras.json");
   cameras.erase(0);
   write_text(folder / "half.json", cameras.dump());
-  half.push_back(folder / "half.json");
-  ASSERT_TRUE(good(draw(folder / "half", half)));
+  ASSERT_TRUE(good(draw(folder / "half", joined(last, {folder / "half.json"}))));
   EXPECT_NE(read_text(folder / "half/view1.png"), read_text(folder / "whole/view1.png"));
 }
 
-TEST_F(Shards, RefusesWhatCannotBeParted) {
-  const std::string path = folder / "cameras.json";
-  const struct {
-    Arguments arguments;
-    const char* said;
-    const char* to = "out";
-  } cases[] = {
-      {{"--shard", "3/2"}, "--shard 3/2: expected I/N with I from 1 to N"},
-      {{"--shard", "1/2", "--path", path, "--quality", "40"}, "--shard with --quality along a path"},
-      {{"--resume", "--tour", "walk", "--quality", "40"}, "--resume with --quality along a path"},
-      {{"--shard", "1/2", "--path", path, "--tolerance", "1", "--transmittance", "last"},
-       "--shard with --transmittance last along a path"},
-      {{"--shard", "1/2", "--path", path, "--detail", "1"}, "--shard with --detail"},
-      {{"--resume", "--json", folder / "r.json"}, "--json and --photos tell of all views"},
-      {{"--resume", "--mono", "--photos", folder.path()}, "--json and --photos tell of all views"},
-      {{"--shard", "1/2"}, "all.png is one file: name a folder", "all.png"},
-      {{"--resume"}, "all.mp4 is one file: name a folder", "all.mp4"},
-  };
-  const auto before = folder.files();
-  for (const auto& c : cases) EXPECT_TRUE(ended(draw(folder / c.to, c.arguments), 2, c.said));
-  EXPECT_EQ(folder.files(), before);
-}
-
 struct Resume : Shards {
-  const Arguments settings = {"--view", "all", "--mono", "--resume"};
+  const Words settings = {"--view", "all", "--mono", "--resume"};
 
-  Outcome again(const Arguments& more = {}) const {
-    Arguments all = settings;
-    all.insert(all.end(), more.begin(), more.end());
-    return draw(out, all);
-  }
+  Outcome again(const Words& more = {}) const { return draw(out, joined(settings, more)); }
   /// Whether a run is, and changes nothing.
-  testing::AssertionResult refused(const std::string& said, const Arguments& more = {}) const {
+  testing::AssertionResult refused(const std::string& said, const Words& more = {}) const {
     const auto before = contents(out);
     const testing::AssertionResult is = ended(again(more), 2, said);
     return contents(out) == before ? is : testing::AssertionFailure() << "files have changed";
@@ -139,26 +101,25 @@ TEST_F(Resume, GoesOnAfterAnInterruption) {
   const auto there = contents(out).size() - 1;
   const Outcome outcome = again();
   ASSERT_TRUE(good(outcome));
-  EXPECT_NE(outcome.err.find(fmt::format("{} of 5 views are in {} already", there, out)), std::string::npos)
-      << outcome.err;
+  EXPECT_TRUE(has(outcome.err, fmt::format("{} of 5 views are in {} already", there, out)));
   auto expected = contents(whole);
   expected["view0.png"] = as_it_was;
   EXPECT_EQ(contents(out), expected);
   const Outcome third = again();
   ASSERT_TRUE(good(third));
-  EXPECT_NE(third.err.find("5 of 5 views are in"), std::string::npos) << third.err;
+  EXPECT_TRUE(has(third.err, "5 of 5 views are in"));
 }
 
 // A view of several files is there when all of them are.
 TEST_F(Resume, DrawsPairsOfWhichAFileIsMissing) {
-  const Arguments pairs = {"--view", "all", "--exr", "half", "--resume"};
+  const Words pairs = {"--view", "all", "--exr", "half", "--resume"};
   ASSERT_TRUE(good(draw(out, pairs)));
   const auto whole = contents(out);
   ASSERT_EQ(whole.size(), 21);
   std::filesystem::remove(out + "/view1_right.exr");
   const Outcome outcome = draw(out, pairs);
   ASSERT_TRUE(good(outcome));
-  EXPECT_NE(outcome.err.find("4 of 5 views are in"), std::string::npos) << outcome.err;
+  EXPECT_TRUE(has(outcome.err, "4 of 5 views are in"));
   EXPECT_EQ(contents(out), whole);
 
   // The same options and cameras, but a pose was saved beside the model, with eyes that are farther apart.
@@ -201,7 +162,7 @@ TEST_F(Resume, TakesACalibrationAsItIs) {
   const std::string calibration = folder / "c.json";
   ASSERT_TRUE(
       good(test::run_program({"calibrate", model, "-o", calibration, "--quality", "38", "--view", "view2"})));
-  const Arguments calibrated = {"--calibration", calibration};
+  const Words calibrated = {"--calibration", calibration};
   ASSERT_TRUE(good(again(calibrated)));
   EXPECT_TRUE(good(again(calibrated)));
   nlohmann::ordered_json other = nlohmann::ordered_json::parse(read_text(calibration));

@@ -13,6 +13,7 @@ namespace {
 
 using test::ended;
 using test::good;
+using test::has;
 using test::Outcome;
 using test::write_text;
 using Names = std::set<std::string>;
@@ -46,7 +47,7 @@ TEST_F(Video, HasThePathsFramesInOrder) {
   const std::string facts = facts_of(video);
   for (const char* fact : {"width=144", "height=48", "r_frame_rate=25/1", "nb_read_frames=5",
                            "codec_name=h264", "stereo_mode=right_left", "color_space=bt709"})
-    EXPECT_NE(facts.find(fact), std::string::npos) << fact << " is not in " << facts;
+    EXPECT_TRUE(has(facts, fact)) << fact;
   asked("ffmpeg -v error -i " + video + " " + (folder / "decoded%d.png").string());
   const auto decoded = [&](int k) {
     return load_image(folder / ("decoded" + std::to_string(k + 1) + ".png"));
@@ -68,7 +69,7 @@ TEST_F(Video, InterleavedEyesKeepTheirOwnColours) {
     const std::string video = folder / (layout + ".mp4");
     EXPECT_TRUE(good(render({"--path", path, "-o", video, "--layout", layout, "--fps", "12"})));
     const std::string facts = asked("ffprobe -v error -show_streams " + video);
-    EXPECT_NE(facts.find("r_frame_rate=12/1"), std::string::npos) << facts;
+    EXPECT_TRUE(has(facts, "r_frame_rate=12/1"));
     return facts.substr(facts.find("pix_fmt="), 15);
   };
   EXPECT_EQ(format("columns"), "pix_fmt=yuv444p");
@@ -80,7 +81,7 @@ TEST_F(Video, WithoutFfmpegSaysSoBeforeAnyWork) {
   bare.variables["PATH"] = folder.path().string();
   const Outcome outcome = render({"--path", path, "-o", folder / "a.mp4"}, bare);
   EXPECT_TRUE(ended(outcome, 2, "apt install ffmpeg"));
-  EXPECT_EQ(outcome.err.find("drawing"), std::string::npos) << outcome.err;
+  EXPECT_FALSE(has(outcome.err, "drawing"));
   EXPECT_EQ(folder.files(), (Names{"model.ply", "path.json"}));
 }
 
@@ -113,17 +114,16 @@ TEST_F(Video, AnInterruptLeavesNothing) {
 }
 
 TEST_F(Video, WhatDoesNotGoTogetherIsRefused) {
-  const std::string video = folder / "a.webm";
   if (!have_ffmpeg()) GTEST_SKIP() << "ffmpeg is not installed";
-  EXPECT_TRUE(ended(render({"--path", path, "-o", video, "--exr", "half"}), 2, "is a video"));
-  EXPECT_TRUE(ended(render({"--path", path, "-o", video, "--background", "none"}), 2, "no alpha"));
-  EXPECT_TRUE(ended(render({"--path", path, "-o", video, "--layout", "separate"}), 2, "must be a folder"));
-  EXPECT_TRUE(
-      ended(render({"--path", path, "-o", out, "--fps", "10"}), 2, "has frames, each drawn as it is"));
+  const test::Words video = {"--path", path, "-o", folder / "a.webm"};
+  expect_refused({{{"--exr", "half"}, "is a video"},
+                  {{"--background", "none"}, "no alpha"},
+                  {{"--layout", "separate"}, "must be a folder"}},
+                 video);
   nlohmann::json other = test::camera_json("b", 0.1);
   other["width"] = 80;
   write_text(path, nlohmann::json({test::camera_json("a", 0), other}).dump());
-  EXPECT_TRUE(ended(render({"--path", path, "-o", video}), 2, "72 x 48 and 80 x 48 px"));
+  expect_refused({{video, "72 x 48 and 80 x 48 px"}});
 }
 
 }  // namespace

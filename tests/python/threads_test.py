@@ -83,9 +83,12 @@ def test_what_there_is_not_is_no_renderer(model, options, words):
     assert words in str(raised.value)
 
 
-def python(code, *arguments):
-    return subprocess.run([sys.executable, "-c", code, *map(str, arguments)], capture_output=True, text=True,
-                          timeout=120)
+def ends_well(code, scene):
+    """Runs a program of Python on the scene's model, and returns what it said on standard error."""
+    ended = subprocess.run([sys.executable, "-c", code, scene / "model.ply"], capture_output=True, text=True,
+                           timeout=120)
+    assert ended.returncode == 0, ended.stderr
+    return ended.stderr
 
 
 OPENED = """
@@ -99,8 +102,7 @@ renderer.draw(camera)
 
 @pytest.mark.parametrize("how", ["", "builtins.kept = renderer", "del model", "raise SystemExit(0)"])
 def test_python_ends_well_with_a_renderer_open(scene, how):
-    ended = python(OPENED + how, scene / "model.ply")
-    assert ended.returncode == 0, ended.stderr
+    ends_well(OPENED + how, scene)
 
 
 FORKED = OPENED + """
@@ -121,15 +123,12 @@ sys.exit(os.WEXITSTATUS(status))
 
 
 def test_a_forked_process_is_told_that_it_cannot(scene):
-    ended = python(FORKED, scene / "model.ply")
-    assert ended.returncode == 0, ended.stderr
+    ends_well(FORKED, scene)
 
 
-DAEMON = """
-import atexit, sys, threading, time, binosplat
-model = binosplat.load_model(sys.argv[1])
+DAEMON = OPENED + """
+import atexit, threading, time
 camera = binosplat.frame(model, 320, 240)
-renderer = binosplat.Renderer(model, backend="surfaceless")
 drawn = threading.Event()
 
 def draw_for_ever():
@@ -165,17 +164,10 @@ def start(work):
 ])
 def test_python_ends_well_while_daemon_threads_work(scene, how):
     for _ in range(3):
-        ended = python(DAEMON + how, scene / "model.ply")
-        assert ended.returncode == 0, ended.stderr
-        assert "terminate" not in ended.stderr
+        assert "terminate" not in ends_well(DAEMON + how, scene)
 
 
-LATE = """
-import sys, binosplat
-model = binosplat.load_model(sys.argv[1])
-camera = binosplat.frame(model, 32, 24)
-renderer = binosplat.Renderer(model, backend="surfaceless")
-
+LATE = OPENED + """
 class Late:
     def __del__(self, renderer=renderer, camera=camera):
         renderer.draw(camera)
@@ -193,10 +185,9 @@ next(some)
 """
 
 
-@pytest.mark.parametrize("how", ["", "import builtins; builtins.kept = late", "del renderer"])
+@pytest.mark.parametrize("how", ["", "builtins.kept = late", "del renderer"])
 def test_what_draws_while_python_ends_is_no_crash(scene, how):
-    ended = python(LATE + how, scene / "model.ply")
-    assert ended.returncode == 0, ended.stderr
+    ends_well(LATE + how, scene)
 
 
 PARALLEL = """
