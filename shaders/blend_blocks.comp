@@ -3,7 +3,7 @@
 // an invocation a block lists them; then each row blends those that reach its own. The bits are those of blend.comp.
 #define BLOCK_WIDTH 8
 #define BLOCK_HEIGHT COLUMN
-#define ROUND (LOSSY == 1 ? LOSSY_STEP : 128)  // splats at a time
+#define ROUND (APPROXIMATE == 1 ? APPROXIMATE_STEP : 128)  // splats at a time
 #define BATCH (ROUND + 1)  // and one that leaves no mark
 #include "blending.glsl"
 #include "blocks.glsl"
@@ -25,7 +25,7 @@ void list_own(uint block) {
       ++count;
     }
   }
-  if (i < ROUND) atomicAdd(counters.loop_cut, 1u);
+  if (i < ROUND) atomicAdd(counters.truncated_lists, 1u);
   for (uint k = 0u; k < BLEND_UNROLL; ++k) own_lists[block][count + k] = ROUND;
   own_counts[block] = count;
 }
@@ -39,16 +39,14 @@ void main() {
   vec2 corner = vec2(first_pixel - in_tile);
   if (self == 0u) stage_nothing(ROUND);
   uint batch = begin;
-  bool cut = false;
+  bool is_truncated = false;
   for (; batch < end; batch += ROUND) {
     if (batch != begin) {
       if (self == 0u) bright = 0u;
       barrier();
       if (!are_dark()) atomicOr(bright, 1u << own_block);
       barrier();
-#if LOSSY
       if ((bright >> own_block & 1u) == 0u) end_dark();
-#endif
       if (bright == 0u) {
         batch = end;
         break;
@@ -62,9 +60,7 @@ void main() {
         stage(i, splat);
       }
       reached[i] = bits;
-#if SUMS == SUMS_SEEN
-      batch_measured[i] = 0;
-#endif
+      clear_measured(i);
     }
     barrier();
     if (self < BLOCKS) list_own(self);
@@ -77,17 +73,17 @@ void main() {
         blend(at);
       }
     }
-    cut = cut || (!are_done() && next < count);
-#if SUMS == SUMS_SEEN
+    is_truncated = is_truncated || (!are_done() && next < count);
+#if MEASURE
     barrier();
     for (uint k = 0u; k < ROUND / INVOCATIONS; ++k) {
       uint i = k * INVOCATIONS + self;
-      if (batch + i < end) pass_on(values[batch + i], batch_measured[i]);
+      if (batch + i < end) pass_on(values[batch + i], i);
     }
 #endif
   }
-  if (cut || batch < end) atomicAdd(counters.loop_cut, 1u);
-#if SUMS == SUMS_NONE  // the picture stays
+  if (is_truncated || batch < end) atomicAdd(counters.truncated_lists, 1u);
+#if MEASURE <= MEASURE_TRANSMITTANCE  // the picture stays
   write_pixels();
 #endif
 }

@@ -59,7 +59,7 @@ void main() {
       transmittance = left;
     }
   }
-  if (!is_done && at < end) atomicAdd(counters.loop_cut, 1u);
+  if (!is_done && at < end) atomicAdd(counters.truncated_lists, 1u);
   colours[ray.place] = vec4(colour, transmittance);
   z_sums[ray.place] = z_sum;
 }

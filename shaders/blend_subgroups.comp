@@ -6,11 +6,11 @@
 // are those of blend.comp.
 #define BLOCK_WIDTH 8
 #define BLOCK_HEIGHT (4 * COLUMN)
-#if LOSSY  // whose blocks are those of docs/method.md 5.2
-#define ROUND LOSSY_STEP
+#if APPROXIMATE  // whose blocks are those of docs/method.md 5.2
+#define ROUND APPROXIMATE_STEP
 #else
-// Splats at a time: with more in shared memory there is room for fewer groups. A look waits for its longest list.
-#define ROUND (LISTS == LISTS_SHORT ? 64 : SUMS == SUMS_SEEN ? 256 : 128)
+// Splats at a time: with more in shared memory there is room for fewer groups. The visibility pass waits for its longest list.
+#define ROUND (LISTS == LISTS_SHORT ? 64 : MEASURE == MEASURE_VISIBILITY ? 256 : 128)
 #endif
 #define WORDS (ROUND / 32)
 #define BATCH (ROUND + 1)  // and one that leaves no mark
@@ -57,7 +57,7 @@ void main() {
   if (self == 0u) blocks_done = 0u;
   bool ended = false;  // of the block
   uint next = value_at(begin + self);
-#if SUMS == SUMS_SEEN
+#if MEASURE
   uint at_hand = 0u;  // the splat that this invocation took to the batch
 #endif
 #if LISTS == LISTS_LONG  // few groups, which wait for memory: they read the next splats while these are blended
@@ -66,10 +66,10 @@ void main() {
 #endif
   for (uint batch = begin; batch < end; batch += ROUND) {
     if (self < ROUND) {
-#if SUMS == SUMS_SEEN
+#if MEASURE
       at_hand = value_at(batch + self);
-      batch_measured[self] = 0;
 #endif
+      clear_measured(self);
 #if LISTS == LISTS_LONG
       Splat splat = next_splat;
       next_splat = SPLAT(next);
@@ -91,20 +91,18 @@ void main() {
         blend(at);
       }
       ended = subgroupAll(are_dark());
-#if LOSSY
       if (ended && batch + ROUND < end) end_dark();
-#endif
       if (ended && lane == 0u) atomicAdd(blocks_done, 1u);
     }
-#if SUMS == SUMS_SEEN
+#if MEASURE
     barrier();
-    if (self < ROUND) pass_on(at_hand, batch_measured[self]);
+    if (self < ROUND) pass_on(at_hand, self);
 #endif
     if (batch + ROUND >= end) break;
     barrier();
     if (blocks_done == BLOCKS) break;
   }
-#if SUMS == SUMS_NONE  // the picture stays
+#if MEASURE <= MEASURE_TRANSMITTANCE  // the picture stays
   write_pixels();
 #endif
 }

@@ -1,10 +1,10 @@
 // The blocks of BLOCK_WIDTH x BLOCK_HEIGHT px that a tile is drawn by, row by row, and those that splats are told to reach:
-// the same, or with a loss those of docs/method.md 5.2, which do not depend on how a tile is drawn. After blending.glsl.
+// the same, or in the approximate blend those of docs/method.md 5.2, which do not depend on how a tile is drawn. After blending.glsl.
 #define BLOCKS_ACROSS (TILE_SIZE / BLOCK_WIDTH)
 #define BLOCKS_DOWN (TILE_SIZE / BLOCK_HEIGHT)
 #define BLOCKS (BLOCKS_ACROSS * BLOCKS_DOWN)
-#if LOSSY
-#define REACH_HEIGHT LOSSY_BLOCK
+#if APPROXIMATE
+#define REACH_HEIGHT APPROXIMATE_BLOCK
 #else
 #define REACH_HEIGHT BLOCK_HEIGHT
 #endif
@@ -14,11 +14,11 @@ uint bit_of(uint block) {
   return block / BLOCKS_ACROSS * BLOCK_HEIGHT / REACH_HEIGHT * BLOCKS_ACROSS + block % BLOCKS_ACROSS;
 }
 
-// The blocks where alpha comes to ALPHA_MIN in a pixel, with a loss to Th: maybe some more, for rounding, none less. `mean` is
+// The blocks where alpha comes to ALPHA_MIN in a pixel, in the approximate blend to Th: maybe some more, for rounding, none less. `mean` is
 // seen from the tile's first pixel.
 uint blocks_reached(Splat splat, vec2 mean) {
   if (!(splat.opacity >= float(ALPHA_MIN))) return 0u;
-#if LOSSY
+#if APPROXIMATE
   float rho = 1.001 * max(0.0, splat.colour.w) + 1e-3;
 #else
   float rho = 2.002 * log(splat.opacity / float(ALPHA_MIN)) + 1e-3;

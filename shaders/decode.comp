@@ -127,7 +127,7 @@ void main() {
   }
 #if REUSE == 1
   uint last = kept_last[at] & ~KEPT_HIDDEN;
-  bool hidden = seen && frame.remembers != 0u;
+  bool hidden = seen && frame.has_bounds != 0u;
   for (uint v = first; v < end; ++v) hidden = hidden && is_hidden(v, anchor, n, last);
   if (hidden) {
     kept[at] = last | KEPT_HIDDEN;

@@ -4,6 +4,6 @@
 #define LISTS_SHORT 0
 #define LISTS_LONG 1
 
-// With a loss, of a list: so many splats at a time, and then each block of so many rows is asked whether it is dark.
-#define LOSSY_STEP (LISTS == LISTS_LONG ? LOSSY_STEP_LONG : LOSSY_STEP_SHORT)
-#define LOSSY_ROWS (LISTS == LISTS_LONG ? LOSSY_BLOCK / 2 : LOSSY_BLOCK)
+// The approximate blend takes of a list so many splats at a time, and then each block of so many rows is asked whether it is dark.
+#define APPROXIMATE_STEP (LISTS == LISTS_LONG ? APPROXIMATE_STEP_LONG : APPROXIMATE_STEP_SHORT)
+#define APPROXIMATE_ROWS (LISTS == LISTS_LONG ? APPROXIMATE_BLOCK / 2 : APPROXIMATE_BLOCK)

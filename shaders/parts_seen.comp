@@ -1,10 +1,11 @@
 // What views show of the parts of a model: sums over the Gaussians of each part of what the blend summed up of them
-// (SUMS_SEEN). One invocation a slot of an order group, of those whose Gaussians lie in the page.
+// (MEASURE_VISIBILITY). One invocation a slot of an order group, of those whose Gaussians lie in the page.
 #include "shared/axes.h"
 #include "shared/limits.h"
 #include "shared/types.h"
 #include "shared/grid.glsl"
 #include "slots.glsl"
+#define OFFSETS 0          // no Scaffold-GS model has levels of detail
 #include "gaussians.glsl"  // binding 1
 
 layout(local_size_x = THREADS) in;
@@ -12,7 +13,7 @@ layout(local_size_x = THREADS) in;
 layout(std430, binding = 0) readonly buffer Views { View views[]; };
 layout(std430, binding = 2) readonly buffer Arguments { DispatchArguments arguments[]; };
 layout(std430, binding = 3) readonly buffer Indices { uint indices[]; };    // Gaussian of each slot
-layout(std430, binding = 4) buffer Sums { uvec2 sums[]; };              // by splat, SEEN_LOW_BITS and those above
+layout(std430, binding = 4) buffer Sums { uvec2 sums[]; };              // by splat, VISIBILITY_LOW_BITS and those above
 layout(std430, binding = 5) readonly buffer Owners { uint owners[]; };      // part by block of Gaussians
 layout(std430, binding = 6) buffer OfParts { uint of_parts[]; };            // (view, part), two of 64 bits
 uniform uint part_count;
@@ -21,7 +22,7 @@ uniform uint view_begin;
 uniform uint view_end;
 
 // What counts of a splat that is hidden, which is not one that is beside the picture: a 65,536th of a pixel.
-const uint hidden = uint(SEEN_SCALE) / 65536u;
+const uint hidden = uint(VISIBILITY_SCALE) / 65536u;
 
 void add(uint at, uvec2 number) {
   uint before = atomicAdd(of_parts[at], number.x);
@@ -39,8 +40,8 @@ void main() {
     uint from = splat_of(slot, v);
     uvec2 sum = sums[from];
     if (sum != uvec2(0)) sums[from] = uvec2(0);  // for the next look
-    uint low = sum.x + (sum.y << SEEN_LOW_BITS);
-    uvec2 area = uvec2(low, (sum.y >> (32 - SEEN_LOW_BITS)) + (low < sum.x ? 1u : 0u));
+    uint low = sum.x + (sum.y << VISIBILITY_LOW_BITS);
+    uvec2 area = uvec2(low, (sum.y >> (32 - VISIBILITY_LOW_BITS)) + (low < sum.x ? 1u : 0u));
     if (area.y == 0u) area.x = max(area.x, hidden);
     uint at = 4u * (v * part_count + part);
     add(at, area);

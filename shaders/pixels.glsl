@@ -21,7 +21,7 @@ bool find_tile() {
   begin = ranges[2u * list];
   end = ranges[2u * list + 1u];
   bool is_own = LISTS != LISTS_SHORT || end - begin <= LONG_LIST || frame.list_per_view != 0u;
-#if PARTS
+#if REGIONS
   if (!is_drawn(tile_of(tile, views[view_index]), views[view_index])) end = begin;
 #endif
   return is_own;
@@ -52,10 +52,7 @@ void begin_pixels(uvec2 in_tile) {
   vec2 most = max(abs(first), abs(first + float(TILE_SIZE - 1) * step));
   farthest = 1.0 + dot(most, most);
 #endif
-#if LOSSY
-  precise float tolerance = frame.tolerance * view.tolerance_share;
-  last_light = view_index < frame.asked ? min(float(LAST_LIGHT_MOST), float(LAST_LIGHT) * sqrt(tolerance)) : 0.0;
-#endif
+  begin_block(view, view_index < frame.asked);
   for (uint p = 0u; p < COLUMN; ++p) {
     bool inside = first_pixel.x <= last_drawn(view).x && first_pixel.y + p <= last_drawn(view).y;
     row[p] = float(first_pixel.y + p) - middle.y;
@@ -68,15 +65,8 @@ void begin_pixels(uvec2 in_tile) {
     nearness[p] = inverse;
 #endif
     least[p] = inside ? float(TRANSMITTANCE_MIN) : -1.0;
-#if SUMS == SUMS_TRANSPOSED || SUMS == SUMS_CHANGES
-    picture[p] = inside ? colours[place_of(view, p)] : vec4(0.0);
-#endif
-#if SUMS == SUMS_TRANSPOSED
-    picture[p] *= uintBitsToFloat(scale);
-#endif
-#if SHOW != SHOW_PICTURE
-    told[p] = SHOW == SHOW_MEDIAN_DEPTH ? -1.0 : 0.0;
-#endif
+    begin_measuring(view, p, inside);
+    begin_debug_view(p);
   }
 }
 
@@ -85,54 +75,12 @@ void write_pixels() {
   for (uint p = 0u; p < COLUMN; ++p) {
     if (first_pixel.x > last_drawn(view).x || first_pixel.y + p > last_drawn(view).y) continue;
     uint to = place_of(view, p);
-    float left = light_left(p);
-#if LOSSY
-    if (ended_dark) {
-#if RECORDS
-      colour[p] = dark_colour[p].rgb;
-      z_sum[p] = dark_colour[p].a;
-      left = dark_left[p];
+    float left = finished(p);
+#if DEBUG_VIEW != SHOW_PICTURE
+    write_debug_view(to, p, left, end - begin);
 #else
-      left = is_done(p) ? left : 0.0;
-#endif
-    }
-#endif
-#if SHOW == SHOW_PAIRS
-    told[p] = float(end - begin);
-#elif SHOW == SHOW_LIGHT
-    told[p] = left < 1.0 ? told[p] / (1.0 - left) : -1.0;
-#elif SHOW == SHOW_MEDIAN_DEPTH && PROJECTION == PROJECTION_TANGENT
-    told[p] *= sqrt(nearness[p]);  // of a distance
-#endif
-#if SHOW != SHOW_PICTURE
-    shown[to] = told[p];
-#else
-#if CANVASES
-    uvec2 at = first_pixel + uvec2(0u, p) - first_drawn(view);
-    write_on_canvas(view_index, canvases[view_index], view.height, at, vec4(colour[p], left), frame.background.rgb);
-#else
-    colours[to] = vec4(colour[p], left);
-#endif
-#if DEPTH != DEPTH_NONE
-#if PROJECTION == PROJECTION_TANGENT && DEPTH != DEPTH_SEEN
-    precise float along = z_sum[p] * sqrt(nearness[p]);  // of distances
-    z_sum[p] = along;
-#endif
-#if CANVASES
-    if (left >= 1.0 - float(COVERAGE_FOR_DEPTH)) z_sum[p] = 0.0;
-#if DEPTH == DEPTH_MEAN
-    else z_sum[p] /= 1.0 - left;
-#endif
-#elif DEPTH == DEPTH_MEDIAN
-    precise float cover = 1.0 - left;
-    precise float z = z_sum[p] * cover;
-    z_sum[p] = z;
-#endif
-#if DEPTH == DEPTH_MEDIAN_OF_TWO_ROWS
-    if (p % 2u != 0u) continue;
-#endif
-    z_sums[to] = z_sum[p];
-#endif
+    write_picture(view, view_index, to, first_pixel + uvec2(0u, p) - first_drawn(view), vec4(colour[p], left));
+    write_depth(to, p, left);
 #endif
   }
 }

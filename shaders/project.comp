@@ -22,7 +22,7 @@ layout(std430, binding = 0) readonly buffer Views { View views[]; };
 layout(std430, binding = 3) readonly buffer Arguments { DispatchArguments arguments[]; };
 layout(std430, binding = 4) readonly buffer Indices { uint indices[]; };          // Gaussian of each slot
 layout(std430, binding = 6) writeonly buffer Coverages { uint coverages[]; };  // (slot, view): supertiles.glsl
-#if RECORDS
+#if MEASURES
 layout(std430, binding = 8) writeonly buffer Measured { uint measured[]; };  // by splat
 #endif
 layout(std430, binding = 10) buffer FrameCounters { Counters counters; };
@@ -70,7 +70,7 @@ void main() {
       if (is_tall) leave_aside(splat_at);
     }
     if (is_here) coverages[slot * frame.view_count + v] = coverage;
-#if RECORDS
+#if MEASURES
     if (is_here) measured[splat_at] = 0u;
 #endif
     if (coverage != 0u) {

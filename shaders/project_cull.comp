@@ -12,7 +12,7 @@ layout(std430, binding = 0) readonly buffer Views { View views[]; };
 #include "gaussians.glsl"            // bindings 1 and 9
 #include "threshold/threshold.glsl"  // binding 7
 layout(std430, binding = 2) writeonly buffer DepthKeys { uint depth_keys[]; };    // of the model
-#if RECORDS
+#if MEASURES
 layout(std430, binding = 8) writeonly buffer NextBounds { float next_bounds[]; };  // (view, Gaussian)
 #endif
 uniform uint view_begin;
@@ -20,8 +20,8 @@ uniform uint view_end;  // without the probe
 
 // What the next frame is to know of a Gaussian that this view does not draw: a bound of 1 again for one out of sight,
 // a little more than before for one that Th leaves out, or it would never be measured again. The drawn are measured.
-#if RECORDS
-void remember(uint gaussian, uint v, bool projected, bool drawn, Splat splat) {
+#if MEASURES
+void age_bound(uint gaussian, uint v, bool projected, bool drawn, Splat splat) {
   if (v >= frame.asked) return;  // a probe
   bool left_out = is_hidden(gaussian - page_first, v);
 #if TH != TH_TAU
@@ -30,7 +30,7 @@ void remember(uint gaussian, uint v, bool projected, bool drawn, Splat splat) {
     left_out = !is_wide(splat) && touches_a_tile(splat, views[v]);  // wide ones may be out of sight
   }
 #endif
-  float aged = frame.remembers == 0u ? 1.0 : min(1.0, float(BOUND_AGEING) * bounds[v * frame.gaussian_count + gaussian]);
+  float aged = frame.has_bounds == 0u ? 1.0 : min(1.0, float(BOUND_AGEING) * bounds[v * frame.gaussian_count + gaussian]);
   next_bounds[v * frame.gaussian_count + gaussian] = left_out ? aged : 1.0;
 }
 #endif
@@ -52,8 +52,8 @@ uint key_of(uint i) {
     if (projected) splat = rounded(splat);  // or an eye could get what it has not alone
 #endif
     bool drawn = projected && touches_a_tile(splat, views[v]);
-#if RECORDS
-    remember(page_first + i, v, projected, drawn, splat);
+#if MEASURES
+    age_bound(page_first + i, v, projected, drawn, splat);
 #endif
 #if PROBED
     // All of it that leaves a mark, where the probe is of this group.
@@ -63,7 +63,7 @@ uint key_of(uint i) {
     }
 #endif
     if (drawn) key = floatBitsToUint(order_depth(views[v], g));
-#if !RECORDS
+#if !MEASURES
     if (drawn) break;  // no need to ask the other eye
 #endif
   }

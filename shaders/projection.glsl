@@ -3,8 +3,8 @@
 //   ORDER        ORDER_ of shared/axes.h
 //   PROJECTION   PROJECTION_ of shared/axes.h; its file is projection/NAME.glsl
 #include "shared/axes.h"
-#ifndef PARTS
-#define PARTS 0
+#ifndef REGIONS
+#define REGIONS 0
 #endif
 
 // Columns: the Gaussian's axes in the world, each as long as its standard deviation. M of docs/method.md 2.
@@ -73,7 +73,7 @@ vec4 conic_of(vec3 across, vec3 down, LowPass low, float free, out float kept) {
   det += low_pass * (dot_precise(lean, lean) + low_pass * dot_precise(low.slope, low.slope));
 #endif
   if (!(det > 0.0)) return vec4(0.0);
-#if PARTS && !ANTIALIASED
+#if REGIONS && !ANTIALIASED
   precise float free_pass = free * low_pass;
   det_p += free_pass * (dot_precise(width, width) + dot_precise(height, height) + free_pass);
 #if PROJECTION == PROJECTION_TANGENT
@@ -118,7 +118,7 @@ void axes_on_picture(View view, vec2 slope, vec2 gain, mat3 axes, out vec3 acros
 float free_of(View view) {
 #if ANTIALIASED
   return 0.0;
-#elif PARTS
+#elif REGIONS
   return view.low_pass_share;
 #else
   return 1.0;
@@ -128,7 +128,7 @@ float free_of(View view) {
 // What a splat has whatever the projection, but for its colour. `kept` as conic_of() has it.
 void finish(Gaussian g, float kept, inout Splat splat) {
   splat.opacity = g.position.w;
-#if ANTIALIASED || PARTS
+#if ANTIALIASED || REGIONS
   splat.opacity *= kept;
 #endif
   splat.colour = vec4(0.0);

@@ -118,14 +118,14 @@ FoveatedViews foveated_views(std::span<const shared::View> eyes, const Foveation
                              const render::FrameSettings& settings) {
   if (eyes.empty() || eyes.size() > MAX_VIEWS / 2)
     fail("foveation of {} eyes: expected 1 to {}", eyes.size(), MAX_VIEWS / 2);
-  if (!settings.parts.empty()) fail("foveation of views of which only parts are drawn");
-  if (settings.depth == Depth::median || settings.depth == Depth::seen)
-    fail("foveation with the median depth, or what is seen: between inset and context only means are mixed");
+  if (!settings.regions.empty()) fail("foveation of views of which only parts are drawn");
+  if (settings.depth == Depth::median)
+    fail("foveation with the median depth: between inset and context only means are mixed");
   FoveatedViews out{.settings = settings};
   for (std::size_t k = 0; k < eyes.size(); ++k) {
     const FoveatedEye& eye = out.eyes.emplace_back(foveate(eyes[k], foveation, k));
     out.views.insert(out.views.end(), {eye.context, eyes[k]});
-    out.settings.parts.insert(out.settings.parts.end(), {eye.context_part, eye.window});
+    out.settings.regions.insert(out.settings.regions.end(), {eye.context_part, eye.window});
   }
   return out;
 }
@@ -177,8 +177,8 @@ void FoveatedFrame::compose(gl::Dispatcher& dispatcher, std::size_t k, const Fov
   }
   const std::uint64_t groups = std::uint64_t{(eye.width + COMPOSE_COLUMNS - 1) / COMPOSE_COLUMNS} *
                                ((eye.height + COMPOSE_ROWS - 1) / COMPOSE_ROWS);
-  dispatcher.start(gl.program("foveate.comp", {{"CANVASES", on_canvases_ ? "1" : "0"}}),
-                   gl::Work::of_groups(groups),
+  dispatcher.start(gl.program("foveate.comp", gl::Number{"CANVASES", on_canvases_, 2}),
+                   gl::DispatchSize::of_groups(groups),
                    {{"Colours", frame_.colours()},
                     {"ZSums", frame_.z_sums()},
                     {"Composed", colours_},

@@ -34,8 +34,8 @@ struct FoveatedEye {
   glm::uvec2 inset_begin{0}, inset_end{0};  // of its pixels, those that are exact
   double seam = 0.0;                        // around them
   shared::View context;                     // the picture in fewer pixels
-  render::ViewPart context_part;            // without what only the inset shows
-  render::ViewPart window;                  // of the eye's own view: the inset and its seam
+  render::ViewRegion context_part;          // without what only the inset shows
+  render::ViewRegion window;                // of the eye's own view: the inset and its seam
 };
 
 /// What is drawn of an eye's view. `nth` is the eye's place in foveation.gaze. Throws Error for what check()

@@ -165,7 +165,7 @@ void Presenter::draw(const gl::Buffer& colours, std::span<const shared::View> vi
     context.gl().BindImageTexture(0, image.texture, image.level, GL_FALSE, std::max(image.layer, 0),
                                   GL_WRITE_ONLY, format);
     dispatcher_.start(context.program("present.comp"),
-                      gl::Work::of_groups(std::uint64_t{groups.x} * groups.y), {{"Colours", colours}},
+                      gl::DispatchSize::of_groups(std::uint64_t{groups.x} * groups.y), {{"Colours", colours}},
                       {{"kind", static_cast<std::uint32_t>(layout)},
                        {"first", left.pixel_offset},
                        {"second", right.pixel_offset},
@@ -239,8 +239,8 @@ int depth_rows(const gl::Context& context, std::span<const shared::View> views,
 }
 
 void Presenter::draw_depth(const render::Frame& frame, std::size_t v, const DepthTarget& target) {
-  if (v >= frame.shape().asked) fail("view {} of a frame of {} views", v, frame.shape().asked);
-  if (!frame.shape().keeps_depth()) fail("the depth of a frame drawn without");
+  if (v >= frame.plan().asked) fail("view {} of a frame of {} views", v, frame.plan().asked);
+  if (frame.plan().depth() == DEPTH_NONE) fail("the depth of a frame drawn without");
   const double near = target.near_plane, far = target.far_plane;
   if (!(near > 0.0 && far > 0.0 && near != far))
     fail("depths from {} to {}: expected two distances above zero, one of which may be infinite", near, far);
@@ -261,7 +261,7 @@ void Presenter::draw_depth(const render::Frame& frame, std::size_t v, const Dept
   {
     const gl::KeptDrawing drawing(context, depth_framebuffer_, no_vertices_, size.x, size.y);
     dispatcher_.draw_whole(
-        context.program("present_depth.frag", {{"IS_DEPTH", frame.shape().canvases.empty() ? "0" : "1"}}),
+        context.program("present_depth.frag", gl::Number{"IS_DEPTH", !frame.plan().canvases.empty(), 2}),
         {{"Colours", frame.colours()}, {"ZSums", frame.z_sums()}},
         {{"first", view.pixel_offset},
          {"width", view.width},

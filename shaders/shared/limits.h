@@ -8,14 +8,14 @@
 #define ALPHA_MAX 0.99
 // The blend stops before a Gaussian that would leave a transmittance of less than this behind it (3D-GS).
 #define TRANSMITTANCE_MIN 1e-4
-// With a loss splats are blended by blocks of so many px, and a block ends where no pixel's transmittance is
+// The approximate blend goes by blocks of so many px, and a block ends where no pixel's transmittance is
 // above this times the root of the tolerance, or the most, asked each so many pairs of a list, and of a long
 // one (docs/method.md 5.2).
-#define LOSSY_BLOCK 8
-#define LAST_LIGHT 0.12
-#define LAST_LIGHT_MOST 0.4
-#define LOSSY_STEP_SHORT 64
-#define LOSSY_STEP_LONG 128
+#define APPROXIMATE_BLOCK 8
+#define DARK_TRANSMITTANCE 0.12
+#define DARK_TRANSMITTANCE_MOST 0.4
+#define APPROXIMATE_STEP_SHORT 64
+#define APPROXIMATE_STEP_LONG 128
 // A pixel has a depth where more than this much of it is covered.
 #define COVERAGE_FOR_DEPTH 0.5
 // Variance in px^2 added to both axes of every projected Gaussian, a low-pass for splats thinner than a pixel
@@ -49,11 +49,18 @@
 #define TILE_BLOCK 1024
 #define SUPERTILE_TILES_MOST 4u
 
-// What a frame remembers of a Gaussian (docs/method.md 5): never less than the floor, or a hidden one would
+// What a frame measured of a Gaussian (docs/method.md 5): never less than the floor, or a hidden one would
 // divide by zero; times the ageing a measuring, up to 1, while Th leaves it out, so that it comes to be
 // measured again.
 #define BOUND_FLOOR 0.01
 #define BOUND_AGEING 1.25
+// What a blend measures of each splat, over the pixels that it reaches: nothing, the largest transmittance in
+// front of it, or a sum. Those from MEASURE_TRANSPOSED on leave the pictures as they are.
+#define MEASURE_NONE 0
+#define MEASURE_TRANSMITTANCE 1
+#define MEASURE_TRANSPOSED 2
+#define MEASURE_CHANGES 3
+#define MEASURE_VISIBILITY 4
 // What the transposed blend sums, alpha T of a pixel times its picture of 1 at most, is rounded to steps of
 // this: the least weight that a pixel can blend, tau times the least T, is more than half of one, and the sum
 // of a tile of 1,024 px fits a word with its sign.
@@ -61,21 +68,16 @@
 // The squared change of a pixel without a splat, likewise, which counts as no more than this.
 #define CHANGE_SCALE 67108864.0
 #define CHANGE_MOST 0.015625
-// And what a splat shows in a pixel, alpha T^2; nothing once T is below SEEN_LEAST: all that follows would
-// show no more than half of its square.
-#define SEEN_SCALE 1048576.0
-#define SEEN_LEAST 0.01
-#define SEEN_LOW_BITS 14  // of a sum over a tile: summed up apart from those above
-// What a blend that draws no picture sums over the pixels of each splat.
-#define SUMS_NONE 0
-#define SUMS_TRANSPOSED 1
-#define SUMS_CHANGES 2
-#define SUMS_SEEN 3
-// What a blend tells of a pixel's depth; the last at least in every second row. Or, in its place, what is
-// seen.
+// Visibility: what a splat shows in a pixel, alpha T^2; nothing once T is below the least: all that follows
+// would show no more than half of its square.
+#define VISIBILITY_SCALE 1048576.0
+#define VISIBILITY_LEAST 0.01
+#define VISIBILITY_LOW_BITS 14  // of a sum over a tile: summed up apart from those above
+// What a blend tells of a pixel's depth; the last at least in every second row. Or, in its place, the sum of
+// the visibility of its splats.
 #define DEPTH_NONE 0
 #define DEPTH_MEAN 1
-#define DEPTH_SEEN 2
+#define DEPTH_VISIBILITY 2
 #define DEPTH_MEDIAN 3
 #define DEPTH_MEDIAN_OF_TWO_ROWS 4
 

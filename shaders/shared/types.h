@@ -40,7 +40,7 @@ struct View {
   uint is_probe;          // 1: only tiles that lie apart, drawn exactly
   uint left;              // px of the picture that its first pixel is: above 0 in a window, whose `width` and
   uint top;               // `height` are its own
-  uint first_row;         // of its tiles among the rows that say which are drawn (tiles/parts.glsl)
+  uint first_row;         // of its tiles among the rows that say which are drawn (tiles/regions.glsl)
   float tolerance_share;  // of the frame's tolerance
   float low_pass_share;   // of the low-pass, px^2, by which no Gaussian loses weight (projection.glsl)
 };
@@ -52,7 +52,7 @@ struct FrameParameters {
   float tolerance;      // of the threshold rule: K or kappa
   float far;            // world units, where the table of depths ends
   uint depth_bins;      // of that table
-  uint remembers;       // 0: no earlier frame tells anything of this one
+  uint has_bounds;      // 0: no earlier frame measured bounds of the transmittance for this one
   uint view_count;      // with the probe
   uint asked;           // without it; views from here on are exact
   uint probed;          // the view that the probe is of; MAX_VIEWS without one
@@ -89,8 +89,8 @@ struct Splat {
   float depth;    // view z, world units
   float opacity;  // sigma
   vec4 conic;     // Q.xx, Q.xy, Q.yy in px^-2; w: sqrt(det C2) in px^2
-  vec4 colour;    // rgb, display-referred; w: rho = 2 ln(sigma / Th), the level that tile tests go by (with a
-                  // loss blocks, too)
+  vec4 colour;  // rgb, display-referred; w: rho = 2 ln(sigma / Th), the level that tile tests go by, and the
+                // blocks of the approximate blend
 };
 
 // Where the blend writes a view's picture as it is shown, in the image of the view's number.
@@ -114,12 +114,12 @@ struct PlacedRay {
 // the number wanted; the frame is then drawn again with larger ones. Counts stop at COUNT_MAX instead of
 // wrapping.
 struct Counters {
-  uint visible;       // Gaussians in depth order, summed over the order groups
-  uint order_wanted;  // the most Gaussians that one order group had
-  uint pairs;         // Gaussian-supertile pairs wanted, all views
-  uint overflow;      // OVERFLOW_ bits
-  uint loop_cut;      // tiles whose list the driver cut short: the picture is wrong and must not be used
-  uint median_depth;  // bits of a float: of what the last order group drew, world units
+  uint visible;          // Gaussians in depth order, summed over the order groups
+  uint order_wanted;     // the most Gaussians that one order group had
+  uint pairs;            // Gaussian-supertile pairs wanted, all views
+  uint overflow;         // OVERFLOW_ bits
+  uint truncated_lists;  // tiles whose list the driver ended early: the picture must not be used
+  uint median_depth;     // bits of a float: of what the last order group drew, world units
   uint probe_low;   // squared error of the probe, summed over pixels and channels, times PROBE_SCALE: low and
   uint probe_high;  // high half
   uint probe_squares_low;  // squares of such sums of THREADS pixels each, likewise

@@ -22,7 +22,7 @@ float bound_of(uint gaussian, uint view, float depth) {
 layout(std430, binding = 7) readonly buffer Bounds { float bounds[]; };  // (view, Gaussian)
 
 float bound_of(uint gaussian, uint view, float depth) {
-  return frame.remembers == 0u ? 1.0 : bounds[view * frame.gaussian_count + gaussian];
+  return frame.has_bounds == 0u ? 1.0 : bounds[view * frame.gaussian_count + gaussian];
 }
 
 #endif

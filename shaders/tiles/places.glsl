@@ -4,8 +4,8 @@
 #ifndef PROBED
 #define PROBED 0  // 1: the frame has a probe
 #endif
-#ifndef PARTS
-#define PARTS 0  // 1: of some views only parts are drawn
+#ifndef REGIONS
+#define REGIONS 0  // 1: of some views only parts are drawn
 #endif
 
 #if PROBED
@@ -16,12 +16,12 @@ uint tile_pitch(View view) { return view.pitch; }
 bool is_probe(View view) { return false; }
 uint tile_pitch(View view) { return uint(TILE_SIZE); }
 #endif
-#if PROBED || PARTS
+#if PROBED || REGIONS
 uvec2 tile_shift(View view) { return uvec2(view.shift_x, view.shift_y); }
 #else
 uvec2 tile_shift(View view) { return uvec2(0u); }
 #endif
-#if PARTS
+#if REGIONS
 uvec2 first_drawn(View view) { return uvec2(view.left, view.top); }
 #else
 uvec2 first_drawn(View view) { return uvec2(0u); }
@@ -33,4 +33,4 @@ uvec2 last_drawn(View view) { return first_drawn(view) + uvec2(view.width - 1u, 
 // The first pixel of a tile.
 uvec2 tile_corner(uvec2 tile, View view) { return tile * tile_pitch(view) + tile_shift(view); }
 
-#include "tiles/parts.glsl"
+#include "tiles/regions.glsl"

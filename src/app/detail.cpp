@@ -22,16 +22,15 @@ std::vector<Shot> known_shots(const RenderOptions& options, const CameraList& li
 
 /// Bytes that a frame starts with, those of the model included; of one whose parts come later, which has room
 /// for so many, those of their uploads, too.
-std::int64_t bytes_for(render::FrameShape shape, std::uint32_t gaussians, bool in_parts) {
-  shape.gaussian_count = in_parts ? 0 : gaussians;
-  shape.gaussian_room = gaussians;
-  shape.slots = render::starting_slots(gaussians);
-  const render::MemoryNeeds needs = render::memory_needs(shape);
+std::int64_t bytes_for(render::FramePlan plan, std::uint32_t gaussians, bool in_parts) {
+  plan.gaussian_count = in_parts ? 0 : gaussians;
+  plan.gaussian_room = gaussians;
+  const render::MemoryNeeds needs = render::memory_needs(plan);
   if (!in_parts) return needs.model + needs.frame;
-  const int precision = shape.settings.precision;
+  const int precision = plan.settings.precision;
   // Each of both with its place.
   const std::int64_t bytes_of_one =
-      render::gaussian_bytes(precision) + render::harmonic_bytes(shape.degree, precision) + 2 * 4;
+      render::gaussian_bytes(precision) + render::harmonic_bytes(plan.degree, precision) + 2 * 4;
   const auto uploads = static_cast<std::int64_t>(
       std::bit_ceil(std::min<std::size_t>(gaussians, render::Scatter::records_at_once)));
   return needs.model + needs.frame + uploads * bytes_of_one;
@@ -45,10 +44,10 @@ std::size_t gaussians_that_fit(double megabytes, render::FrameSettings settings,
   const double bytes = 1e6 * megabytes;
   Model model;
   model.degree = degree;
-  const render::FrameShape shape = render::make_shape(views, settings, model);
+  const render::FramePlan plan = render::make_plan(views, settings, model);
   std::uint32_t fits = 0;
   for (std::uint32_t step = 1u << 30; step > 0; step /= 2) {
-    if (static_cast<double>(bytes_for(shape, fits + step, in_parts)) <= bytes) fits += step;
+    if (static_cast<double>(bytes_for(plan, fits + step, in_parts)) <= bytes) fits += step;
   }
   return fits;
 }

@@ -55,7 +55,7 @@ std::unique_ptr<Stream> open_for_shots(const SceneOptions& options, const render
   return open_stream(options, std::move(of_shots));
 }
 
-ShotLevels settle_shot(Stream& stream, render::Frame& frame, stereo::Show& show,
+ShotLevels settle_shot(Stream& stream, render::Frame& frame, stereo::DebugView& show,
                        std::span<const shared::View> views, const render::FrameSettings& settings,
                        const std::optional<glm::vec3>& background) {
   ShotLevels levels;

@@ -9,7 +9,7 @@
 #include "app/scene_options.h"
 #include "base/image.h"
 #include "render/frame.h"
-#include "stereo/show.h"
+#include "stereo/debug_view.h"
 #include "stream/stream.h"
 
 namespace binosplat::app {
@@ -41,7 +41,7 @@ std::unique_ptr<Stream> open_for_shots(const SceneOptions& options, const render
 
 /// Brings the stream's model to the levels that a shot needs, which `frame` and `show` draw; with a
 /// background before which pictures lie it reports what a switch of a turning head's levels changes.
-ShotLevels settle_shot(Stream& stream, render::Frame& frame, stereo::Show& show,
+ShotLevels settle_shot(Stream& stream, render::Frame& frame, stereo::DebugView& show,
                        std::span<const shared::View> views, const render::FrameSettings& settings,
                        const std::optional<glm::vec3>& background);
 
@@ -57,7 +57,7 @@ class FinestLevels {
 
  private:
   Model model_;
-  stereo::Show show_;
+  stereo::DebugView show_;
 };
 
 }  // namespace binosplat::app

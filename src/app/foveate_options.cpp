@@ -116,7 +116,7 @@ void check_foveate(const RenderOptions& o) {
 render::MemoryNeeds foveated_memory(std::span<const shared::View> eyes, const stereo::Foveation& foveation,
                                     const render::FrameSettings& settings, const Model& model) {
   const stereo::FoveatedViews drawn = stereo::foveated_views(eyes, foveation, settings);
-  render::MemoryNeeds needs = render::memory_needs(render::make_shape(drawn.views, drawn.settings, model));
+  render::MemoryNeeds needs = render::memory_needs(render::make_plan(drawn.views, drawn.settings, model));
   for (const shared::View& eye : eyes) needs.frame += std::int64_t{eye.width} * eye.height * 20;
   return needs;
 }

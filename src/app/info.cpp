@@ -20,7 +20,7 @@
 #include "formats/model_output.h"
 #include "lab/fields.h"
 #include "lab/weights.h"
-#include "render/shape.h"
+#include "render/frame_plan.h"
 #include "scene/axes.h"
 #include "scene/framing.h"
 #include "scene/summary.h"
@@ -76,7 +76,7 @@ render::MemoryNeeds headset_needs(const Model& model) {
   const CoredModel cored(model);
   const Camera head = stereo::apply_preset(into_axes(frame_model(cored, 1280, 720), model.axes), "headset");
   const stereo::EyePair eyes = stereo::make_rig(head, {.near_plane = near_for(cored)});
-  return render::memory_needs(render::make_shape(eyes.views, {}, model));
+  return render::memory_needs(render::make_plan(eyes.views, {}, model));
 }
 
 void print_bounds(const char* name, const Bounds& b) {

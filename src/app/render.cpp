@@ -73,7 +73,7 @@ render::MemoryNeeds memory_needs(render::FrameSettings settings, const Model& mo
   for (const Shot& shot : shots) {
     const auto needs = vr180_near ? vr180_memory(shot, model, *vr180_near)
                        : foveate  ? foveated_memory(views_of(shot), *foveate, settings, model)
-                                  : render::memory_needs(render::make_shape(views_of(shot), settings, model));
+                                  : render::memory_needs(render::make_plan(views_of(shot), settings, model));
     most = {needs.model, std::max(most.frame, needs.frame)};
   }
   return most;
@@ -176,7 +176,7 @@ void draw_all(gl::Context& context, Work& work, RenderReport& report) {
                              ? work.stream->gpu_model(context, settings.precision)
                              : std::make_shared<render::GpuModel>(context, report.model, settings.precision);
   render::Frame frame(gpu_model);
-  stereo::Show show(gpu_model);
+  stereo::DebugView show(gpu_model);
   work.calibrated.check_model(report.model);
   if (settings.transmittance == TRANSMITTANCE_DEPTH && drawing.calibration.empty())
     settings.depth_table = depth_table(frame, report.options.camera.lens, work.list, report.near_plane,
@@ -226,7 +226,8 @@ void draw_all(gl::Context& context, Work& work, RenderReport& report) {
       drawn.levels->finest_psnr = finest->psnr(views, pictures, of_shot, settings.background);
     }
     if (!panorama) drawn.comfort = comfort_of(drawn.shot, report.options.camera.lens.headset(), pictures[0]);
-    const stereo::Shown shown = show.make(output.show, frame, views, pictures, of_shot, output.background);
+    const stereo::DebugPictures shown =
+        show.make(output.show, frame, views, pictures, of_shot, output.background);
     drawn.most_shown = shown.most;
     if (video) video->add(frame_of(work.plan, output.background, shown.pictures));
     drawn.files = video ? std::vector{work.plan.video.string()}

@@ -55,7 +55,7 @@ void check_eyes(const RigOptions& rig, const DrawingOptions& drawing, const Outp
 }
 
 // What is drawn in parts must not go by what would have been drawn before it.
-void check_parts(const RenderOptions& o) {
+void check_regions(const RenderOptions& o) {
   if (o.shard.all() && !o.resume) return;
   const char* const part = o.resume ? "--resume" : "--shard";
   if (o.scene.detail && (o.camera.along_path() || o.camera.lens.vr180())) {
@@ -167,7 +167,7 @@ void check(const RenderOptions& o) {
   }
   if (o.drawing.reference_until == render::Stage::blend && o.output.exr_depth == Depth::median)
     fail("--exr-depth median: the GPU's blend tells it, which --reference-until blend leaves out");
-  check_parts(o);
+  check_regions(o);
   check_vr180(o);
   check_foveate(o);
   check(o.context);

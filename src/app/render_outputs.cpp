@@ -328,7 +328,8 @@ std::vector<std::string> files_of(const OutputPlan& plan, const Shot& shot) {
 }
 
 std::vector<std::string> write_outputs(const std::string& scene, const OutputOptions& options,
-                                       const OutputPlan& plan, const Shot& shot, const stereo::Shown& shown) {
+                                       const OutputPlan& plan, const Shot& shot,
+                                       const stereo::DebugPictures& shown) {
   const std::vector<Picture>& pictures = shown.pictures;
   const std::vector<std::string> bases = bases_of(plan, shot);
   if (plan.vr_photo) {

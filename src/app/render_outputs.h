@@ -11,7 +11,7 @@
 #include "app/video.h"
 #include "base/image.h"
 #include "shared/axes.h"
-#include "stereo/show.h"
+#include "stereo/debug_view.h"
 
 namespace binosplat::app {
 
@@ -59,6 +59,7 @@ std::vector<std::string> files_of(const OutputPlan& plan, const Shot& shot);
 
 /// Writes what is shown of a shot of the scene, of its eyes in their order, and returns the files' names.
 std::vector<std::string> write_outputs(const std::string& scene, const OutputOptions& options,
-                                       const OutputPlan& plan, const Shot& shot, const stereo::Shown& shown);
+                                       const OutputPlan& plan, const Shot& shot,
+                                       const stereo::DebugPictures& shown);
 
 }  // namespace binosplat::app

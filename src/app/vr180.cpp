@@ -92,7 +92,7 @@ render::MemoryNeeds vr180_memory(const Shot& shot, const Model& model, double ne
   std::vector<shared::View> views;
   for (const Camera& eye : eyes_in_axes(shot, model.axes))
     views.push_back(make_view(stereo::panorama_face(side, eye, 0), near_plane));
-  render::MemoryNeeds needs = render::memory_needs(render::make_shape(views, {}, model));
+  render::MemoryNeeds needs = render::memory_needs(render::make_plan(views, {}, model));
   // A ray's place, and its colour and distance for each eye.
   needs.frame += std::int64_t{side} * side * (16 + 20 * static_cast<std::int64_t>(views.size()));
   return needs;

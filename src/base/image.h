@@ -44,9 +44,8 @@ struct Picture {
         z_sum(static_cast<std::size_t>(w) * h) {}
 };
 
-/// Of a pixel: not asked for, of all that is seen in it, or where half of the light is gone. Or, in its
-/// place, how much is seen: the sum of alpha T^2, without a unit.
-enum class Depth { none, mean, median, seen };
+/// Of a pixel: not asked for, the mean of all that is seen in it, or where T falls below a half.
+enum class Depth { none, mean, median };
 
 /// Whether pictures are the same in number, size and every bit.
 bool same_bits(std::span<const Picture> a, std::span<const Picture> b);

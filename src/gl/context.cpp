@@ -138,12 +138,14 @@ std::unique_ptr<Context> Context::adopt(GetProcAddress get_proc_address) {
   return context;
 }
 
-const Program& Context::program(const std::string& name, const Defines& defines) {
-  std::string key = name;
-  for (const auto& [define, value] : defines) key += " " + define + "=" + value;
-  auto found = programs_.find(key);
-  if (found == programs_.end()) {
-    found = programs_.emplace(key, Program(functions_, name, defines, shader_folder_, *program_cache_)).first;
+const Program& Context::program(std::string_view name, std::span<const Number> variant) {
+  auto of_shader = programs_.find(name);
+  if (of_shader == programs_.end()) of_shader = programs_.try_emplace(std::string(name)).first;
+  const std::uint64_t key = key_of(variant);
+  auto found = of_shader->second.find(key);
+  if (found == of_shader->second.end()) {
+    Program made(functions_, of_shader->first, defines_of(variant), shader_folder_, *program_cache_);
+    found = of_shader->second.emplace(key, std::move(made)).first;
   }
   return found->second;
 }

@@ -4,13 +4,17 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <memory>
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "gl/functions.h"
 #include "gl/program.h"
+#include "gl/variant.h"
 
 namespace binosplat::gl {
 
@@ -70,8 +74,18 @@ class Context {
   const std::string& version() const { return version_; }    // GL_VERSION
   bool software() const;                                     // llvmpipe
 
-  /// The program of a shader file and its defines, compiled at first use.
-  const Program& program(const std::string& name, const Defines& defines = {});
+  /// The program of a shader file in a variant, compiled at first use.
+  const Program& program(std::string_view name, std::span<const Number> variant = {});
+  const Program& program(std::string_view name, const Number& variant) {
+    return program(name, {&variant, 1});
+  }
+  /// Of a struct that lists its numbers.
+  template <typename Variant>
+  requires requires(const Variant& variant) { variant.numbers(); }
+  const Program& program(std::string_view name, const Variant& variant) {
+    const auto numbers = variant.numbers();
+    return program(name, std::span<const Number>(numbers));
+  }
   /// Shaders are read from this folder from now on; empty: the embedded ones.
   void set_shader_folder(const std::filesystem::path& folder);
   /// Where compiled programs are kept from now on; empty: nowhere. At first ProgramCache::default_folder().
@@ -110,7 +124,7 @@ class Context {
   std::string backend_, vendor_, renderer_, version_;
   std::filesystem::path shader_folder_;
   std::unique_ptr<ProgramCache> program_cache_;
-  std::map<std::string, Program> programs_;
+  std::map<std::string, std::map<std::uint64_t, Program>, std::less<>> programs_;  // by shader and key_of()
   std::int64_t allocated_ = 0, peak_ = 0;
 };
 

@@ -55,8 +55,8 @@ void Dispatcher::bind(const Program& program, std::initializer_list<Binding> bin
   }
 }
 
-void Dispatcher::run(const Program& program, const Work& work, std::initializer_list<Binding> bindings,
-                     std::initializer_list<Uniform> uniforms) {
+void Dispatcher::run(const Program& program, const DispatchSize& work,
+                     std::initializer_list<Binding> bindings, std::initializer_list<Uniform> uniforms) {
   start(program, work, bindings, uniforms);
   wait_for_writes();
 }
@@ -72,8 +72,8 @@ void Dispatcher::wait_for_writes() {
   context_.gl().MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT);
 }
 
-void Dispatcher::start(const Program& program, const Work& work, std::initializer_list<Binding> bindings,
-                       std::initializer_list<Uniform> uniforms) {
+void Dispatcher::start(const Program& program, const DispatchSize& work,
+                       std::initializer_list<Binding> bindings, std::initializer_list<Uniform> uniforms) {
   if (work.arguments == nullptr && work.groups == 0) return;
   const Functions& gl = context_.gl();
   bind(program, bindings, uniforms);

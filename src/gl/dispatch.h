@@ -15,17 +15,19 @@ namespace binosplat::gl {
 
 /// How much to launch. Shaders find their place with group_index() and thread_index() of shared/grid.glsl and
 /// leave when it lies beyond their count: a split launch has some groups too many.
-struct Work {
+struct DispatchSize {
   std::uint64_t groups = 0;           // direct
   const Buffer* arguments = nullptr;  // or indirect: three uints at `offset`, already split
   std::int64_t offset = 0;
 
   /// One invocation for each of `count` things, at `local_size` a group.
-  static Work threads(std::uint64_t count, std::uint32_t local_size) {
+  static DispatchSize threads(std::uint64_t count, std::uint32_t local_size) {
     return {(count + local_size - 1) / local_size};
   }
-  static Work of_groups(std::uint64_t count) { return {count}; }
-  static Work indirect(const Buffer& arguments, std::int64_t offset) { return {0, &arguments, offset}; }
+  static DispatchSize of_groups(std::uint64_t count) { return {count}; }
+  static DispatchSize indirect(const Buffer& arguments, std::int64_t offset) {
+    return {0, &arguments, offset};
+  }
 };
 
 struct Binding {
@@ -61,11 +63,11 @@ class Dispatcher {
 
   /// Runs a program, with a barrier after it so that whatever comes next sees what it wrote.
   /// Throws std::logic_error if a block or uniform of the program is not given.
-  void run(const Program& program, const Work& work, std::initializer_list<Binding> bindings,
+  void run(const Program& program, const DispatchSize& work, std::initializer_list<Binding> bindings,
            std::initializer_list<Uniform> uniforms = {});
 
   /// As run(), without the barrier: what comes next may run at the same time.
-  void start(const Program& program, const Work& work, std::initializer_list<Binding> bindings,
+  void start(const Program& program, const DispatchSize& work, std::initializer_list<Binding> bindings,
              std::initializer_list<Uniform> uniforms = {});
 
   /// Draws all of the framebuffer that is bound, by a fragment shader (KeptDrawing of gl/state.h).

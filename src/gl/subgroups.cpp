@@ -5,6 +5,7 @@
 #include <array>
 #include <optional>
 #include <string_view>
+#include <vector>
 
 #include "base/error.h"
 #include "gl/buffer.h"
@@ -19,7 +20,7 @@ constexpr const char* check_shader = "subgroups_check.comp";
 
 /// A work group of a shader that knows subgroups.
 struct GroupShape {
-  int columns, rows;
+  std::uint32_t columns, rows;
 };
 
 /// Of sorts and scans (pairs.comp's first), and of blend_subgroups.comp and ranges_of_tiles.comp.
@@ -49,11 +50,11 @@ bool has_extension(const Functions& gl, std::string_view wanted) {
   return false;
 }
 
-Defines defines_of(const GroupShape& shape) {
-  Defines defines = {{"COLUMNS", std::to_string(shape.columns)}, {"ROWS", std::to_string(shape.rows)}};
+std::vector<Number> numbers_of(const GroupShape& shape) {
+  std::vector<Number> numbers = {{"COLUMNS", shape.columns, 1024}, {"ROWS", shape.rows, 1024}};
   for (std::size_t k = 0; k < subgroup_faults.size(); ++k)
-    defines.emplace_back(subgroup_faults[k].define, fmt::format("{}u", 1u << k));
-  return defines;
+    numbers.push_back({subgroup_faults[k].define, 1u << k, 1u << subgroup_faults.size()});
+  return numbers;
 }
 
 }  // namespace
@@ -64,7 +65,7 @@ std::string found_in_subgroups(Context& context) {
   Buffer wrong(context, "faults of subgroups");
   wrong.upload(std::vector<std::uint32_t>{0});
   for (const GroupShape& shape : group_shapes)
-    dispatcher.start(context.program(check_shader, defines_of(shape)), Work::of_groups(1),
+    dispatcher.start(context.program(check_shader, numbers_of(shape)), DispatchSize::of_groups(1),
                      {{"Wrong", wrong}});
   dispatcher.wait_for_writes();
   const std::uint32_t found = wrong.read<std::uint32_t>(1).front();
@@ -92,7 +93,7 @@ std::string why_no_subgroups(Context& context) {
     return "its subgroups lack votes, sums, ballots or shuffles";
   std::string asked;
   for (const GroupShape& shape : group_shapes)
-    asked += ShaderSource(check_shader, defines_of(shape), {}).text();
+    asked += ShaderSource(check_shader, defines_of(numbers_of(shape)), {}).text();
   if (const std::optional<std::string> known = context.program_cache().recall(asked)) return *known;
   try {
     std::string found = found_in_subgroups(context);

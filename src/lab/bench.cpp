@@ -342,8 +342,8 @@ void Bench::judge(const BenchSettings& settings, BenchNumbers& point) {
     if (v == 0) point.picture = for_page(composite(drawn.front(), black));
     if (!settings.foveation) {  // whose pixels are of two pictures
       add_work(drawer.frame(), report, views_.size(), work);
-      view.alphas = mean_of(drawer.frame().read_shown(SHOW_ALPHAS));
-      view.alphas_visible = mean_of(drawer.frame().read_shown(SHOW_VISIBLE));
+      view.alphas = mean_of(drawer.frame().read_debug_view(SHOW_ALPHAS));
+      view.alphas_visible = mean_of(drawer.frame().read_debug_view(SHOW_VISIBLE));
     }
     if (views_[v].photo) photographed.push_back(view);
   }

@@ -30,7 +30,7 @@ void BytePictures::keep(const render::Frame& frame, std::span<const shared::View
   std::uint32_t first = 0;
   for (std::size_t v = 0; v < views.size(); ++v) {
     dispatcher_.run(dispatcher_.context().program("byte_pictures.comp"),
-                    gl::Work::threads(pixels_of(views[v]), THREADS),
+                    gl::DispatchSize::threads(pixels_of(views[v]), THREADS),
                     {{"Colours", frame.colours()}, {"Kept", kept}},
                     {{"first_pixel", frame.views().at(v).pixel_offset},
                      {"first_kept", first},
@@ -52,7 +52,7 @@ std::vector<double> BytePictures::errors(const render::Frame& frame, std::span<c
   for (std::size_t v = 0; v < views.size(); ++v) {
     // A launch a view: no work group has pixels of two.
     dispatcher_.run(dispatcher_.context().program("byte_error.comp"),
-                    gl::Work::threads(pixels_of(views[v]), THREADS),
+                    gl::DispatchSize::threads(pixels_of(views[v]), THREADS),
                     {{"Colours", frame.colours()}, {"Kept", kept}, {"Sums", sums_}},
                     {{"first_pixel", frame.views().at(v).pixel_offset},
                      {"first_kept", first},

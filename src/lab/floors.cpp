@@ -25,8 +25,8 @@ double seconds(gl::Context& context, int floor, std::uint32_t count, std::uint32
   for (int run = 0; run < runs; ++run) {
     dispatcher.begin_frame();
     dispatcher.begin_stage("floor");
-    dispatcher.run(context.program("floors.comp", {{"FLOOR", std::to_string(floor)}}),
-                   gl::Work::threads(count, THREADS), {{"From", from}, {"To", to}},
+    dispatcher.run(context.program("floors.comp", gl::Number{"FLOOR", static_cast<std::uint64_t>(floor), 3}),
+                   gl::DispatchSize::threads(count, THREADS), {{"From", from}, {"To", to}},
                    {{"count", count}, {"rounds", rounds}});
     dispatcher.end_frame();
     best = std::min(best, dispatcher.wait_and_time().front().ms);

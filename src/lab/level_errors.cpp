@@ -72,34 +72,34 @@ class LevelDrawer {
 
   /// How much of each square shows the finest level, px, with which draw() compares until the next.
   std::vector<float> draw_finest(const shared::View& view, const Grid& grid) {
-    draw(view, Depth::seen);
+    draw(view, true);
     finest_.reserve(frame_->colours().bytes());
     behind_.reserve(std::int64_t{grid.count} * 16);
-    return sums_of(grid, "1");
+    return sums_of(grid, true);
   }
 
   /// What each square differs by from the finest level, over what looks much like its mean colour.
   std::vector<float> draw(const shared::View& view, const Grid& grid) {
-    draw(view, Depth::none);
-    return sums_of(grid, "0");
+    draw(view, false);
+    return sums_of(grid, false);
   }
 
  private:
-  void draw(const shared::View& view, Depth depth) {
+  void draw(const shared::View& view, bool visibility) {
     if (frame_) {
       frame_->model()->reload();
     } else {
       frame_.emplace(context_, model_);
     }
-    frame_->draw({&view, 1}, {.depth = depth});
+    frame_->draw({&view, 1}, {.depth = Depth::none}, {.visibility_as_depth = visibility});
   }
 
-  std::vector<float> sums_of(const Grid& grid, const char* finest) {
+  std::vector<float> sums_of(const Grid& grid, bool finest) {
     sums_.reserve(std::int64_t{grid.count} * 4);
     dispatcher_.begin_frame();
     dispatcher_.begin_stage("level errors");
-    const gl::Program& program = context_.program("level_errors.comp", {{"FINEST", finest}});
-    dispatcher_.run(program, gl::Work::of_groups(grid.count),
+    const gl::Program& program = context_.program("level_errors.comp", gl::Number{"FINEST", finest, 2});
+    dispatcher_.run(program, gl::DispatchSize::of_groups(grid.count),
                     {{"Colours", frame_->colours()},
                      {"Finest", finest_},
                      {"Behind", behind_},

@@ -18,8 +18,8 @@ namespace binosplat::measure {
 namespace {
 
 using render::FrameBuffers;
+using render::FramePlan;
 using render::FrameSettings;
-using render::FrameShape;
 using render::ModelBuffers;
 using render::OrderGroup;
 using render::Stage;
@@ -45,20 +45,20 @@ shared::Splat to_shared(const reference::Splat& s) {
 }
 
 // What decodes the model for view v.
-reference::Decoding decoding_for(const FrameShape& shape, std::uint32_t v) {
-  const std::uint32_t begin = v - v % shape.views_per_decoding;
-  const std::uint32_t end = std::min(begin + shape.views_per_decoding, shape.asked);
-  return {{shape.views.begin() + begin, shape.views.begin() + end}, shape.settings.anchor_cull};
+reference::Decoding decoding_for(const FramePlan& plan, std::uint32_t v) {
+  const std::uint32_t begin = v - v % plan.views_per_decoding;
+  const std::uint32_t end = std::min(begin + plan.views_per_decoding, plan.asked);
+  return {{plan.views.begin() + begin, plan.views.begin() + end}, plan.settings.anchor_cull};
 }
 
-reference::Settings reference_settings(const FrameShape& shape, std::uint32_t v) {
-  const FrameSettings& s = shape.settings;
+reference::Settings reference_settings(const FramePlan& plan, std::uint32_t v) {
+  const FrameSettings& s = plan.settings;
   return {.tiles = s.tiles,
           .tile_size = s.tile_size,
           .th = s.th,
-          .tolerance = s.tolerance,
-          .decoding = decoding_for(shape, v),
-          .perspective = shape.perspective};
+          .tolerance = plan.tolerance,
+          .decoding = decoding_for(plan, v),
+          .perspective = plan.perspective};
 }
 
 // Into a buffer of Gaussians or splats, in the precision that the shaders expect there.
@@ -94,27 +94,27 @@ void add(const reference::Decoded& decoded, std::size_t place, std::size_t offse
   page.kept[place / offset_count] |= 1u << place % offset_count;
 }
 
-void upload_decoded(const Model& model, const FrameShape& shape, ModelBuffers& model_buffers,
+void upload_decoded(const Model& model, const FramePlan& plan, ModelBuffers& model_buffers,
                     FrameBuffers& buffers) {
   if (!model.scaffold) fail("--reference-until decode: {} is no Scaffold-GS model", model.name);
   std::vector<std::vector<reference::Decoded>> decodings;
-  for (std::uint32_t v = 0; v < shape.view_count(); v += shape.views_per_decoding) {
-    const reference::Decoding decoding = decoding_for(shape, v);
+  for (std::uint32_t v = 0; v < plan.view_count(); v += plan.views_per_decoding) {
+    const reference::Decoding decoding = decoding_for(plan, v);
     decodings.push_back(reference::decode(*model.scaffold, decoding.views, decoding.anchor_cull));
   }
   for (std::size_t p = 0; p < model_buffers.pages.size(); ++p) {
     ModelBuffers::Page& page = model_buffers.pages[p];
     const std::size_t all = decodings.size() * page.count;
     DecodedPage decoded{std::vector<shared::Gaussian>(all), std::vector<glm::vec4>(all),
-                        std::vector<std::uint32_t>(all / shape.offset_count)};
+                        std::vector<std::uint32_t>(all / plan.offset_count)};
     for (std::size_t d = 0; d < decodings.size(); ++d) {
       for (const reference::Decoded& one : decodings[d]) {
         if (one.id < page.first || one.id - page.first >= page.count) continue;
-        add(one, d * page.count + one.id - page.first, shape.offset_count, decoded);
+        add(one, d * page.count + one.id - page.first, plan.offset_count, decoded);
       }
     }
-    upload_in(shape.settings.precision, decoded.gaussians, *page.gaussians);
-    upload_harmonics(shape.settings.precision, decoded.harmonics, *page.harmonics);
+    upload_in(plan.settings.precision, decoded.gaussians, *page.gaussians);
+    upload_harmonics(plan.settings.precision, decoded.harmonics, *page.harmonics);
     buffers.kept[p]->upload(decoded.kept);
   }
 }
@@ -126,12 +126,12 @@ struct ViewResult {
   std::vector<std::uint32_t> pair_counts;
 };
 
-ViewResult reference_view(const Model& model, const FrameShape& shape, std::uint32_t v) {
-  const shared::View& view = shape.views[v];
-  const FrameSettings& settings = shape.settings;
+ViewResult reference_view(const Model& model, const FramePlan& plan, std::uint32_t v) {
+  const shared::View& view = plan.views[v];
+  const FrameSettings& settings = plan.settings;
   ViewResult result;
-  result.splats = reference::project_all(model, view, decoding_for(shape, v), shape.perspective);
-  reference::set_thresholds(result.splats, settings.th, settings.tolerance);
+  result.splats = reference::project_all(model, view, decoding_for(plan, v), plan.perspective);
+  reference::set_thresholds(result.splats, settings.th, plan.tolerance);
   const std::vector<std::uint32_t> order = reference::depth_order(result.splats);
   if (settings.tiles == TILES_ALL) {
     // One list for the whole view, as on the GPU.
@@ -154,10 +154,10 @@ struct Slots {
   std::vector<std::uint32_t> of;  // by Gaussian; only for those in `indices`
 };
 
-Slots make_slots(const FrameShape& shape, OrderGroup group, const std::vector<ViewResult>& results) {
+Slots make_slots(const FramePlan& plan, OrderGroup group, const std::vector<ViewResult>& results) {
   Slots slots;
-  slots.of.resize(shape.gaussian_count);
-  for (std::uint32_t i = 0; i < shape.gaussian_count; ++i) {
+  slots.of.resize(plan.gaussian_count);
+  for (std::uint32_t i = 0; i < plan.gaussian_count; ++i) {
     const auto draws = [&](const ViewResult& r) { return r.pair_counts[i] > 0; };
     if (!std::any_of(results.begin() + group.begin, results.begin() + group.end, draws)) continue;
     slots.of[i] = static_cast<std::uint32_t>(slots.indices.size());
@@ -169,21 +169,20 @@ Slots make_slots(const FrameShape& shape, OrderGroup group, const std::vector<Vi
 using Pair = std::pair<std::uint32_t, std::uint32_t>;  // supertile, splat
 
 // In depth order over the views of each group, as the stage pairs leaves them.
-std::vector<Pair> pairs_in_depth_order(const FrameShape& shape, const std::vector<Slots>& slots,
-                                       const std::vector<ViewResult>& results) {
+std::vector<Pair> pairs_in_depth_order(const FramePlan& plan, const std::vector<Slots>& slots,
+                                       const std::vector<ViewResult>& results, std::uint32_t room) {
   std::vector<std::pair<std::uint64_t, Pair>> ranked;  // (group, rank in its depth order), pair
-  for (std::uint32_t v = 0; v < shape.view_count(); ++v) {
-    const std::uint32_t group = shape.views[v].order_group;
+  for (std::uint32_t v = 0; v < plan.view_count(); ++v) {
+    const std::uint32_t group = plan.views[v].order_group;
     const std::vector<std::uint32_t> order = reference::depth_order(results[v].splats);
-    std::vector<std::uint64_t> rank(shape.gaussian_count);
+    std::vector<std::uint64_t> rank(plan.gaussian_count);
     for (std::size_t r = 0; r < order.size(); ++r) rank[order[r]] = r;
     const reference::TileLists& lists = results[v].lists;
-    const std::uint32_t first = shape.settings.tiles == TILES_ALL ? v : shape.views[v].supertile_offset;
+    const std::uint32_t first = plan.settings.tiles == TILES_ALL ? v : plan.views[v].supertile_offset;
     for (std::uint32_t t = 0; t + 1 < lists.begin.size(); ++t) {
       for (std::uint32_t k = lists.begin[t]; k < lists.begin[t + 1]; ++k) {
         const std::uint32_t i = lists.gaussians[k];
-        ranked.push_back(
-            {std::uint64_t{group} << 32 | rank[i], {first + t, v * shape.slots + slots[group].of[i]}});
+        ranked.push_back({std::uint64_t{group} << 32 | rank[i], {first + t, v * room + slots[group].of[i]}});
       }
     }
   }
@@ -212,18 +211,18 @@ void upload_pairs(const std::vector<Pair>& pairs, std::uint32_t supertile_bits, 
       count, primitives::RadixSort::digit_bits(supertile_bits), groups_max, buffers.pairs.block())});
 }
 
-void upload_projection(const FrameShape& shape, const std::vector<Slots>& slots,
+void upload_projection(const FramePlan& plan, const std::vector<Slots>& slots,
                        const std::vector<ViewResult>& results, FrameBuffers& buffers) {
-  std::vector<shared::Splat> splats(std::size_t{shape.view_count()} * shape.slots);
+  std::vector<shared::Splat> splats(std::size_t{plan.view_count()} * buffers.slots);
   std::vector<std::uint32_t> pair_counts(splats.size());
-  for (std::uint32_t v = 0; v < shape.view_count(); ++v) {
-    const std::vector<std::uint32_t>& indices = slots[shape.views[v].order_group].indices;
+  for (std::uint32_t v = 0; v < plan.view_count(); ++v) {
+    const std::vector<std::uint32_t>& indices = slots[plan.views[v].order_group].indices;
     for (std::size_t slot = 0; slot < indices.size(); ++slot) {
-      splats[std::size_t{v} * shape.slots + slot] = to_shared(results[v].splats[indices[slot]]);
-      pair_counts[slot * shape.view_count() + v] = results[v].pair_counts[indices[slot]];
+      splats[std::size_t{v} * buffers.slots + slot] = to_shared(results[v].splats[indices[slot]]);
+      pair_counts[slot * plan.view_count() + v] = results[v].pair_counts[indices[slot]];
     }
   }
-  upload_in(shape.settings.precision, splats, buffers.splats);
+  upload_in(plan.settings.precision, splats, buffers.splats);
   buffers.coverages.upload(pair_counts);
 }
 
@@ -252,8 +251,8 @@ void upload_order(const OrderGroup& group, const Slots& slots, const std::vector
       count, primitives::RadixSort::digit_bits(group.key_bits), groups_max, buffers.order.block())});
 }
 
-void upload_ranges(const FrameShape& shape, const std::vector<Pair>& sorted, FrameBuffers& buffers) {
-  std::vector<std::uint32_t> ranges(2 * std::size_t{std::max(shape.supertile_count, shape.view_count())});
+void upload_ranges(const FramePlan& plan, const std::vector<Pair>& sorted, FrameBuffers& buffers) {
+  std::vector<std::uint32_t> ranges(2 * std::size_t{std::max(plan.supertile_count, plan.view_count())});
   for (std::uint32_t k = 0; k < sorted.size(); ++k) {
     const std::uint32_t supertile = sorted[k].first;
     if (k == 0 || sorted[k - 1].first != supertile) ranges[2 * supertile] = k;
@@ -262,38 +261,38 @@ void upload_ranges(const FrameShape& shape, const std::vector<Pair>& sorted, Fra
   buffers.ranges.upload(ranges);
 }
 
-std::vector<Picture> fill_until(Stage until, const Model& model, const FrameShape& shape,
+std::vector<Picture> fill_until(Stage until, const Model& model, const FramePlan& plan,
                                 ModelBuffers& model_buffers, FrameBuffers& buffers) {
   const std::uint32_t groups_max = buffers.context().limits().groups;
   std::vector<Picture> pictures;
   if (until == Stage::decode) {
-    upload_decoded(model, shape, model_buffers, buffers);
+    upload_decoded(model, plan, model_buffers, buffers);
     return pictures;
   }
   if (until == Stage::blend) {
-    for (std::uint32_t v = 0; v < shape.view_count(); ++v)
-      pictures.push_back(reference::render(model, shape.views[v], reference_settings(shape, v)));
+    for (std::uint32_t v = 0; v < plan.view_count(); ++v)
+      pictures.push_back(reference::render(model, plan.views[v], reference_settings(plan, v)));
     return pictures;
   }
-  if (until < Stage::pairs && shape.groups.size() > 1) {
+  if (until < Stage::pairs && plan.groups.size() > 1) {
     fail("--reference-until {}: only for views that share one depth order (no --cant)", name_of(until));
   }
   std::vector<ViewResult> results;
-  for (std::uint32_t v = 0; v < shape.view_count(); ++v) results.push_back(reference_view(model, shape, v));
+  for (std::uint32_t v = 0; v < plan.view_count(); ++v) results.push_back(reference_view(model, plan, v));
   std::vector<Slots> slots;
-  for (const OrderGroup& group : shape.groups) slots.push_back(make_slots(shape, group, results));
-  upload_projection(shape, slots, results, buffers);
+  for (const OrderGroup& group : plan.groups) slots.push_back(make_slots(plan, group, results));
+  upload_projection(plan, slots, results, buffers);
   if (until < Stage::pairs) {
-    upload_order(shape.groups.front(), slots.front(), results, until == Stage::order, groups_max, buffers);
+    upload_order(plan.groups.front(), slots.front(), results, until == Stage::order, groups_max, buffers);
     return pictures;
   }
-  std::vector<Pair> pairs = pairs_in_depth_order(shape, slots, results);
+  std::vector<Pair> pairs = pairs_in_depth_order(plan, slots, results, buffers.slots);
   if (until >= Stage::tile_sort) {
     std::stable_sort(pairs.begin(), pairs.end(),
                      [](const Pair& a, const Pair& b) { return a.first < b.first; });
   }
-  upload_pairs(pairs, shape.supertile_bits(), groups_max, buffers);
-  if (until == Stage::ranges) upload_ranges(shape, pairs, buffers);
+  upload_pairs(pairs, plan.supertile_bits(), groups_max, buffers);
+  if (until == Stage::ranges) upload_ranges(plan, pairs, buffers);
   buffers.counters.upload(std::vector{shared::Counters{.pairs = static_cast<std::uint32_t>(pairs.size())}});
   return pictures;
 }
@@ -302,8 +301,8 @@ std::vector<Picture> fill_until(Stage until, const Model& model, const FrameShap
 
 render::StandIn reference_until(Stage until) {
   return {until,
-          [until](const Model& model, const FrameShape& shape, ModelBuffers& model_buffers,
-                  FrameBuffers& buffers) { return fill_until(until, model, shape, model_buffers, buffers); }};
+          [until](const Model& model, const FramePlan& plan, ModelBuffers& model_buffers,
+                  FrameBuffers& buffers) { return fill_until(until, model, plan, model_buffers, buffers); }};
 }
 
 }  // namespace binosplat::measure

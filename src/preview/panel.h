@@ -42,7 +42,7 @@ struct Panel {
   std::string file_;  // that is typed, to be opened
 };
 
-/// What the colours of a map mean (stereo/show.h), at the lower right of a picture of that width in px.
+/// What the colours of a map mean (stereo/debug_view.h), at the lower right of a picture of that width in px.
 void draw_legend(int show, double most, float width);
 
 /// Fonts and widgets for a display of that scale, in a window whose framebuffer has `pixels` px for each of

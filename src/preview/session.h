@@ -14,9 +14,10 @@
 #include "preview/navigator.h"
 #include "render/frame.h"
 #include "scene/model.h"
+#include "stereo/debug_view.h"
 #include "stereo/present.h"
 #include "stereo/rig.h"
-#include "stereo/show.h"
+#include "stereo/debug_view.h"
 #include "stream/stream.h"
 
 namespace binosplat::preview {
@@ -126,7 +127,7 @@ class Session {
 
   /// Of the last frames drawn, newest last.
   const std::deque<render::FrameReport>& reports() const { return reports_; }
-  /// Of a map: the number of the brightest colour (stereo/show.h).
+  /// Of a map: the number of the brightest colour (stereo/debug_view.h).
   std::optional<double> most_shown() const { return shown_.most; }
   std::size_t frames_drawn() const { return frames_drawn_; }
   const std::string& trouble() const { return trouble_; }
@@ -154,8 +155,8 @@ class Session {
   std::filesystem::path folder_;
   render::Frame frame_;
   stereo::Presenter presenter_;
-  stereo::Show show_;
-  stereo::Shown shown_;       // in place of the frame's own pictures; none: those
+  stereo::DebugView show_;
+  stereo::DebugPictures shown_;       // in place of the frame's own pictures; none: those
   gl::Buffer shown_colours_;  // as the frame's colours
   glm::ivec2 framebuffer_{0};
   bool moving_ = false;

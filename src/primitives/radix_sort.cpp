@@ -1,6 +1,7 @@
 #include "primitives/radix_sort.h"
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <string>
 
@@ -45,11 +46,10 @@ void RadixSort::run(gl::Dispatcher& dispatcher, const gl::Buffer& arguments, Pai
                     std::uint32_t bits) {
   gl::Context& context = dispatcher.context();
   if (context.limits().subgroups_of_32) return run_looking_back(dispatcher, arguments, pairs, bits);
-  gl::Defines defines = pairs.block_define();
-  defines.emplace_back("DIGIT_BITS", std::to_string(digit_bits(bits)));
-  const gl::Program& count = context.program("primitives/sort_count.comp", defines);
-  const gl::Program& scatter = context.program("primitives/sort_scatter.comp", defines);
-  const auto blocks = gl::Work::indirect(arguments, offsetof(shared::DispatchArguments, sort_x));
+  const std::array variant = {pairs.block_number(), gl::Number{"DIGIT_BITS", digit_bits(bits), 16}};
+  const gl::Program& count = context.program("primitives/sort_count.comp", variant);
+  const gl::Program& scatter = context.program("primitives/sort_scatter.comp", variant);
+  const auto blocks = gl::DispatchSize::indirect(arguments, offsetof(shared::DispatchArguments, sort_x));
   for (std::uint32_t shift = 0; shift < bits; shift += digit_bits(bits)) {
     dispatcher.run(count, blocks,
                    {{"Arguments", arguments}, {"Keys", pairs.keys()}, {"Histogram", histogram_}},
@@ -71,13 +71,13 @@ void RadixSort::run_looking_back(gl::Dispatcher& dispatcher, const gl::Buffer& a
                                  std::uint32_t bits) {
   if (bits == 0) return;
   gl::Context& context = dispatcher.context();
-  gl::Defines defines = pairs.block_define();
-  defines.emplace_back("DIGIT_BITS", std::to_string(digit_bits(bits)));
-  const gl::Program& scatter = context.program("primitives/sort_scatter_subgroups.comp", defines);
-  defines.emplace_back("PASSES", std::to_string(passes(bits)));
-  const auto blocks = gl::Work::indirect(arguments, offsetof(shared::DispatchArguments, sort_x));
+  const std::array variant = {pairs.block_number(), gl::Number{"DIGIT_BITS", digit_bits(bits), 16},
+                              gl::Number{"PASSES", passes(bits), SORT_PASSES_MAX + 1}};
+  const gl::Program& scatter = context.program("primitives/sort_scatter_subgroups.comp", variant);
+  const auto blocks = gl::DispatchSize::indirect(arguments, offsetof(shared::DispatchArguments, sort_x));
   dispatcher.run(
-      context.program("primitives/sort_digits.comp", defines), gl::Work::of_groups(SORT_DIGITS_GROUPS),
+      context.program("primitives/sort_digits.comp", variant),
+      gl::DispatchSize::of_groups(SORT_DIGITS_GROUPS),
       {{"Arguments", arguments}, {"Keys", pairs.keys()}, {"SortDigits", digits_}, {"Reached", histogram_}},
       {{"half_now", half_now_}});
   for (std::uint32_t pass = 0; pass < passes(bits); ++pass) {

@@ -16,9 +16,9 @@ class PairBuffers {
   void reserve(std::int64_t count);
   std::int64_t capacity() const { return keys_.bytes() / 4; }
 
-  /// RadixSort::block(capacity()); programs have it as the define SORT_BLOCK.
+  /// RadixSort::block(capacity()); programs have it as SORT_BLOCK.
   std::uint32_t block() const;
-  gl::Defines block_define() const { return {{"SORT_BLOCK", std::to_string(block())}}; }
+  gl::Number block_number() const { return {"SORT_BLOCK", block(), 4096}; }
 
   /// Where the pairs are now.
   gl::Buffer& keys() { return flipped_ ? keys_other_ : keys_; }

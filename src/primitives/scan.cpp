@@ -15,9 +15,9 @@ void Scan::reserve(std::int64_t count) {
 void Scan::run(gl::Dispatcher& dispatcher, const gl::Buffer& arguments, std::uint32_t which,
                const gl::Buffer& values) {
   gl::Context& context = dispatcher.context();
-  const auto blocks =
-      gl::Work::indirect(arguments, static_cast<std::int64_t>(which * sizeof(shared::DispatchArguments) +
-                                                              offsetof(shared::DispatchArguments, scan_x)));
+  const auto blocks = gl::DispatchSize::indirect(
+      arguments, static_cast<std::int64_t>(which * sizeof(shared::DispatchArguments) +
+                                           offsetof(shared::DispatchArguments, scan_x)));
   dispatcher.run(context.program("primitives/scan_reduce.comp"), blocks,
                  {{"Arguments", arguments}, {"Values", values}, {"BlockSums", block_sums_}},
                  {{"which", which}});

@@ -133,7 +133,7 @@ py::dict dict_of(const render::FrameReport& report) {
   using namespace py::literals;
   return py::dict("total_ms"_a = report.total_ms, "stages_ms"_a = stages, "visible"_a = report.visible,
                   "pairs"_a = report.pairs, "tolerance"_a = report.tolerance, "quality"_a = report.quality,
-                  "attempts"_a = report.attempts, "remembered"_a = report.remembered,
+                  "attempts"_a = report.attempts, "remembered"_a = report.used_measured,
                   "gpu_bytes"_a = report.gpu_bytes);
 }
 

@@ -16,12 +16,12 @@ void put(const PixelSum& sum, int x, int y, Picture& picture) {
   picture.z_sum[pixel] = static_cast<float>(sum.z_sum);
 }
 
-/// Blends a block of a tile, pixels `first` up to but not including `end`, with a loss: once it is dark, what
-/// is behind is taken to look as what was seen.
+/// Blends a block of a tile, pixels `first` up to but not including `end`, approximately: once it is dark,
+/// what is behind is taken to look as what was seen.
 void blend_block(const std::vector<Splat>& splats, std::span<const std::uint32_t> list,
                  const TileLists& lists, const glm::ivec2& first, const glm::ivec2& end, Picture& picture) {
-  const Loss& loss = lists.loss;
-  const std::size_t step = list.size() > LONG_LIST ? LOSSY_STEP_LONG : LOSSY_STEP_SHORT;
+  const Approximation& approximation = lists.approximation;
+  const std::size_t step = list.size() > LONG_LIST ? APPROXIMATE_STEP_LONG : APPROXIMATE_STEP_SHORT;
   struct Pixel {
     glm::ivec2 at;
     PixelSum sum;
@@ -34,16 +34,17 @@ void blend_block(const std::vector<Splat>& splats, std::span<const std::uint32_t
   for (std::size_t from = 0; from < list.size(); from += step) {
     std::vector<std::uint32_t> some;
     for (const std::uint32_t i : list.subspan(from, std::min(step, list.size() - from))) {
-      if (!loss.by_blocks || reaches_block(splats[i], first.x, first.y, static_cast<int>(lists.tile_size)))
+      if (!approximation.by_blocks ||
+          reaches_block(splats[i], first.x, first.y, static_cast<int>(lists.tile_size)))
         some.push_back(i);
     }
     bool is_dark = true;
     for (Pixel& p : pixels) {
       const auto ignore = [](auto&&...) {};
       p.ended = p.ended || blend_on(p.sum, splats, some, p.at, {}, ignore);
-      is_dark = is_dark && (p.ended || p.sum.transmittance <= loss.last_light);
+      is_dark = is_dark && (p.ended || p.sum.transmittance <= approximation.dark_transmittance);
     }
-    if (!is_dark || !(loss.last_light > 0.0) || from + step >= list.size()) continue;
+    if (!is_dark || !(approximation.dark_transmittance > 0.0) || from + step >= list.size()) continue;
     for (Pixel& p : pixels) {
       if (p.ended) continue;
       const double cover = 1.0 - p.sum.transmittance;
@@ -54,17 +55,17 @@ void blend_block(const std::vector<Splat>& splats, std::span<const std::uint32_t
   for (const Pixel& p : pixels) put(p.sum, p.at.x, p.at.y, picture);
 }
 
-void blend_tile_with_loss(const std::vector<Splat>& splats, const TileLists& lists, std::uint32_t tx,
-                          std::uint32_t ty, Picture& picture) {
+void blend_tile_approximately(const std::vector<Splat>& splats, const TileLists& lists, std::uint32_t tx,
+                              std::uint32_t ty, Picture& picture) {
   const std::span<const std::uint32_t> list = lists.tile(tx, ty);
-  const int rows = list.size() > LONG_LIST ? LOSSY_BLOCK / 2 : LOSSY_BLOCK;
+  const int rows = list.size() > LONG_LIST ? APPROXIMATE_BLOCK / 2 : APPROXIMATE_BLOCK;
   const int size = static_cast<int>(lists.tile_size);
   const glm::ivec2 tile = glm::ivec2(tx, ty) * size;
   const glm::ivec2 tile_end = glm::min(tile + size, glm::ivec2(picture.width, picture.height));
   for (int y = tile.y; y < tile_end.y; y += rows) {
-    for (int x = tile.x; x < tile_end.x; x += LOSSY_BLOCK)
-      blend_block(splats, list, lists, {x, y}, glm::min(glm::ivec2(x + LOSSY_BLOCK, y + rows), tile_end),
-                  picture);
+    for (int x = tile.x; x < tile_end.x; x += APPROXIMATE_BLOCK)
+      blend_block(splats, list, lists, {x, y},
+                  glm::min(glm::ivec2(x + APPROXIMATE_BLOCK, y + rows), tile_end), picture);
   }
 }
 
@@ -97,15 +98,15 @@ BlendCounts blend_tile(const std::vector<Splat>& splats, const TileLists& lists,
 
 Picture blend(const std::vector<Splat>& splats, const TileLists& lists, const shared::View& view,
               Faults faults, BlendCounts* counts) {
-  if (lists.loss.any() && (faults.stop_late || counts != nullptr))
-    fail("faults and counts are of blends without a loss");
+  if (lists.approximation.any() && (faults.stop_late || counts != nullptr))
+    fail("faults and counts are of blends that are exact");
   Picture picture(static_cast<int>(view.width), static_cast<int>(view.height));
   std::vector<BlendCounts> of_tiles(lists.begin.size() - 1);
   parallel_for(of_tiles.size(), [&](std::size_t t) {
     const auto tx = static_cast<std::uint32_t>(t % lists.tiles_x),
                ty = static_cast<std::uint32_t>(t / lists.tiles_x);
-    if (lists.loss.any())
-      blend_tile_with_loss(splats, lists, tx, ty, picture);
+    if (lists.approximation.any())
+      blend_tile_approximately(splats, lists, tx, ty, picture);
     else
       of_tiles[t] = blend_tile(splats, lists, tx, ty, faults, picture);
   });

@@ -24,7 +24,7 @@ struct BlendCounts {
 };
 
 /// The picture of a view, computed in float64 and rounded to float once, at the end. `counts`, where given,
-/// is set. Faults and counts are of blends without a loss.
+/// is set. Faults and counts are of blends that are exact.
 Picture blend(const std::vector<Splat>& splats, const TileLists& lists, const shared::View& view,
               Faults faults = {}, BlendCounts* counts = nullptr);
 

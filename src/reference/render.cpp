@@ -8,7 +8,7 @@ Picture render(const Model& model, const shared::View& view, const Settings& set
   set_thresholds(splats, settings.th, settings.tolerance, settings.bounds);
   const std::vector<std::uint32_t> order = depth_order(splats);
   TileLists lists = make_lists(splats, order, view, settings.tiles, settings.tile_size);
-  lists.loss = loss_of(settings.tiles, settings.th, settings.tolerance);
+  lists.approximation = approximation_of(settings.tiles, settings.th, settings.tolerance);
   return blend(splats, lists, view);
 }
 

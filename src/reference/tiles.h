@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "reference/loss.h"
+#include "reference/approximate.h"
 #include "reference/project.h"
 #include "shared/axes.h"
 #include "shared/limits.h"
@@ -30,7 +30,7 @@ struct TileLists {
   std::vector<std::uint32_t>
       begin;  // tiles + 1: tile t owns gaussians[begin[t]] up to gaussians[begin[t + 1]]
   std::vector<std::uint32_t> gaussians;  // indices into the model
-  Loss loss;                             // with which they are blended
+  Approximation approximation;           // with which they are blended
 
   std::size_t pairs() const { return gaussians.size(); }
   std::span<const std::uint32_t> tile(std::uint32_t tx, std::uint32_t ty) const;

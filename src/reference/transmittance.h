@@ -26,8 +26,8 @@ std::vector<double> measure_contributions(const std::vector<Splat>& splats, cons
 std::vector<double> measure_weights(const std::vector<Splat>& splats, const TileLists& lists,
                                     const shared::View& view);
 
-/// For each Gaussian alpha T^2, likewise, while T is SEEN_LEAST at least: how much an error of it would be
-/// seen.
+/// For each Gaussian alpha T^2, likewise, while T is VISIBILITY_LEAST at least: how much an error of it would
+/// be seen.
 std::vector<double> measure_seen(const std::vector<Splat>& splats, const TileLists& lists,
                                  const shared::View& view);
 

@@ -1,112 +1,81 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <bit>
 #include <cstddef>
+#include <stdexcept>
 
 #include "base/error.h"
 #include "render/stages.h"
+#include "render/variants.h"
 
 namespace binosplat::render {
 
 namespace {
 
-struct Variant {
-  bool records = false;
-  int sums = SUMS_NONE;
-  int show = SHOW_PICTURE;
-
-  bool draws() const { return sums == SUMS_NONE && show == SHOW_PICTURE; }
+// What a walk through the lists is for, beside the pictures or in their place.
+struct BlendTask {
+  int measure = MEASURE_NONE;
+  int debug_view = SHOW_PICTURE;
+  double tiles_a_splat = 0.0;  // of the last frame; 0: not known
+  float scale = 0.0f;          // of the transposed blend
 };
 
-// LISTS of blending.glsl.
-enum class Lists { of_short, of_long };
+constexpr double large_tiles = 8.0;  // that a splat touches, of most splats, for short lists
 
-// Of most splats, for short lists.
-enum class Size { small, large };
-constexpr double large_tiles = 8.0;  // that a splat touches
-
-// Who measures or sums up has the tile's splats before all its pixels, but for what is seen, for which frames
-// wait; what tests nothing shows what tests lose; and other sizes of tiles are for comparing. A software
-// renderer draws some invocations by one of its own, and its loads take the time.
-std::string name_of_program(const gl::Context& context, const FrameShape& shape, const Variant& variant) {
-  const bool plain = variant.draws() ? !variant.records : variant.sums == SUMS_SEEN;
-  const bool usual = shape.settings.tiles != TILES_ALL && shape.settings.tile_size == TILE_SIZE_DEFAULT;
-  if (!plain || !usual) return "blend.comp";
-  if (context.limits().subgroups_of_32) return "blend_subgroups.comp";
-  return context.software() ? "blend_blocks.comp" : "blend.comp";
+// What tests nothing shows what tests lose, by one list for a whole view. A software renderer draws some
+// invocations by one of its own, and its loads take the time.
+BlendProgram program_for(const gl::Context& context, const FramePlan& plan, const BlendVariant& v) {
+  const bool is_plain = v.draws() ? v.measure == MEASURE_NONE : v.measure == MEASURE_VISIBILITY;
+  if (!is_plain || plan.settings.tiles == TILES_ALL || v.tile_size != TILE_SIZE_DEFAULT)
+    return BlendProgram::general;
+  if (context.limits().subgroups_of_32) return BlendProgram::subgroups;
+  return context.software() ? BlendProgram::software : BlendProgram::general;
 }
 
-int depth_of(const FrameShape& shape) {
-  if (!shape.keeps_depth()) return DEPTH_NONE;
-  if (shape.settings.depth == Depth::mean) return DEPTH_MEAN;
-  if (shape.settings.depth == Depth::seen) return DEPTH_SEEN;
-  return !shape.canvases.empty() && shape.depth_rows == 2 ? DEPTH_MEDIAN_OF_TWO_ROWS : DEPTH_MEDIAN;
-}
-
-// Pixels that an invocation draws, one below the other, and splats whose alphas it finds at once.
-struct BlendColumns {
-  int height, ahead;
-};
-
-// Found by trying (README.md). With a loss blend_blocks.comp has blocks of so many rows (docs/method.md 5.2);
-// without, longer columns anywhere else would cost llvmpipe more of the 65,535 rounds that it grants all
-// loops. What blend.comp has at once divides BLEND_UNROLL.
-BlendColumns columns_of_program(const std::string& program, const FrameShape& shape, int depth, bool is_long,
-                                Size size) {
-  if (program == "blend_blocks.comp") return {is_long && shape.is_lossy() ? 4 : 8, 2};
-  if (is_long) return {1, 8};
-  if (program != "blend_subgroups.comp") return {2, 4};
-  if (shape.perspective.projection == PROJECTION_TANGENT) return {2, 3};
-  return {size == Size::large && depth == DEPTH_NONE && !shape.is_lossy() ? 4 : 2, 4};
-}
-
-// Without a loss the tile test is no part of these programs: the same lists give the same bits; nor does a
-// pixel's colour depend on the tiles' size. With or without, it does not on how many an invocation draws.
-const gl::Program& program(gl::Context& context, const FrameShape& shape, const Variant& variant, Lists lists,
-                           Size size) {
-  const bool is_long = lists == Lists::of_long;
-  const std::string name = name_of_program(context, shape, variant);
-  const int depth = variant.draws() ? depth_of(shape) : DEPTH_NONE;
-  const BlendColumns columns = columns_of_program(name, shape, depth, is_long, size);
-  const bool on_canvases = variant.draws() && !shape.canvases.empty();
-  gl::Defines defines = {{"TILE_SIZE", std::to_string(shape.settings.tile_size)},
-                         {"SUPERTILE_SIDE", std::to_string(shape.supertile_side)},
-                         {"PROBED", shape.probe ? "1" : "0"},
-                         {"PARTS", shape.draws_parts() ? "1" : "0"},
-                         {"LISTS", std::to_string(static_cast<int>(lists))},
-                         {"COLUMN", std::to_string(columns.height)},
-                         {"AHEAD", std::to_string(columns.ahead)},
-                         {"HALF", shape.settings.precision == PRECISION_HALF ? "1" : "0"},
-                         {"RECORDS", variant.records ? "1" : "0"},
-                         {"SUMS", std::to_string(variant.sums)},
-                         {"SHOW", std::to_string(variant.show)},
-                         {"DEPTH", std::to_string(depth)},
-                         {"LOSSY", shape.is_lossy() ? "1" : "0"},
-                         {"CANVASES", std::to_string(on_canvases ? shape.canvases.size() : 0)}};
-  add_projection(defines, shape.perspective.projection);
-  return context.program(name, defines);
-}
-
-void run(gl::Dispatcher& dispatcher, const FrameShape& shape, FrameBuffers& buffers, const Variant& variant,
-         const gl::Buffer& measured, float scale = 0.0f) {
-  gl::Context& context = dispatcher.context();
-  if (variant.draws()) {
-    for (std::size_t k = 0; k < shape.canvases.size(); ++k) {
-      const Canvas& to = shape.canvases[k];
-      context.gl().BindImageTexture(static_cast<GLuint>(k), to.texture, to.level, GL_FALSE, to.layer,
-                                    GL_WRITE_ONLY, to.format);
-    }
+// The exact blend's programs know no tile test: the same lists give the same bits; nor does a pixel's colour
+// depend on the tiles' size. Exact or not, it does not on how many an invocation draws.
+const gl::Program& program(gl::Context& context, const FramePlan& plan, const BlendTask& task,
+                           bool long_lists, bool large_splats) {
+  BlendVariant v{.tile_size = plan.settings.tile_size,
+                 .supertile_side = plan.supertile_side,
+                 .probed = plan.probe.has_value(),
+                 .regions = plan.draws_regions(),
+                 .long_lists = long_lists,
+                 .half = plan.settings.precision == PRECISION_HALF,
+                 .measure = task.measure,
+                 .debug_view = task.debug_view,
+                 .approximate = plan.is_approximate(),
+                 .projection = plan.perspective.projection,
+                 .large_splats = large_splats};
+  if (v.draws()) {
+    v.depth = plan.depth();
+    v.canvases = static_cast<int>(plan.canvases.size());
   }
-  const Size size = shape.tiles_a_splat > large_tiles ? Size::large : Size::small;
-  if (shape.tiles_a_splat == 0.0)
-    program(context, shape, variant, Lists::of_short, Size::large);  // soon, maybe
-  const auto draw = [&](Lists lists, const gl::Work& work) {
-    dispatcher.start(program(context, shape, variant, lists, size), work,
+  v.program = program_for(context, plan, v);
+  if (!v.is_legal()) v.large_splats = false;
+  if (!v.is_legal()) throw std::logic_error("a blend that no frame has: render/variants.cpp");
+  return context.program(v.shader(), v);
+}
+
+void run(gl::Dispatcher& dispatcher, const FramePlan& plan, FrameBuffers& buffers, const BlendTask& task,
+         const gl::Buffer& measured) {
+  gl::Context& context = dispatcher.context();
+  const bool on_canvases =
+      task.measure <= MEASURE_TRANSMITTANCE && task.debug_view == SHOW_PICTURE && !plan.canvases.empty();
+  for (std::size_t k = 0; on_canvases && k < plan.canvases.size(); ++k) {
+    const Canvas& to = plan.canvases[k];
+    context.gl().BindImageTexture(static_cast<GLuint>(k), to.texture, to.level, GL_FALSE, to.layer,
+                                  GL_WRITE_ONLY, to.format);
+  }
+  if (task.tiles_a_splat == 0.0) program(context, plan, task, false, true);  // soon, maybe
+  const auto draw = [&](bool long_lists, const gl::DispatchSize& size) {
+    dispatcher.start(program(context, plan, task, long_lists, task.tiles_a_splat > large_tiles), size,
                      {{"Frame", buffers.parameters},
                       {"Views", buffers.views},
-                      {"PartRows", buffers.part_rows},
-                      {"Ranges", buffers.ranges_of_tiles(shape)},
-                      {"Values", buffers.values_of_tiles(shape)},
+                      {"RegionRows", buffers.region_rows},
+                      {"Ranges", buffers.ranges_of_tiles(plan)},
+                      {"Values", buffers.values_of_tiles(plan)},
                       {"Splats", buffers.splats},
                       {"Colours", buffers.colours},
                       {"Canvases", buffers.canvases},
@@ -114,69 +83,93 @@ void run(gl::Dispatcher& dispatcher, const FrameShape& shape, FrameBuffers& buff
                       {"FrameCounters", buffers.counters},
                       {"LongLists", buffers.long_lists},
                       {"Measured", measured},
-                      {"Shown", buffers.shown}},
-                     {{"scale", std::bit_cast<std::uint32_t>(scale)}});
+                      {"DebugView", buffers.debug_values}},
+                     {{"scale", std::bit_cast<std::uint32_t>(task.scale)}});
   };
-  draw(Lists::of_long, gl::Work::indirect(buffers.counters, offsetof(shared::Counters, long_x)));
-  draw(Lists::of_short, gl::Work::of_groups(shape.tile_count()));
+  draw(true, gl::DispatchSize::indirect(buffers.counters, offsetof(shared::Counters, long_x)));
+  draw(false, gl::DispatchSize::of_groups(plan.tile_count()));
   dispatcher.wait_for_writes();
-  if (variant.draws() && !shape.canvases.empty())
-    context.gl().MemoryBarrier(GL_ALL_BARRIER_BITS);  // however the pictures are read next
+  if (on_canvases) context.gl().MemoryBarrier(GL_ALL_BARRIER_BITS);  // however the pictures are read next
 }
 
 }  // namespace
 
-void find_long_lists(gl::Dispatcher& dispatcher, const FrameShape& shape, FrameBuffers& buffers) {
-  if (shape.settings.tiles == TILES_ALL) return;
+void find_long_lists(gl::Dispatcher& dispatcher, const FramePlan& plan, FrameBuffers& buffers) {
+  if (plan.settings.tiles == TILES_ALL) return;
   dispatcher.run(dispatcher.context().program("blend_long_lists.comp"),
-                 gl::Work::threads(shape.tile_count(), THREADS),
+                 gl::DispatchSize::threads(plan.tile_count(), THREADS),
                  {{"Frame", buffers.parameters},
-                  {"Ranges", buffers.ranges_of_tiles(shape)},
+                  {"Ranges", buffers.ranges_of_tiles(plan)},
                   {"LongLists", buffers.long_lists},
                   {"FrameCounters", buffers.counters}});
 }
 
-void blend(gl::Dispatcher& dispatcher, const FrameShape& shape, FrameBuffers& buffers) {
-  run(dispatcher, shape, buffers, {.records = shape.records}, buffers.measured);
+void blend(gl::Dispatcher& dispatcher, const FramePlan& plan, bool measures, double tiles_a_splat,
+           FrameBuffers& buffers) {
+  run(dispatcher, plan, buffers,
+      {.measure = measures ? MEASURE_TRANSMITTANCE : MEASURE_NONE, .tiles_a_splat = tiles_a_splat},
+      buffers.measured);
 }
 
-void show(gl::Dispatcher& dispatcher, const FrameShape& shape, FrameBuffers& buffers, int what) {
-  buffers.shown.reserve(shape.pixel_count * 4);
-  if (what == SHOW_LIGHT) {
-    buffers.shown_light.reserve_zeros(std::int64_t{shape.slots} * shape.view_count() * 4);
-    run(dispatcher, shape, buffers, {.records = true, .show = SHOW_VISIBLE},
-        buffers.shown_light);  // measures
+void blend_debug_view(gl::Dispatcher& dispatcher, const FramePlan& plan, int what, FrameBuffers& buffers) {
+  buffers.debug_values.reserve(plan.pixel_count * 4);
+  if (what == SHOW_LIGHT) {  // which is measured first
+    buffers.debug_transmittance.reserve_zeros(std::int64_t{buffers.slots} * plan.view_count() * 4);
+    run(dispatcher, plan, buffers, {.measure = MEASURE_TRANSMITTANCE, .debug_view = SHOW_VISIBLE},
+        buffers.debug_transmittance);
   }
-  run(dispatcher, shape, buffers, {.show = what}, buffers.shown_light);
+  run(dispatcher, plan, buffers, {.debug_view = what}, buffers.debug_transmittance);
 }
 
 void recolour(gl::Dispatcher& dispatcher, std::uint32_t slots, const gl::Buffer& colours,
               FrameBuffers& buffers) {
-  dispatcher.run(dispatcher.context().program("recolour.comp"), gl::Work::threads(slots, THREADS),
+  dispatcher.run(dispatcher.context().program("recolour.comp"), gl::DispatchSize::threads(slots, THREADS),
                  {{"Colours", colours}, {"Splats", buffers.splats}}, {{"slot_count", slots}});
 }
 
-void blend_transposed(gl::Dispatcher& dispatcher, const FrameShape& shape, FrameBuffers& buffers, float scale,
+void blend_transposed(gl::Dispatcher& dispatcher, const FramePlan& plan, FrameBuffers& buffers, float scale,
                       const gl::Buffer& sums) {
-  run(dispatcher, shape, buffers, {.sums = SUMS_TRANSPOSED}, sums, scale);
+  run(dispatcher, plan, buffers, {.measure = MEASURE_TRANSPOSED, .scale = scale}, sums);
 }
 
-void blend_changes(gl::Dispatcher& dispatcher, const FrameShape& shape, FrameBuffers& buffers,
+void blend_changes(gl::Dispatcher& dispatcher, const FramePlan& plan, FrameBuffers& buffers,
                    const gl::Buffer& sums) {
-  run(dispatcher, shape, buffers, {.sums = SUMS_CHANGES}, sums);
+  run(dispatcher, plan, buffers, {.measure = MEASURE_CHANGES}, sums);
 }
 
-void blend_seen(gl::Dispatcher& dispatcher, const FrameShape& shape, FrameBuffers& buffers,
-                const gl::Buffer& sums) {
-  run(dispatcher, shape, buffers, {.sums = SUMS_SEEN}, sums);
+void blend_visibility(gl::Dispatcher& dispatcher, const FramePlan& plan, FrameBuffers& buffers,
+                      const gl::Buffer& sums) {
+  run(dispatcher, plan, buffers, {.measure = MEASURE_VISIBILITY}, sums);
 }
 
-void refuse_cut(const gl::Context& context, const shared::Counters& counters) {
-  if (counters.loop_cut == 0) return;
+void refuse_truncated(const gl::Context& context, const shared::Counters& counters) {
+  if (counters.truncated_lists == 0) return;
   throw Error(ExitCode::out_of_memory,
               fmt::format("{} ended a tile's list early: too many Gaussians in one tile for this driver. "
                           "Use smaller tiles (--tile, where a picture is drawn) or a smaller model.",
                           context.renderer()));
+}
+
+void keep_measured(gl::Dispatcher& dispatcher, const FramePlan& plan, bool measures, FrameBuffers& buffers) {
+  if (!measures && !plan.probe) return;
+  const gl::Program& program =
+      dispatcher.context().program("blend_measured.comp", gl::Number{"MEASURES", measures, 2});
+  for (std::size_t group = 0; group < plan.groups.size(); ++group) {
+    const DrawnBuffers& drawn = *buffers.drawn[group];
+    dispatcher.run(
+        program, gl::DispatchSize::indirect(drawn.arguments, offsetof(shared::DispatchArguments, threads_x)),
+        {{"Frame", buffers.parameters},
+         {"Arguments", drawn.arguments},
+         {"Indices", drawn.indices},
+         {"Coverages", buffers.coverages},
+         {"Measured", buffers.measured},
+         {"NextBounds", *buffers.next_bounds},
+         {"OrderKeys", buffers.order.keys()},
+         {"FrameCounters", buffers.counters}},
+        {{"nearest_key", plan.groups[group].nearest_key},
+         {"view_begin", plan.groups[group].begin},
+         {"view_end", std::min(plan.groups[group].end, plan.asked)}});
+  }
 }
 
 }  // namespace binosplat::render

@@ -13,23 +13,23 @@ namespace binosplat::render {
 
 namespace {
 
-shared::FrameParameters parameters_of(const FrameShape& shape) {
-  const FrameSettings& s = shape.settings;
+shared::FrameParameters parameters_of(const FramePlan& plan, std::uint32_t slots, bool uses_measured) {
+  const FrameSettings& s = plan.settings;
   return {.background = glm::vec4(s.background, 0.0f),
-          .tolerance = s.tolerance,
+          .tolerance = plan.tolerance,
           .far = s.depth_table.far,
           .depth_bins = static_cast<std::uint32_t>(s.depth_table.bounds.size()),
-          .remembers = shape.remembers,
-          .view_count = shape.view_count(),
-          .asked = shape.asked,
-          .probed = shape.probe ? shape.probe->view : MAX_VIEWS,
-          .gaussian_count = shape.gaussian_count,
-          .slots = shape.slots,
-          .tile_count = shape.tile_count(),
+          .has_bounds = uses_measured,
+          .view_count = plan.view_count(),
+          .asked = plan.asked,
+          .probed = plan.probe ? plan.probe->view : MAX_VIEWS,
+          .gaussian_count = plan.gaussian_count,
+          .slots = slots,
+          .tile_count = plan.tile_count(),
           .list_per_view = s.tiles == TILES_ALL,
-          .offset_count = shape.offset_count,
-          .views_per_decoding = shape.views_per_decoding,
-          .decoding_of_probe = shape.decoding_of_probe(),
+          .offset_count = plan.offset_count,
+          .views_per_decoding = plan.views_per_decoding,
+          .decoding_of_probe = plan.decoding_of_probe(),
           .anchor_cull = s.anchor_cull,
           .unused = 0};
 }
@@ -39,16 +39,16 @@ shared::FrameParameters parameters_of(const FrameShape& shape) {
 FrameBuffers::FrameBuffers(gl::Context& context)
     : parameters(context, "parameters of the frame"),
       views(context, "views"),
-      part_rows(context, "parts of views"),
+      region_rows(context, "regions of views"),
       counters(context, "counters"),
       depth_keys(context, "depth keys"),
       block_arguments(context, "arguments of blocks"),
       block_counts(context, "block counts"),
       order(context, "depth order"),
       pair_offsets(context, "pair offsets"),
-      bounds(std::make_unique<gl::Buffer>(context, "remembered transmittance")),
-      next_bounds(std::make_unique<gl::Buffer>(context, "transmittance to remember")),
-      measured(context, "measured transmittance"),
+      bounds(std::make_unique<gl::Buffer>(context, "measured transmittance")),
+      next_bounds(std::make_unique<gl::Buffer>(context, "transmittance for the next frame")),
+      measured(context, "transmittance by splat"),
       depth_table(context, "transmittance by depth"),
       splats(context, "splats"),
       coverages(context, "tile coverage"),
@@ -63,81 +63,80 @@ FrameBuffers::FrameBuffers(gl::Context& context)
       canvases(context, "canvases"),
       colours(context, "pixels"),
       z_sums(context, "depth of pixels"),
-      shown(context, "what the blend comes by"),
-      shown_light(context, "transmittance to show"),
+      debug_values(context, "debug view"),
+      debug_transmittance(context, "transmittance of a debug view"),
       scan(context),
       sort(context),
       look_back(context),
       context_(context) {}
 
-void FrameBuffers::upload(const FrameShape& shape) {
-  parameters.upload(std::vector{parameters_of(shape)});
-  views.upload(shape.views);
+void FrameBuffers::upload(const FramePlan& plan, bool uses_measured) {
+  parameters.upload(std::vector{parameters_of(plan, slots, uses_measured)});
+  views.upload(plan.views);
   std::vector<shared::Canvas> of_views;
-  for (const Canvas& canvas : shape.canvases) of_views.push_back(on_gpu(canvas));
+  for (const Canvas& canvas : plan.canvases) of_views.push_back(on_gpu(canvas));
   if (!of_views.empty()) canvases.upload(of_views);
-  if (shape.draws_parts()) part_rows.upload(shape.part_rows);
-  if (shape.settings.transmittance != TRANSMITTANCE_DEPTH) return;
-  std::vector<float> table = shape.settings.depth_table.bounds;
+  if (plan.draws_regions()) region_rows.upload(plan.region_rows);
+  if (plan.settings.transmittance != TRANSMITTANCE_DEPTH) return;
+  std::vector<float> table = plan.settings.depth_table.bounds;
   for (float& bound : table) bound = bound > 0.0f ? std::max(bound, static_cast<float>(BOUND_FLOOR)) : 1.0f;
   depth_table.upload(table);
 }
 
-void FrameBuffers::reserve(const FrameShape& shape, const ModelBuffers& model, std::int64_t pair_capacity,
-                           std::int64_t tile_pair_capacity) {
-  const std::int64_t gaussians = shape.gaussian_room;
-  const std::int64_t slots = shape.slots;
+void FrameBuffers::reserve(const FramePlan& plan, const ModelBuffers& model, const Capacity& capacity) {
+  const std::int64_t gaussians = plan.gaussian_room;
+  slots = static_cast<std::uint32_t>(capacity.slots);
   const std::int64_t blocks = (gaussians + COMPACT_BLOCK - 1) / COMPACT_BLOCK;
   counters.reserve(sizeof(shared::Counters));
   depth_keys.reserve(gaussians * 4);
   block_counts.reserve(blocks * 4);
-  while (drawn.size() < shape.groups.size()) drawn.push_back(std::make_unique<DrawnBuffers>(context_));
+  while (drawn.size() < plan.groups.size()) drawn.push_back(std::make_unique<DrawnBuffers>(context_));
   for (const auto& group : drawn) {
     group->arguments.reserve(sizeof(primitives::SortArguments));
-    group->indices.reserve(slots * 4);
+    group->indices.reserve(capacity.slots * 4);
   }
-  if (measures(shape.settings.transmittance)) {
-    bounds->reserve(gaussians * shape.asked * 4);
-    next_bounds->reserve(gaussians * shape.asked * 4);
-    measured.reserve(slots * shape.view_count() * 4);
+  if (measures(plan.settings.transmittance)) {
+    bounds->reserve(gaussians * plan.asked * 4);
+    next_bounds->reserve(gaussians * plan.asked * 4);
+    measured.reserve(capacity.slots * plan.view_count() * 4);
   }
-  for (std::size_t page = 0; shape.offset_count > 0 && page < model.pages.size(); ++page) {
+  for (std::size_t page = 0; plan.offset_count > 0 && page < model.pages.size(); ++page) {
     for (auto* each : {&kept, &kept_last}) {
       if (page == each->size())
         each->push_back(std::make_unique<gl::Buffer>(context_, "Gaussians kept by anchor"));
-      (*each)[page]->reserve(std::int64_t{shape.decoding_count()} * model.pages[page].anchors->count * 4);
+      (*each)[page]->reserve(std::int64_t{plan.decoding_count()} * model.pages[page].anchors->count * 4);
     }
   }
-  order.reserve(slots);
-  pair_offsets.reserve(slots * 4);
-  splats.reserve(slots * shape.view_count() * splat_bytes(shape.settings.precision));
-  coverages.reserve(slots * shape.view_count() * 4);
-  tall.reserve(slots * shape.view_count() * 4);
+  order.reserve(capacity.slots);
+  pair_offsets.reserve(capacity.slots * 4);
+  splats.reserve(capacity.slots * plan.view_count() * splat_bytes(plan.settings.precision));
+  coverages.reserve(capacity.slots * plan.view_count() * 4);
+  tall.reserve(capacity.slots * plan.view_count() * 4);
   pair_arguments.reserve(4 * sizeof(shared::DispatchArguments));
-  pairs.reserve(pair_capacity);
-  ranges.reserve(std::max<std::int64_t>(shape.supertile_count, shape.view_count()) * 8);
-  if (shape.supertile_side > 1) {
+  pairs.reserve(capacity.pairs);
+  ranges.reserve(std::max<std::int64_t>(plan.supertile_count, plan.view_count()) * 8);
+  if (plan.supertile_side > 1) {
     const std::int64_t blocks_of_pairs = (pairs.capacity() + TILE_BLOCK - 1) / TILE_BLOCK;
-    const std::int64_t counts = blocks_of_pairs * shape.tiles_a_supertile();
+    const std::int64_t counts = blocks_of_pairs * plan.tiles_a_supertile();
     tile_counts.reserve(counts * 4);
     scan.reserve(counts);
-    tile_ranges.reserve(shape.tile_count() * 8LL);
-    tile_values.reserve(tile_pair_capacity * 4);
+    tile_ranges.reserve(plan.tile_count() * 8LL);
+    tile_values.reserve(capacity.tile_pairs * 4);
   }
-  long_lists.reserve(shape.tile_count() * 4LL);
-  if (shape.canvases.empty()) colours.reserve(shape.pixel_count * 16);
-  if (shape.keeps_depth()) z_sums.reserve(shape.pixel_count * 4);
-  scan.reserve(std::max(blocks, slots));
-  look_back.reserve(std::max(blocks, slots / SCAN_BLOCK) + 1);
-  for (const OrderGroup& group : shape.groups) sort.reserve(order, group.key_bits);
-  sort.reserve(pairs, shape.supertile_bits());
+  long_lists.reserve(plan.tile_count() * 4LL);
+  if (plan.canvases.empty()) colours.reserve(plan.pixel_count * 16);
+  if (plan.depth() != DEPTH_NONE) z_sums.reserve(plan.pixel_count * 4);
+  scan.reserve(std::max(blocks, capacity.slots));
+  look_back.reserve(std::max(blocks, capacity.slots / SCAN_BLOCK) + 1);
+  for (const OrderGroup& group : plan.groups) sort.reserve(order, group.key_bits);
+  sort.reserve(pairs, plan.supertile_bits());
 }
 
-std::vector<DrawnGaussian> FrameBuffers::read_drawn(const FrameShape& shape, std::uint32_t v) const {
-  const DrawnBuffers& of_group = *drawn[shape.views.at(v).order_group];
+std::vector<DrawnGaussian> FrameBuffers::read_drawn(const FramePlan& plan, std::uint32_t v) const {
+  const DrawnBuffers& of_group = *drawn[plan.views.at(v).order_group];
   const std::uint32_t count = of_group.arguments.read<shared::DispatchArguments>(1).front().count;
   const auto indices = of_group.indices.read<std::uint32_t>(count);
-  const std::size_t view_count = shape.view_count();
+  const std::size_t view_count = plan.view_count();
   const auto covers = coverages.read<std::uint32_t>(count * view_count);
   std::vector<DrawnGaussian> found;
   for (std::uint32_t slot = 0; slot < count; ++slot) {
@@ -146,8 +145,8 @@ std::vector<DrawnGaussian> FrameBuffers::read_drawn(const FrameShape& shape, std
   return found;
 }
 
-void FrameBuffers::keep_last(const FrameShape& shape) {
-  if (shape.records) std::swap(bounds, next_bounds);
+void FrameBuffers::keep_last(bool measured_now) {
+  if (measured_now) std::swap(bounds, next_bounds);
   std::swap(kept, kept_last);
 }
 

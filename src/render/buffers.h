@@ -8,8 +8,9 @@
 #include "gl/buffer.h"
 #include "primitives/look_back.h"
 #include "primitives/radix_sort.h"
+#include "render/frame_plan.h"
 #include "render/gpu_model.h"
-#include "render/shape.h"
+#include "render/memory.h"
 #include "shared/types.h"
 
 namespace binosplat::render {
@@ -35,31 +36,32 @@ struct FrameBuffers {
   gl::Context& context() const { return context_; }
 
   /// What the CPU knows of a frame: its parameters, its views and its table of depths.
-  void upload(const FrameShape& shape);
+  void upload(const FramePlan& plan, bool uses_measured);
 
-  /// Room for a frame of this shape and its slots, and so many pairs; and where supertiles are of several
-  /// tiles, so many of the tiles.
-  void reserve(const FrameShape& shape, const ModelBuffers& model, std::int64_t pair_capacity,
-               std::int64_t tile_pair_capacity);
+  /// Room for a frame of this plan, so large. Before upload().
+  void reserve(const FramePlan& plan, const ModelBuffers& model, const Capacity& capacity);
 
-  /// Once a frame is complete: what it kept and measured is the last frame's for the next.
-  void keep_last(const FrameShape& shape);
+  /// Once a frame is complete: what it kept, and what it measured, if it did, is the last frame's for the
+  /// next.
+  void keep_last(bool measured_now);
 
   /// What the frame that was drawn last draws in its view `v`, in index order.
-  std::vector<DrawnGaussian> read_drawn(const FrameShape& shape, std::uint32_t v) const;
+  std::vector<DrawnGaussian> read_drawn(const FramePlan& plan, std::uint32_t v) const;
 
   /// What tiles are blended by: begin and end in the values, by tile; and those, splats.
-  gl::Buffer& ranges_of_tiles(const FrameShape& shape) {
-    return shape.supertile_side == 1 ? ranges : tile_ranges;
+  gl::Buffer& ranges_of_tiles(const FramePlan& plan) {
+    return plan.supertile_side == 1 ? ranges : tile_ranges;
   }
-  gl::Buffer& values_of_tiles(const FrameShape& shape) {
-    return shape.supertile_side == 1 ? pairs.values() : tile_values;
+  gl::Buffer& values_of_tiles(const FramePlan& plan) {
+    return plan.supertile_side == 1 ? pairs.values() : tile_values;
   }
 
-  gl::Buffer parameters;  // FrameParameters
-  gl::Buffer views;       // View, the probe last
-  gl::Buffer part_rows;   // uvec2 by row of tiles of a view, where a view draws a part
-  gl::Buffer counters;    // Counters
+  std::uint32_t slots = 0;  // room for the Gaussians that one order group draws
+
+  gl::Buffer parameters;   // FrameParameters
+  gl::Buffer views;        // View, the probe last
+  gl::Buffer region_rows;  // uvec2 by row of tiles of a view, where a view is not drawn whole
+  gl::Buffer counters;     // Counters
 
   // Of the order group at hand.
   gl::Buffer depth_keys;          // uint by Gaussian
@@ -70,7 +72,7 @@ struct FrameBuffers {
 
   std::vector<std::unique_ptr<DrawnBuffers>> drawn;  // by order group
 
-  // What is remembered for the next frame's Th, T_upper as float (view, Gaussian); written while the last
+  // What is measured for the next frame's Th, T_upper as float (view, Gaussian); written while the last
   // frame's is read. Empty where nothing is measured.
   std::unique_ptr<gl::Buffer> bounds;
   std::unique_ptr<gl::Buffer> next_bounds;
@@ -99,9 +101,9 @@ struct FrameBuffers {
   gl::Buffer colours;   // vec4 by pixel: C, T
   gl::Buffer z_sums;    // float by pixel
 
-  // Of show().
-  gl::Buffer shown;        // float by pixel
-  gl::Buffer shown_light;  // uint by splat, bits of the largest T
+  // Of blend_debug_view().
+  gl::Buffer debug_values;         // float by pixel
+  gl::Buffer debug_transmittance;  // uint by splat, bits of the largest T
 
   primitives::Scan scan;
   primitives::RadixSort sort;

@@ -1,54 +1,57 @@
+#include <array>
+
 #include "render/stages.h"
+#include "render/variants.h"
 
 namespace binosplat::render {
 
 namespace {
 
-bool reuses(const FrameShape& shape) {
-  const FrameSettings& s = shape.settings;
+bool reuses(const FramePlan& plan) {
+  const FrameSettings& s = plan.settings;
   // What is hidden is told by the area of a splat as the affine projection, which the anchor cull goes by,
   // has it.
-  return s.anchor_reuse && shape.perspective.projection == PROJECTION_AFFINE && measures(s.transmittance) &&
-         !is_exact(s.th) && !shape.probe && shape.kernel_px2 == KERNEL_PX2;
+  return plan.anchor_reuse && plan.perspective.projection == PROJECTION_AFFINE && measures(s.transmittance) &&
+         !is_exact(s.th) && !plan.probe && plan.kernel_px2 == KERNEL_PX2;
 }
 
 // Of shared memory: what every driver has.
 constexpr std::int64_t shared_bytes = 32768;
 
 // The anchor cull goes by 3D-GS's own tiles.
-gl::Defines decode_defines(const FrameShape& shape, const NetworkBuffers& networks) {
-  const FrameSettings& s = shape.settings;
-  const bool reuse = reuses(shape);
-  gl::Defines defines = {
-      {"TILES_NAME", "aabb"},
-      {"TILES", std::to_string(TILES_AABB)},
-      {"TILE_SIZE", std::to_string(ANCHOR_TILE)},
-      {"TH", std::to_string(reuse ? s.th : TH_TAU)},
-      {"TH_NAME", th_choices[reuse ? s.th : TH_TAU].name},
-      {"TRANSMITTANCE", std::to_string(reuse ? s.transmittance : TRANSMITTANCE_ONE)},
-      {"ANTIALIASED", "0"},
-      {"HIDDEN", std::to_string(networks.hidden)},
-      {"BANK", networks.bank ? "1" : "0"},
-      {"OFFSETS", std::to_string(shape.offset_count)},
-      {"WEIGHTS", std::to_string(networks.bytes <= shared_bytes ? networks.bytes / 16 : 0)},
-      {"HALF", s.precision == PRECISION_HALF ? "1" : "0"},
-      {"REUSE", reuse ? "1" : "0"},
-      {"ORDER", std::to_string(ORDER_DEPTH)}};
-  add_projection(defines, PROJECTION_AFFINE);
-  return defines;
+std::array<gl::Number, 13> decode_variant(const FramePlan& plan, const NetworkBuffers& networks) {
+  const FrameSettings& s = plan.settings;
+  const bool reuse = reuses(plan);
+  const int th = reuse ? s.th : TH_TAU;
+  const int transmittance = reuse ? s.transmittance : TRANSMITTANCE_ONE;
+  const std::int64_t weights = networks.bytes <= shared_bytes ? networks.bytes / 16 : 0;
+  return {gl::Number{"TILES", TILES_AABB, std::size(tiles_choices), tiles_choices[TILES_AABB].name},
+          {"TILE_SIZE", ANCHOR_TILE, 33},
+          {"TH", static_cast<std::uint64_t>(th), std::size(th_choices), th_choices[th].name},
+          {"TRANSMITTANCE", static_cast<std::uint64_t>(transmittance), std::size(transmittance_choices)},
+          {"ANTIALIASED", 0, 2},
+          {"HIDDEN", networks.hidden, 4096},
+          {"BANK", networks.bank, 2},
+          {"OFFSETS", plan.offset_count, 32},
+          {"WEIGHTS", static_cast<std::uint64_t>(weights), shared_bytes},
+          {"HALF", s.precision == PRECISION_HALF, 2},
+          {"REUSE", reuse, 2},
+          {"ORDER", ORDER_DEPTH, std::size(order_choices)},
+          projection_number(PROJECTION_AFFINE)};
 }
 
 }  // namespace
 
-void decode(gl::Dispatcher& dispatcher, const FrameShape& shape, const ModelBuffers& model,
+void decode(gl::Dispatcher& dispatcher, const FramePlan& plan, const ModelBuffers& model,
             const FrameBuffers& buffers) {
-  if (shape.offset_count == 0) return;
+  if (plan.offset_count == 0) return;
   const gl::Program& program =
-      dispatcher.context().program("decode.comp", decode_defines(shape, model.networks));
+      dispatcher.context().program("decode.comp", decode_variant(plan, model.networks));
   for (std::size_t p = 0; p < model.pages.size(); ++p) {
     const ModelBuffers::Page& page = model.pages[p];
     const AnchorBuffers& anchors = *page.anchors;
-    dispatcher.run(program, gl::Work::threads(std::uint64_t{shape.decoding_count()} * anchors.count, THREADS),
+    dispatcher.run(program,
+                   gl::DispatchSize::threads(std::uint64_t{plan.decoding_count()} * anchors.count, THREADS),
                    {{"Frame", buffers.parameters},
                     {"Views", buffers.views},
                     {"Anchors", anchors.anchors},

@@ -38,8 +38,8 @@ struct FrameReport {
   int tile_size = 0;                  // px
   int supertile_side = 0;             // tiles along a side of a supertile
   float tolerance = 0.0f;             // K or kappa that the frame went by
-  bool remembered = false;            // it went by what an earlier frame measured
-  bool recorded = false;              // it measured for later ones
+  bool used_measured = false;         // it went by what an earlier frame measured
+  bool measured = false;              // it measured for later ones
   bool on_canvases = false;           // its pictures are on the canvases that it was given, and nowhere else
   double quality = 0.0;  // with settings.quality: its PSNR in dB, as this and earlier frames' probes tell
 };
@@ -81,7 +81,7 @@ class Frame {
   /// depth whatever the settings say.
   std::vector<Picture> read_pictures() const;
 
-  /// The next frame goes by nothing that earlier ones measured, as a first one does.
+  /// The next frame uses nothing that earlier ones measured, as a first one does.
   void forget() { history_.forget(); }
 
   /// The next frame is drawn as this Frame's first one was: the tolerance that was found for a quality goes,
@@ -95,11 +95,11 @@ class Frame {
   /// a reload of the model.
   std::vector<MeasuredGaussian> read_measured(std::uint32_t v) const;
 
-  /// What the last frame's blend came by in each pixel, one image of one channel a view: SHOW_ALPHAS to
-  /// SHOW_MEDIAN_DEPTH of shared/axes.h; below 0 where there is nothing to tell. Walks the frame's lists
-  /// again. Throws Error after a frame whose blend something else stood in for: its lists never get to the
-  /// GPU.
-  std::vector<Image> read_shown(int what);
+  /// A debug view of the last frame, SHOW_ALPHAS to SHOW_MEDIAN_DEPTH of shared/axes.h: what its blend came
+  /// by in each pixel, one image of one channel a view; below 0 where there is nothing to tell. Walks the
+  /// frame's lists again. Throws Error after a frame whose blend something else stood in for: its lists never
+  /// get to the GPU.
+  std::vector<Image> read_debug_view(int what);
 
   const std::shared_ptr<GpuModel>& model() const { return model_; }
   /// The pictures on the GPU: vec4 (C, T) by pixel, a view's from its pixel_offset on. Not where something
@@ -108,18 +108,17 @@ class Frame {
   /// Their Z by pixel, likewise; of a frame on canvases depths (draw). Nothing with Depth::none.
   const gl::Buffer& z_sums() const { return buffers_.z_sums; }
   /// The views of the last frame drawn, with tiles, offsets and groups; a probe's comes last.
-  const std::vector<shared::View>& views() const { return shape_.views; }
-  const FrameShape& shape() const { return shape_; }
+  const std::vector<shared::View>& views() const { return plan_.views; }
+  const FramePlan& plan() const { return plan_; }
   FrameBuffers& buffers() { return buffers_; }
   /// Once a frame is drawn.
   ModelBuffers& model_buffers() { return *model_buffers_; }
 
  private:
-  void take_canvases(std::span<const Canvas> canvases, int depth_rows);
   void begin(std::span<const shared::View> views, const FrameSettings& settings, const Workings& workings,
-             const std::optional<Probe>& probe = {});
+             PlanRequest request);
   FrameReport draw_with_quality(std::span<const shared::View> views, const FrameSettings& settings,
-                                const Workings& workings, std::span<const Canvas> canvases, int depth_rows);
+                                const Workings& workings, const PlanRequest& request);
   FrameReport attempt(const Workings& workings, Stage last = Stage::probe);
   void run_stages(const Workings& workings, Stage last, FrameReport& report);
   void fill(FrameReport& report) const;
@@ -129,7 +128,8 @@ class Frame {
   std::shared_ptr<ModelBuffers> model_buffers_;
   gl::Dispatcher dispatcher_;
   FrameBuffers buffers_;
-  FrameShape shape_;
+  FramePlan plan_;
+  Measuring measuring_;
   shared::Counters counters_{};  // of the last drawing
   double tiles_a_splat_ = 0.0;   // likewise
   Capacity capacity_;

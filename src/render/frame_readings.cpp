@@ -11,43 +11,44 @@ namespace binosplat::render {
 
 std::vector<Picture> Frame::read_pictures() const {
   if (!pictures_stood_in_.empty()) return pictures_stood_in_;
-  if (!shape_.canvases.empty()) fail("the pictures went onto canvases, and are whose those are");
-  const auto pixels = static_cast<std::size_t>(shape_.pixel_count);
+  if (!plan_.canvases.empty()) fail("the pictures went onto canvases, and are whose those are");
+  const auto pixels = static_cast<std::size_t>(plan_.pixel_count);
   const auto colours = buffers_.colours.read<glm::vec4>(pixels);
+  const bool has_depth = plan_.depth() != DEPTH_NONE;
   std::vector<float> z_sums;
-  if (shape_.keeps_depth()) z_sums = buffers_.z_sums.read<float>(pixels);
+  if (has_depth) z_sums = buffers_.z_sums.read<float>(pixels);
   std::vector<Picture> pictures;
-  for (const shared::View& view : std::span(shape_.views).first(shape_.asked)) {
+  for (const shared::View& view : std::span(plan_.views).first(plan_.asked)) {
     Picture& picture = pictures.emplace_back(static_cast<int>(view.width), static_cast<int>(view.height));
     std::copy_n(colours.begin() + view.pixel_offset, picture.colour.size(), picture.colour.begin());
-    if (shape_.keeps_depth())
+    if (has_depth)
       std::copy_n(z_sums.begin() + view.pixel_offset, picture.z_sum.size(), picture.z_sum.begin());
   }
   return pictures;
 }
 
-std::vector<Image> Frame::read_shown(int what) {
+std::vector<Image> Frame::read_debug_view(int what) {
   if (!pictures_stood_in_.empty())
     fail("--show {}: the GPU does not walk the lists of --reference-until blend", show_choices[what].name);
-  show(dispatcher_, shape_, buffers_, what);
-  const auto shown = buffers_.shown.read<float>(static_cast<std::size_t>(shape_.pixel_count));
+  blend_debug_view(dispatcher_, plan_, what, buffers_);
+  const auto values = buffers_.debug_values.read<float>(static_cast<std::size_t>(plan_.pixel_count));
   std::vector<Image> images;
-  for (const shared::View& view : std::span(shape_.views).first(shape_.asked)) {
+  for (const shared::View& view : std::span(plan_.views).first(plan_.asked)) {
     Image& image = images.emplace_back(static_cast<int>(view.width), static_cast<int>(view.height), 1);
-    std::copy_n(shown.begin() + view.pixel_offset, image.data.size(), image.data.begin());
+    std::copy_n(values.begin() + view.pixel_offset, image.data.size(), image.data.begin());
   }
   return images;
 }
 
 std::vector<MeasuredGaussian> Frame::read_measured(std::uint32_t v) const {
-  if (!shape_.records || uploads_ != model_->uploads()) return {};
-  const shared::View& view = shape_.views.at(v);
-  const std::vector<DrawnGaussian> drawn = buffers_.read_drawn(shape_, v);
-  const auto largest = buffers_.measured.read<float>(shape_.slots, std::size_t{v} * shape_.slots);
+  if (!measuring_.measures || uploads_ != model_->uploads()) return {};
+  const shared::View& view = plan_.views.at(v);
+  const std::vector<DrawnGaussian> drawn = buffers_.read_drawn(plan_, v);
+  const auto largest = buffers_.measured.read<float>(buffers_.slots, std::size_t{v} * buffers_.slots);
   std::vector<MeasuredGaussian> measured;
   for (const auto& [i, slot] : drawn) {
     const glm::vec3 p = model_->model().position[i] - glm::vec3(view.anchor);
-    const float depth = shape_.perspective.projection == PROJECTION_TANGENT
+    const float depth = plan_.perspective.projection == PROJECTION_TANGENT
                             ? glm::length(p - glm::vec3(view.eye))
                             : glm::dot(glm::vec3(view.row_z), p) + view.row_z.w;
     measured.push_back({i, depth, largest[slot]});

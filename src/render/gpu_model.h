@@ -9,8 +9,8 @@
 
 #include "gl/buffer.h"
 #include "render/anchors.h"
+#include "render/frame_plan.h"
 #include "render/scatter.h"
-#include "render/shape.h"
 #include "scene/model_chunks.h"
 
 namespace binosplat::render {
@@ -37,8 +37,8 @@ struct ModelBuffers {
   /// opacity of 0. Of no Scaffold-GS.
   void upload(gl::Context& context, const Model& model, const ModelChunks::Changes& changes);
 
-  /// Room for what a frame of this shape decodes.
-  void reserve(const FrameShape& shape);
+  /// Room for what a frame of this plan decodes.
+  void reserve(const FramePlan& plan);
 
   const int precision;  // PRECISION_ of shared/axes.h
   std::vector<Page> pages;

@@ -30,15 +30,15 @@ double moved(const shared::View& a, const shared::View& b) {
 }
 
 // The rows of tiles of the views that were asked for: where nothing was drawn, nothing was measured.
-std::span<const glm::uvec2> rows_asked(const FrameShape& shape) {
-  const bool has_probe = shape.draws_parts() && shape.view_count() > shape.asked;
-  return std::span(shape.part_rows)
-      .first(has_probe ? shape.views[shape.asked].first_row : shape.part_rows.size());
+std::span<const glm::uvec2> rows_asked(const FramePlan& plan) {
+  const bool has_probe = plan.draws_regions() && plan.view_count() > plan.asked;
+  return std::span(plan.region_rows)
+      .first(has_probe ? plan.views[plan.asked].first_row : plan.region_rows.size());
 }
 
 }  // namespace
 
-bool continues(const FrameShape& before, const FrameShape& now, double median_depth, double share) {
+bool continues(const FramePlan& before, const FramePlan& now, double median_depth, double share) {
   if (!std::ranges::equal(rows_asked(before), rows_asked(now))) return false;
   if (before.asked != now.asked || before.gaussian_count != now.gaussian_count) return false;
   for (std::size_t v = 0; v < now.asked; ++v) {
@@ -58,26 +58,29 @@ void FrameHistory::follow_levels(std::uint32_t gaussians) {
   last_.gaussian_count = gaussians;
 }
 
-bool FrameHistory::probed_lately(const FrameShape& now) {
-  return ++since_probed_ < now.settings.probe_every && continues(probed_, now, median_depth_, probe_share);
+bool FrameHistory::probed_lately(const FramePlan& now, int probe_every) {
+  return ++since_probed_ < probe_every && continues(probed_, now, median_depth_, probe_share);
 }
 
-void FrameHistory::decide(FrameShape& now) {
+Measuring FrameHistory::decide(const FramePlan& now) {
   const FrameSettings& s = now.settings;
-  if (!measures(s.transmittance)) return;
-  now.remembers = measures(measured_.settings.transmittance) && measured_.settings.decode == s.decode &&
-                  measured_.perspective == now.perspective && continues(measured_, now, median_depth_);
-  since_cut_ = now.remembers ? since_cut_ + 1 : 0;
+  if (!measures(s.transmittance)) return {};
+  Measuring measuring;
+  measuring.uses_last = measures(measured_.settings.transmittance) && measured_.settings.decode == s.decode &&
+                        measured_.perspective == now.perspective && continues(measured_, now, median_depth_);
+  since_cut_ = measuring.uses_last ? since_cut_ + 1 : 0;
   ++since_measured_;
-  now.records = since_cut_ < s.record_every || since_measured_ >= s.record_every || now.offset_count > 0 ||
-                !continues(measured_, now, median_depth_, measure_share);
+  measuring.measures = since_cut_ < s.measure_every || since_measured_ >= s.measure_every ||
+                       now.offset_count > 0 || !continues(measured_, now, median_depth_, measure_share);
+  return measuring;
 }
 
-void FrameHistory::keep(const FrameShape& drawn, const shared::Counters& counters) {
+void FrameHistory::keep(const FramePlan& drawn, const Measuring& measuring,
+                        const shared::Counters& counters) {
   last_ = drawn;
-  if (drawn.records || drawn.probe)
+  if (measuring.measures || drawn.probe)
     median_depth_ = counters.visible == 0 ? 0.0 : std::bit_cast<float>(counters.median_depth);
-  if (drawn.records) {
+  if (measuring.measures) {
     measured_ = drawn;
     since_measured_ = 0;
   } else if (!measures(drawn.settings.transmittance)) {

@@ -19,14 +19,14 @@ void LinearBlend::run(const Record& record) {
   record();
   dispatcher_.end_frame();
   dispatcher_.wait_and_time();
-  refuse_cut(dispatcher_.context(), frame_.buffers().counters.read<shared::Counters>(1).front());
+  refuse_truncated(dispatcher_.context(), frame_.buffers().counters.read<shared::Counters>(1).front());
 }
 
 void LinearBlend::set_view(const shared::View& view, const FrameSettings& settings,
                            const Workings& workings) {
   frame_.draw_until(Stage::ranges, std::span(&view, 1), exact_of(settings), workings);
-  find_long_lists(dispatcher_, frame_.shape(), frame_.buffers());
-  drawn_ = frame_.buffers().read_drawn(frame_.shape(), 0);
+  find_long_lists(dispatcher_, frame_.plan(), frame_.buffers());
+  drawn_ = frame_.buffers().read_drawn(frame_.plan(), 0);
 }
 
 void LinearBlend::set_colours(std::span<const glm::vec3> colours) {
@@ -36,12 +36,12 @@ void LinearBlend::set_colours(std::span<const glm::vec3> colours) {
   colours_.upload(by_slot);
   run([&] {
     recolour(dispatcher_, slots(), colours_, frame_.buffers());
-    blend(dispatcher_, frame_.shape(), frame_.buffers());
+    blend(dispatcher_, frame_.plan(), false, 0.0, frame_.buffers());
   });
 }
 
 std::vector<glm::vec4> LinearBlend::read_picture() {
-  return frame_.buffers().colours.read<glm::vec4>(static_cast<std::size_t>(frame_.shape().pixel_count));
+  return frame_.buffers().colours.read<glm::vec4>(static_cast<std::size_t>(frame_.plan().pixel_count));
 }
 
 // Four of each slot.
@@ -55,7 +55,7 @@ std::vector<std::int64_t> LinearBlend::sums(const Record& record) {
 std::vector<glm::dvec4> LinearBlend::transposed(float largest) {
   const double scale = TRANSPOSED_SCALE / static_cast<double>(largest);
   const std::vector<std::int64_t> by_slot = sums([&] {
-    blend_transposed(dispatcher_, frame_.shape(), frame_.buffers(), static_cast<float>(scale), sums_);
+    blend_transposed(dispatcher_, frame_.plan(), frame_.buffers(), static_cast<float>(scale), sums_);
   });
   std::vector<glm::dvec4> found(drawn_.size());
   for (std::size_t k = 0; k < drawn_.size(); ++k) {
@@ -67,8 +67,8 @@ std::vector<glm::dvec4> LinearBlend::transposed(float largest) {
 
 std::vector<double> LinearBlend::changes() {
   const std::vector<std::int64_t> by_slot = sums([&] {
-    blend(dispatcher_, frame_.shape(), frame_.buffers());
-    blend_changes(dispatcher_, frame_.shape(), frame_.buffers(), sums_);
+    blend(dispatcher_, frame_.plan(), false, 0.0, frame_.buffers());
+    blend_changes(dispatcher_, frame_.plan(), frame_.buffers(), sums_);
   });
   std::vector<double> found;
   for (const DrawnGaussian& drawn : drawn_)

@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "render/shape.h"
+#include "render/frame_plan.h"
 #include "render/workings.h"
 
 namespace binosplat::render {
@@ -13,15 +13,15 @@ namespace binosplat::render {
 std::uint32_t starting_slots(std::uint32_t gaussians);
 
 /// Pairs that a first frame has room for: most models need some tiles a Gaussian; what is missing is grown.
-std::int64_t starting_pairs(const FrameShape& shape);
+std::int64_t starting_pairs(const FramePlan& plan);
 
-/// Bytes that the model takes on the GPU, and those that a frame of it starts with besides; a shape whose
+/// Bytes that the model takes on the GPU, and those that a frame of it starts with besides; a plan whose
 /// lists are left to the frame is taken to have one a tile.
 struct MemoryNeeds {
   std::int64_t model = 0;
   std::int64_t frame = 0;
 };
-MemoryNeeds memory_needs(const FrameShape& shape);
+MemoryNeeds memory_needs(const FramePlan& plan);
 
 /// What the buffers of frames that follow one another have room for.
 struct Capacity {
@@ -29,12 +29,12 @@ struct Capacity {
   std::int64_t pairs = 0;       // Gaussian-supertile pairs
   std::int64_t tile_pairs = 0;  // Gaussian-tile pairs, where supertiles are of several tiles
 
-  /// At least what a frame of this shape starts with, or exactly what `asked` names.
-  void start(const FrameShape& shape, const Workings& asked);
+  /// At least what a frame of this plan starts with, or exactly what `asked` names.
+  void start(const FramePlan& plan, const Workings& asked);
 
   /// What overflowed gets room for what it wanted, and some more; says so in the log. Throws
   /// Error(out_of_memory) for more pairs than can be counted.
-  void grow(const FrameShape& shape, const shared::Counters& counters);
+  void grow(const FramePlan& plan, const shared::Counters& counters);
 };
 
 }  // namespace binosplat::render

@@ -2,9 +2,9 @@
 
 namespace binosplat::render {
 
-void order(gl::Dispatcher& dispatcher, const FrameShape& shape, std::uint32_t group, FrameBuffers& buffers) {
+void order(gl::Dispatcher& dispatcher, const FramePlan& plan, std::uint32_t group, FrameBuffers& buffers) {
   // Depths are positive floats: their bits sort as unsigned numbers do.
-  buffers.sort.run(dispatcher, buffers.drawn[group]->arguments, buffers.order, shape.groups[group].key_bits);
+  buffers.sort.run(dispatcher, buffers.drawn[group]->arguments, buffers.order, plan.groups[group].key_bits);
 }
 
 }  // namespace binosplat::render

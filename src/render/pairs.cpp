@@ -1,83 +1,87 @@
-#include <algorithm>
+#include <array>
 #include <cstddef>
 
 #include "render/stages.h"
+#include "render/variants.h"
 
 namespace binosplat::render {
 
 namespace {
 
 // Of the order group's Gaussians, and the arguments of the pairs.
-void count(gl::Dispatcher& dispatcher, const FrameShape& shape, std::uint32_t group, FrameBuffers& buffers) {
+void count(gl::Dispatcher& dispatcher, const FramePlan& plan, std::uint32_t group, FrameBuffers& buffers) {
   gl::Context& context = dispatcher.context();
-  const OrderGroup views = shape.groups[group];
+  const OrderGroup views = plan.groups[group];
   const gl::Buffer& drawn = buffers.drawn[group]->arguments;
-  const bool both_eyes = shape.view_count() == 2 && shape.groups.size() == 1;
+  const bool both_eyes = plan.view_count() == 2 && plan.groups.size() == 1;
   // What a group counts by subgroups must not wrap; the scan's sums stop.
   const bool looks_back =
-      context.limits().subgroups_of_32 && std::uint64_t{SCAN_BLOCK} * shape.supertile_count < COUNT_MAX;
-  gl::Defines defines = {{"BOTH_EYES", both_eyes ? "1" : "0"}, {"LOOKS_BACK", looks_back ? "1" : "0"}};
-  if (looks_back) defines.push_back(buffers.pairs.block_define().front());
-  dispatcher.run(context.program("pairs_count.comp", defines),
-                 gl::Work::indirect(drawn, looks_back ? offsetof(shared::DispatchArguments, scan_x)
-                                                      : offsetof(shared::DispatchArguments, threads_x)),
-                 {{"Frame", buffers.parameters},
-                  {"OrderArguments", drawn},
-                  {"Order", buffers.order.values()},
-                  {"Coverages", buffers.coverages},
-                  {"PairOffsets", buffers.pair_offsets},
-                  {"CoverageInOrder", buffers.coverage_in_order},
-                  {"Arguments", buffers.pair_arguments},
-                  {"FrameCounters", buffers.counters},
-                  {"LookBack", buffers.look_back.words()}},
-                 {{"view_begin", views.begin},
-                  {"view_end", views.end},
-                  {"look_back_half", looks_back ? buffers.look_back.next_half() : 0},
-                  {"kind", ARGUMENTS_PAIRS},
-                  {"capacity", static_cast<std::uint32_t>(buffers.pairs.capacity())},
-                  {"groups_max", context.limits().groups},
-                  {"digit_bits", primitives::RadixSort::digit_bits(shape.supertile_bits())}});
+      context.limits().subgroups_of_32 && std::uint64_t{SCAN_BLOCK} * plan.supertile_count < COUNT_MAX;
+  const std::array variant = {gl::Number{"BOTH_EYES", both_eyes, 2}, gl::Number{"LOOKS_BACK", looks_back, 2},
+                              buffers.pairs.block_number()};
+  dispatcher.run(
+      context.program("pairs_count.comp", variant),
+      gl::DispatchSize::indirect(drawn, looks_back ? offsetof(shared::DispatchArguments, scan_x)
+                                                   : offsetof(shared::DispatchArguments, threads_x)),
+      {{"Frame", buffers.parameters},
+       {"OrderArguments", drawn},
+       {"Order", buffers.order.values()},
+       {"Coverages", buffers.coverages},
+       {"PairOffsets", buffers.pair_offsets},
+       {"CoverageInOrder", buffers.coverage_in_order},
+       {"Arguments", buffers.pair_arguments},
+       {"FrameCounters", buffers.counters},
+       {"LookBack", buffers.look_back.words()}},
+      {{"view_begin", views.begin},
+       {"view_end", views.end},
+       {"look_back_half", looks_back ? buffers.look_back.next_half() : 0},
+       {"kind", ARGUMENTS_PAIRS},
+       {"capacity", static_cast<std::uint32_t>(buffers.pairs.capacity())},
+       {"groups_max", context.limits().groups},
+       {"digit_bits", primitives::RadixSort::digit_bits(plan.supertile_bits())}});
   if (looks_back) return;
   buffers.scan.run(dispatcher, drawn, 0, buffers.pair_offsets);
-  count_pairs(dispatcher, shape, ARGUMENTS_PAIRS, buffers);
+  count_pairs(dispatcher, plan, ARGUMENTS_PAIRS, buffers);
 }
 
 }  // namespace
 
-void count_pairs(gl::Dispatcher& dispatcher, const FrameShape& shape, std::uint32_t kind,
+void count_pairs(gl::Dispatcher& dispatcher, const FramePlan& plan, std::uint32_t kind,
                  FrameBuffers& buffers) {
   gl::Context& context = dispatcher.context();
-  dispatcher.run(context.program("arguments.comp", buffers.pairs.block_define()), gl::Work::of_groups(1),
+  dispatcher.run(context.program("arguments.comp", buffers.pairs.block_number()),
+                 gl::DispatchSize::of_groups(1),
                  {{"Arguments", buffers.pair_arguments},
                   {"Total", buffers.scan.total()},
                   {"FrameCounters", buffers.counters}},
                  {{"kind", kind},
                   {"capacity", static_cast<std::uint32_t>(buffers.pairs.capacity())},
                   {"groups_max", context.limits().groups},
-                  {"digit_bits", primitives::RadixSort::digit_bits(shape.supertile_bits())}});
+                  {"digit_bits", primitives::RadixSort::digit_bits(plan.supertile_bits())}});
 }
 
-void pairs(gl::Dispatcher& dispatcher, const FrameShape& shape, std::uint32_t group, FrameBuffers& buffers) {
+void pairs(gl::Dispatcher& dispatcher, const FramePlan& plan, std::uint32_t group, FrameBuffers& buffers) {
   gl::Context& context = dispatcher.context();
-  const OrderGroup views = shape.groups[group];
+  const OrderGroup views = plan.groups[group];
   const gl::Buffer& drawn = buffers.drawn[group]->arguments;
-  count(dispatcher, shape, group, buffers);
-  gl::Defines defines = pair_defines(shape);
-  defines.push_back(subgroups_define(context));
-  dispatcher.run(context.program("pairs.comp", defines),
-                 gl::Work::indirect(buffers.pair_arguments, offsetof(shared::DispatchArguments, scan_x)),
-                 {{"Frame", buffers.parameters},
-                  {"OrderArguments", drawn},
-                  {"PairArguments", buffers.pair_arguments},
-                  {"Views", buffers.views},
-                  {"PartRows", buffers.part_rows},
-                  {"Order", buffers.order.values()},
-                  {"PairOffsets", buffers.pair_offsets},
-                  {"CoverageInOrder", buffers.coverage_in_order},
-                  {"Splats", buffers.splats},
-                  {"Keys", buffers.pairs.keys()},
-                  {"Values", buffers.pairs.values()}},
-                 {{"view_begin", views.begin}, {"view_end", views.end}});
+  count(dispatcher, plan, group, buffers);
+  PairVariant variant(plan);
+  variant.subgroups = context.limits().subgroups_of_32;
+  dispatcher.run(
+      context.program("pairs.comp", variant),
+      gl::DispatchSize::indirect(buffers.pair_arguments, offsetof(shared::DispatchArguments, scan_x)),
+      {{"Frame", buffers.parameters},
+       {"OrderArguments", drawn},
+       {"PairArguments", buffers.pair_arguments},
+       {"Views", buffers.views},
+       {"RegionRows", buffers.region_rows},
+       {"Order", buffers.order.values()},
+       {"PairOffsets", buffers.pair_offsets},
+       {"CoverageInOrder", buffers.coverage_in_order},
+       {"Splats", buffers.splats},
+       {"Keys", buffers.pairs.keys()},
+       {"Values", buffers.pairs.values()}},
+      {{"view_begin", views.begin}, {"view_end", views.end}});
 }
 
 }  // namespace binosplat::render

@@ -16,26 +16,27 @@ std::uint32_t pixels_along(std::uint32_t tiles, std::uint32_t first, std::uint32
 
 }  // namespace
 
-void probe(gl::Dispatcher& dispatcher, const FrameShape& shape, FrameBuffers& buffers) {
-  if (!shape.probe) return;
-  const shared::View& exact = shape.views.back();
-  const auto side = static_cast<std::uint32_t>(shape.settings.tile_size);
-  dispatcher.run(dispatcher.context().program("probe.comp", {{"TILE_SIZE", std::to_string(side)}}),
-                 gl::Work::threads(std::uint64_t{exact.tiles_x} * exact.tiles_y * side * side, THREADS),
-                 {{"Frame", buffers.parameters},
-                  {"Views", buffers.views},
-                  {"Colours", buffers.colours},
-                  {"FrameCounters", buffers.counters}});
+void probe(gl::Dispatcher& dispatcher, const FramePlan& plan, FrameBuffers& buffers) {
+  if (!plan.probe) return;
+  const shared::View& exact = plan.views.back();
+  const auto side = static_cast<std::uint32_t>(plan.settings.tile_size);
+  dispatcher.run(
+      dispatcher.context().program("probe.comp", gl::Number{"TILE_SIZE", side, 33}),
+      gl::DispatchSize::threads(std::uint64_t{exact.tiles_x} * exact.tiles_y * side * side, THREADS),
+      {{"Frame", buffers.parameters},
+       {"Views", buffers.views},
+       {"Colours", buffers.colours},
+       {"FrameCounters", buffers.counters}});
 }
 
-Probed probed(const FrameShape& shape, const shared::Counters& counters) {
+Probed probed(const FramePlan& plan, const shared::Counters& counters) {
   const auto sum_of = [](std::uint32_t low, std::uint32_t high) {
     return (high * 0x1p32 + low) / PROBE_SCALE;
   };
   const double sum = sum_of(counters.probe_low, counters.probe_high);
   const double squares = sum_of(counters.probe_squares_low, counters.probe_squares_high);
-  const shared::View& exact = shape.views.back();
-  const auto side = static_cast<std::uint32_t>(shape.settings.tile_size);
+  const shared::View& exact = plan.views.back();
+  const auto side = static_cast<std::uint32_t>(plan.settings.tile_size);
   const double pixels =
       static_cast<double>(pixels_along(exact.tiles_x, exact.shift_x, exact.pitch, side, exact.width)) *
       pixels_along(exact.tiles_y, exact.shift_y, exact.pitch, side, exact.height);

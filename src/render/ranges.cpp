@@ -1,7 +1,9 @@
 #include <algorithm>
+#include <array>
 #include <cstddef>
 
 #include "render/stages.h"
+#include "render/variants.h"
 
 namespace binosplat::render {
 
@@ -9,29 +11,31 @@ namespace {
 
 // The dispatch after it must not need them.
 void start_clear(gl::Dispatcher& dispatcher, const gl::Buffer& ranges, std::uint32_t lists) {
-  dispatcher.start(dispatcher.context().program("ranges_clear.comp"), gl::Work::threads(2 * lists, THREADS),
-                   {{"Ranges", ranges}}, {{"count", 2 * lists}});
+  dispatcher.start(dispatcher.context().program("ranges_clear.comp"),
+                   gl::DispatchSize::threads(2 * lists, THREADS), {{"Ranges", ranges}},
+                   {{"count", 2 * lists}});
 }
 
 // Each tile's list out of its supertile's.
-void split_lists(gl::Dispatcher& dispatcher, const FrameShape& shape, FrameBuffers& buffers) {
+void split_lists(gl::Dispatcher& dispatcher, const FramePlan& plan, FrameBuffers& buffers) {
   gl::Context& context = dispatcher.context();
-  start_clear(dispatcher, buffers.tile_ranges, shape.tile_count());
+  start_clear(dispatcher, buffers.tile_ranges, plan.tile_count());
   // The third of the arguments, and below the fourth: arguments.comp.
   constexpr std::size_t third = 2 * sizeof(shared::DispatchArguments);
-  const gl::Work blocks =
-      gl::Work::indirect(buffers.pair_arguments, third + offsetof(shared::DispatchArguments, threads_x));
-  const auto program = [&](const char* writes) -> const gl::Program& {
-    return context.program("ranges_of_tiles.comp", {{"SUPERTILE_SIDE", std::to_string(shape.supertile_side)},
-                                                    subgroups_define(context),
-                                                    {"WRITES", writes}});
+  const gl::DispatchSize blocks = gl::DispatchSize::indirect(
+      buffers.pair_arguments, third + offsetof(shared::DispatchArguments, threads_x));
+  const auto program = [&](bool writes) -> const gl::Program& {
+    const std::array variant = {
+        gl::Number{"SUPERTILE_SIDE", static_cast<std::uint64_t>(plan.supertile_side), 3},
+        subgroups_number(context), gl::Number{"WRITES", writes, 2}};
+    return context.program("ranges_of_tiles.comp", variant);
   };
-  dispatcher.run(program("0"), blocks,
+  dispatcher.run(program(false), blocks,
                  {{"Arguments", buffers.pair_arguments},
                   {"Values", buffers.pairs.values()},
                   {"TileCounts", buffers.tile_counts}});
   buffers.scan.run(dispatcher, buffers.pair_arguments, 3, buffers.tile_counts);
-  dispatcher.run(program("1"), blocks,
+  dispatcher.run(program(true), blocks,
                  {{"Arguments", buffers.pair_arguments},
                   {"Values", buffers.pairs.values()},
                   {"TileCounts", buffers.tile_counts},
@@ -45,16 +49,16 @@ void split_lists(gl::Dispatcher& dispatcher, const FrameShape& shape, FrameBuffe
 
 }  // namespace
 
-void ranges(gl::Dispatcher& dispatcher, const FrameShape& shape, FrameBuffers& buffers) {
-  if (shape.supertile_side > 1) {
-    split_lists(dispatcher, shape, buffers);
+void ranges(gl::Dispatcher& dispatcher, const FramePlan& plan, FrameBuffers& buffers) {
+  if (plan.supertile_side > 1) {
+    split_lists(dispatcher, plan, buffers);
     return;
   }
-  start_clear(dispatcher, buffers.ranges, std::max(shape.supertile_count, shape.view_count()));
+  start_clear(dispatcher, buffers.ranges, std::max(plan.supertile_count, plan.view_count()));
   dispatcher.wait_for_writes();
   dispatcher.run(
       dispatcher.context().program("ranges.comp"),
-      gl::Work::indirect(buffers.pair_arguments, offsetof(shared::DispatchArguments, threads_x)),
+      gl::DispatchSize::indirect(buffers.pair_arguments, offsetof(shared::DispatchArguments, threads_x)),
       {{"Arguments", buffers.pair_arguments}, {"Keys", buffers.pairs.keys()}, {"Ranges", buffers.ranges}});
 }
 

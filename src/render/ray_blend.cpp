@@ -1,29 +1,30 @@
 #include "render/ray_blend.h"
 
+#include <array>
+
 #include "render/stages.h"
+#include "render/variants.h"
 
 namespace binosplat::render {
 
 FrameReport RayBlend::set_views(std::span<const shared::View> views, const FrameSettings& settings) {
-  FrameSettings between = exact_of(settings);
-  between.between = true;
-  return frame_.draw_until(Stage::ranges, views, between);
+  return frame_.draw_until(Stage::ranges, views, exact_of(settings), {.between_pixels = true});
 }
 
 double RayBlend::blend(std::uint32_t v, const gl::Buffer& rays, std::uint32_t count, gl::Buffer& colours,
                        gl::Buffer& z_sums) {
-  const FrameShape& shape = frame_.shape();
+  const FramePlan& plan = frame_.plan();
   FrameBuffers& buffers = frame_.buffers();
-  gl::Defines defines = {{"TILE_SIZE", std::to_string(shape.settings.tile_size)},
-                         {"SUPERTILE_SIDE", std::to_string(shape.supertile_side)},
-                         {"HALF", "0"}};
-  add_projection(defines, shape.perspective.projection);
+  const std::array variant = {
+      gl::Number{"TILE_SIZE", static_cast<std::uint64_t>(plan.settings.tile_size), 33},
+      gl::Number{"SUPERTILE_SIDE", static_cast<std::uint64_t>(plan.supertile_side), 3},
+      gl::Number{"HALF", 0, 2}, projection_number(plan.perspective.projection)};
   dispatcher_.begin_frame();
   dispatcher_.begin_stage("blend");
-  dispatcher_.run(context().program("blend_rays.comp", defines), gl::Work::threads(count, THREADS),
+  dispatcher_.run(context().program("blend_rays.comp", variant), gl::DispatchSize::threads(count, THREADS),
                   {{"Views", buffers.views},
-                   {"Ranges", buffers.ranges_of_tiles(shape)},
-                   {"Values", buffers.values_of_tiles(shape)},
+                   {"Ranges", buffers.ranges_of_tiles(plan)},
+                   {"Values", buffers.values_of_tiles(plan)},
                    {"Splats", buffers.splats},
                    {"Rays", rays},
                    {"Colours", colours},
@@ -32,7 +33,7 @@ double RayBlend::blend(std::uint32_t v, const gl::Buffer& rays, std::uint32_t co
                   {{"ray_count", count}, {"view_index", v}});
   dispatcher_.end_frame();
   const double ms = dispatcher_.wait_and_time().front().ms;
-  refuse_cut(context(), buffers.counters.read<shared::Counters>(1).front());
+  refuse_truncated(context(), buffers.counters.read<shared::Counters>(1).front());
   return ms;
 }
 

@@ -31,7 +31,8 @@ void Scatter::upload(
     frame_chunks(now.size(), std::max<std::size_t>(frame_chunk_numbers / words, 1), fill_some);
     dispatcher_.begin_frame();
     dispatcher_.begin_stage("scatter");
-    dispatcher_.run(dispatcher_.context().program("scatter.comp"), gl::Work::threads(word_count, THREADS),
+    dispatcher_.run(dispatcher_.context().program("scatter.comp"),
+                    gl::DispatchSize::threads(word_count, THREADS),
                     {{"Places", places_}, {"Records", records_}, {"Scattered", buffer}},
                     {{"words", static_cast<std::uint32_t>(words)},
                      {"word_count", static_cast<std::uint32_t>(word_count)}});

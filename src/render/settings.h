@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "base/image.h"
-#include "render/parts.h"
 #include "render/rules.h"
+#include "render/view_regions.h"
 #include "shared/axes.h"
 #include "shared/limits.h"
 
@@ -23,10 +23,10 @@ struct DepthTable {
   std::vector<float> bounds;
 };
 
-/// Whether frames measure what their successors go by.
+/// Whether frames measure the transmittance that their successors go by.
 constexpr bool measures(int transmittance) { return transmittance == TRANSMITTANCE_LAST; }
 
-/// Frames after a cut by which what they measure of themselves has settled; most have after three.
+/// Frames after a camera cut by which what they measure of themselves has settled; most have after three.
 constexpr int settling_frames = 8;
 
 struct FrameSettings {
@@ -35,9 +35,9 @@ struct FrameSettings {
   int transmittance = TRANSMITTANCE_ONE;  // TRANSMITTANCE_ of shared/axes.h: where Th takes T_upper from
   DepthTable depth_table;                 // with TRANSMITTANCE_DEPTH
   /// With a measured transmittance: measuring makes a frame slower, and what was measured holds for a while.
-  /// Measured are at least 1 of so many frames, so many after a cut, and whenever the eyes have gone a third
-  /// of the way to a cut (history.h). Models of Scaffold-GS measure every frame.
-  int record_every = settling_frames;
+  /// At least 1 of so many frames measures, so many after a camera cut do, and each whose eyes have gone a
+  /// third of the way to a cut (history.h). Models of Scaffold-GS measure every frame.
+  int measure_every = settling_frames;
   float tolerance = 0.0f;  // what Th may cost, in the unit of its rule (th_choices)
   /// Above 0: the frame chooses its tolerance itself, so that its PSNR against the exact frame comes to so
   /// many dB, both as 8 bits would keep them, in the view that errs most. A frame that looks draws some tiles
@@ -46,29 +46,20 @@ struct FrameSettings {
   /// more.
   float quality = 0.0f;
   int probe_tiles = 256;
-  /// At least 1 of so many frames looks, and each whose eyes have gone a fifteenth of the way to a cut since
-  /// the last that did (history.h): a degree, say.
-  int probe_every = 4;
   /// DECODE_; of Scaffold-GS only. Cyclopean needs views in pairs, the eyes at 2k and 2k + 1.
   int decode = DECODE_EYES;
   /// ORDER_ and PROJECTION_ of shared/axes.h; none: what the model was trained with. Together `distance` and
   /// `tangent` make pictures that do not depend on where the head is turned.
   std::optional<int> order, projection;
   bool anchor_cull = true;  // of Scaffold-GS: as trained; false: anchors out of sight are decoded, too
-  /// Of Scaffold-GS: an anchor whose Gaussians of the last frame Th would all leave out, whatever they had
-  /// become, is not decoded. With a measured transmittance, and no quality to probe.
-  bool anchor_reuse = true;
   /// px: 8, 16 or 32, on which an exact picture does not depend.
   int tile_size = TILE_SIZE_DEFAULT;
   int precision = PRECISION_FULL;  // PRECISION_: of the model, the splats and all that is made of them
-  /// With the lists of TILES_ELLIPSE: what is seen between the centres of pixels only, too (ray_blend.h).
-  bool between = false;
   /// The median is the depth at which T falls below a half: z_sum is then (1 - T) times that. With none z_sum
   /// is 0, and a frame takes some 3 % less time. Foveated frames have the mean, on canvases none.
-  /// `seen` is for frames by themselves.
   Depth depth = Depth::mean;
-  std::vector<ViewPart> parts;  // what is drawn of each view; empty: all of every view
-  glm::vec3 background{0.0f};   // behind the scene, for the probe only: the pictures are without
+  std::vector<ViewRegion> regions;  // what is drawn of each view; empty: all of every view
+  glm::vec3 background{0.0f};       // behind the scene, for the probe only: the pictures are without
 };
 
 /// Throws Error for values that no frame has and for settings that contradict each other: an exact rule with

@@ -40,8 +40,8 @@ void SquaredError::add_window(const gl::Buffer& colours, glm::uvec2 size, std::u
   wanted_.grow(std::int64_t{pixels_} * static_cast<std::int64_t>(sizeof(glm::vec4)));
   dispatcher_.begin_frame();
   dispatcher_.begin_stage("keep");
-  dispatcher_.run(dispatcher_.context().program("keep_window.comp"), gl::Work::threads(count, THREADS),
-                  {{"Colours", colours}, {"Wanted", wanted_}},
+  dispatcher_.run(dispatcher_.context().program("keep_window.comp"),
+                  gl::DispatchSize::threads(count, THREADS), {{"Colours", colours}, {"Wanted", wanted_}},
                   {{"pixel_count", count}, {"width", size.x}, {"first", first}, {"pitch", pitch}});
   dispatcher_.end_frame();
 }
@@ -51,7 +51,7 @@ double SquaredError::mean(const gl::Buffer& colours) {
   sums_.reserve(std::int64_t{groups_most} * 4);
   dispatcher_.begin_frame();
   dispatcher_.begin_stage("squared error");
-  dispatcher_.run(dispatcher_.context().program("squared_error.comp"), gl::Work::of_groups(groups),
+  dispatcher_.run(dispatcher_.context().program("squared_error.comp"), gl::DispatchSize::of_groups(groups),
                   {{"Colours", colours}, {"Wanted", wanted_}, {"Sums", sums_}},
                   {{"pixel_count", pixels_}, {"group_count", groups}, {"levels", levels_}});
   dispatcher_.end_frame();

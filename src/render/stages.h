@@ -7,36 +7,38 @@
 namespace binosplat::render {
 
 /// The Gaussians of a Scaffold-GS model for the eyes of the frame. Nothing to do for other models.
-void decode(gl::Dispatcher& dispatcher, const FrameShape& shape, const ModelBuffers& model,
+void decode(gl::Dispatcher& dispatcher, const FramePlan& plan, const ModelBuffers& model,
             const FrameBuffers& buffers);
 
 /// The Gaussians that an order group draws, in index order, as each of its views sees them: splats and tile
 /// counts by slot, depths.
-void project(gl::Dispatcher& dispatcher, const FrameShape& shape, std::uint32_t group,
+void project(gl::Dispatcher& dispatcher, const FramePlan& plan, std::uint32_t group, bool measures,
              const ModelBuffers& model, FrameBuffers& buffers);
 
 /// Their slots front to back, ties by index.
-void order(gl::Dispatcher& dispatcher, const FrameShape& shape, std::uint32_t group, FrameBuffers& buffers);
+void order(gl::Dispatcher& dispatcher, const FramePlan& plan, std::uint32_t group, FrameBuffers& buffers);
 
 /// (tile, splat) for every tile that a splat of the group touches, in depth order, appended to what is there.
-void pairs(gl::Dispatcher& dispatcher, const FrameShape& shape, std::uint32_t group, FrameBuffers& buffers);
+void pairs(gl::Dispatcher& dispatcher, const FramePlan& plan, std::uint32_t group, FrameBuffers& buffers);
 
 /// All pairs by tile, in depth order within a tile.
-void tile_sort(gl::Dispatcher& dispatcher, const FrameShape& shape, FrameBuffers& buffers);
+void tile_sort(gl::Dispatcher& dispatcher, const FramePlan& plan, FrameBuffers& buffers);
 
 /// Where each tile's list lies among the pairs.
-void ranges(gl::Dispatcher& dispatcher, const FrameShape& shape, FrameBuffers& buffers);
+void ranges(gl::Dispatcher& dispatcher, const FramePlan& plan, FrameBuffers& buffers);
 
 /// Tiles whose lists are long, which are blended by a launch of their own: once a frame, before its first
 /// blend.
-void find_long_lists(gl::Dispatcher& dispatcher, const FrameShape& shape, FrameBuffers& buffers);
+void find_long_lists(gl::Dispatcher& dispatcher, const FramePlan& plan, FrameBuffers& buffers);
 
-/// The pictures; and, for a transmittance that is measured, the most that each splat counted for.
-void blend(gl::Dispatcher& dispatcher, const FrameShape& shape, FrameBuffers& buffers);
+/// The pictures; and, where the frame `measures` the transmittance, the largest that each splat met.
+/// `tiles_a_splat`: of the last frame, 0: not known; the pictures do not depend on it.
+void blend(gl::Dispatcher& dispatcher, const FramePlan& plan, bool measures, double tiles_a_splat,
+           FrameBuffers& buffers);
 
-/// What the blend of the same lists comes by in each pixel, into `shown`: SHOW_ALPHAS to SHOW_MEDIAN_DEPTH of
-/// shared/axes.h. The pictures stay.
-void show(gl::Dispatcher& dispatcher, const FrameShape& shape, FrameBuffers& buffers, int what);
+/// A debug view of the same lists, into `debug_values`: SHOW_ALPHAS to SHOW_MEDIAN_DEPTH of shared/axes.h.
+/// The pictures stay.
+void blend_debug_view(gl::Dispatcher& dispatcher, const FramePlan& plan, int what, FrameBuffers& buffers);
 
 /// Other colours for the splats of a frame of one view: vec4 by slot.
 void recolour(gl::Dispatcher& dispatcher, std::uint32_t slots, const gl::Buffer& colours,
@@ -45,43 +47,35 @@ void recolour(gl::Dispatcher& dispatcher, std::uint32_t slots, const gl::Buffer&
 /// Adds alpha * T times `scale` times the picture in buffers.colours, which stays, over the pixels of each
 /// splat to `sums`: by channel, ivec2 of 64 bits, low first. No channel times `scale` may be larger than
 /// TRANSPOSED_SCALE.
-void blend_transposed(gl::Dispatcher& dispatcher, const FrameShape& shape, FrameBuffers& buffers, float scale,
+void blend_transposed(gl::Dispatcher& dispatcher, const FramePlan& plan, FrameBuffers& buffers, float scale,
                       const gl::Buffer& sums);
 
 /// Adds to `sums`, in channel 0 and multiples of 1 / CHANGE_SCALE, the squared change of each pixel of the
 /// picture in buffers.colours, which is theirs and stays, where the splat alone is left out.
-void blend_changes(gl::Dispatcher& dispatcher, const FrameShape& shape, FrameBuffers& buffers,
+void blend_changes(gl::Dispatcher& dispatcher, const FramePlan& plan, FrameBuffers& buffers,
                    const gl::Buffer& sums);
 
-/// Adds alpha T^2, while T is SEEN_LEAST at least, over the pixels of each splat to `sums`, in multiples of
-/// 1 / SEEN_SCALE: by splat, SEEN_LOW_BITS of what each tile has, and those above.
-void blend_seen(gl::Dispatcher& dispatcher, const FrameShape& shape, FrameBuffers& buffers,
-                const gl::Buffer& sums);
+/// The visibility pass: adds alpha T^2, while T is VISIBILITY_LEAST at least, over the pixels of each splat
+/// to `sums`, in multiples of 1 / VISIBILITY_SCALE: by splat, VISIBILITY_LOW_BITS of what each tile has, and
+/// those above.
+void blend_visibility(gl::Dispatcher& dispatcher, const FramePlan& plan, FrameBuffers& buffers,
+                      const gl::Buffer& sums);
 
 /// Throws Error(out_of_memory) where the driver ended a list of splats before its end.
-void refuse_cut(const gl::Context& context, const shared::Counters& counters);
+void refuse_truncated(const gl::Context& context, const shared::Counters& counters);
 
-/// Keeps what was measured for the next frame, and tells the median depth. Nothing to do where nothing is
-/// measured.
-void remember(gl::Dispatcher& dispatcher, const FrameShape& shape, FrameBuffers& buffers);
+/// Keeps what the frame measured for the next one, and tells the median depth. Nothing to do for a frame that
+/// neither measures nor has a probe.
+void keep_measured(gl::Dispatcher& dispatcher, const FramePlan& plan, bool measures, FrameBuffers& buffers);
 
 /// Sums up the squared error in the probe's tiles. Nothing to do without one.
-void probe(gl::Dispatcher& dispatcher, const FrameShape& shape, FrameBuffers& buffers);
+void probe(gl::Dispatcher& dispatcher, const FramePlan& plan, FrameBuffers& buffers);
 
 /// What probe() summed up.
-Probed probed(const FrameShape& shape, const shared::Counters& counters);
-
-/// WITH_SUBGROUPS, for programs that do the same by subgroups of 32 where there are some.
-gl::Defines::value_type subgroups_define(const gl::Context& context);
+Probed probed(const FramePlan& plan, const shared::Counters& counters);
 
 /// Fills the arguments of the pairs that are to be made, ARGUMENTS_PAIRS, or sorted, ARGUMENTS_ALL_PAIRS.
-void count_pairs(gl::Dispatcher& dispatcher, const FrameShape& shape, std::uint32_t kind,
+void count_pairs(gl::Dispatcher& dispatcher, const FramePlan& plan, std::uint32_t kind,
                  FrameBuffers& buffers);
-
-/// Shader defines of a projection, PROJECTION_ of shared/axes.h.
-void add_projection(gl::Defines& defines, int projection);
-
-/// Shader defines that pick the variant of a stage which decides pairs.
-gl::Defines pair_defines(const FrameShape& shape);
 
 }  // namespace binosplat::render

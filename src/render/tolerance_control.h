@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
+#include "render/frame_plan.h"
 #include "render/settings.h"
-#include "render/shape.h"
 
 namespace binosplat::render {
 

@@ -135,7 +135,7 @@ class Viewer {
   float follow_levels(double period_ms) {
     const render::Frame& frame = frame_.frame();
     if (!beside_.levels || frame.views().empty()) return settings_.frame.quality;
-    const auto views = std::span(frame.views()).first(frame.shape().asked);
+    const auto views = std::span(frame.views()).first(frame.plan().asked);
     return beside_.levels(views, period_ms, times_.back());
   }
 

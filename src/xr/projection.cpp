@@ -41,7 +41,7 @@ std::size_t place_of(std::size_t view, std::size_t views) {
 
 // What an inset covers of the wide view it lies in is not drawn there, but for a margin that runtimes may mix
 // both in. Both look the same way from the same place.
-void take_hole(const XrView& wide, const XrView& inset, const glm::ivec2& size, render::ViewPart& part) {
+void take_hole(const XrView& wide, const XrView& inset, const glm::ivec2& size, render::ViewRegion& part) {
   if (std::memcmp(&wide.pose, &inset.pose, sizeof(XrPosef)) != 0) return;
   constexpr double margin = 0.1;  // of the inset's sides
   const double left = std::tan(wide.fov.angleLeft), right = std::tan(wide.fov.angleRight);
@@ -172,10 +172,10 @@ void Projection::take_masks() {
 }
 
 // By the order in which they are drawn; none where all of every view is.
-std::vector<render::ViewPart> Projection::parts_of(const render::FrameSettings& settings,
-                                                   std::span<const XrView> located,
-                                                   std::span<const glm::ivec2> sizes) const {
-  std::vector<render::ViewPart> parts(located.size());
+std::vector<render::ViewRegion> Projection::parts_of(const render::FrameSettings& settings,
+                                                     std::span<const XrView> located,
+                                                     std::span<const glm::ivec2> sizes) const {
+  std::vector<render::ViewRegion> parts(located.size());
   for (std::size_t k = 0; k < located.size(); ++k) {
     const std::size_t at = place_of(k, located.size());
     parts[at].columns = visible_columns(eyes_[k].visible, located[k].fov, sizes[at], settings.tile_size);
@@ -187,7 +187,7 @@ std::vector<render::ViewPart> Projection::parts_of(const render::FrameSettings& 
       parts[at].low_pass_share = low_pass_share(located[k], sizes[at], located[k + 2], sizes[inset]);
     }
   }
-  const auto is_whole = [](const render::ViewPart& part) {
+  const auto is_whole = [](const render::ViewRegion& part) {
     return part.is_whole() && part.tolerance_share == 1.0f;
   };
   if (std::all_of(parts.begin(), parts.end(), is_whole)) parts.clear();
@@ -230,7 +230,7 @@ render::FrameReport Projection::draw(stereo::FoveatedFrame& frame, std::span<con
     if (gaze) foveation.gaze = gaze_of(*gaze, located);
     report = frame.draw(head.views, foveation, settings, {}, canvases.list);
   } else {
-    settings.parts = parts_of(settings, located, sizes);
+    settings.regions = parts_of(settings, located, sizes);
     report = frame.frame().draw(head.views, settings, {}, canvases.list, 2);
   }
   const gl::Buffer& colours = foveates() ? frame.colours() : frame.frame().colours();

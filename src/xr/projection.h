@@ -64,9 +64,9 @@ class Projection {
   /// Of formats that the runtime offers.
   void make_colours(std::span<const std::int64_t> offered);
   void make_depths(std::span<const std::int64_t> offered);
-  std::vector<render::ViewPart> parts_of(const render::FrameSettings& settings,
-                                         std::span<const XrView> located,
-                                         std::span<const glm::ivec2> sizes) const;
+  std::vector<render::ViewRegion> parts_of(const render::FrameSettings& settings,
+                                           std::span<const XrView> located,
+                                           std::span<const glm::ivec2> sizes) const;
 
   const Session& session_;
   ProjectionSettings settings_;

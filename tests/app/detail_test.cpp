@@ -17,7 +17,7 @@ TEST(GaussiansThatFit, LeaveRoomForAModelThatGrows) {
     model.room = app::gaussians_that_fit(asked, {}, views, 0, in_parts);
     render::FrameSettings settings;
     settings.depth_table = {1.0f, {1.0f}};
-    const render::MemoryNeeds needs = render::memory_needs(render::make_shape(views, settings, model));
+    const render::MemoryNeeds needs = render::memory_needs(render::make_plan(views, settings, model));
     return 1e-6 * static_cast<double>(needs.model + needs.frame);
   };
   for (const double asked : {50.0, 400.0, 900.0, 4000.0}) {

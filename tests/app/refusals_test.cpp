@@ -271,7 +271,7 @@ TEST_F(Refusals, Numbers) {
   for (Words line : {Words{"render", model, "-o", out, "--quality"},
                      {"trim", model, "-o", to, "--quality"},
                      {"calibrate", model, "-o", to, "--quality"},
-                     {"study", model, "--rules", "--target"},
+                     {"study", model, "--motion", "--target"},
                      {"study", model, "--path", model, "--quality"}}) {
     line.emplace_back();
     for (const char* number : {"nan", "inf", "4000", "-40", "9.9", "100.1"}) {

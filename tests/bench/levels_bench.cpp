@@ -69,10 +69,10 @@ void draw_in_windows(render::Frame& frame, const Views& views, render::SquaredEr
   const std::uint32_t columns = (across / windows + BLEND_CELL - 1) / BLEND_CELL * BLEND_CELL;
   for (std::uint32_t v = 0; v < views.size(); ++v) {
     for (std::uint32_t left = 0; left < across; left += columns) {
-      render::ViewPart window;
+      render::ViewRegion window;
       window.corner = {left, 0};
       window.size = {std::min(columns, across - left), height};
-      frame.draw({&views[v], 1}, {.parts = {window}});
+      frame.draw({&views[v], 1}, {.regions = {window}});
       pictures.add_window(frame.colours(), window.size, v * across * height + left, across);
     }
   }

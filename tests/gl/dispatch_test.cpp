@@ -47,7 +47,7 @@ std::vector<std::uint32_t> counted(std::uint32_t count, std::uint32_t groups) {
   Buffer items(context, "items");
   items.upload(std::vector<std::uint32_t>(count));
   Dispatcher dispatcher(context);
-  dispatcher.run(context.program("count_up.comp"), Work::threads(count, 256), {{"Items", items}},
+  dispatcher.run(context.program("count_up.comp"), DispatchSize::threads(count, 256), {{"Items", items}},
                  {{"count", count}});
   context.limit_groups(before);
   return items.read<std::uint32_t>(count);
@@ -78,12 +78,12 @@ TEST(Dispatcher, RefusesWhatIsForgotten) {
   Buffer items(context, "items");
   Dispatcher dispatcher(context);
   const Program& program = context.program("count_up.comp");
-  EXPECT_THROW(dispatcher.run(program, Work::of_groups(1), {}, {{"count", 1}}), std::logic_error);
-  EXPECT_THROW(dispatcher.run(program, Work::of_groups(1), {{"Items", items}}, {{"count", 1}}),
+  EXPECT_THROW(dispatcher.run(program, DispatchSize::of_groups(1), {}, {{"count", 1}}), std::logic_error);
+  EXPECT_THROW(dispatcher.run(program, DispatchSize::of_groups(1), {{"Items", items}}, {{"count", 1}}),
                std::logic_error);  // no storage
   items.reserve(1024);
-  EXPECT_THROW(dispatcher.run(program, Work::of_groups(1), {{"Items", items}}, {}), std::logic_error);
-  EXPECT_NO_THROW(dispatcher.run(program, Work::of_groups(1), {{"Items", items}}, {{"count", 1}}));
+  EXPECT_THROW(dispatcher.run(program, DispatchSize::of_groups(1), {{"Items", items}}, {}), std::logic_error);
+  EXPECT_NO_THROW(dispatcher.run(program, DispatchSize::of_groups(1), {{"Items", items}}, {{"count", 1}}));
 }
 
 TEST(Dispatcher, TimesEachStage) {
@@ -94,7 +94,7 @@ TEST(Dispatcher, TimesEachStage) {
   items.upload(std::vector<std::uint32_t>(count));
   Dispatcher dispatcher(context);
   const auto work = [&] {
-    dispatcher.run(context.program("count_up.comp"), Work::threads(count, 256), {{"Items", items}},
+    dispatcher.run(context.program("count_up.comp"), DispatchSize::threads(count, 256), {{"Items", items}},
                    {{"count", count}});
   };
   for (int frame = 0; frame < 2; ++frame) {

@@ -74,7 +74,7 @@ TEST(Floors, RatesAreMeasuredAndAFramesWorkIsCounted) {
   work.tile_sort_passes = report.tile_sort_passes;
   EXPECT_GE(report.order_passes, 2u);
   EXPECT_EQ(report.tile_sort_passes, 1u);
-  const std::vector<Image> shown = frame.read_shown(SHOW_ALPHAS);
+  const std::vector<Image> shown = frame.read_debug_view(SHOW_ALPHAS);
   for (const float alphas : shown.front().data) work.alphas += static_cast<double>(alphas);
   EXPECT_GT(work.alphas, work.pixels);
   work.stages = times.front().stages;
@@ -88,7 +88,7 @@ TEST(RunTimes, OutliersDoNotMoveWhatAFrameTakes) {
   const auto add = [&](double ms, bool recorded) {
     report.total_ms = ms;
     report.stages[0].ms = ms / 2;
-    report.recorded = recorded;
+    report.measured = recorded;
     frames.push_back(report);
   };
   for (const double ms : {1.0, 1.0, 1.0, 1.0, 50.0, 1.0}) add(ms, false);  // one slow frame

@@ -69,7 +69,7 @@ TEST(Refit, FindsTheColoursThatThePicturesAreOf) {
   EXPECT_EQ(once.sh, fitted(start, right, few).sh) << "not the same bits twice";
   EXPECT_LT(once.judged[static_cast<std::size_t>(once.best_round)], once.judged[0] - 10.0);
 
-  const test::FaultyShaders faulty("blending.glsl", "sum < 0 ? 0xffffffffu", "false ? 0xffffffffu");
+  const test::FaultyShaders faulty("blend_measure.glsl", "sum < 0 ? 0xffffffffu", "false ? 0xffffffffu");
   const Refitted wrong = fitted(start, right, few);
   EXPECT_GT(wrong.judged[static_cast<std::size_t>(wrong.best_round)], found.judged[0] - 5.0);
 }

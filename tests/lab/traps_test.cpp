@@ -75,7 +75,7 @@ TEST(Traps, AStillCameraSettlesAndDoesNotDrift) {
   const StabilityCase still = case_named("still");
   const Rule rule{.th = TH_SQUARED, .transmittance = TRANSMITTANCE_LAST, .tolerance = tolerance_of_40_db};
   render::FrameSettings settings = rule.settings();
-  settings.record_every = 1;  // frames that do not measure show what the next one shows
+  settings.measure_every = 1;  // frames that do not measure show what the next one shows
   const auto shown = frames_of(still, settings, 60);
   const double early = median(shown, &ShownTrap::db, 5, 20), late = median(shown, &ShownTrap::db, 40, 60);
   EXPECT_NEAR(late, early, 0.5);

@@ -40,15 +40,16 @@ std::vector<shared::View> eyes_at_anchors(double near_plane = near_default) {
 
 /// Anchors that are not decoded in the second frame of a camera that stands still, over all decodings.
 std::size_t reused(const Model& model, const FrameSettings& settings,
-                   const std::vector<shared::View>& views = eyes_at_anchors()) {
+                   const std::vector<shared::View>& views = eyes_at_anchors(),
+                   const render::Workings& workings = {}) {
   render::Frame frame(test::gl_context(), model);
-  frame.draw(views, settings);
-  frame.draw_until(render::Stage::decode, views, settings);
+  frame.draw(views, settings, workings);
+  frame.draw_until(render::Stage::decode, views, settings, workings);
   std::size_t count = 0;
   const std::vector<render::ModelBuffers::Page>& pages = frame.model_buffers().pages;
   for (std::size_t p = 0; p < pages.size(); ++p) {
     const auto kept = frame.buffers().kept[p]->read<std::uint32_t>(std::size_t{pages[p].anchors->count} *
-                                                                   frame.shape().decoding_count());
+                                                                   frame.plan().decoding_count());
     count +=
         std::count_if(kept.begin(), kept.end(), [](std::uint32_t bits) { return (bits & KEPT_HIDDEN) != 0; });
   }
@@ -65,9 +66,7 @@ TEST(AnchorReuse, WhatIsHiddenIsNotDecodedAgain) {
     FrameSettings other = way;
     other.decode = DECODE_CYCLOPEAN;
     EXPECT_GT(reused(model, other), 250u) << th_choices[way.th].name;
-    other = way;
-    other.anchor_reuse = false;
-    EXPECT_EQ(reused(model, other), 0u);
+    EXPECT_EQ(reused(model, way, eyes_at_anchors(), {.anchor_reuse = false}), 0u);
     other = way;
     other.transmittance = TRANSMITTANCE_ONE;
     EXPECT_EQ(reused(model, other), 0u) << "nothing is known of what is hidden";
@@ -76,13 +75,11 @@ TEST(AnchorReuse, WhatIsHiddenIsNotDecodedAgain) {
 
 TEST(AnchorReuse, ChangesNoBitWhileNothingMoves) {
   const Model model = wall_of_anchors();
-  for (FrameSettings way : {squared_last, peripheral}) {
+  for (const FrameSettings& way : {squared_last, peripheral}) {
     render::Frame with(test::gl_context(), model), without(test::gl_context(), model);
     for (int n = 0; n < 12; ++n) {
-      way.anchor_reuse = true;
       const render::FrameReport report = with.draw(eyes_at_anchors(), way);
-      way.anchor_reuse = false;
-      EXPECT_EQ(without.draw(eyes_at_anchors(), way).pairs, report.pairs) << n;
+      EXPECT_EQ(without.draw(eyes_at_anchors(), way, {.anchor_reuse = false}).pairs, report.pairs) << n;
       const std::vector<Picture> a = with.read_pictures(), b = without.read_pictures();
       for (std::size_t v = 0; v < 2; ++v) EXPECT_TRUE(same_bits(a[v], b[v])) << th_choices[way.th].name << n;
     }

@@ -19,7 +19,7 @@ namespace {
 /// What one decoding holds, by id.
 std::map<std::size_t, reference::Decoded> read_decoding(test::StageRun& run, std::uint32_t decoding) {
   std::map<std::size_t, reference::Decoded> found;
-  const std::uint32_t offsets = run.shape.offset_count;
+  const std::uint32_t offsets = run.plan.offset_count;
   const std::vector<render::ModelBuffers::Page>& pages = run.drawn.model_buffers().pages;
   for (std::size_t p = 0; p < pages.size(); ++p) {
     const render::ModelBuffers::Page& page = pages[p];
@@ -87,9 +87,9 @@ Difference difference_of(const Model& model, const std::vector<shared::View>& vi
                          const render::FrameSettings& settings = {}) {
   test::StageRun run(model, views, settings);
   run.run_until(render::Stage::decode);
-  const std::uint32_t each = run.shape.views_per_decoding;
+  const std::uint32_t each = run.plan.views_per_decoding;
   Difference all;
-  for (std::uint32_t d = 0; d < run.shape.decoding_count(); ++d) {
+  for (std::uint32_t d = 0; d < run.plan.decoding_count(); ++d) {
     const std::span<const shared::View> own =
         std::span(views).subspan(d * each, std::min<std::size_t>(each, views.size() - d * each));
     const Difference one =

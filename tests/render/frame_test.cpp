@@ -171,17 +171,18 @@ TEST(Frame, ALossLeavesOutBlocksAndWhatIsBehindDarkOnes) {
     FrameSettings settings = {
         .th = TH_SQUARED, .tolerance = static_cast<float>(tolerance), .tile_size = tile_size};
     const Picture drawn = draw(model, view, settings);
-    const auto off = [&](const reference::Loss& loss) {
-      lists.loss = loss;
+    const auto off = [&](const reference::Approximation& approximation) {
+      lists.approximation = approximation;
       return differing_share(drawn, reference::blend(splats, lists, view));
     };
-    const reference::Loss loss = reference::loss_of(TILES_ELLIPSE, TH_SQUARED, tolerance);
-    EXPECT_LE(off(loss), 0.002) << width << " " << tile_size;
+    const reference::Approximation approximation =
+        reference::approximation_of(TILES_ELLIPSE, TH_SQUARED, tolerance);
+    EXPECT_LE(off(approximation), 0.002) << width << " " << tile_size;
     EXPECT_GT(off({true, 0.0}), 0.02) << width << " " << tile_size;
     if (tile_size != 8) {
-      EXPECT_GT(off({false, loss.last_light}), 0.02) << width << " " << tile_size;
+      EXPECT_GT(off({false, approximation.dark_transmittance}), 0.02) << width << " " << tile_size;
     }
-    EXPECT_GT(off({true, 2.0 * loss.last_light}), 0.02) << width << " " << tile_size;
+    EXPECT_GT(off({true, 2.0 * approximation.dark_transmittance}), 0.02) << width << " " << tile_size;
     settings.transmittance = TRANSMITTANCE_LAST;  // of which nothing is known yet
     EXPECT_TRUE(same_bits(std::vector{draw(model, view, settings)}, std::vector{drawn}));
     EXPECT_TRUE(
@@ -189,7 +190,7 @@ TEST(Frame, ALossLeavesOutBlocksAndWhatIsBehindDarkOnes) {
   }
 }
 
-// What a frame with a loss leaves out of blocks, and what lies behind dark ones, gets light all the same.
+// What a frame approximately leaves out of blocks, and what lies behind dark ones, gets light all the same.
 TEST(Frame, ALossIsNotTakenForDarkness) {
   const Model model = fog(3000);
   const shared::View view = make_view(test::front_camera(90, 70, 90));
@@ -199,15 +200,16 @@ TEST(Frame, ALossIsNotTakenForDarkness) {
       splats, reference::make_lists(splats, reference::depth_order(splats), view, TILES_ELLIPSE), view);
   const auto darkened = [&] {
     render::Frame frame(test::gl_context(), model);
-    frame.draw(std::vector{view},
-               {.th = TH_SQUARED, .transmittance = TRANSMITTANCE_LAST, .record_every = 1, .tolerance = 0.3f});
+    frame.draw(
+        std::vector{view},
+        {.th = TH_SQUARED, .transmittance = TRANSMITTANCE_LAST, .measure_every = 1, .tolerance = 0.3f});
     int count = 0;
     for (const render::MeasuredGaussian& m : frame.read_measured(0))
       count += light[m.index] > 0.02 && m.transmittance < 0.9 * light[m.index] ? 1 : 0;
     return count;
   };
   EXPECT_EQ(darkened(), 0);
-  const test::FaultyShaders faulty("blending.glsl", "is_met[p][k] = a >= float(ALPHA_MIN)",
+  const test::FaultyShaders faulty("blend_measure.glsl", "is_met[p][k] = alpha >= float(ALPHA_MIN)",
                                    "is_met[p][k] = weights[p][k] > 0.0");
   EXPECT_GT(darkened(), 3);
 }
@@ -228,9 +230,10 @@ TEST(Frame, NoToleranceMakesAPictureOfNoNumbers) {
   };
   const FrameSettings settings = {.th = TH_SQUARED, .tolerance = 100.0f};
   EXPECT_TRUE(is_finite(settings));
-  const test::FaultyShaders faulty("pixels.glsl",
-                                   "min(float(LAST_LIGHT_MOST), float(LAST_LIGHT) * sqrt(tolerance))",
-                                   "float(LAST_LIGHT) * sqrt(tolerance)");
+  const test::FaultyShaders faulty(
+      "blend_approximate.glsl",
+      "min(float(DARK_TRANSMITTANCE_MOST), float(DARK_TRANSMITTANCE) * sqrt(tolerance))",
+      "float(DARK_TRANSMITTANCE) * sqrt(tolerance)");
   EXPECT_FALSE(is_finite(settings));
 }
 
@@ -368,7 +371,7 @@ TEST(Frame, IsTheSameWithoutSubgroups) {
   render::Frame with(context, model);
   for (int n = 0; n < 3; ++n) with.draw(both);
   const std::vector<Picture> drawn = with.read_pictures();
-  with.draw(std::span(both).first(1));  // of another shape
+  with.draw(std::span(both).first(1));  // of another plan
   with.draw(both);
   EXPECT_TRUE(test::same_bits(with.read_pictures()[1], drawn[1]));
   context.use_subgroups(false);
@@ -395,7 +398,8 @@ TEST(Frame, SaysBeforehandWhatMemoryItStartsWith) {
   for (const auto& [transmittance, supertile_side] :
        {std::pair{TRANSMITTANCE_ONE, 1}, {TRANSMITTANCE_LAST, 1}, {TRANSMITTANCE_ONE, 2}}) {
     const FrameSettings settings{.transmittance = transmittance};
-    const auto needs = render::memory_needs(render::make_shape(rig.views, settings, model, supertile_side));
+    const auto needs = render::memory_needs(
+        render::make_plan(rig.views, settings, model, {.supertile_side = supertile_side}));
     render::Frame frame(test::gl_context(), model);
     EXPECT_EQ(test::gl_context().allocated_bytes() - before, needs.model);
     const double taken = static_cast<double>(

@@ -32,7 +32,7 @@ TEST_F(SharedModel, FramesDrawItAsTheyDrawTheirOwn) {
 TEST_F(SharedModel, IsOnTheGpuOnceInEachPrecisionThatAFrameHolds) {
   const std::int64_t before = test::gl_context().allocated_bytes();
   const auto needs = [&](int precision) {
-    return render::memory_needs(render::make_shape(views, {.precision = precision}, model)).model;
+    return render::memory_needs(render::make_plan(views, {.precision = precision}, model)).model;
   };
   const auto gpu_model = std::make_shared<GpuModel>(test::gl_context(), model);
   const auto held = [&] { return test::gl_context().allocated_bytes() - before; };
@@ -110,10 +110,10 @@ TEST_F(SharedModel, IsDrawnAsItWasUploaded) {
   append(model, more, 0, more.count());
   EXPECT_EQ(frame.draw(views).visible, visible);
   EXPECT_TRUE(test::same_bits(frame.read_pictures()[0], before));
-  EXPECT_EQ(frame.shape().gaussian_count, 20'000u);
+  EXPECT_EQ(frame.plan().gaussian_count, 20'000u);
   gpu_model->reload();
   EXPECT_GT(frame.draw(views).visible, visible) << "planted: nothing more";
-  EXPECT_EQ(frame.shape().gaussian_count, 25'000u);
+  EXPECT_EQ(frame.plan().gaussian_count, 25'000u);
 }
 
 // Growing by a few blocks, within room that was made at once and beyond it, with a frame in between.

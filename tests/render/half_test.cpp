@@ -81,7 +81,7 @@ TEST(Half, TakesTheReferencesStages) {
 TEST(Half, NeedsLessMemory) {
   const Model model = test::random_model(46, 1000, 3);
   const auto needs = [&](int precision) {
-    return render::memory_needs(render::make_shape(eyes_for_half(), {.precision = precision}, model));
+    return render::memory_needs(render::make_plan(eyes_for_half(), {.precision = precision}, model));
   };
   EXPECT_EQ(needs(PRECISION_FULL).model, 1000 * (48 + 192));
   EXPECT_EQ(needs(PRECISION_HALF).model, 1000 * (32 + 96));

@@ -93,7 +93,7 @@ TEST(LinearBlends, LargeSumsCarry) {
   EXPECT_TRUE(right());
   for (const auto& [sought, fault] : {std::pair{"0u) + (before + uint(sum) < before ?", "0u) + (false ?"},
                                       std::pair{"sum < 0 ? 0xffffffffu", "false ? 0xffffffffu"}}) {
-    const test::FaultyShaders faulty("blending.glsl", sought, fault);
+    const test::FaultyShaders faulty("blend_measure.glsl", sought, fault);
     EXPECT_FALSE(right()) << fault;
   }
 }
@@ -154,7 +154,7 @@ TEST(LinearBlends, AreLinearAndTheirTransposeIsOne) {
   }
   for (const auto& [shader, sought, fault] :
        {std::tuple{"recolour.comp", "colours[slot].rgb", "max(colours[slot].rgb, 0.0)"},
-        std::tuple{"pixels.glsl", "colours[place_of(view, p)] : vec4",
+        std::tuple{"blend_measure.glsl", "colours[place_of(view, p)] : vec4",
                    "colours[place_of(view, 0u)] : vec4"}}) {
     const test::FaultyShaders faulty(shader, sought, fault);
     const Found found = find({});
@@ -195,7 +195,7 @@ TEST(LinearBlends, KnowWhatChangesWithoutOne) {
   };
   EXPECT_LE(differing(), 1u);
   EXPECT_GT(*std::max_element(expected.begin(), expected.end()), 1.0);
-  const test::FaultyShaders faulty("blending.glsl", "weight * (behind - own)", "weight * own");
+  const test::FaultyShaders faulty("blend_measure.glsl", "weight * (behind - own)", "weight * own");
   EXPECT_GT(differing(), 10u);
 }
 

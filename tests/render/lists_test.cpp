@@ -23,10 +23,10 @@ Offers offers(const Model& model, const std::vector<shared::View>& views, std::u
   const auto counters = run.frame.counters.read<shared::Counters>(1).front();
   EXPECT_EQ(counters.overflow, 0u);
   const std::uint32_t pairs = supertile_side == 1 ? counters.pairs : counters.tile_pairs;
-  const auto values = run.frame.values_of_tiles(run.shape).read<std::uint32_t>(pairs);
+  const auto values = run.frame.values_of_tiles(run.plan).read<std::uint32_t>(pairs);
   const auto ranges =
-      run.frame.ranges_of_tiles(run.shape).read<std::uint32_t>(2 * std::size_t{run.shape.tile_count()});
-  const shared::View& view = run.shape.views[v];
+      run.frame.ranges_of_tiles(run.plan).read<std::uint32_t>(2 * std::size_t{run.plan.tile_count()});
+  const shared::View& view = run.plan.views[v];
   const auto side = static_cast<std::uint32_t>(supertile_side);
   const std::uint32_t across = (view.tiles_x + side - 1) / side;
   Offers offered(std::size_t{view.tiles_x} * view.tiles_y);
@@ -35,8 +35,8 @@ Offers offers(const Model& model, const std::vector<shared::View>& views, std::u
       const std::uint32_t list = view.supertile_offset + y / side * across + x / side;
       const std::uint32_t tile = list * side * side + y % side * side + x % side;
       for (std::uint32_t k = ranges[2 * tile]; k < ranges[2 * tile + 1]; ++k) {
-        EXPECT_EQ(values[k] / run.shape.slots, v);
-        offered[y * view.tiles_x + x].push_back(values[k] % run.shape.slots);
+        EXPECT_EQ(values[k] / run.frame.slots, v);
+        offered[y * view.tiles_x + x].push_back(values[k] % run.frame.slots);
       }
     }
   }
@@ -102,7 +102,7 @@ TEST(Lists, OfSeveralTilesChangeNoPicture) {
   EXPECT_TRUE(same_frames(model, {.precision = PRECISION_HALF}));
   // Every frame measures what the next goes by.
   EXPECT_TRUE(same_frames(
-      model, {.th = TH_SQUARED, .transmittance = TRANSMITTANCE_LAST, .record_every = 1, .tolerance = 0.5f},
+      model, {.th = TH_SQUARED, .transmittance = TRANSMITTANCE_LAST, .measure_every = 1, .tolerance = 0.5f},
       3));
 }
 
@@ -180,7 +180,7 @@ TEST(Lists, OfSeveralTilesAreShownAlike) {
     frame.draw(two_views(), {.th = TH_SQUARED, .tolerance = 0.5f}, {.supertile_side = supertile_side});
     std::vector<std::vector<float>> all;
     for (int what = SHOW_ALPHAS; what <= SHOW_MEDIAN_DEPTH; ++what)
-      for (const Image& image : frame.read_shown(what)) all.push_back(image.data);
+      for (const Image& image : frame.read_debug_view(what)) all.push_back(image.data);
     return all;
   };
   const auto own = told(1), shared = told(2);

@@ -15,10 +15,9 @@ TEST(OrderKeys, HoldEveryDepthOfTheBoxInAsFewBitsAsTheFarthestNeeds) {
   for (const glm::dvec3& eye : {glm::dvec3(0, 0, -5), glm::dvec3(900, 30, -70), glm::dvec3(0.1, 0.2, 0.3)}) {
     Camera camera = test::front_camera(64, 48, 50);
     camera.position = eye;
-    auto shape = render::make_shape(std::vector{make_view(camera)}, {}, model);
-    render::limit_keys(shape, box);
-    const shared::View& view = shape.views.front();
-    const render::OrderGroup group = shape.groups.front();
+    const auto plan = render::make_plan(std::vector{make_view(camera)}, {}, model, {}, {.box = box});
+    const shared::View& view = plan.views.front();
+    const render::OrderGroup group = plan.groups.front();
     std::uint32_t most = 0;
     for (int corner = 0; corner < 8; ++corner) {
       const glm::dvec3 p(corner & 1 ? box.high.x : box.low.x, corner & 2 ? box.high.y : box.low.y,
@@ -39,10 +38,10 @@ TEST(OrderKeys, WithABitLessTheOrderIsWrong) {
   const auto depths_in_order = [&](std::uint32_t bits_less) {
     test::StageRun run(model, views);
     run.run_until(render::Stage::project);
-    render::FrameShape shape = run.shape;
-    shape.groups.front().key_bits -= bits_less;
+    render::FramePlan plan = run.plan;
+    plan.groups.front().key_bits -= bits_less;
     gl::Dispatcher dispatcher(test::gl_context());
-    render::order(dispatcher, shape, 0, run.frame);
+    render::order(dispatcher, plan, 0, run.frame);
     const auto splats = run.frame.splats.read<shared::Splat>(run.indices.front().size());
     std::vector<float> depths;
     for (const std::uint32_t slot : run.frame.order.values().read<std::uint32_t>(splats.size()))

@@ -18,15 +18,15 @@ Lists gpu_lists(test::StageRun& run) {
   const auto counters = run.frame.counters.read<shared::Counters>(1).front();
   EXPECT_EQ(counters.overflow, 0u);
   const auto values = run.frame.pairs.values().read<std::uint32_t>(counters.pairs);
-  const auto ranges = run.frame.ranges.read<std::uint32_t>(2 * std::size_t{run.shape.supertile_count});
-  Lists lists(run.shape.supertile_count);
+  const auto ranges = run.frame.ranges.read<std::uint32_t>(2 * std::size_t{run.plan.supertile_count});
+  Lists lists(run.plan.supertile_count);
   std::size_t total = 0;
-  for (std::uint32_t t = 0; t < run.shape.supertile_count; ++t) {
+  for (std::uint32_t t = 0; t < run.plan.supertile_count; ++t) {
     for (std::uint32_t k = ranges[2 * t]; k < ranges[2 * t + 1]; ++k) {
-      const std::uint32_t view = values[k] / run.shape.slots;
+      const std::uint32_t view = values[k] / run.frame.slots;
       const std::uint32_t gaussian =
-          run.indices[run.shape.views[view].order_group][values[k] % run.shape.slots];
-      lists[t].push_back(view * run.shape.gaussian_count + gaussian);
+          run.indices[run.plan.views[view].order_group][values[k] % run.frame.slots];
+      lists[t].push_back(view * run.plan.gaussian_count + gaussian);
     }
     total += lists[t].size();
   }
@@ -34,16 +34,16 @@ Lists gpu_lists(test::StageRun& run) {
   return lists;
 }
 
-Lists reference_lists(const Model& model, const render::FrameShape& shape) {
+Lists reference_lists(const Model& model, const render::FramePlan& plan) {
   Lists lists;
-  for (std::uint32_t v = 0; v < shape.view_count(); ++v) {
-    const auto splats = reference::project_all(model, shape.views[v]);
-    const auto tiles = reference::make_lists(splats, reference::depth_order(splats), shape.views[v],
-                                             shape.settings.tiles, shape.settings.tile_size);
+  for (std::uint32_t v = 0; v < plan.view_count(); ++v) {
+    const auto splats = reference::project_all(model, plan.views[v]);
+    const auto tiles = reference::make_lists(splats, reference::depth_order(splats), plan.views[v],
+                                             plan.settings.tiles, plan.settings.tile_size);
     for (std::uint32_t t = 0; t + 1 < tiles.begin.size(); ++t) {
       auto& list = lists.emplace_back(tiles.gaussians.begin() + tiles.begin[t],
                                       tiles.gaussians.begin() + tiles.begin[t + 1]);
-      for (std::uint32_t& i : list) i += v * shape.gaussian_count;
+      for (std::uint32_t& i : list) i += v * plan.gaussian_count;
     }
   }
   return lists;
@@ -79,7 +79,7 @@ TEST_P(Pairs, EqualTheReferences) {
                              make_view(test::front_camera(131, 222, 200))};
   test::StageRun run(model, views, settings);
   const Lists lists = gpu_lists(run);
-  const Lists expected = reference_lists(model, run.shape);
+  const Lists expected = reference_lists(model, run.plan);
   ASSERT_EQ(lists.size(), expected.size());
   EXPECT_GT(total(expected), 5000u);
   // fp32 may decide otherwise only at a boundary: 0.02 % (docs/method.md 8).
@@ -140,7 +140,7 @@ TEST(PairsOf, SplatsOnTileEdgesAndBeyondThePictureEqualTheReferences) {
   for (const int tile_size : {8, 16, 32}) {
     test::StageRun run(model, views, {.tile_size = tile_size});
     const Lists lists = gpu_lists(run);
-    EXPECT_LE(differing_entries(lists, reference_lists(model, run.shape)), 1u) << tile_size;
+    EXPECT_LE(differing_entries(lists, reference_lists(model, run.plan)), 1u) << tile_size;
     EXPECT_GT(total(lists), 100u);
   }
 }

@@ -189,7 +189,7 @@ TEST_P(InPerspective, EachEyeEqualsItselfAloneBitForBit) {
   for (const double cant : {0.0, 5.0}) {
     const auto rig = stereo::make_rig(wide_camera(), {.ipd = 0.06, .cant_degrees = cant});
     frame.draw(rig.views);
-    EXPECT_EQ(frame.shape().groups.size(), cant == 0.0 || GetParam().order == ORDER_DISTANCE ? 1u : 2u);
+    EXPECT_EQ(frame.plan().groups.size(), cant == 0.0 || GetParam().order == ORDER_DISTANCE ? 1u : 2u);
     const auto both = frame.read_pictures();
     for (const std::size_t eye : {0, 1}) {
       frame.draw(std::span(&rig.views[eye], 1));

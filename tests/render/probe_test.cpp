@@ -21,11 +21,11 @@ struct ProbeRun {
     run.run_until(render::Stage::probe);
     const auto counters = run.frame.counters.read<shared::Counters>(1).front();
     EXPECT_EQ(counters.overflow, 0u);
-    if (probe) error = render::probed(run.shape, counters).squared_error;
+    if (probe) error = render::probed(run.plan, counters).squared_error;
   }
 
   Picture picture(std::uint32_t v) const {
-    const shared::View& view = run.shape.views.at(v);
+    const shared::View& view = run.plan.views.at(v);
     Picture out(static_cast<int>(view.width), static_cast<int>(view.height));
     out.colour = run.frame.colours.read<glm::vec4>(out.colour.size(), view.pixel_offset);
     return out;
@@ -185,10 +185,10 @@ TEST(Probe, IsNoPictureAndChangesNoneNorWhatIsMeasured) {
 TEST(Quality, TheFrameIsThatOfTheToleranceItTells) {
   const Model model = test::random_model(99, 3000, 1);
   const auto views = eyes_for_probe(96, 80);
-  FrameSettings settings = {.th = TH_SQUARED, .quality = 38, .probe_tiles = 4, .probe_every = 1};
+  FrameSettings settings = {.th = TH_SQUARED, .quality = 38, .probe_tiles = 4};
   render::Frame steered(test::gl_context(), model), given(test::gl_context(), model);
   for (int n = 0; n < 6; ++n) {
-    const render::FrameReport report = steered.draw(views, settings);
+    const render::FrameReport report = steered.draw(views, settings, {.probe_every = 1});
     FrameSettings same = settings;
     same.quality = 0;
     same.tolerance = report.tolerance;

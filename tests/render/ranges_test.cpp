@@ -12,7 +12,7 @@ using Ranges = std::vector<std::uint32_t>;  // begin and end of each list
 
 Ranges on_gpu(test::StageRun& run) {
   run.run_until(render::Stage::ranges);
-  return run.frame.ranges.read<std::uint32_t>(2 * std::size_t{run.shape.supertile_count});
+  return run.frame.ranges.read<std::uint32_t>(2 * std::size_t{run.plan.supertile_count});
 }
 
 // Of the keys as the GPU has sorted them; 0 to 0 for a list without pairs.
@@ -20,7 +20,7 @@ Ranges expected(test::StageRun& run) {
   const std::uint32_t count = run.frame.counters.read<shared::Counters>(1).front().pairs;
   const auto keys = run.frame.pairs.keys().read<std::uint32_t>(count);
   Ranges ranges;
-  for (std::uint32_t list = 0; list < run.shape.supertile_count; ++list) {
+  for (std::uint32_t list = 0; list < run.plan.supertile_count; ++list) {
     const auto [begin, end] = std::equal_range(keys.begin(), keys.end(), list);
     ranges.push_back(begin == end ? 0 : static_cast<std::uint32_t>(begin - keys.begin()));
     ranges.push_back(begin == end ? 0 : static_cast<std::uint32_t>(end - keys.begin()));

@@ -60,7 +60,7 @@ TEST(Settings, ThatContradictAreNamed) {
       {{.th = TH_SQUARED, .tolerance = infinite}, "--tolerance inf"},
       {{.th = TH_SQUARED, .quality = nan}, "--quality nan"},
       {{.tile_size = 12}, "--tile 12"},
-      {{.record_every = 0}, "measuring one of 0 frames"},
+      {{.measure_every = 0}, "measuring one of 0 frames"},
   };
   for (const auto& [settings, said] : wrong) {
     EXPECT_TRUE(test::fails_saying([&, s = settings] { check(s, "--"); }, {said}));

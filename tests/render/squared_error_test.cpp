@@ -59,10 +59,10 @@ TEST(SquaredError, OfWindowsIsThatOfTheWholePictures) {
   whole.add(frame.colours(), 2 * 80 * 48);
   for (std::uint32_t v = 0; v < 2; ++v) {
     for (std::uint32_t left = 0; left < 80; left += BLEND_CELL) {
-      render::ViewPart window;
+      render::ViewRegion window;
       window.corner = {left, 0};
       window.size = {std::min(BLEND_CELL, 80 - left), 48};
-      frame.draw({&views[v], 1}, {.parts = {window}});
+      frame.draw({&views[v], 1}, {.regions = {window}});
       windows.add_window(frame.colours(), window.size, v * 80 * 48 + left, 80);
       misplaced.add_window(frame.colours(), window.size, v * 80 * 48 + 80 - window.size.x - left, 80);
     }

@@ -73,7 +73,7 @@ struct StageRun {
   void run_until(render::Stage stage) {
     drawn.draw_until(stage, views, settings, workings, probe);
     indices.clear();
-    for (std::size_t group = 0; stage > render::Stage::decode && group < shape.groups.size(); ++group) {
+    for (std::size_t group = 0; stage > render::Stage::decode && group < plan.groups.size(); ++group) {
       const auto arguments = frame.drawn[group]->arguments.read<shared::DispatchArguments>(1);
       indices.push_back(frame.drawn[group]->indices.read<std::uint32_t>(arguments.front().count));
     }
@@ -86,15 +86,15 @@ struct StageRun {
     std::vector<std::uint32_t> tiles;
   };
   Projected projected(std::uint32_t view) const {
-    const std::size_t all = std::size_t{shape.slots} * shape.view_count();
+    const std::size_t all = std::size_t{frame.slots} * plan.view_count();
     const auto splats = frame.splats.read<shared::Splat>(all);
     const auto tiles = frame.coverages.read<std::uint32_t>(all);
-    Projected out{std::vector<shared::Splat>(shape.gaussian_count),
-                  std::vector<std::uint32_t>(shape.gaussian_count)};
-    const auto& of_group = indices[shape.views[view].order_group];
+    Projected out{std::vector<shared::Splat>(plan.gaussian_count),
+                  std::vector<std::uint32_t>(plan.gaussian_count)};
+    const auto& of_group = indices[plan.views[view].order_group];
     for (std::size_t slot = 0; slot < of_group.size(); ++slot) {
-      out.splats[of_group[slot]] = splats[std::size_t{view} * shape.slots + slot];
-      out.tiles[of_group[slot]] = tiles[slot * shape.view_count() + view];
+      out.splats[of_group[slot]] = splats[std::size_t{view} * frame.slots + slot];
+      out.tiles[of_group[slot]] = tiles[slot * plan.view_count() + view];
     }
     return out;
   }
@@ -104,7 +104,7 @@ struct StageRun {
   render::FrameSettings settings;
   render::Workings workings;
   std::optional<render::Probe> probe;
-  const render::FrameShape& shape = drawn.shape();
+  const render::FramePlan& plan = drawn.plan();
   render::FrameBuffers& frame = drawn.buffers();
   std::vector<std::vector<std::uint32_t>> indices;  // Gaussian by slot, for each order group
 };

@@ -54,11 +54,11 @@ TEST_P(TileSort, IsAStableSortByList) {
 }
 
 TEST_P(TileSort, ShortOfTheHighestDigitItIsNone) {
-  render::FrameShape shape = run.shape;
-  ASSERT_GT(shape.supertile_bits(), 8u);  // a digit
-  shape.supertile_count = 2;              // planted fault: bits for so many lists
+  render::FramePlan plan = run.plan;
+  ASSERT_GT(plan.supertile_bits(), 8u);  // a digit
+  plan.supertile_count = 2;              // planted fault: bits for so many lists
   gl::Dispatcher dispatcher(test::gl_context());
-  render::tile_sort(dispatcher, shape, run.frame);
+  render::tile_sort(dispatcher, plan, run.frame);
   EXPECT_NE(read_pairs(run), sorted(before));
 }
 

@@ -183,7 +183,7 @@ TEST(Foveate, AroundTheInsetLiesTheContextAndNoHole) {
   // Planted: the hole reaches a pixel too far; the context lies half a pixel beside its place.
   const Foveation foveation{.inset_degrees = 40, .context_scale = 0.55, .seam = 0};
   {
-    const test::FaultyShaders faulty("tiles/parts.glsl", "!is_within(tile.x, span_of(row.y))",
+    const test::FaultyShaders faulty("tiles/regions.glsl", "!is_within(tile.x, span_of(row.y))",
                                      "!is_within(tile.x + 1u, span_of(row.y))");
     EXPECT_GT(around_error(draw(model, views, foveation, {.tile_size = 8}), model), 1e-2);
   }

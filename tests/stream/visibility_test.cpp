@@ -136,11 +136,11 @@ TEST(Visibility, IsWhatTheReferenceSees) {
   };
   for (const std::uint32_t page : {0u, 10000u}) EXPECT_LE(differing(page), model.count() / 500);
   {
-    const test::FaultyShaders faulty("blending.glsl", "weight * transmittance[p] : 0.0", "weight : 0.0");
+    const test::FaultyShaders faulty("blend_measure.glsl", "weight * transmittance[p] : 0.0", "weight : 0.0");
     EXPECT_GT(differing(0), model.count() / 10);
   }
   {
-    const test::FaultyShaders faulty("blending.glsl", "transmittance[p] >= float(SEEN_LEAST)",
+    const test::FaultyShaders faulty("blend_measure.glsl", "transmittance[p] >= float(VISIBILITY_LEAST)",
                                      "transmittance[p] >= 0.2");
     EXPECT_GT(differing(0), model.count() / 10);
   }
@@ -183,7 +183,8 @@ TEST(Visibility, IsTheSameWhateverSummedItUp) {
     EXPECT_TRUE(misses("blend_subgroups.comp", "at_hand = value_at(batch + self)",
                        "at_hand = value_at(begin + self)"));
   }
-  const test::FaultyShaders faulty("blending.glsl", "atomicAdd(measured[2u * splat + 1u], high)", "high");
+  const test::FaultyShaders faulty("blend_measure.glsl", "atomicAdd(measured[2u * splat + 1u], high)",
+                                   "high");
   EXPECT_FALSE(is_usual(32));
 }
 
@@ -270,20 +271,20 @@ TEST(Visibility, IsInPixelsToo) {
                        .area;
   const auto in_pixels = [&](const FrameSettings& settings) {
     render::Frame frame(test::gl_context(), model);
-    frame.draw({&view, 1}, settings);
+    frame.draw({&view, 1}, settings, {.visibility_as_depth = true});
     const Picture picture = frame.read_pictures().front();
     return std::accumulate(picture.z_sum.begin(), picture.z_sum.end(), 0.0);
   };
   for (const int projection : {PROJECTION_AFFINE, PROJECTION_TANGENT}) {
-    FrameSettings settings{.projection = projection, .depth = Depth::seen};
+    FrameSettings settings{.projection = projection};
     const double bound = projection == PROJECTION_AFFINE ? 1e-4 : 0.2;  // another one shows a little else
     EXPECT_NEAR(in_pixels(settings), all, bound * all);
     settings.tile_size = 8;
     EXPECT_NEAR(in_pixels(settings), all, bound * all);
   }
-  const test::FaultyShaders faulty("blending.glsl", "z_sum[p] += weight * transmittance[p]",
+  const test::FaultyShaders faulty("blend_depth.glsl", "z_sum[p] += weight * transmittance[p]",
                                    "z_sum[p] += weight");
-  EXPECT_GT(std::abs(in_pixels({.depth = Depth::seen}) - all), 0.1 * all);
+  EXPECT_GT(std::abs(in_pixels({}) - all), 0.1 * all);
 }
 
 TEST(Visibility, ComparesPictures) {

@@ -372,8 +372,8 @@ TEST_F(XrView, FourViewsShareOneOrder) {
   // The wide views stand for what the insets show in fewer pixels.
   const double wide = 48.0 / (std::tan(0.646) + std::tan(0.855)),
                fine = 64.0 / (std::tan(0.25) + std::tan(0.2));
-  const render::ViewPart fewer = {.low_pass_share = static_cast<float>(wide * wide / (fine * fine))};
-  const std::vector<Picture> pictures = expected(frame, start(), {.parts = {fewer, fewer, {}, {}}});
+  const render::ViewRegion fewer = {.low_pass_share = static_cast<float>(wide * wide / (fine * fine))};
+  const std::vector<Picture> pictures = expected(frame, start(), {.regions = {fewer, fewer, {}, {}}});
   for (std::size_t k = 2; k < 4; ++k) EXPECT_TRUE(log.colours(frame, k) == bytes_of(pictures[k])) << k;
   for (std::size_t k = 0; k < 2; ++k) {
     // Under the inset nothing need be drawn; all else is.

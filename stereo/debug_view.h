@@ -19,24 +19,24 @@ constexpr bool is_map(int show) { return show >= SHOW_DIFFERENCE; }
 /// yellow, whose lightness alone tells.
 glm::vec3 map_colour(float number);
 
-struct Shown {
+struct DebugPictures {
   std::vector<Picture> pictures;  // one a view; maps have no depth, and T is 1 where there is no number
   std::optional<double> most;     // of a map: the number of the brightest colour; the darkest is 0
 };
 
 /// Makes them of the last frame that was drawn, whatever it went by.
-class Show {
+class DebugView {
  public:
   /// Of frames of this model. Context as for render::Frame.
-  explicit Show(std::shared_ptr<render::GpuModel> model) : model_(std::move(model)) {}
+  explicit DebugView(std::shared_ptr<render::GpuModel> model) : model_(std::move(model)) {}
 
   /// `pictures` are the frame's own, `views` what it was asked to draw, left eye first. All views go by one
   /// range, which ends at the first of 1, 2, 5, 10 and so on that 99 of 100 pixels do not exceed, of a
   /// depth 80. SHOW_SPLIT shows the share `split` of each picture's width as it is, and the rest exactly.
   /// Throws Error as render::Frame does.
-  Shown make(int what, render::Frame& frame, std::span<const shared::View> views,
-             std::span<const Picture> pictures, const render::FrameSettings& settings,
-             const Background& background, double split = 0.5);
+  DebugPictures make(int what, render::Frame& frame, std::span<const shared::View> views,
+                     std::span<const Picture> pictures, const render::FrameSettings& settings,
+                     const Background& background, double split = 0.5);
 
   /// The exact pictures of these views. They are drawn by a frame of their own, so that what the other one
   /// remembers stays.

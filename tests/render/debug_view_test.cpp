@@ -1,4 +1,4 @@
-// What the blend comes by (Frame::read_shown) against the reference's count of the same lists.
+// What the blend comes by (Frame::read_debug_view) against the reference's count of the same lists.
 
 #include "base/error.h"
 #include "reference/blend_pixel.h"
@@ -71,7 +71,7 @@ struct ShowTest : testing::Test {
 TEST_F(ShowTest, TellsWhatTheReferenceCounts) {
   frame.draw(std::vector{view}, {}, test::given(render::Stage::ranges));
   for (int what = SHOW_ALPHAS; what <= SHOW_MEDIAN_DEPTH; ++what) {
-    const Image told = frame.read_shown(what).at(0);
+    const Image told = frame.read_debug_view(what).at(0);
     // Rounding turns an alpha at tau or an early stop in a few pixels.
     EXPECT_LE(differing(told, what), 0.002) << show_choices[what].name;
     for (int other = SHOW_ALPHAS; other <= SHOW_MEDIAN_DEPTH; ++other) {
@@ -89,7 +89,7 @@ TEST_F(ShowTest, LeavesPicturesAndMemoryAsTheyAre) {
   for (int n = 0; n < 3; ++n) {
     frame.draw(views, settings);
     other.draw(views, settings);
-    for (int what = SHOW_ALPHAS; what <= SHOW_MEDIAN_DEPTH; ++what) frame.read_shown(what);
+    for (int what = SHOW_ALPHAS; what <= SHOW_MEDIAN_DEPTH; ++what) frame.read_debug_view(what);
   }
   EXPECT_TRUE(test::same_bits(frame.read_pictures()[0], other.read_pictures()[0]));
 }
@@ -98,7 +98,7 @@ TEST_F(ShowTest, OfPairsAndOtherTiles) {
   const shared::View right = make_view(test::front_camera(33, 50, 40));
   for (const int tile : {8, 32}) {
     frame.draw(std::vector{view, right}, {.tile_size = tile});
-    const auto told = frame.read_shown(SHOW_VISIBLE);
+    const auto told = frame.read_debug_view(SHOW_VISIBLE);
     ASSERT_EQ(told.size(), 2u);
     EXPECT_LE(differing(told[0], SHOW_VISIBLE), 0.002) << tile;
     EXPECT_EQ(told[1].width, 33);
@@ -112,7 +112,7 @@ TEST_F(ShowTest, PicturesWithTheMedianDepthAreTheSameOtherwise) {
     render::FrameSettings settings{.projection = projection};
     frame.draw(std::vector{view}, settings);
     const Picture mean = frame.read_pictures()[0];
-    const Image told = frame.read_shown(SHOW_MEDIAN_DEPTH)[0];
+    const Image told = frame.read_debug_view(SHOW_MEDIAN_DEPTH)[0];
     settings.depth = Depth::median;
     frame.draw(std::vector{view}, settings);
     const Picture median = frame.read_pictures()[0];
@@ -132,7 +132,7 @@ TEST_F(ShowTest, PicturesWithTheMedianDepthAreTheSameOtherwise) {
 
 TEST_F(ShowTest, TheReferencesOwnBlendHasNone) {
   frame.draw(std::vector{view}, {}, test::given(render::Stage::blend));
-  EXPECT_THROW(frame.read_shown(SHOW_ALPHAS), Error);
+  EXPECT_THROW(frame.read_debug_view(SHOW_ALPHAS), Error);
 }
 
 }  // namespace

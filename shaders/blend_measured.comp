@@ -12,7 +12,7 @@ layout(std430, binding = 0) readonly buffer Arguments { DispatchArguments argume
 layout(std430, binding = 5) readonly buffer OrderKeys { uint order_keys[]; };  // sorted
 layout(std430, binding = 6) buffer FrameCounters { Counters counters; };
 uniform uint nearest_key;  // to be added to an order key: then the bits of a depth
-#if RECORDS
+#if MEASURES
 layout(std430, binding = 1) readonly buffer Indices { uint indices[]; };         // Gaussian of each slot
 layout(std430, binding = 2) readonly buffer Coverages { uint coverages[]; };  // (slot, view): supertiles.glsl
 layout(std430, binding = 3) readonly buffer Measured { uint measured[]; };       // by splat
@@ -25,7 +25,7 @@ void main() {
   uint slot = thread_index();
   if (slot >= arguments[0].count) return;
   if (slot == 0u) counters.median_depth = order_keys[arguments[0].count / 2u] + nearest_key;
-#if RECORDS
+#if MEASURES
   for (uint v = view_begin; v < view_end; ++v) {
     if (coverages[slot * frame.view_count + v] == 0u) continue;
     float most = uintBitsToFloat(measured[splat_of(slot, v)]);

@@ -14,7 +14,7 @@ namespace binosplat {
 namespace {
 
 using render::FrameSettings;
-using render::ViewPart;
+using render::ViewRegion;
 using test::draw;
 using test::same_bits;
 
@@ -38,8 +38,8 @@ Picture cut(const Picture& whole, const glm::uvec2& corner, const glm::uvec2& ex
   return out;
 }
 
-FrameSettings with(FrameSettings settings, std::vector<ViewPart> parts) {
-  settings.parts = std::move(parts);
+FrameSettings with(FrameSettings settings, std::vector<ViewRegion> parts) {
+  settings.regions = std::move(parts);
   return settings;
 }
 
@@ -54,7 +54,7 @@ testing::AssertionResult windows_are_right(const Model& model, const FrameSettin
   };
   const Window windows[] = {
       {{64, 32}, {64, 96}, {64, 96}}, {{0, 96}, {96, 0}, {96, 54}}, {{160, 0}, {40, 32}, {40, 32}}};
-  std::vector<ViewPart> parts;
+  std::vector<ViewRegion> parts;
   for (const Window& window : windows) parts.push_back({.corner = window.corner, .size = window.size});
   const std::vector<Picture> drawn =
       draw(model, std::vector(std::size(windows), view), with(settings, parts), workings);
@@ -91,8 +91,8 @@ TEST(Parts, AWindowBesideItsPlaceIsCaught) {
 }
 
 // Ragged columns of the rows of tiles, some empty, and a hole.
-ViewPart ragged(int tile) {
-  ViewPart part{.hole_begin = {50, 40}, .hole_end = {130, 150}};
+ViewRegion ragged(int tile) {
+  ViewRegion part{.hole_begin = {50, 40}, .hole_end = {130, 150}};
   const auto tiles = (size + tile - 1) / tile;
   for (int row = 0; row < tiles.y; ++row) {
     const std::uint32_t begin = row % 3, end = static_cast<std::uint32_t>(tiles.x - row % 4);
@@ -102,7 +102,7 @@ ViewPart ragged(int tile) {
 }
 
 // Whether a part's tiles are drawn, by another rule than the shaders'.
-bool shows(const ViewPart& part, int tile, int x, int y) {
+bool shows(const ViewRegion& part, int tile, int x, int y) {
   const glm::uvec2 at(x / tile, y / tile), columns = part.columns[at.y];
   if (at.x < columns.x || at.x >= columns.y) return false;
   const glm::uvec2 first = at * static_cast<std::uint32_t>(tile);
@@ -110,7 +110,7 @@ bool shows(const ViewPart& part, int tile, int x, int y) {
   return glm::any(glm::lessThan(first, part.hole_begin)) || glm::any(glm::greaterThan(end, part.hole_end));
 }
 
-Picture masked(Picture whole, const ViewPart& part, int tile) {
+Picture masked(Picture whole, const ViewRegion& part, int tile) {
   for (int y = 0; y < whole.height; ++y) {
     for (int x = 0; x < whole.width; ++x) {
       const auto k = static_cast<std::size_t>(std::ptrdiff_t{y} * whole.width + x);
@@ -131,7 +131,7 @@ TEST(Parts, WhatIsNotShownIsBackgroundAndTheRestAsBefore) {
         {FrameSettings{.tile_size = 8}, 2},
         {FrameSettings{.tiles = TILES_ALL}, 1},
         {FrameSettings{.th = TH_SQUARED, .tolerance = 0.05f, .projection = PROJECTION_TANGENT}, 2}}) {
-    const ViewPart part = ragged(settings.tile_size);
+    const ViewRegion part = ragged(settings.tile_size);
     const render::Workings workings{.supertile_side = side};
     const std::vector<Picture> whole = draw(model, views, settings, workings);
     const auto drawn = draw(model, views, with(settings, {part, {}}), workings);
@@ -143,14 +143,14 @@ TEST(Parts, WhatIsNotShownIsBackgroundAndTheRestAsBefore) {
 
 // How long the lists of a view's tiles are; only those that no hole hides.
 std::vector<std::uint32_t> list_sizes(const Model& model, const FrameSettings& settings, int supertile_side,
-                                      const ViewPart& shown) {
+                                      const ViewRegion& shown) {
   test::StageRun run(model, {view_of_centre(100)}, settings, supertile_side);
   run.run_until(render::Stage::ranges);
   const auto counters = run.frame.counters.read<shared::Counters>(1).front();
   EXPECT_EQ(counters.overflow, 0u);
   const auto ranges =
-      run.frame.ranges_of_tiles(run.shape).read<std::uint32_t>(2 * std::size_t{run.shape.tile_count()});
-  const shared::View& view = run.shape.views.front();
+      run.frame.ranges_of_tiles(run.plan).read<std::uint32_t>(2 * std::size_t{run.plan.tile_count()});
+  const shared::View& view = run.plan.views.front();
   const auto side = static_cast<std::uint32_t>(supertile_side);
   const std::uint32_t across = (view.tiles_x + side - 1) / side;
   std::vector<std::uint32_t> sizes;
@@ -164,7 +164,7 @@ std::vector<std::uint32_t> list_sizes(const Model& model, const FrameSettings& s
       const auto in_span = shown.columns[y].x <= x && x < shown.columns[y].y;
       const bool is_shown = shows(shown, px, static_cast<int>(x) * px, static_cast<int>(y) * px);
       sizes.push_back(is_shown ? length : 0);
-      if (!is_shown && !in_span && !settings.parts.empty()) {
+      if (!is_shown && !in_span && !settings.regions.empty()) {
         EXPECT_EQ(length, 0u) << x << " " << y;
       }
     }
@@ -178,7 +178,7 @@ TEST(Parts, WhatIsNotShownMakesNoPairs) {
   for (const int tiles : {TILES_ELLIPSE, TILES_SNUG, TILES_AABB}) {
     for (const int side : {1, 2}) {
       const FrameSettings whole{.tiles = tiles};
-      const ViewPart part = ragged(whole.tile_size);
+      const ViewRegion part = ragged(whole.tile_size);
       EXPECT_EQ(list_sizes(model, with(whole, {part}), side, part), list_sizes(model, whole, side, part))
           << tiles_choices[tiles].name << " " << side;
     }
@@ -187,10 +187,10 @@ TEST(Parts, WhatIsNotShownMakesNoPairs) {
 
 TEST(Parts, AColumnTooManyOrTooFewIsCaught) {
   const Model model = test::random_model(43, 3000, 1, 0.75);
-  const ViewPart part = ragged(16);
+  const ViewRegion part = ragged(16);
   const auto right = list_sizes(model, {}, 1, part);
   for (const char* fault : {"min(columns.y, drawn.y - 1u)", "min(columns.y, drawn.y + 1u)"}) {
-    const test::FaultyShaders faulty("tiles/parts.glsl", "min(columns.y, drawn.y)", fault);
+    const test::FaultyShaders faulty("tiles/regions.glsl", "min(columns.y, drawn.y)", fault);
     testing::TestPartResultArray said;
     {
       const testing::ScopedFakeTestPartResultReporter caught(&said);
@@ -221,12 +221,12 @@ TEST(Parts, AHoleThatMovesIsACut) {
   const std::vector views = {view_of_centre(100)};
   render::Frame frame(test::gl_context(), model);
   for (int n = 0; n < 3; ++n) frame.draw(views, before);
-  EXPECT_TRUE(frame.draw(views, before).remembered);
+  EXPECT_TRUE(frame.draw(views, before).used_measured);
   const FrameSettings same_tiles = with(last, {{.hole_begin = {30, 31}, .hole_end = {97, 98}}});
-  EXPECT_TRUE(frame.draw(views, same_tiles).remembered) << "of which only whole tiles count";
-  EXPECT_FALSE(frame.draw(views, now).remembered);
+  EXPECT_TRUE(frame.draw(views, same_tiles).used_measured) << "of which only whole tiles count";
+  EXPECT_FALSE(frame.draw(views, now).used_measured);
   EXPECT_TRUE(same_bits(frame.read_pictures().front(), draw(model, views[0], now)));
-  EXPECT_FALSE(frame.draw(views, last).remembered) << "nor where there is none";
+  EXPECT_FALSE(frame.draw(views, last).used_measured) << "nor where there is none";
 }
 
 TEST(Parts, AViewGoesByItsShareOfTheTolerance) {
@@ -247,7 +247,7 @@ TEST(Parts, AViewGoesByItsShareOfTheTolerance) {
 }
 
 // In the middle of a picture so many px wide, of a lens so many px long: of one small Gaussian.
-float middle_coverage(const Model& model, int width, const ViewPart& part, int projection) {
+float middle_coverage(const Model& model, int width, const ViewRegion& part, int projection) {
   const Camera camera = test::front_camera(width, width, 3.0 * width);
   const Picture drawn = draw(model, make_view(camera), with({.projection = projection}, {part}));
   const auto middle = static_cast<std::size_t>(std::ptrdiff_t{width} / 2 * width + width / 2);
@@ -261,7 +261,7 @@ TEST(Parts, AGaussianIsAsBrightInFewerPixels) {
   for (const int projection : {PROJECTION_AFFINE, PROJECTION_TANGENT}) {
     // Odd sizes: the Gaussian lies in the middle of a pixel. Its variance, px^2, in 41 px of 101:
     const double small = std::pow(41 * 3.0 * scale / 2, 2), share = std::pow(41.0 / 101, 2);
-    const ViewPart part{.low_pass_share = static_cast<float>(share)};
+    const ViewRegion part{.low_pass_share = static_cast<float>(share)};
     const double expected = opacity * (small + share * KERNEL_PX2) / (small + KERNEL_PX2);
     EXPECT_NEAR(middle_coverage(model, 41, part, projection), expected, 1e-5) << projection;
     // Planted: as trained, which is for 101 px.
@@ -288,7 +288,7 @@ std::vector<shared::View> four_views(double cant) {
 
 TEST(Parts, OneDepthOrderServesFourViews) {
   const Model model = test::random_model(46, 3000, 1, 0.75);
-  const ViewPart inset{.corner = {64, 32}, .size = {64, 64}};
+  const ViewRegion inset{.corner = {64, 32}, .size = {64, 64}};
   for (const double cant : {0.0, 6.0}) {
     for (const int order : {ORDER_DEPTH, ORDER_DISTANCE}) {
       const FrameSettings settings = with({.order = order}, {{}, inset, {}, inset});
@@ -313,7 +313,7 @@ TEST(Parts, OneDepthOrderServesFourViews) {
 TEST(Parts, AQualityIsThatOfWhatIsShown) {
   const Model model = test::random_model(97, 3000, 1);
   const std::vector views = {view_of_centre(100)};
-  const ViewPart part = ragged(16);
+  const ViewRegion part = ragged(16);
   const auto exact = draw(model, views[0], with({}, {part}));
   render::Frame frame(test::gl_context(), model);
   for (int n = 0; n < 3; ++n) {
@@ -326,14 +326,14 @@ TEST(Parts, AQualityIsThatOfWhatIsShown) {
 
 TEST(Parts, WrongOnesAreNamed) {
   const Model model = test::random_model(47, 10, 0);
-  const auto said = [&](const ViewPart& part, const FrameSettings& settings = {}) {
+  const auto said = [&](const ViewRegion& part, const FrameSettings& settings = {}) {
     return [=, &model] { draw(model, view_of_centre(100), with(settings, {part})); };
   };
   EXPECT_TRUE(test::fails_saying(
       [&] {
         draw(model, view_of_centre(100), with({}, {{}, {}}));
       },
-      {"2 parts of 1 views"}));
+      {"2 regions of 1 views"}));
   EXPECT_TRUE(test::fails_saying(said({.corner = {16, 0}}), {"from (16, 0)", "multiples of 32"}));
   EXPECT_TRUE(test::fails_saying(said({.size = {40, 32}}), {"40 x 32", "multiples of 32"}));
   EXPECT_TRUE(test::fails_saying(said({.corner = {224, 0}}), {"from (224, 0) of 200 x 150"}));

@@ -1,5 +1,5 @@
 #pragma once
-// Parts of views: what need not be drawn, and which views may be less exact than others.
+// Regions of views: what need not be drawn, and which views may be less exact than others.
 
 #include <cstdint>
 #include <glm/glm.hpp>
@@ -14,7 +14,7 @@ struct FrameSettings;
 
 /// What is drawn of a view, and how exactly. By default all of it, as the frame's settings say. The depth
 /// order does not depend on it: views that would share one do.
-struct ViewPart {
+struct ViewRegion {
   /// px. A window of the view's picture: it alone is drawn and kept, its pixels equal to the whole picture's
   /// to the bit. Corner and size are multiples of BLEND_CELL px, or reach to the picture's edge. A size of 0
   /// reaches there, too. A window has the whole picture's Gaussians only where models are not Scaffold-GS.
@@ -34,23 +34,23 @@ struct ViewPart {
   float low_pass_share = 1.0f;
 
   bool is_window() const { return corner != glm::uvec2(0) || size != glm::uvec2(0); }
-  /// Whether all of the view is drawn, as it would be without a part but for the tolerance.
+  /// Whether all of the view is drawn, as it would be without a region but for the tolerance.
   bool is_whole() const {
     return !is_window() && columns.empty() && hole_begin == hole_end && low_pass_share == 1.0f;
   }
 };
 
-/// Throws Error for parts that are not one for each of so many views, and that do not go with the settings.
-void check_parts(const FrameSettings& settings, std::size_t views, bool is_scaffold);
+/// Throws Error for regions that are not one for each of so many views, and that do not go with the settings.
+void check_regions(const FrameSettings& settings, std::size_t views, bool is_scaffold);
 
 /// Makes a view its window, where it is one. Throws Error for a window that lies beyond the picture or begins
 /// or ends between cells.
-void take_window(const ViewPart& part, shared::View& view);
+void take_window(const ViewRegion& region, shared::View& view);
 
 /// The rows of a view's tiles as shaders read them, of supertiles as many as these have; `first` and `step`
 /// as a probe has them. Throws Error for rows or columns that the view does not have.
-std::vector<glm::uvec2> part_rows(const ViewPart& part, const shared::View& view, std::uint32_t tile,
-                                  std::uint32_t supertile_side, const glm::uvec2& first = glm::uvec2(0),
-                                  std::uint32_t step = 1);
+std::vector<glm::uvec2> region_rows(const ViewRegion& region, const shared::View& view, std::uint32_t tile,
+                                    std::uint32_t supertile_side, const glm::uvec2& first = glm::uvec2(0),
+                                    std::uint32_t step = 1);
 
 }  // namespace binosplat::render

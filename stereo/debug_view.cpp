@@ -1,4 +1,4 @@
-#include "stereo/show.h"
+#include "stereo/debug_view.h"
 
 #include <algorithm>
 #include <array>
@@ -101,16 +101,17 @@ glm::vec3 map_colour(float number) {
   return glm::clamp(colour, 0.0f, 1.0f);
 }
 
-std::vector<Picture> Show::exact(std::span<const shared::View> views, const render::FrameSettings& settings) {
+std::vector<Picture> DebugView::exact(std::span<const shared::View> views,
+                                      const render::FrameSettings& settings) {
   if (!exact_) exact_ = std::make_unique<render::Frame>(model_);
   exact_->draw(views, render::exact_of(settings));
   return exact_->read_pictures();
 }
 
-std::vector<Image> Show::map(int what, render::Frame& frame, std::span<const shared::View> views,
-                             std::span<const Picture> pictures, const render::FrameSettings& settings,
-                             const Background& background) {
-  if (what >= SHOW_ALPHAS) return frame.read_shown(what);
+std::vector<Image> DebugView::map(int what, render::Frame& frame, std::span<const shared::View> views,
+                                  std::span<const Picture> pictures, const render::FrameSettings& settings,
+                                  const Background& background) {
+  if (what >= SHOW_ALPHAS) return frame.read_debug_view(what);
   std::vector<Image> maps;
   if (what == SHOW_DEPTH) {
     for (const Picture& picture : pictures) maps.push_back(depth(picture));
@@ -130,10 +131,10 @@ std::vector<Image> Show::map(int what, render::Frame& frame, std::span<const sha
   return maps;
 }
 
-Shown Show::make(int what, render::Frame& frame, std::span<const shared::View> views,
-                 std::span<const Picture> pictures, const render::FrameSettings& settings,
-                 const Background& background, double split) {
-  Shown shown;
+DebugPictures DebugView::make(int what, render::Frame& frame, std::span<const shared::View> views,
+                              std::span<const Picture> pictures, const render::FrameSettings& settings,
+                              const Background& background, double split) {
+  DebugPictures shown;
   if (what == SHOW_PICTURE) {
     shown.pictures.assign(pictures.begin(), pictures.end());
   } else if (what == SHOW_SPLIT) {

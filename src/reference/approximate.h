@@ -9,15 +9,16 @@
 namespace binosplat::reference {
 
 /// How a tile's list is blended.
-struct Loss {
-  bool by_blocks = false;   // a block only with what reaches it at Th
-  double last_light = 0.0;  // T at most of all pixels of a block that ends before its list; 0: none does
+struct Approximation {
+  bool by_blocks = false;  // a block only with what reaches it at Th
+  double dark_transmittance =
+      0.0;  // T at most of all pixels of a block that ends before its list; 0: none does
 
-  bool any() const { return by_blocks || last_light > 0.0; }
+  bool any() const { return by_blocks || dark_transmittance > 0.0; }
 };
 
 /// By a tile test and a rule of shared/axes.h; `tolerance` as of threshold().
-Loss loss_of(int tiles, int th, double tolerance);
+Approximation approximation_of(int tiles, int th, double tolerance);
 
 /// Whether a splat is blended in the block that holds pixel (x, y), of tiles of so many px.
 bool reaches_block(const Splat& splat, int x, int y, int tile_size);

@@ -1,5 +1,5 @@
 #pragma once
-// What a frame is made of before anything is drawn: its views with tiles and offsets, and who shares what.
+// What a frame is made of before anything is drawn: its views with tiles and offsets, and what they share.
 
 #include <algorithm>
 #include <cstddef>
@@ -10,6 +10,7 @@
 
 #include "render/canvas.h"
 #include "render/settings.h"
+#include "render/workings.h"
 #include "scene/model.h"
 #include "shared/types.h"
 
@@ -39,28 +40,29 @@ struct Probed {
   double unevenness = 0.0;     // variance of its tiles' errors, in squares of their mean
 };
 
-/// The views of a frame with tiles, offsets and groups filled in, and what follows from them.
-struct FrameShape {
+/// What a frame derives from its settings, its views and its model before anything is drawn. It is made once,
+/// by make_plan(); what frames remember of one another is history.h's.
+struct FramePlan {
   FrameSettings settings;
-  int supertile_side = 1;          // tiles along a side of what pairs are sorted by
-  double tiles_a_splat = 0.0;      // in the last frame, as far as is known; the same picture either way
-  int degree = 0;                  // of the model's SH
-  double kernel_px2 = KERNEL_PX2;  // of the model
+  float tolerance = 0.0f;       // that the frame goes by: the settings', or one that was found for a quality
+  bool anchor_reuse = true;     // Workings
+  bool between_pixels = false;  // likewise
+  bool visibility_as_depth = false;  // likewise
+  int supertile_side = 1;            // tiles along a side of what pairs are sorted by
+  int degree = 0;                    // of the model's SH
+  double kernel_px2 = KERNEL_PX2;    // of the model
   bool antialiased = false;
   Perspective perspective;
   std::uint32_t gaussian_count = 0;
   std::uint32_t gaussian_room = 0;  // as many, or more where the model grows
-  bool remembers = false;           // an earlier frame measured for this one
-  bool records = false;             // this one measures for those to come
-  std::uint32_t slots = 0;          // room for the Gaussians that one order group draws
   std::vector<shared::View> views;  // those asked for, then the probe's
   std::uint32_t asked = 0;
   std::optional<Probe> probe;
   std::vector<OrderGroup> groups;
   std::vector<glm::uvec2>
-      part_rows;                 // of all views' rows of tiles (tiles/parts.glsl), where any draws a part
-  std::vector<Canvas> canvases;  // where pictures go; empty: into the frame's own buffer
-  int depth_rows = 1;            // with canvases: depths are wanted of one of so many rows, 1 or 2
+      region_rows;  // of all views' rows of tiles (tiles/regions.glsl), where any is not drawn whole
+  std::vector<Canvas> canvases;       // where pictures go; empty: into the frame's own buffer
+  int depth_rows = 1;                 // with canvases: depths are wanted of one of so many rows, 1 or 2
   std::uint32_t supertile_count = 0;  // over all views
   std::int64_t pixel_count = 0;       // over all views
   // Of Scaffold-GS; K is 0 for other models.
@@ -68,10 +70,11 @@ struct FrameShape {
   std::uint32_t views_per_decoding = 1;  // views that share what the networks made
   std::int64_t anchor_bytes = 0;
 
-  bool draws_parts() const { return !part_rows.empty(); }
-  bool keeps_depth() const { return settings.depth != Depth::none; }
+  bool draws_regions() const { return !region_rows.empty(); }
+  /// DEPTH_ of shared/limits.h, what the blend tells of a pixel's depth.
+  int depth() const;
   /// Whether splats are blended by blocks, which end once they are dark (docs/method.md 5.2).
-  bool is_lossy() const { return settings.th == TH_SQUARED && settings.tiles == TILES_ELLIPSE; }
+  bool is_approximate() const { return settings.th == TH_SQUARED && settings.tiles == TILES_ELLIPSE; }
   std::uint32_t view_count() const { return static_cast<std::uint32_t>(views.size()); }
   /// Tiles of all supertiles: a few more than the pictures have where supertiles are of several.
   std::uint32_t tile_count() const { return supertile_count * tiles_a_supertile(); }
@@ -94,18 +97,24 @@ struct ModelSize {
 };
 inline ModelSize size_of(const Model& model) { return {model.count(), std::max(model.count(), model.room)}; }
 
+/// What is asked of a plan besides settings.
+struct PlanRequest {
+  std::optional<Probe> probe;
+  std::optional<float> tolerance;  // in the place of the settings'
+  std::span<const Canvas> canvases;
+  int depth_rows = 1;
+  std::optional<Bounds> box;  // world, around all Gaussians: their depths need fewer bits to be sorted by
+};
+
 /// Of a model of this size, whatever the model says: somebody else may be at its Gaussians. Throws
 /// Error(bad_input) for no views, more than MAX_VIEWS, an empty or huge picture, and settings that contradict
 /// each other or the views.
-FrameShape make_shape(std::span<const shared::View> views, const FrameSettings& settings, const Model& model,
-                      const ModelSize& size, int supertile_side = 1, const std::optional<Probe>& probe = {});
-inline FrameShape make_shape(std::span<const shared::View> views, const FrameSettings& settings,
-                             const Model& model, int supertile_side = 1,
-                             const std::optional<Probe>& probe = {}) {
-  return make_shape(views, settings, model, size_of(model), supertile_side, probe);
+FramePlan make_plan(std::span<const shared::View> views, const FrameSettings& settings, const Model& model,
+                    const ModelSize& size, const Workings& workings, const PlanRequest& request = {});
+inline FramePlan make_plan(std::span<const shared::View> views, const FrameSettings& settings,
+                           const Model& model, const Workings& workings = {},
+                           const PlanRequest& request = {}) {
+  return make_plan(views, settings, model, size_of(model), workings, request);
 }
-
-/// Keys of only so many bits as depths of Gaussians within `box` (world) need, in each order group.
-void limit_keys(FrameShape& shape, const Bounds& box);
 
 }  // namespace binosplat::render

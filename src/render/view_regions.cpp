@@ -1,4 +1,4 @@
-#include "render/parts.h"
+#include "render/view_regions.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,19 +8,19 @@
 
 namespace binosplat::render {
 
-void check_parts(const FrameSettings& settings, std::size_t views, bool is_scaffold) {
-  const auto& parts = settings.parts;
-  if (parts.empty()) return;
-  if (parts.size() != views) fail("{} parts of {} views: expected one each, or none", parts.size(), views);
-  for (const ViewPart& part : parts) {
-    if (!(part.tolerance_share >= 0.0f) || !std::isfinite(part.tolerance_share))
-      fail("a view with {} of the frame's tolerance: expected zero or more", part.tolerance_share);
-    if (!(part.low_pass_share > 0.0f && part.low_pass_share <= 1.0f))
-      fail("a share of {} of the low-pass: expected above zero, up to 1", part.low_pass_share);
-    if (settings.quality > 0.0f && (part.is_window() || part.tolerance_share != 1.0f))
+void check_regions(const FrameSettings& settings, std::size_t views, bool is_scaffold) {
+  const auto& regions = settings.regions;
+  if (regions.empty()) return;
+  if (regions.size() != views)
+    fail("{} regions of {} views: expected one each, or none", regions.size(), views);
+  for (const ViewRegion& region : regions) {
+    if (!(region.tolerance_share >= 0.0f) || !std::isfinite(region.tolerance_share))
+      fail("a view with {} of the frame's tolerance: expected zero or more", region.tolerance_share);
+    if (!(region.low_pass_share > 0.0f && region.low_pass_share <= 1.0f))
+      fail("a share of {} of the low-pass: expected above zero, up to 1", region.low_pass_share);
+    if (settings.quality > 0.0f && (region.is_window() || region.tolerance_share != 1.0f))
       fail("a quality is found for whole pictures of one tolerance: give a tolerance in its place");
-    if (settings.between && !part.is_whole()) fail("rays between pixels: only of whole pictures");
-    if (is_scaffold && part.is_window()) {
+    if (is_scaffold && region.is_window()) {
       fail(
           "a window of a Scaffold-GS model's picture: anchors are culled by the picture, as trained, and its "
           "Gaussians would be others");
@@ -28,39 +28,40 @@ void check_parts(const FrameSettings& settings, std::size_t views, bool is_scaff
   }
 }
 
-void take_window(const ViewPart& part, shared::View& view) {
-  if (!part.is_window()) return;
+void take_window(const ViewRegion& region, shared::View& view) {
+  if (!region.is_window()) return;
   const glm::uvec2 whole(view.width, view.height);
   for (int k = 0; k < 2; ++k) {
-    const std::uint32_t begin = part.corner[k];
-    const std::uint64_t end = part.size[k] == 0 ? whole[k] : std::uint64_t{begin} + part.size[k];
+    const std::uint32_t begin = region.corner[k];
+    const std::uint64_t end = region.size[k] == 0 ? whole[k] : std::uint64_t{begin} + region.size[k];
     if (begin >= end || end > whole[k] || begin % BLEND_CELL != 0 ||
         (end % BLEND_CELL != 0 && end != whole[k])) {
       fail(
           "a window of {} x {} px from ({}, {}) of {} x {} px: expected multiples of {} px within the "
           "picture, "
           "or up to its edge",
-          part.size.x, part.size.y, part.corner.x, part.corner.y, whole.x, whole.y, BLEND_CELL);
+          region.size.x, region.size.y, region.corner.x, region.corner.y, whole.x, whole.y, BLEND_CELL);
     }
     (k == 0 ? view.left : view.top) = begin;
     (k == 0 ? view.width : view.height) = static_cast<std::uint32_t>(end) - begin;
   }
 }
 
-std::vector<glm::uvec2> part_rows(const ViewPart& part, const shared::View& view, std::uint32_t tile,
-                                  std::uint32_t supertile_side, const glm::uvec2& first, std::uint32_t step) {
+std::vector<glm::uvec2> region_rows(const ViewRegion& region, const shared::View& view, std::uint32_t tile,
+                                    std::uint32_t supertile_side, const glm::uvec2& first,
+                                    std::uint32_t step) {
   const glm::uvec2 size(view.width, view.height);
   const glm::uvec2 tiles = (size + tile - 1u) / tile;
-  if (!part.columns.empty() && part.columns.size() != tiles.y) {
-    fail("columns for {} rows of tiles: the view has {} of {} px", part.columns.size(), tiles.y, tile);
+  if (!region.columns.empty() && region.columns.size() != tiles.y) {
+    fail("columns for {} rows of tiles: the view has {} of {} px", region.columns.size(), tiles.y, tile);
   }
-  if (glm::any(glm::greaterThan(part.hole_begin, part.hole_end)) ||
-      glm::any(glm::greaterThan(part.hole_end, size)))
+  if (glm::any(glm::greaterThan(region.hole_begin, region.hole_end)) ||
+      glm::any(glm::greaterThan(region.hole_end, size)))
     fail("a hole that does not lie in its view of {} x {} px", size.x, size.y);
   // Whole tiles of the hole: the last ones may be cut off by the picture's edge.
-  const glm::uvec2 hole_begin = (part.hole_begin + tile - 1u) / tile;
+  const glm::uvec2 hole_begin = (region.hole_begin + tile - 1u) / tile;
   const glm::uvec2 hole_end =
-      glm::max(hole_begin, glm::mix(part.hole_end / tile, tiles, glm::equal(part.hole_end, size)));
+      glm::max(hole_begin, glm::mix(region.hole_end / tile, tiles, glm::equal(region.hole_end, size)));
   // Columns of the tiles that are there: of a probe some lie in between.
   const auto packed = [&](const glm::uvec2& columns) {
     const glm::uvec2 there = (glm::max(columns, first.x) - first.x + step - 1u) / step;
@@ -70,7 +71,7 @@ std::vector<glm::uvec2> part_rows(const ViewPart& part, const shared::View& view
                                glm::uvec2(0));
   for (std::uint32_t n = 0; n < view.tiles_y; ++n) {
     const std::uint32_t row = first.y + n * step;
-    const glm::uvec2 columns = part.columns.empty() ? glm::uvec2(0, tiles.x) : part.columns[row];
+    const glm::uvec2 columns = region.columns.empty() ? glm::uvec2(0, tiles.x) : region.columns[row];
     if (columns.x > columns.y || columns.y > tiles.x)
       fail("columns {} to {} of a row of tiles: the view has {}", columns.x, columns.y, tiles.x);
     const bool in_hole = row >= hole_begin.y && row < hole_end.y;

@@ -42,9 +42,9 @@ TEST(Remember, AModelThatIsReloadedIsDrawnAsANewOne) {
     for (int n = 0; n < 3; ++n) frame.draw(std::vector{wall_view()}, settings);
     model = other;
     frame.model()->reload();
-    EXPECT_FALSE(frame.draw(std::vector{wall_view()}, settings).remembered);
+    EXPECT_FALSE(frame.draw(std::vector{wall_view()}, settings).used_measured);
     EXPECT_TRUE(same_bits(frame.read_pictures().front(), test::draw(other, wall_view(), settings)));
-    EXPECT_TRUE(frame.draw(std::vector{wall_view()}, settings).remembered);
+    EXPECT_TRUE(frame.draw(std::vector{wall_view()}, settings).used_measured);
     // Planted: changed, and not uploaded.
     model.position[700] += 0.5f;
     frame.draw(std::vector{wall_view()}, settings);
@@ -77,34 +77,34 @@ TEST(Remember, MeasuresWhatTheReferenceMeasures) {
 TEST(Remember, MeasuresSomeFramesOfAStillCameraForAll) {
   const Model model = wall_of_layers();
   const FrameSettings settings = {
-      .th = TH_SQUARED, .transmittance = TRANSMITTANCE_LAST, .record_every = 4, .tolerance = 0.05f};
+      .th = TH_SQUARED, .transmittance = TRANSMITTANCE_LAST, .measure_every = 4, .tolerance = 0.05f};
   FrameSettings every = settings;
-  every.record_every = 1;
+  every.measure_every = 1;
   render::Frame frame(test::gl_context(), model), measured(test::gl_context(), model);
   std::string recorded;
   for (int n = 0; n < 16; ++n) {
-    recorded += frame.draw(std::vector{wall_view()}, settings).recorded ? 'r' : '-';
+    recorded += frame.draw(std::vector{wall_view()}, settings).measured ? 'r' : '-';
     // The frames between show what the next one that measures shows.
     if (n < 4 || n % 4 == 0) measured.draw(std::vector{wall_view()}, every);
     EXPECT_TRUE(same_bits(frame.read_pictures().front(), measured.read_pictures().front())) << n;
   }
   EXPECT_EQ(recorded, "rrrr---r---r---r");
   frame.forget();
-  EXPECT_TRUE(frame.draw(std::vector{wall_view()}, settings).recorded);
-  EXPECT_THROW(frame.draw(std::vector{wall_view()}, {.record_every = 0}), Error);
+  EXPECT_TRUE(frame.draw(std::vector{wall_view()}, settings).measured);
+  EXPECT_THROW(frame.draw(std::vector{wall_view()}, {.measure_every = 0}), Error);
 }
 
 TEST(Remember, MeasuresAnewOnceTheEyesHaveGoneAThirdOfTheWayToACut) {
   const Model model = wall_of_layers();
   const FrameSettings settings = {
-      .th = TH_SQUARED, .transmittance = TRANSMITTANCE_LAST, .record_every = 6, .tolerance = 0.05f};
+      .th = TH_SQUARED, .transmittance = TRANSMITTANCE_LAST, .measure_every = 6, .tolerance = 0.05f};
   render::Frame frame(test::gl_context(), model);
   std::string recorded;
   for (int n = 0; n < 16; ++n) {
     Camera camera = test::front_camera(96, 80, 90);
     const double turned = glm::radians(n < 8 ? 0.0 : 2.0 * (n - 7));
     camera.rotation = glm::dmat3(glm::rotate(glm::dmat4(1.0), turned, glm::dvec3(0, 1, 0)));
-    recorded += frame.draw(std::vector{make_view(camera)}, settings).recorded ? 'r' : '-';
+    recorded += frame.draw(std::vector{make_view(camera)}, settings).measured ? 'r' : '-';
   }
   EXPECT_EQ(recorded.substr(0, 8), "rrrrrr--");
   EXPECT_EQ(recorded.substr(8), "--r--r--");
@@ -196,8 +196,8 @@ TEST(Remember, WhatMakesNoSenseIsNamed) {
 TEST(Continuity, TellsAMomentFromACut) {
   const Model model = test::random_model(85, 10, 0);
   const FrameSettings settings = {.transmittance = TRANSMITTANCE_LAST};
-  const auto shape = [&](const Camera& camera) {
-    return render::make_shape(std::vector{make_view(camera)}, settings, model);
+  const auto plan = [&](const Camera& camera) {
+    return render::make_plan(std::vector{make_view(camera)}, settings, model);
   };
   const Camera before = test::front_camera(64, 64, 64);
   const auto turned = [&](double degrees) {
@@ -211,13 +211,13 @@ TEST(Continuity, TellsAMomentFromACut) {
     camera.position.x += by;
     return camera;
   };
-  EXPECT_TRUE(render::continues(shape(before), shape(before), 2.0));
-  EXPECT_TRUE(render::continues(shape(before), shape(turned(14)), 2.0));
-  EXPECT_FALSE(render::continues(shape(before), shape(turned(16)), 2.0));
-  EXPECT_TRUE(render::continues(shape(before), shape(moved(0.19)), 2.0));
-  EXPECT_FALSE(render::continues(shape(before), shape(moved(0.21)), 2.0));
-  EXPECT_FALSE(render::continues(shape(before), shape(test::front_camera(64, 65, 64)), 2.0));
-  EXPECT_FALSE(render::continues(render::FrameShape(), shape(before), 2.0));
+  EXPECT_TRUE(render::continues(plan(before), plan(before), 2.0));
+  EXPECT_TRUE(render::continues(plan(before), plan(turned(14)), 2.0));
+  EXPECT_FALSE(render::continues(plan(before), plan(turned(16)), 2.0));
+  EXPECT_TRUE(render::continues(plan(before), plan(moved(0.19)), 2.0));
+  EXPECT_FALSE(render::continues(plan(before), plan(moved(0.21)), 2.0));
+  EXPECT_FALSE(render::continues(plan(before), plan(test::front_camera(64, 65, 64)), 2.0));
+  EXPECT_FALSE(render::continues(render::FramePlan(), plan(before), 2.0));
 }
 
 }  // namespace

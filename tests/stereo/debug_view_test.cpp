@@ -1,6 +1,6 @@
 // What is shown in place of pictures: its colours, its range, and the exact pictures that it is measured by.
 
-#include "stereo/show.h"
+#include "stereo/debug_view.h"
 
 #include <gtest/gtest.h>
 
@@ -23,7 +23,7 @@ struct ShowTest : testing::Test {
       make_rig(test::front_camera(shown_width, shown_height, 55.0), {.ipd = 0.2, .convergence = 2.0});
   const render::FrameSettings coarse = {.th = TH_SQUARED, .tolerance = 3.0f};
   render::Frame frame{test::gl_context(), model};
-  Show show{frame.model()};
+  DebugView show{frame.model()};
   std::vector<Picture> pictures, exact;
 
   ShowTest() {
@@ -33,7 +33,7 @@ struct ShowTest : testing::Test {
     pictures = frame.read_pictures();
   }
 
-  Shown made(int what, double split = 0.5) {
+  DebugPictures made(int what, double split = 0.5) {
     return show.make(what, frame, pair.views, pictures, coarse, glm::vec3(0.0f), split);
   }
   /// What a number is shown as.
@@ -77,7 +77,7 @@ TEST_F(ShowTest, ASplitIsAsDrawnOnTheLeftAndExactOnTheRight) {
 
 TEST_F(ShowTest, MapsAreTheColoursOfTheirNumbers) {
   const auto matches = [&](int what, const std::vector<Image>& numbers) {
-    const Shown shown = made(what);
+    const DebugPictures shown = made(what);
     int off = 0;
     for (std::size_t v = 0; v < 2; ++v) {
       for (std::size_t k = 0; k < numbers[v].data.size(); ++k) {
@@ -103,14 +103,14 @@ TEST_F(ShowTest, MapsAreTheColoursOfTheirNumbers) {
   }
   EXPECT_TRUE(matches(SHOW_DEPTH, depth));
   EXPECT_TRUE(matches(SHOW_DIFFERENCE, difference));
-  EXPECT_TRUE(matches(SHOW_PAIRS, frame.read_shown(SHOW_PAIRS)));
+  EXPECT_TRUE(matches(SHOW_PAIRS, frame.read_debug_view(SHOW_PAIRS)));
   std::swap(depth[0], depth[1]);
   EXPECT_FALSE(matches(SHOW_DEPTH, depth)) << "swapped eyes go unnoticed";
   EXPECT_FALSE(matches(SHOW_DEPTH, difference)) << "other numbers go unnoticed";
 }
 
 TEST_F(ShowTest, DisagreementIsOfEachEye) {
-  const Shown shown = made(SHOW_DISAGREEMENT);
+  const DebugPictures shown = made(SHOW_DISAGREEMENT);
   const auto expected = [&](std::size_t eye) {
     const std::array from = {exact[eye], exact[1 - eye]}, to = {pictures[eye], pictures[1 - eye]};
     return disagreement({pair.views[eye], pair.views[1 - eye]}, from, to).picture;
@@ -158,7 +158,7 @@ TEST_F(ShowTest, WhatTheFrameRemembersStays) {
     pictures = frame.read_pictures();
     made(SHOW_DIFFERENCE);
   }
-  EXPECT_TRUE(report.remembered);
+  EXPECT_TRUE(report.used_measured);
   EXPECT_TRUE(same_bits(pictures, other.read_pictures()));
 }
 

@@ -1,4 +1,4 @@
-#include "reference/loss.h"
+#include "reference/approximate.h"
 
 #include <algorithm>
 #include <cmath>
@@ -22,9 +22,9 @@ double farthest_in_tile(const Cone& cone, int x, int y, int tile_size) {
 
 }  // namespace
 
-Loss loss_of(int tiles, int th, double tolerance) {
+Approximation approximation_of(int tiles, int th, double tolerance) {
   if (th != TH_SQUARED || tiles != TILES_ELLIPSE) return {};
-  return {true, std::min(LAST_LIGHT_MOST, LAST_LIGHT * std::sqrt(tolerance))};
+  return {true, std::min(DARK_TRANSMITTANCE_MOST, DARK_TRANSMITTANCE * std::sqrt(tolerance))};
 }
 
 bool reaches_block(const Splat& splat, int x, int y, int tile_size) {
@@ -35,10 +35,10 @@ bool reaches_block(const Splat& splat, int x, int y, int tile_size) {
     conic = {form[0][0], form[0][1], form[1][1]};
     rho *= farthest_in_tile(*splat.cone, x, y, tile_size);
   }
-  const glm::dvec2 first = glm::ivec2(x, y) / LOSSY_BLOCK * LOSSY_BLOCK;  // of the block's pixels
+  const glm::dvec2 first = glm::ivec2(x, y) / APPROXIMATE_BLOCK * APPROXIMATE_BLOCK;  // of the block's pixels
   const double det = conic.x * conic.z - conic.y * conic.y;
   const double tallest = std::sqrt(rho * conic.x / det);
-  const double low = first.y - splat.mean.y, high = low + LOSSY_BLOCK - 1;
+  const double low = first.y - splat.mean.y, high = low + APPROXIMATE_BLOCK - 1;
   if (low > tallest || high < -tallest) return false;
   const double apex =
       -conic.y * std::sqrt(rho / (conic.z * det));  // where the ellipse is furthest to the right
@@ -49,7 +49,8 @@ bool reaches_block(const Splat& splat, int x, int y, int tile_size) {
   };
   const double left = edge(-1.0), right = edge(1.0);
   const double slack = 0.01 + 1e-5 * (std::abs(left) + std::abs(right));
-  return splat.mean.x + right + slack >= first.x && splat.mean.x + left - slack <= first.x + LOSSY_BLOCK - 1;
+  return splat.mean.x + right + slack >= first.x &&
+         splat.mean.x + left - slack <= first.x + APPROXIMATE_BLOCK - 1;
 }
 
 }  // namespace binosplat::reference

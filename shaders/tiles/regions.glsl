@@ -1,21 +1,21 @@
 // Which tiles of a view are drawn: of each of their rows those of a span of columns, but for those of a hole in it. All others
 // are paired with nothing, but where a splat reaches over the hole, and stay background.
-#if PARTS
+#if REGIONS
 
-layout(std430, binding = 13) readonly buffer PartRows { uvec2 part_rows[]; };  // two columns of 16 bits: the span, the hole
+layout(std430, binding = 13) readonly buffer RegionRows { uvec2 region_rows[]; };  // two columns of 16 bits: the span, the hole
 
 uvec2 span_of(uint columns) { return uvec2(columns & 0xFFFFu, columns >> 16); }
 
 bool is_within(uint column, uvec2 span) { return column >= span.x && column < span.y; }
 
 bool is_drawn(uvec2 tile, View view) {
-  uvec2 row = part_rows[view.first_row + tile.y];
+  uvec2 row = region_rows[view.first_row + tile.y];
   return is_within(tile.x, span_of(row.x)) && !is_within(tile.x, span_of(row.y));
 }
 
 // Of the columns [x, y) of tiles that a splat touches in a row, those from the first to the last that is drawn.
 uvec2 drawn_columns(uvec2 columns, View view, uint row) {
-  uvec2 drawn = span_of(part_rows[view.first_row + row].x), hole = span_of(part_rows[view.first_row + row].y);
+  uvec2 drawn = span_of(region_rows[view.first_row + row].x), hole = span_of(region_rows[view.first_row + row].y);
   uvec2 left = uvec2(max(columns.x, drawn.x), min(columns.y, drawn.y));
   if (is_within(left.x, hole)) left.x = hole.y;
   if (left.y > hole.x && left.y <= hole.y) left.y = hole.x;

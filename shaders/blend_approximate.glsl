@@ -1,0 +1,64 @@
+// The approximate blend of docs/method.md 5.2: a splat is blended in the blocks of a tile where its alpha reaches Th, and a block
+// ends once it is dark, that is, once T is small in all its pixels. The exact blend ends where all pixels are done. Part of
+// blending.glsl.
+#if !APPROXIMATE
+
+#define are_dark are_done
+#define TAKES_NO_MORE false
+void begin_block(View view, bool may_end) {}
+void end_dark() {}
+float finished(uint p) { return transmittance_left(p); }
+
+#else
+
+float dark_transmittance;  // T at most of the pixels of a dark block; 0: no block is
+bool ended_dark = false;   // this block, before its list did
+#if MEASURE == MEASURE_TRANSMITTANCE
+vec4 dark_colour[COLUMN];  // with Z; what measures goes on behind
+float dark_left[COLUMN];
+#endif
+#define TAKES_NO_MORE (ended_dark && MEASURE != MEASURE_TRANSMITTANCE)
+
+void begin_block(View view, bool may_end) {
+  precise float tolerance = frame.tolerance * view.tolerance_share;
+  dark_transmittance = may_end ? min(float(DARK_TRANSMITTANCE_MOST), float(DARK_TRANSMITTANCE) * sqrt(tolerance)) : 0.0;
+}
+
+bool are_dark() {
+  bool all = true;
+  for (uint p = 0u; p < COLUMN; ++p) all = all && transmittance[p] <= dark_transmittance;
+  return all;
+}
+
+// What is behind is taken to look as what was seen, but in pixels that have ended by themselves.
+void end_dark() {
+  if (ended_dark || dark_transmittance <= 0.0) return;
+  ended_dark = true;
+  for (uint p = 0u; p < COLUMN; ++p) {
+    precise float scale = is_done(p) ? 1.0 : 1.0 / (1.0 - transmittance[p]);
+    colour[p] *= scale;
+    z_sum[p] *= DEPTH == DEPTH_MEAN ? scale : 1.0;
+    debug_scale(p, scale);
+#if MEASURE == MEASURE_TRANSMITTANCE
+    dark_colour[p] = vec4(colour[p], z_sum[p]);
+    dark_left[p] = is_done(p) ? transmittance_left(p) : 0.0;
+#endif
+  }
+}
+
+// What a pixel leaves, whose colour and depth are what they are to be from here on.
+float finished(uint p) {
+  float left = transmittance_left(p);
+  if (ended_dark) {
+#if MEASURE == MEASURE_TRANSMITTANCE
+    colour[p] = dark_colour[p].rgb;
+    z_sum[p] = dark_colour[p].a;
+    left = dark_left[p];
+#else
+    left = is_done(p) ? left : 0.0;
+#endif
+  }
+  return left;
+}
+
+#endif

@@ -1,0 +1,51 @@
+// What a blend tells of a pixel's depth, DEPTH (shared/limits.h). Part of blending.glsl.
+#if DEPTH != DEPTH_NONE
+layout(std430, binding = 5) writeonly buffer ZSums { float z_sums[]; };
+#endif
+
+// Whether a pixel's median depth is found, the depth of the splat where T falls below a half.
+#define HAS_MEDIAN(p) (DEPTH == DEPTH_MEDIAN || DEPTH == DEPTH_MEDIAN_OF_TWO_ROWS && p % 2u == 0u)
+const float half_left = 1.0 - float(COVERAGE_FOR_DEPTH);
+
+// Of splats of which one leaves less than that.
+float median_depth(uint at[AHEAD], float weights[AHEAD], float before) {
+  for (uint k = 0u; k < AHEAD; ++k) {
+    precise float left = before - weights[k];
+    if (left < half_left) return batch_colour[at[k]].a;
+    before = left;
+  }
+  return batch_colour[at[AHEAD - 1u]].a;
+}
+
+void add_depth(uint p, float weight, float depth) {
+#if DEPTH == DEPTH_MEAN
+  precise float z = fma(weight, depth, z_sum[p]);
+  z_sum[p] = z;
+#elif DEPTH == DEPTH_VISIBILITY
+  z_sum[p] += weight * transmittance[p];
+#endif
+}
+
+// Of a pixel that leaves so much.
+void write_depth(uint to, uint p, float left) {
+#if DEPTH != DEPTH_NONE
+#if PROJECTION == PROJECTION_TANGENT && DEPTH != DEPTH_VISIBILITY
+  precise float along = z_sum[p] * sqrt(nearness[p]);  // of distances
+  z_sum[p] = along;
+#endif
+#if CANVASES
+  if (left >= half_left) z_sum[p] = 0.0;
+#if DEPTH == DEPTH_MEAN
+  else z_sum[p] /= 1.0 - left;
+#endif
+#elif DEPTH == DEPTH_MEDIAN
+  precise float cover = 1.0 - left;
+  precise float z = z_sum[p] * cover;
+  z_sum[p] = z;
+#endif
+#if DEPTH == DEPTH_MEDIAN_OF_TWO_ROWS
+  if (p % 2u != 0u) return;
+#endif
+  z_sums[to] = z_sum[p];
+#endif
+}

@@ -1,0 +1,11 @@
+// Where a blend writes pictures: in the frame's own buffer, or as they are shown in images of the caller's (CANVASES). Part of
+// blending.glsl.
+#if CANVASES
+#include "canvases.glsl"
+void write_picture(View view, uint nth, uint to, uvec2 at, vec4 pixel) {
+  write_on_canvas(nth, canvases[nth], view.height, at, pixel, frame.background.rgb);
+}
+#else
+layout(std430, binding = 4) buffer Colours { vec4 colours[]; };  // C, and T left
+void write_picture(View view, uint nth, uint to, uvec2 at, vec4 pixel) { colours[to] = pixel; }
+#endif

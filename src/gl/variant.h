@@ -1,0 +1,26 @@
+#pragma once
+// What tells the variants of a shader apart.
+
+#include <cstdint>
+#include <span>
+
+#include "gl/shader_source.h"
+
+namespace binosplat::gl {
+
+/// A number that a shader is compiled with.
+struct Number {
+  const char* name;
+  std::uint64_t value;
+  std::uint64_t count;         // of values that it may have, from 0 on
+  const char* word = nullptr;  // NAME_NAME, where files of the variant have the number's name
+  bool is_real = false;        // bits of a float; 0 leaves the shader its own number
+};
+
+/// One number for all of them: no other variant of the shader has it, since all have these in this order.
+/// Throws std::logic_error for a value that its number may not have, and where 64 bits are too few.
+std::uint64_t key_of(std::span<const Number> numbers);
+
+Defines defines_of(std::span<const Number> numbers);
+
+}  // namespace binosplat::gl

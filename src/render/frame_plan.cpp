@@ -1,0 +1,179 @@
+#include "render/frame_plan.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <functional>
+
+#include "base/error.h"
+#include "render/anchors.h"
+#include "render/memory.h"
+
+namespace binosplat::render {
+
+namespace {
+
+// Equal to the bit in all that decides what Gaussians are sorted by.
+bool same_order(const shared::View& a, const shared::View& b, int order) {
+  const auto equal = [](const glm::vec4& x, const glm::vec4& y, int size) {
+    return std::memcmp(&x, &y, static_cast<std::size_t>(size)) == 0;
+  };
+  return equal(a.anchor, b.anchor, sizeof(a.anchor)) &&
+         (order == ORDER_DISTANCE ? equal(a.centre, b.centre, 3 * sizeof(float))
+                                  : equal(a.row_z, b.row_z, sizeof(a.row_z)));
+}
+
+// What settings need beside each other.
+void check_needs(const FrameSettings& s, std::size_t views) {
+  if (s.decode != DECODE_EYES && views % 2 != 0)
+    fail("decode {}: only for both eyes together", decode_choices[s.decode].name);
+  const DepthTable& table = s.depth_table;
+  const auto is_share = [](float t) { return t >= 0.0f && t <= 1.0f; };
+  if (s.transmittance == TRANSMITTANCE_DEPTH &&
+      (!(table.far > 0.0f) || !std::isfinite(table.far) || table.bounds.empty() ||
+       !std::all_of(table.bounds.begin(), table.bounds.end(), is_share))) {
+    fail("transmittance depth: its table needs a far end above 0 and values from 0 to 1");
+  }
+}
+
+bool draws_some(const FrameSettings& settings) {
+  return !std::all_of(settings.regions.begin(), settings.regions.end(), std::mem_fn(&ViewRegion::is_whole));
+}
+
+// Appends a view, or a probe of it, in the last order group if that sees the same depths.
+void add_view(FramePlan& plan, shared::View view, const ViewRegion& region,
+              const std::optional<Probe>& probe = {}) {
+  const Probe tiles = probe.value_or(Probe{});
+  const auto tile = static_cast<std::uint32_t>(plan.settings.tile_size);
+  const std::uint32_t v = plan.view_count();
+  if (view.width == 0 || view.height == 0)
+    fail("a view of {} x {} px has no picture", view.width, view.height);
+  view.left = view.top = 0;
+  take_window(region, view);
+  view.tolerance_share = region.tolerance_share;
+  view.low_pass_share = region.low_pass_share;
+  const auto tiles_in = [&](std::uint32_t pixels, std::uint32_t first) {
+    const std::uint32_t all = (pixels + tile - 1) / tile;
+    return all <= first ? 0 : (all - first + tiles.step - 1) / tiles.step;
+  };
+  view.pitch = tiles.step * tile;
+  view.shift_x = view.left + tiles.column * tile;
+  view.shift_y = view.top + tiles.row * tile;
+  view.tiles_x = tiles_in(view.width, tiles.column);
+  view.tiles_y = tiles_in(view.height, tiles.row);
+  view.supertile_offset = plan.supertile_count;
+  view.pixel_offset = static_cast<std::uint32_t>(plan.pixel_count);
+  plan.pixel_count += probe ? std::int64_t{view.tiles_x} * view.tiles_y * tile * tile
+                            : std::int64_t{view.width} * view.height;
+  if (plan.pixel_count > std::int64_t{1} << 31) fail("more than 2^31 pixels in one frame");
+  view.is_probe = probe ? 1 : 0;
+  const auto supertiles = [side = static_cast<std::uint32_t>(plan.supertile_side)](std::uint32_t along) {
+    return (along + side - 1) / side;
+  };
+  plan.supertile_count += supertiles(view.tiles_x) * supertiles(view.tiles_y);
+  if (v == 0 || !same_order(view, plan.views.back(), plan.perspective.order)) plan.groups.push_back({v, v});
+  plan.groups.back().end = v + 1;
+  if (draws_some(plan.settings)) {
+    const auto rows = region_rows(region, view, tile, static_cast<std::uint32_t>(plan.supertile_side),
+                                  {tiles.column, tiles.row}, tiles.step);
+    view.first_row = static_cast<std::uint32_t>(plan.region_rows.size());
+    plan.region_rows.insert(plan.region_rows.end(), rows.begin(), rows.end());
+  }
+  view.order_group = static_cast<std::uint32_t>(plan.groups.size() - 1);
+  plan.views.push_back(view);
+}
+
+// The least and the largest thing that the Gaussians of a box can be sorted by in a view.
+glm::dvec2 order_span(const shared::View& view, int order, const Bounds& box) {
+  const glm::dvec3 anchor(view.anchor), forward(view.row_z), eye(view.eye), centre(view.centre);
+  const glm::dvec3 low = glm::dvec3(box.low) - anchor, high = glm::dvec3(box.high) - anchor;
+  const double near_plane = view.anchor.w;
+  const glm::dvec3 farthest = glm::max(glm::abs(low), glm::abs(high));
+  const double reach = farthest.x + farthest.y + farthest.z + std::abs(view.row_z.w);
+  const double rounding = 1e-5 * reach;  // fp32's
+  if (order == ORDER_DISTANCE) {
+    return {std::max(0.0, near_plane - glm::length(eye - centre) - rounding),
+            glm::length(glm::max(glm::abs(low - centre), glm::abs(high - centre))) + rounding};
+  }
+  const double deepest = view.row_z.w + glm::dot(glm::max(forward * low, forward * high), glm::dvec3(1.0));
+  return {near_plane, deepest + rounding};
+}
+
+// Keys of only so many bits as depths of Gaussians within `box` (world) need, in each order group.
+void limit_keys(FramePlan& plan, const Bounds& box) {
+  for (OrderGroup& group : plan.groups) {
+    glm::dvec2 span = order_span(plan.views[group.begin], plan.perspective.order, box);
+    for (std::uint32_t v = group.begin + 1; v < group.end; ++v) {
+      const glm::dvec2 other = order_span(plan.views[v], plan.perspective.order, box);
+      span = {std::min(span.x, other.x), std::max(span.y, other.y)};
+    }
+    const auto nearest = static_cast<float>(span.x), farthest = static_cast<float>(span.y);
+    group.nearest_key = std::bit_cast<std::uint32_t>(nearest);
+    group.key_bits = farthest > nearest ? static_cast<std::uint32_t>(std::bit_width(
+                                              std::bit_cast<std::uint32_t>(farthest) - group.nearest_key))
+                                        : 1;
+  }
+}
+
+}  // namespace
+
+int FramePlan::depth() const {
+  if (visibility_as_depth) return DEPTH_VISIBILITY;
+  if (settings.depth == Depth::none) return DEPTH_NONE;
+  if (settings.depth == Depth::mean) return DEPTH_MEAN;
+  return !canvases.empty() && depth_rows == 2 ? DEPTH_MEDIAN_OF_TWO_ROWS : DEPTH_MEDIAN;
+}
+
+std::uint32_t FramePlan::supertile_bits() const {
+  const std::uint32_t keys = settings.tiles == TILES_ALL ? view_count() : supertile_count;
+  return static_cast<std::uint32_t>(std::bit_width(keys - 1));
+}
+
+Perspective perspective_of(const FrameSettings& settings, const Model& model) {
+  return {settings.order.value_or(model.perspective.order),
+          settings.projection.value_or(model.perspective.projection)};
+}
+
+FramePlan make_plan(std::span<const shared::View> views, const FrameSettings& settings, const Model& model,
+                    const ModelSize& size, const Workings& workings, const PlanRequest& request) {
+  if (views.empty() || views.size() > MAX_VIEWS)
+    fail("a frame has 1 to {} views, not {}", MAX_VIEWS, views.size());
+  check(settings);
+  check_needs(settings, views.size());
+  check_regions(settings, views.size(), model.scaffold != nullptr);
+  FramePlan plan;
+  plan.settings = settings;
+  plan.tolerance = request.tolerance.value_or(settings.tolerance);
+  plan.anchor_reuse = workings.anchor_reuse;
+  plan.between_pixels = workings.between_pixels;
+  plan.visibility_as_depth = workings.visibility_as_depth;
+  plan.supertile_side = std::max(workings.supertile_side, 1);
+  plan.degree = model.degree;
+  plan.kernel_px2 = model.kernel_px2;
+  plan.antialiased = model.antialiased;
+  plan.perspective = perspective_of(settings, model);
+  plan.gaussian_count = static_cast<std::uint32_t>(size.gaussians);
+  plan.gaussian_room = static_cast<std::uint32_t>(size.room);
+  if (model.scaffold) {
+    plan.offset_count = static_cast<std::uint32_t>(model.scaffold->offset_count);
+    plan.views_per_decoding = settings.decode == DECODE_CYCLOPEAN ? 2 : 1;
+    plan.anchor_bytes = anchor_bytes(*model.scaffold);
+  }
+  plan.asked = static_cast<std::uint32_t>(views.size());
+  plan.canvases.assign(request.canvases.begin(), request.canvases.end());
+  plan.depth_rows = request.depth_rows;
+  const auto region_of = [&](std::size_t v) {
+    return settings.regions.empty() ? ViewRegion{} : settings.regions[v];
+  };
+  for (std::size_t v = 0; v < views.size(); ++v) add_view(plan, views[v], region_of(v));
+  plan.probe = request.probe;
+  if (const auto& probe = plan.probe) {
+    if (region_of(probe->view).is_window()) fail("a probe of a window: only whole views have them");
+    add_view(plan, views[probe->view], region_of(probe->view), probe);
+  }
+  if (request.box) limit_keys(plan, *request.box);
+  return plan;
+}
+
+}  // namespace binosplat::render

@@ -1,0 +1,151 @@
+#include "render/variants.h"
+
+#include <bit>
+
+namespace binosplat::render {
+
+namespace {
+
+constexpr std::uint64_t flag = 2;  // values of a number that is 0 or 1
+
+gl::Number number(const char* name, int value, std::uint64_t count, const char* word = nullptr) {
+  return {name, static_cast<std::uint64_t>(value), count, word};
+}
+
+// Pixels that an invocation draws, one below the other, and splats whose alphas it finds at once.
+struct BlendColumns {
+  int height, ahead;
+};
+
+// Found by trying (README.md). In the approximate blend blend_blocks.comp has blocks of so many rows
+// (docs/method.md 5.2); in the exact one longer columns anywhere else would cost llvmpipe more of the 65,535
+// rounds that it grants all loops. What blend.comp has at once divides BLEND_UNROLL.
+BlendColumns columns_of(const BlendVariant& v) {
+  if (v.program == BlendProgram::software) return {v.long_lists && v.approximate ? 4 : 8, 2};
+  if (v.long_lists) return {1, 8};
+  if (v.program == BlendProgram::general) return {2, 4};
+  if (v.projection == PROJECTION_TANGENT) return {2, 3};
+  return {v.large_splats ? 4 : 2, 4};
+}
+
+}  // namespace
+
+gl::Number projection_number(int projection) {
+  return number("PROJECTION", projection, std::size(projection_choices), projection_choices[projection].name);
+}
+
+gl::Number subgroups_number(const gl::Context& context) {
+  return {"WITH_SUBGROUPS", context.limits().subgroups_of_32, flag};
+}
+
+PairVariant::PairVariant(const FramePlan& plan)
+    : tiles(plan.settings.tiles),
+      th(plan.settings.th),
+      transmittance(plan.settings.transmittance),
+      tile_size(plan.settings.tile_size),
+      supertile_side(plan.supertile_side),
+      probed(plan.probe.has_value()),
+      regions(plan.draws_regions()),
+      antialiased(plan.antialiased),
+      half(plan.settings.precision == PRECISION_HALF),
+      offset_count(plan.offset_count),
+      order(plan.perspective.order),
+      projection(plan.perspective.projection),
+      between_pixels(plan.between_pixels),
+      kernel_px2(plan.kernel_px2 == KERNEL_PX2 ? 0.0f : static_cast<float>(plan.kernel_px2)) {}
+
+std::array<gl::Number, 18> PairVariant::numbers() const {
+  return {number("TILES", tiles, std::size(tiles_choices), tiles_choices[tiles].name),
+          number("TH", th, std::size(th_choices), th_choices[th].name),
+          number("TRANSMITTANCE", transmittance, std::size(transmittance_choices)),
+          number("TILE_SIZE", tile_size, 33),
+          number("SUPERTILE_SIDE", supertile_side, 3),
+          number("PROBED", probed, flag),
+          number("REGIONS", regions, flag),
+          number("ANTIALIASED", antialiased, flag),
+          number("HALF", half, flag),
+          {"OFFSETS", offset_count, 32},
+          number("ORDER", order, std::size(order_choices)),
+          projection_number(projection),
+          number("BETWEEN", between_pixels, flag),
+          number("MEASURES", measures, flag),
+          number("EYES", eyes, 3),
+          number("SH_DEGREE", sh_degree, 4),
+          number("WITH_SUBGROUPS", subgroups, flag),
+          {"KERNEL_PX2", std::bit_cast<std::uint32_t>(kernel_px2), std::uint64_t{1} << 32, nullptr, true}};
+}
+
+bool BlendVariant::is_legal() const {
+  if (supertile_side == 2 && tile_size != TILE_SIZE_DEFAULT) return false;
+  // Who measures or tells what it comes by has the tile's splats before all its pixels, but for visibility,
+  // for which frames wait. Other sizes of tiles are for comparing.
+  const bool is_plain = draws() ? measure == MEASURE_NONE : measure == MEASURE_VISIBILITY;
+  if (program != BlendProgram::general && (!is_plain || tile_size != TILE_SIZE_DEFAULT)) return false;
+  if (!draws() && (depth != DEPTH_NONE || canvases > 0)) return false;
+  if (measure > MEASURE_TRANSMITTANCE && (debug_view != SHOW_PICTURE || probed || approximate)) return false;
+  if (measure == MEASURE_TRANSMITTANCE && debug_view != SHOW_PICTURE && debug_view != SHOW_VISIBLE)
+    return false;
+  if (canvases > 0 && (probed || depth == DEPTH_VISIBILITY)) return false;
+  if (depth == DEPTH_MEDIAN_OF_TWO_ROWS && canvases == 0) return false;
+  const bool may_be_larger = program == BlendProgram::subgroups && !long_lists && depth == DEPTH_NONE &&
+                             !approximate && projection == PROJECTION_AFFINE;
+  return !large_splats || may_be_larger;
+}
+
+std::string_view BlendVariant::shader() const {
+  if (program == BlendProgram::subgroups) return "blend_subgroups.comp";
+  return program == BlendProgram::software ? "blend_blocks.comp" : "blend.comp";
+}
+
+std::array<gl::Number, 14> BlendVariant::numbers() const {
+  const BlendColumns columns = columns_of(*this);
+  return {number("TILE_SIZE", tile_size, 33),
+          number("SUPERTILE_SIDE", supertile_side, 3),
+          number("PROBED", probed, flag),
+          number("REGIONS", regions, flag),
+          number("LISTS", long_lists, flag),
+          number("COLUMN", columns.height, 9),
+          number("AHEAD", columns.ahead, 9),
+          number("HALF", half, flag),
+          number("MEASURE", measure, MEASURE_VISIBILITY + 1),
+          number("DEBUG_VIEW", debug_view, std::size(show_choices)),
+          number("DEPTH", depth, DEPTH_MEDIAN_OF_TWO_ROWS + 1),
+          number("APPROXIMATE", approximate, flag),
+          number("CANVASES", canvases, MAX_CANVASES + 1),
+          projection_number(projection)};
+}
+
+std::vector<BlendVariant> blend_variants() {
+  std::vector<BlendVariant> all(1), next;
+  const auto vary = [&](auto member, const auto& values) {
+    next.clear();
+    for (const BlendVariant& v : all) {
+      for (const auto value : values) {
+        next.push_back(v);
+        next.back().*member = value;
+      }
+    }
+    all.swap(next);
+  };
+  const std::array either = {false, true};
+  vary(&BlendVariant::program,
+       std::array{BlendProgram::general, BlendProgram::software, BlendProgram::subgroups});
+  vary(&BlendVariant::tile_size, std::array{8, 16, 32});
+  vary(&BlendVariant::supertile_side, std::array{1, 2});
+  vary(&BlendVariant::measure, std::array{MEASURE_NONE, MEASURE_TRANSMITTANCE, MEASURE_TRANSPOSED,
+                                          MEASURE_CHANGES, MEASURE_VISIBILITY});
+  vary(&BlendVariant::debug_view,
+       std::array{SHOW_PICTURE, SHOW_ALPHAS, SHOW_VISIBLE, SHOW_PAIRS, SHOW_LIGHT, SHOW_MEDIAN_DEPTH});
+  vary(&BlendVariant::depth,
+       std::array{DEPTH_NONE, DEPTH_MEAN, DEPTH_VISIBILITY, DEPTH_MEDIAN, DEPTH_MEDIAN_OF_TWO_ROWS});
+  vary(&BlendVariant::canvases, std::array{0, 1, 2, 3, 4});
+  vary(&BlendVariant::projection, std::array{PROJECTION_AFFINE, PROJECTION_TANGENT});
+  for (const auto member : {&BlendVariant::probed, &BlendVariant::regions, &BlendVariant::long_lists,
+                            &BlendVariant::half, &BlendVariant::approximate, &BlendVariant::large_splats}) {
+    vary(member, either);
+    std::erase_if(all, [](const BlendVariant& v) { return !v.is_legal(); });
+  }
+  return all;
+}
+
+}  // namespace binosplat::render

@@ -1,0 +1,72 @@
+#pragma once
+// The variants that the shaders of a frame are compiled in, and which of them there are.
+
+#include <array>
+#include <cstdint>
+#include <string_view>
+#include <vector>
+
+#include "gl/context.h"
+#include "render/frame_plan.h"
+#include "shared/axes.h"
+#include "shared/limits.h"
+
+namespace binosplat::render {
+
+/// PROJECTION_ of shared/axes.h.
+gl::Number projection_number(int projection);
+
+/// WITH_SUBGROUPS, for programs that do the same by subgroups of 32 where there are some.
+gl::Number subgroups_number(const gl::Context& context);
+
+/// Of what decides which pairs there are: project_cull.comp, project.comp, project_count_tall.comp,
+/// pairs.comp.
+struct PairVariant {
+  explicit PairVariant(const FramePlan& plan);
+
+  int tiles, th, transmittance, tile_size, supertile_side;
+  bool probed, regions, antialiased, half;
+  std::uint32_t offset_count;
+  int order, projection;
+  bool between_pixels;
+  float kernel_px2;  // 0: that of shared/limits.h
+  // Not of all of them.
+  bool measures = false;  // for later frames
+  int eyes = 1;           // invocations along y of project_cull.comp
+  int sh_degree = 0;
+  bool subgroups = false;
+
+  std::array<gl::Number, 18> numbers() const;
+};
+
+/// The programs of the blend, which draw the same bits: for any GPU, for software renderers, and for
+/// subgroups of 32 invocations.
+enum class BlendProgram { general, software, subgroups };
+
+struct BlendVariant {
+  BlendProgram program = BlendProgram::general;
+  int tile_size = TILE_SIZE_DEFAULT;
+  int supertile_side = 1;
+  bool probed = false;
+  bool regions = false;
+  bool long_lists = false;  // LISTS of lists.glsl
+  bool half = false;
+  int measure = MEASURE_NONE;     // MEASURE_ of shared/limits.h
+  int debug_view = SHOW_PICTURE;  // SHOW_ of shared/axes.h
+  int depth = DEPTH_NONE;         // DEPTH_ of shared/limits.h
+  bool approximate = false;
+  int canvases = 0;
+  int projection = PROJECTION_AFFINE;
+  bool large_splats = false;  // that touch many tiles: invocations draw more pixels
+
+  bool draws() const { return measure <= MEASURE_TRANSMITTANCE && debug_view == SHOW_PICTURE; }
+  /// Which combinations frames may ask for.
+  bool is_legal() const;
+  std::string_view shader() const;
+  std::array<gl::Number, 14> numbers() const;
+};
+
+/// All that are legal.
+std::vector<BlendVariant> blend_variants();
+
+}  // namespace binosplat::render

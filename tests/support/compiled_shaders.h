@@ -1,0 +1,46 @@
+#pragma once
+// Shaders through Khronos's reference compiler.
+
+#include <cstdlib>
+#include <filesystem>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "gl/shader_source.h"
+#include "support/program.h"
+
+namespace binosplat::test {
+
+inline bool has_glslang() { return std::system("command -v glslangValidator > /dev/null") == 0; }
+
+/// Shaders that Khronos's reference compiler is given together: it starts once.
+class CompiledShaders {
+ public:
+  void add(const std::string& name, const gl::Defines& defines, const std::filesystem::path& shaders = {}) {
+    write_text(folder_ / (std::to_string(names_.size()) + ".comp"),
+               gl::ShaderSource(name, defines, shaders).text());
+    names_.push_back(name);
+    for (const auto& [define, value] : defines) names_.back() += " " + define + "=" + value;
+  }
+
+  /// What the compiler says of those that are not good, with their names; empty if all are.
+  std::string errors() const {
+    const std::string said = folder_ / "said";
+    const std::string command = "cd " + folder_.path().string() + " && glslangValidator *.comp > said";
+    if (std::system(command.c_str()) == 0) return "";
+    std::string errors, file;
+    std::istringstream lines(read_text(said));
+    for (std::string line; std::getline(lines, line);) {
+      if (line.ends_with(".comp")) file = line;
+      if (line.starts_with("ERROR")) errors += names_.at(std::stoul(file)) + ": " + line + "\n";
+    }
+    return errors.empty() ? read_text(said) : errors;
+  }
+
+ private:
+  TempFolder folder_;
+  std::vector<std::string> names_;
+};
+
+}  // namespace binosplat::test
