@@ -43,9 +43,6 @@ void write_depth(uint to, uint p, float left) {
   precise float z = z_sum[p] * cover;
   z_sum[p] = z;
 #endif
-#if DEPTH == DEPTH_MEDIAN_OF_TWO_ROWS
-  if (p % 2u != 0u) return;
-#endif
-  z_sums[to] = z_sum[p];
+  if (DEPTH != DEPTH_MEDIAN_OF_TWO_ROWS || p % 2u == 0u) z_sums[to] = z_sum[p];
 #endif
 }

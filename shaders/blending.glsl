@@ -97,7 +97,7 @@ void blend(uint at[AHEAD]) {
 #endif
       precise float a = exp2(-exponent);
       weights[p][k] = a >= float(ALPHA_MIN) && REACHES(at[k]) ? min(float(ALPHA_MAX), a) : 0.0;  // not a number: 0
-      measure_alpha(p, k, a);
+      MEET(p, k, a);
     }
   }
   float left[COLUMN];
@@ -132,7 +132,6 @@ void blend(uint at[AHEAD]) {
   }
   for (uint k = 0u; k < AHEAD; ++k) {
     vec4 c = batch_colour[at[k]];
-    begin_measuring_splat();
     for (uint p = 0u; p < COLUMN; ++p) {
       float weight = weights[p][k];
       measure(at[k], p, k, weight);

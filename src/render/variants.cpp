@@ -76,7 +76,6 @@ std::array<gl::Number, 18> PairVariant::numbers() const {
 }
 
 bool BlendVariant::is_legal() const {
-  if (supertile_side == 2 && tile_size != TILE_SIZE_DEFAULT) return false;
   // Who measures or tells what it comes by has the tile's splats before all its pixels, but for visibility,
   // for which frames wait. Other sizes of tiles are for comparing.
   const bool is_plain = draws() ? measure == MEASURE_NONE : measure == MEASURE_VISIBILITY;

@@ -81,7 +81,7 @@ void expect_no_error(const Model& model, const FrameSettings& settings, int supe
   constexpr int width = 100, height = 83;  // the last tiles of a row and a column are cut by the edge
   const auto views = eyes_for_probe(width, height, cant);
   const int side = settings.tile_size;
-  for (const Probe& probe : probes({1, 3}, tiles_along(width, side), tiles_along(height, side))) {
+  for (const Probe& probe : probes({1, 2}, tiles_along(width, side), tiles_along(height, side))) {
     EXPECT_EQ(ProbeRun(model, views, settings, supertile_side, probe).error, 0.0)
         << tiles_choices[settings.tiles].name << ", tile " << side << ", supertiles of " << supertile_side
         << ", cant " << cant << ", view " << probe.view << ", step " << probe.step << " from ("
@@ -114,7 +114,7 @@ TEST(Probe, TellsTheErrorOfItsTilesAsTheScreenShowsThem) {
   const Model model = test::random_model(108, 2000, 1);
   constexpr int width = 100, height = 83;
   for (const int side : {8, 16, 32}) {
-    for (const double cant : {0.0, 4.0}) {
+    for (const double cant : {side == 16 ? 4.0 : 0.0}) {
       const auto views = eyes_for_probe(width, height, cant);
       const FrameSettings settings = {
           .th = TH_SQUARED, .tolerance = 0.3f, .tile_size = side, .background = background};

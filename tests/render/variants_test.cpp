@@ -28,7 +28,7 @@ TEST(BlendVariants, AreToldApart) {
 }
 
 TEST(BlendVariants, WhatNoFrameHasIsRefused) {
-  EXPECT_FALSE((BlendVariant{.tile_size = 8, .supertile_side = 2}).is_legal());
+  EXPECT_FALSE((BlendVariant{.measure = MEASURE_VISIBILITY, .approximate = true}).is_legal());
   EXPECT_FALSE((BlendVariant{.program = BlendProgram::subgroups, .measure = MEASURE_CHANGES}).is_legal());
   EXPECT_FALSE((BlendVariant{.depth = DEPTH_VISIBILITY, .canvases = 1}).is_legal());
   auto numbers = BlendVariant{}.numbers();
