@@ -14,7 +14,7 @@ layout(local_size_x = BLOCK_WIDTH, local_size_y = BLOCKS) in;
 shared uint reached[ROUND];                    // of the batch: the blocks of each
 shared uint own_lists[BLOCKS][ROUND + BLEND_UNROLL];  // by block: those of the batch that reach it, and some that leave no mark
 shared uint own_counts[BLOCKS];
-shared uint bright;  // a bit a block: whether a pixel of it still takes light
+shared uint bright;  // a bit a block: whether a pixel of it is not dark
 
 void list_own(uint block) {
   uint bit = bit_of(block), count = 0u, i = 0u;

@@ -1,6 +1,6 @@
 // Stage 0, decode (Scaffold-GS only): what the networks make of each anchor for an eye. One invocation an anchor of the page
 // and a decoding; a decoding serves one view, or both eyes of a pair from between them. What is kept of an anchor is told by
-// the bits of a word, so that a Gaussian's place, and what is remembered of it, is its id whoever is kept beside it.
+// the bits of a word, so that a Gaussian's place, and what is measured of it, is its id whoever is kept beside it.
 #include "shared/limits.h"
 #include "shared/types.h"
 #include "shared/grid.glsl"

@@ -39,7 +39,7 @@ void main() {
   for (uint v = view_begin; v < view_end; ++v) {
     uint from = splat_of(slot, v);
     uvec2 sum = sums[from];
-    if (sum != uvec2(0)) sums[from] = uvec2(0);  // for the next look
+    if (sum != uvec2(0)) sums[from] = uvec2(0);  // for the next pass
     uint low = sum.x + (sum.y << VISIBILITY_LOW_BITS);
     uvec2 area = uvec2(low, (sum.y >> (32 - VISIBILITY_LOW_BITS)) + (low < sum.x ? 1u : 0u));
     if (area.y == 0u) area.x = max(area.x, hidden);

@@ -78,10 +78,10 @@ struct Choice {
 };
 
 inline constexpr Choice tiles_choices[] = {
-    {"aabb", "3D-GS's square of three standard deviations; cuts tails that can be seen"},
+    {"aabb", "3D-GS's square of three standard deviations; clips tails that can be seen"},
     {"ellipse", "exact: where alpha reaches the threshold (FlashGS, AdR-Gaussian)"},
     {"all", "every Gaussian to every tile: slow, for tests"},
-    {"obb", "GSCore's oriented box of three standard deviations; cuts tails, too"},
+    {"obb", "GSCore's oriented box of three standard deviations; clips tails, too"},
     {"snug", "exact: the box around where alpha reaches the threshold (Speedy-Splat)"},
 };
 

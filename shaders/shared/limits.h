@@ -113,7 +113,7 @@
 // sums than they save.
 #define SORT_DIGITS_GROUPS 528u
 // Statements that the blend unrolls: llvmpipe ends a loop silently after 65,535 rounds (all loops of a group
-// of lanes together), so a tile's list may have some 200,000 entries before it is cut; and then it is
+// of lanes together), so a tile's list may have some 200,000 entries before it is truncated; and then it is
 // reported.
 #define BLEND_UNROLL 8
 // Side in px of the cells that the blend counts a pixel's place in: that of the largest tiles.

@@ -1,5 +1,5 @@
 // T_upper of a Gaussian in a view, its transmittance bound, the largest T that it is thought to meet; 1 where nothing is known:
-// at first, after a cut, outside the view, beyond the table of depths (docs/method.md 5).
+// at first, after a camera cut, outside the view, beyond the table of depths (docs/method.md 5).
 
 #include "shared/axes.h"
 #include "shared/limits.h"

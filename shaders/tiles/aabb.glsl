@@ -1,5 +1,5 @@
 // The square of 3D-GS (Kerbl 2023): three standard deviations of the longer axis, whatever the opacity, its tiles found by
-// C's truncation. Opacities below tau are not left out, as there. It cuts tails that can be seen: alpha is still 0.011 there for an opaque splat.
+// C's truncation. Opacities below tau are not left out, as there. It clips tails that can be seen: alpha is still 0.011 there for an opaque splat.
 
 uvec4 tile_box(Outline outline, View view) {
 #if TH != TH_TAU

@@ -1,4 +1,4 @@
-// GSCore's oriented box of three standard deviations against the tile's pixel centres, by separating axes. It cuts tails
+// GSCore's oriented box of three standard deviations against the tile's pixel centres, by separating axes. It clips tails
 // that can be seen, as aabb does.
 
 struct OrientedBox {

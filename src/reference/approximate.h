@@ -1,6 +1,6 @@
 #pragma once
-// What the squared rule leaves out beyond pairs (docs/method.md 5.2): blocks of a tile, and the last of a
-// pixel's light.
+// What the squared rule leaves out beyond pairs (docs/method.md 5.2): blocks of a tile, and what lies
+// behind dark ones.
 
 #include "reference/project.h"
 #include "shared/axes.h"

@@ -1,6 +1,6 @@
 #pragma once
 // Th, the alpha below which a Gaussian makes no pair (docs/method.md 5), with the squared rule nor is blended
-// in a block (loss.h). Elsewhere the blend goes by tau and the true alpha.
+// in a block (approximate.h). Elsewhere the blend goes by tau and the true alpha.
 
 #include <span>
 #include <vector>

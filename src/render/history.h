@@ -9,8 +9,8 @@ namespace binosplat::render {
 
 /// True if the views are the same ones a moment later: as many, of the same pictures and lenses, the same
 /// regions of them drawn, each turned by less than 15 degrees and moved by less than a tenth of
-/// `median_depth` (of the Gaussians drawn before, world units). Anything else is a cut. `share` of these
-/// limits, to ask for less.
+/// `median_depth` (of the Gaussians drawn before, world units). Anything else is a camera cut. `share` of
+/// these limits, to ask for less.
 bool continues(const FramePlan& before, const FramePlan& now, double median_depth, double share = 1.0);
 
 /// What measured transmittance has to do with a frame.
@@ -28,7 +28,7 @@ class FrameHistory {
   /// The model has so many Gaussians now: other levels of detail of the same scene.
   void follow_levels(std::uint32_t gaussians);
 
-  /// Whether `now` follows the last frame without a cut.
+  /// Whether `now` follows the last frame without a camera cut.
   bool goes_on(const FramePlan& now) const { return continues(last_, now, median_depth_); }
 
   /// Whether `now` needs no probe: the last one is not long ago, fewer than `probe_every` frames

@@ -8,7 +8,7 @@ namespace binosplat::render {
 
 namespace {
 
-// Of models that are not decoded no shader looks at it.
+// No shader reads it of models that are not decoded.
 const gl::Buffer& kept_of(const ModelBuffers& model, std::size_t page, const FrameBuffers& buffers) {
   return model.pages[page].anchors ? *buffers.kept[page] : *model.pages[page].gaussians;
 }

@@ -40,10 +40,10 @@ struct FrameSettings {
   int measure_every = settling_frames;
   float tolerance = 0.0f;  // what Th may cost, in the unit of its rule (th_choices)
   /// Above 0: the frame chooses its tolerance itself, so that its PSNR against the exact frame comes to so
-  /// many dB, both as 8 bits would keep them, in the view that errs most. A frame that looks draws some tiles
-  /// of a view exactly, too, and the next tolerance follows from what they show; one that misses, and the
-  /// first one, is drawn again (tolerance_control.h). About so many tiles; all of the view where it has no
-  /// more.
+  /// many dB, both as 8 bits would keep them, in the view that errs most. A frame that measures its
+  /// error draws some tiles of a view exactly, too, and the next tolerance follows from what they show; one
+  /// that misses, and the first one, is drawn again (tolerance_control.h). About so many tiles; all of the
+  /// view where it has no more.
   float quality = 0.0f;
   int probe_tiles = 256;
   /// DECODE_; of Scaffold-GS only. Cyclopean needs views in pairs, the eyes at 2k and 2k + 1.

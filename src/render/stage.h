@@ -6,7 +6,7 @@
 
 namespace binosplat::render {
 
-/// `decode` of Scaffold-GS only, `probe` of frames that look at their own error. A stage is a file here,
+/// `decode` of Scaffold-GS only, `probe` of frames that measure their error. A stage is a file here,
 /// programs and a test of one name.
 enum class Stage { decode, project, order, pairs, tile_sort, ranges, blend, probe };
 constexpr std::array stage_names = {"decode",    "project", "order", "pairs",

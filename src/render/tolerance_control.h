@@ -13,12 +13,12 @@ namespace binosplat::render {
 /// Chooses the tolerance of each frame by what probes of it and of those before showed: tiles evenly spread
 /// over a view, in turn over all views and all of their tiles. The view that errs most must keep the promise.
 /// A rule's mean squared error grows as a power of its tolerance (docs/method.md 8: kappa^1.3, K^2 on trained
-/// scenes; kappa^10 where thousands of like Gaussians go at once), which each search after a cut finds anew;
-/// so the tolerance falls at once and rises carefully. A quality that is asked for may change a little from
-/// frame to frame, and is followed likewise.
+/// scenes; kappa^10 where thousands of like Gaussians go at once), which each search after a camera cut finds
+/// anew; so the tolerance falls at once and rises carefully. A quality that is asked for may change a little
+/// from frame to frame, and is followed likewise.
 ///
-/// A frame that does not hold is to be drawn again: one after a cut, until every view was seen to hold, or
-/// one whose probe shows what nobody could foresee. Each attempt is
+/// A frame that does not hold is to be drawn again: one after a camera cut, until every view was seen to
+/// hold, or one whose probe shows what nobody could foresee. Each attempt is
 ///   next_probe(), next_tolerance(), the drawing, measured(), and again unless holds().
 class ToleranceControl {
  public:

@@ -58,7 +58,7 @@ std::vector<glm::uvec2> region_rows(const ViewRegion& region, const shared::View
   if (glm::any(glm::greaterThan(region.hole_begin, region.hole_end)) ||
       glm::any(glm::greaterThan(region.hole_end, size)))
     fail("a hole that does not lie in its view of {} x {} px", size.x, size.y);
-  // Whole tiles of the hole: the last ones may be cut off by the picture's edge.
+  // Whole tiles of the hole: the last ones may be clipped by the picture's edge.
   const glm::uvec2 hole_begin = (region.hole_begin + tile - 1u) / tile;
   const glm::uvec2 hole_end =
       glm::max(hole_begin, glm::mix(region.hole_end / tile, tiles, glm::equal(region.hole_end, size)));
