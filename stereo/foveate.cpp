@@ -118,7 +118,7 @@ FoveatedViews foveated_views(std::span<const shared::View> eyes, const Foveation
                              const render::FrameSettings& settings) {
   if (eyes.empty() || eyes.size() > MAX_VIEWS / 2)
     fail("foveation of {} eyes: expected 1 to {}", eyes.size(), MAX_VIEWS / 2);
-  if (!settings.regions.empty()) fail("foveation of views of which only parts are drawn");
+  if (!settings.regions.empty()) fail("foveation of views of which only regions are drawn");
   if (settings.depth == Depth::median)
     fail("foveation with the median depth: between inset and context only means are mixed");
   FoveatedViews out{.settings = settings};

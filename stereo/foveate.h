@@ -50,7 +50,7 @@ struct FoveatedViews {
   render::FrameSettings settings;
 };
 
-/// Throws Error for more than MAX_VIEWS / 2 eyes, for settings that already have parts or ask for the median
+/// Throws Error for more than MAX_VIEWS / 2 eyes, for settings that already have regions or ask for the median
 /// depth, and as foveate() does.
 FoveatedViews foveated_views(std::span<const shared::View> eyes, const Foveation& foveation,
                              const render::FrameSettings& settings = {});

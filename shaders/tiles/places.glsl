@@ -5,7 +5,7 @@
 #define PROBED 0  // 1: the frame has a probe
 #endif
 #ifndef REGIONS
-#define REGIONS 0  // 1: of some views only parts are drawn
+#define REGIONS 0  // 1: of some views only regions are drawn
 #endif
 
 #if PROBED

@@ -319,7 +319,7 @@ TEST(Foveate, WrongWordsAreNamed) {
   EXPECT_TRUE(
       test::fails_saying([&] { stereo::foveated_views(std::vector(5, view), {}); }, {"5 eyes", "1 to 4"}));
   EXPECT_TRUE(test::fails_saying([&] { stereo::foveated_views(std::vector(1, view), {}, {.parts = {{}}}); },
-                                 {"only parts are drawn"}));
+                                 {"only regions are drawn"}));
 }
 
 }  // namespace
