@@ -17,7 +17,7 @@ double typical(const Reports& frames, const Value& value) {
   for (const bool measures : {false, true}) {
     std::vector<double> values;
     for (const render::FrameReport& frame : frames) {
-      if (frame.recorded == measures) values.push_back(value(frame));
+      if (frame.measured == measures) values.push_back(value(frame));
     }
     const auto count = static_cast<double>(values.size());
     if (!values.empty()) sum += count * quantile(std::move(values), 0.5);
@@ -52,7 +52,7 @@ Typical typical_of(const Reports& frames) {
   Typical all{
       .frame_ms = typical(frames, [](const render::FrameReport& f) { return f.total_ms; }),
       .pairs = typical(frames, [](const render::FrameReport& f) { return static_cast<double>(f.pairs); })};
-  const auto plain = std::ranges::find(frames, false, &render::FrameReport::recorded);
+  const auto plain = std::ranges::find(frames, false, &render::FrameReport::measured);
   for (const gl::StageTime& stage : (plain == frames.end() ? frames.front() : *plain).stages) {
     all.stages.push_back({stage.name, typical(frames, [&](const render::FrameReport& f) {
                             return ms_of(f.stages, stage.name);

@@ -18,14 +18,14 @@ int rule_of(const Settings& settings) {
   return *settings.threshold == Threshold::peripheral ? TH_PERIPHERAL : TH_TAU;
 }
 
-render::ViewPart part_of(const ViewRegion& region) {
-  render::ViewPart part;
-  part.columns = region.columns;
-  part.hole_begin = region.hole_begin;
-  part.hole_end = region.hole_end;
-  part.tolerance_share = region.tolerance_share;
-  part.low_pass_share = region.low_pass_share;
-  return part;
+render::ViewRegion region_of(const ViewRegion& region) {
+  render::ViewRegion result;
+  result.columns = region.columns;
+  result.hole_begin = region.hole_begin;
+  result.hole_end = region.hole_end;
+  result.tolerance_share = region.tolerance_share;
+  result.low_pass_share = region.low_pass_share;
+  return result;
 }
 
 }  // namespace
@@ -48,7 +48,7 @@ render::FrameSettings frame_settings(const Settings& from, std::span<const View>
   to.depth = !has_depths ? Depth::none : from.depth == DepthKind::median ? Depth::median : Depth::mean;
   const auto is_whole = [](const View& view) { return view.region == ViewRegion{}; };
   if (!std::all_of(views.begin(), views.end(), is_whole)) {
-    for (const View& view : views) to.parts.push_back(part_of(view.region));
+    for (const View& view : views) to.regions.push_back(region_of(view.region));
   }
   render::check_choice(to);
   return to;

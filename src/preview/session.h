@@ -17,7 +17,6 @@
 #include "stereo/debug_view.h"
 #include "stereo/present.h"
 #include "stereo/rig.h"
-#include "stereo/debug_view.h"
 #include "stream/stream.h"
 
 namespace binosplat::preview {
@@ -156,8 +155,8 @@ class Session {
   render::Frame frame_;
   stereo::Presenter presenter_;
   stereo::DebugView show_;
-  stereo::DebugPictures shown_;       // in place of the frame's own pictures; none: those
-  gl::Buffer shown_colours_;  // as the frame's colours
+  stereo::DebugPictures shown_;  // in place of the frame's own pictures; none: those
+  gl::Buffer shown_colours_;     // as the frame's colours
   glm::ivec2 framebuffer_{0};
   bool moving_ = false;
   int divisor_ = 1;                       // of the last frame drawn

@@ -62,7 +62,7 @@ std::vector<std::vector<ChunkVisibility>> Visibility::measure(std::span<const sh
     const glm::dvec2 size(view.width, view.height);
     view = shrunk(view, std::clamp(shrink, 1, most));
     pixel_areas.push_back(size.x / view.width * size.y / view.height);
-    exact.parts.push_back({.low_pass_share = static_cast<float>(1.0 / pixel_areas.back())});
+    exact.regions.push_back({.low_pass_share = static_cast<float>(1.0 / pixel_areas.back())});
   }
   frame_.draw_until(render::Stage::ranges, small, exact);
   const std::vector<std::int64_t> sums = sum_up(views.size(), exact.precision, chunks);
@@ -73,7 +73,7 @@ std::vector<std::vector<ChunkVisibility>> Visibility::measure(std::span<const sh
         const std::int64_t* const of = &sums[2 * (v * chunks.size() + c)];
         if (of[0] == 0) continue;
         const double area = static_cast<double>(of[0]);
-        seen[v][c] = {area / SEEN_SCALE * pixel_areas[v],
+        seen[v][c] = {area / VISIBILITY_SCALE * pixel_areas[v],
                       std::exp2(static_cast<double>(of[1]) / area - 32.0)};
       }
     };
@@ -84,44 +84,45 @@ std::vector<std::vector<ChunkVisibility>> Visibility::measure(std::span<const sh
 
 // Of the views that the frame has drawn up to its blend.
 std::vector<std::int64_t> Visibility::sum_up(std::size_t views, int precision, const ModelChunks& chunks) {
-  const render::FrameShape& shape = frame_.shape();
+  const render::FramePlan& plan = frame_.plan();
   render::FrameBuffers& buffers = frame_.buffers();
   // Zeros again after each pass, since clearing takes as long as all of the rest.
-  const std::int64_t sum_bytes = std::int64_t{shape.slots} * static_cast<std::int64_t>(views) * 8;
+  const std::int64_t sum_bytes = std::int64_t{buffers.slots} * static_cast<std::int64_t>(views) * 8;
   if (sums_.bytes() < sum_bytes) sums_.reserve_zeros(sum_bytes);
   of_chunks_.reserve_zeros(static_cast<std::int64_t>(chunks.size() * views * 16));
   owners_.upload(chunks.owners());
   dispatcher_.begin_frame();
   dispatcher_.begin_stage("blend");
-  render::find_long_lists(dispatcher_, shape, buffers);
-  render::blend_seen(dispatcher_, shape, buffers, sums_);
+  render::find_long_lists(dispatcher_, plan, buffers);
+  render::blend_visibility(dispatcher_, plan, buffers, sums_);
   const auto model_buffers = frame_.model()->in(precision);
-  const gl::Program& program = dispatcher_.context().program(
-      "parts_seen.comp", {{"OFFSETS", "0"}, {"HALF", precision == PRECISION_HALF ? "1" : "0"}});
-  for (std::size_t group = 0; group < shape.groups.size(); ++group) {
+  const gl::Program& program =
+      dispatcher_.context().program("parts_seen.comp", gl::Number{"HALF", precision == PRECISION_HALF, 2});
+  for (std::size_t group = 0; group < plan.groups.size(); ++group) {
     for (const render::ModelBuffers::Page& page : model_buffers->pages) {
       const render::DrawnBuffers& drawn = *buffers.drawn[group];
-      dispatcher_.run(program,
-                      gl::Work::indirect(drawn.arguments, offsetof(shared::DispatchArguments, threads_x)),
-                      {{"Frame", buffers.parameters},
-                       {"Views", buffers.views},
-                       {"Gaussians", *page.gaussians},
-                       {"Arguments", drawn.arguments},
-                       {"Indices", drawn.indices},
-                       {"Sums", sums_},
-                       {"Owners", owners_},
-                       {"OfParts", of_chunks_}},
-                      {{"page_first", page.first},
-                       {"page_count", page.count},
-                       {"part_count", static_cast<std::uint32_t>(chunks.size())},
-                       {"block_size", static_cast<std::uint32_t>(ModelChunks::block)},
-                       {"view_begin", shape.groups[group].begin},
-                       {"view_end", shape.groups[group].end}});
+      dispatcher_.run(
+          program,
+          gl::DispatchSize::indirect(drawn.arguments, offsetof(shared::DispatchArguments, threads_x)),
+          {{"Frame", buffers.parameters},
+           {"Views", buffers.views},
+           {"Gaussians", *page.gaussians},
+           {"Arguments", drawn.arguments},
+           {"Indices", drawn.indices},
+           {"Sums", sums_},
+           {"Owners", owners_},
+           {"OfParts", of_chunks_}},
+          {{"page_first", page.first},
+           {"page_count", page.count},
+           {"part_count", static_cast<std::uint32_t>(chunks.size())},
+           {"block_size", static_cast<std::uint32_t>(ModelChunks::block)},
+           {"view_begin", plan.groups[group].begin},
+           {"view_end", plan.groups[group].end}});
     }
   }
   dispatcher_.end_frame();
   dispatcher_.wait_and_time();
-  render::refuse_cut(dispatcher_.context(), buffers.counters.read<shared::Counters>(1).front());
+  render::refuse_truncated(dispatcher_.context(), buffers.counters.read<shared::Counters>(1).front());
   return of_chunks_.read<std::int64_t>(2 * chunks.size() * views);
 }
 

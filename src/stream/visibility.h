@@ -39,7 +39,7 @@ class Visibility {
 
   render::Frame frame_;
   gl::Dispatcher dispatcher_;
-  gl::Buffer sums_;    // by splat, alpha T^2: SEEN_LOW_BITS of what tiles have, and those above
+  gl::Buffer sums_;    // by splat, alpha T^2: VISIBILITY_LOW_BITS of what tiles have, and those above
   gl::Buffer owners_;  // uint by block
   /// (view, chunk): 64 bits of alpha T^2, and of that times the logarithm of the distance.
   gl::Buffer of_chunks_;

@@ -105,7 +105,7 @@ StabilityResult run_rule(render::Frame& frame, const StabilityCase& one, const E
   render::FrameSettings settings = rule.settings();
   settings.depth_table = exact.table;
   // Of a still camera the frames that do not measure show what the next one shows: nothing new.
-  if (is_still(one)) settings.record_every = 1;
+  if (is_still(one)) settings.measure_every = 1;
   frame.forget();
   StabilityResult r;
   std::vector<double> db;

@@ -19,7 +19,7 @@ TEST(LibrarySettings, AreAFramesOwn) {
   EXPECT_TRUE(render::is_exact(plain.th));
   EXPECT_EQ(plain.depth, Depth::none) << "nobody asked for depths";
   EXPECT_FALSE(plain.order || plain.projection);
-  EXPECT_TRUE(plain.parts.empty());
+  EXPECT_TRUE(plain.regions.empty());
   EXPECT_EQ(of({.quality = 40.0f}).th, TH_SQUARED) << "what the command line takes by itself";
   EXPECT_EQ(of({.quality = 40.0f}).quality, 40.0f);
   EXPECT_EQ(of({.tolerance = 0.5f}).th, TH_SQUARED);
@@ -74,10 +74,10 @@ TEST_F(Library, RegionsAndReportsAreAFramesOwn) {
   same.th = TH_SQUARED;
   same.tolerance = 0.5f;
   same.depth = Depth::none;
-  same.parts = {render::ViewPart{}, render::ViewPart{}};
-  same.parts[1].hole_begin = pair[1].region.hole_begin;
-  same.parts[1].hole_end = pair[1].region.hole_end;
-  same.parts[1].tolerance_share = 0.0f;
+  same.regions = {render::ViewRegion{}, render::ViewRegion{}};
+  same.regions[1].hole_begin = pair[1].region.hole_begin;
+  same.regions[1].hole_end = pair[1].region.hole_end;
+  same.regions[1].tolerance_share = 0.0f;
   const auto drawn = stereo::views_from_xr(quest_eyes(), placement, std::array{size, size}).views;
   const render::FrameReport expected = frame.draw(drawn, same);
   EXPECT_EQ(report.pairs, expected.pairs);

@@ -33,7 +33,7 @@ struct ShowTest : testing::Test {
 
   double median_depth(std::span<const std::uint32_t> list, int x, int y) const {
     double depth = -1.0;
-    reference::blend_pixel(splats, list, x, y, {},
+    reference::blend_pixel(splats, list, {x, y}, {},
                            [&](std::uint32_t i, double alpha, const auto& before, auto verdict) {
                              const bool is_half = before.transmittance * (1.0 - alpha) < 0.5;
                              if (verdict == reference::Verdict::blended && is_half && depth < 0.0)
@@ -51,7 +51,7 @@ struct ShowTest : testing::Test {
     if (what == SHOW_MEDIAN_DEPTH) return median_depth(list, x, y);
     double sum = 0.0;
     const auto blended = reference::blend_pixel(
-        splats, list, x, y, {}, [&](std::uint32_t i, double alpha, const auto& before, auto verdict) {
+        splats, list, {x, y}, {}, [&](std::uint32_t i, double alpha, const auto& before, auto verdict) {
           if (verdict == reference::Verdict::blended) sum += alpha * before.transmittance * light[i];
         });
     return blended.transmittance < 1.0 ? sum / (1.0 - blended.transmittance) : -1.0;

@@ -169,7 +169,7 @@ TEST(Ground, UpThatIsKnownIsTaken) {
   EXPECT_NEAR(*found->height, 0.0, 0.05);
   const auto askew = find_ground(garden(), glm::dvec3(1, 0, 0));
   ASSERT_TRUE(askew);
-  EXPECT_FALSE(askew->level) << "nothing is level";
+  EXPECT_FALSE(askew->height) << "nothing is level";
 }
 
 TEST(Standing, IsOnTheFloorAndLooksAtTheMiddle) {
@@ -205,7 +205,7 @@ TEST(Standing, IsInARoomAndNotInItsWalls) {
     EXPECT_GT(std::abs(p.x - 6.0 * std::round(p.x / 6.0)), 0.3) << p.x;
   }
   Ground in_the_air = *ground;
-  *in_the_air.level += 1.0;
+  *in_the_air.height += 1.0;
   EXPECT_FALSE(open_space(model, in_the_air, 1.6)) << "no floor there";
 }
 

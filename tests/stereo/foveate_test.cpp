@@ -127,7 +127,7 @@ double catmull_rom(double t) {
 // The largest difference of colours beyond the seam from the context, drawn by itself and brought to size.
 double around_error(const Drawn& drawn, const Model& model) {
   const stereo::FoveatedEye& part = drawn.parts[0];
-  const render::FrameSettings whole{.parts = {{.low_pass_share = part.context_part.low_pass_share}}};
+  const render::FrameSettings whole{.regions = {{.low_pass_share = part.context_part.low_pass_share}}};
   const Picture context = test::draw(model, part.context, whole);
   const Picture& shown = drawn.pictures[0];
   double worst = 0;
@@ -318,7 +318,7 @@ TEST(Foveate, WrongWordsAreNamed) {
   EXPECT_TRUE(test::fails_saying(said({.seam = -1}), {"seam -1"}));
   EXPECT_TRUE(
       test::fails_saying([&] { stereo::foveated_views(std::vector(5, view), {}); }, {"5 eyes", "1 to 4"}));
-  EXPECT_TRUE(test::fails_saying([&] { stereo::foveated_views(std::vector(1, view), {}, {.parts = {{}}}); },
+  EXPECT_TRUE(test::fails_saying([&] { stereo::foveated_views(std::vector(1, view), {}, {.regions = {{}}}); },
                                  {"only regions are drawn"}));
 }
 
