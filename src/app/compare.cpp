@@ -57,27 +57,20 @@ const char* channel_name(const Image& image, int channel) {
 }
 
 void print_comparison(const CompareOptions& options, const Comparison& found, const Image& image) {
-  if (std::isinf(found.psnr) && found.psnr > 0) {
-    fmt::print("PSNR           infinite: the pictures are equal\n");
-  } else {
-    fmt::print("PSNR           {:.4f} dB\n", found.psnr);
-  }
-  if (std::isnan(found.ssim)) {
-    fmt::print(
-        "SSIM           undefined: the pictures are smaller than its window of 11 x 11 px, or hold a NaN\n");
-  } else {
-    fmt::print("SSIM           {:.6f}\n", found.ssim);
-  }
-  if (std::isnan(found.flip)) {
-    fmt::print("FLIP           undefined: the pictures hold a NaN\n");
-  } else {
-    fmt::print("FLIP           {:.6f} at {} pixels per degree\n", found.flip, options.pixels_per_degree);
-  }
-  if (found.largest.max > 0.0) {
-    fmt::print("largest error  {:.6f} ({:.2f} of 255) at x {}, y {}, {}\n", found.largest.max,
-               255.0 * found.largest.max, found.largest.x, found.largest.y,
-               channel_name(image, found.largest.channel));
-  }
+  const auto line = [](const char* name, const std::string& value) { fmt::print("{:<15}{}\n", name, value); };
+  const bool equal = std::isinf(found.psnr) && found.psnr > 0;
+  line("PSNR", equal ? "infinite: the pictures are equal" : fmt::format("{:.4f} dB", found.psnr));
+  line("SSIM", std::isnan(found.ssim)
+                   ? "undefined: the pictures are smaller than its window of 11 x 11 px, or hold a NaN"
+                   : fmt::format("{:.6f}", found.ssim));
+  line("FLIP", std::isnan(found.flip)
+                   ? "undefined: the pictures hold a NaN"
+                   : fmt::format("{:.6f} at {} pixels per degree", found.flip, options.pixels_per_degree));
+  const auto& largest = found.largest;
+  if (largest.max > 0.0)
+    line("largest error",
+         fmt::format("{:.6f} ({:.2f} of 255) at x {}, y {}, {}", largest.max, 255.0 * largest.max, largest.x,
+                     largest.y, channel_name(image, largest.channel)));
 }
 
 // "1830,1600,100".

@@ -40,8 +40,8 @@ std::vector<Entry> entries_of(const std::string& text) {
   return entries;
 }
 
-}  // namespace
-
+// "inset=20deg,context=0.4,gaze=5,-3": what is not named is as stereo::Foveation has it. Throws Error, naming
+// --foveate, for what cannot be understood and for numbers that no eye has.
 stereo::Foveation parse_foveation(const std::string& text) {
   stereo::Foveation out;
   std::vector<std::string> seen;
@@ -80,6 +80,8 @@ stereo::Foveation parse_foveation(const std::string& text) {
   stereo::check(out, "--foveate ");
   return out;
 }
+
+}  // namespace
 
 void add_foveate_option(CLI::App& sub, std::optional<stereo::Foveation>& foveate) {
   sub.add_option_function<std::string>(

@@ -14,10 +14,6 @@ namespace binosplat::app {
 
 void add_foveate_option(CLI::App& sub, std::optional<stereo::Foveation>& foveate);
 
-/// "inset=20deg,context=0.4,gaze=5,-3": what is not named is as stereo::Foveation has it. Throws Error,
-/// naming --foveate, for what cannot be understood and for numbers that no eye has.
-stereo::Foveation parse_foveation(const std::string& text);
-
 /// Throws Error for options that do not go with --foveate, where it is given.
 void check_foveate(const RenderOptions& options);
 

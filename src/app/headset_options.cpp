@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
+#include <utility>
+
 #include "app/option_checks.h"
 #include "base/error.h"
 
@@ -55,12 +57,13 @@ void check(const HeadsetOptions& o, const CLI::App& sub) {
   for (const char* name : of_windows) {
     if (is_given(sub, name)) fail("{} with --xr: leave it out, a headset decides that itself", name);
   }
-  if (o.budget_ms && is_given(sub, "--foveate"))
-    fail("--frame-budget with --foveate: a quality is one for whole pictures: choose one of them");
-  if (o.budget_ms && is_given(sub, "--quality"))
-    fail("--frame-budget with --quality: choose one, the budget chooses the quality");
-  if (o.budget_ms && is_given(sub, "--tolerance"))
-    fail("--frame-budget with --tolerance: choose one, the budget chooses what is left out");
+  const std::pair<const char*, const char*> beside_a_budget[] = {
+      {"--foveate", "a quality is one for whole pictures: choose one of them"},
+      {"--quality", "choose one, the budget chooses the quality"},
+      {"--tolerance", "choose one, the budget chooses what is left out"}};
+  for (const auto& [name, why] : beside_a_budget) {
+    if (o.budget_ms && is_given(sub, name)) fail("--frame-budget with {}: {}", name, why);
+  }
 }
 
 }  // namespace binosplat::app

@@ -12,6 +12,7 @@
 #include <csignal>
 #include <cstdlib>
 #include <cstring>
+#include <map>
 #include <sstream>
 
 #include "app/mp4_spherical.h"
@@ -26,24 +27,13 @@ namespace {
 
 // Matroska's StereoMode; empty: mono, or none for this layout.
 std::string stereo_mode(int layout) {
-  switch (layout) {
-    case LAYOUT_PARALLEL:
-    case LAYOUT_HALF_WIDTH:
-      return "left_right";
-    case LAYOUT_CROSS_EYED:
-      return "right_left";
-    case LAYOUT_OVER_UNDER:
-    case LAYOUT_HALF_HEIGHT:
-      return "top_bottom";
-    case LAYOUT_ROWS:
-      return "row_interleaved_lr";
-    case LAYOUT_COLUMNS:
-      return "col_interleaved_lr";
-    case LAYOUT_SEPARATE:
-      return "";
-    default:
-      return "anaglyph_cyan_red";
-  }
+  static const std::map<int, std::string> modes = {
+      {LAYOUT_PARALLEL, "left_right"},        {LAYOUT_HALF_WIDTH, "left_right"},
+      {LAYOUT_CROSS_EYED, "right_left"},      {LAYOUT_OVER_UNDER, "top_bottom"},
+      {LAYOUT_HALF_HEIGHT, "top_bottom"},     {LAYOUT_ROWS, "row_interleaved_lr"},
+      {LAYOUT_COLUMNS, "col_interleaved_lr"}, {LAYOUT_SEPARATE, ""}};
+  const auto mode = modes.find(layout);
+  return mode == modes.end() ? "anaglyph_cyan_red" : mode->second;
 }
 
 fs::path temporary_beside(const fs::path& target) {

@@ -121,11 +121,6 @@ double contrast_threshold(double cycles_per_degree, double eccentricity_degrees)
                   half_resolution_degrees);
 }
 
-double finest_seen(double eccentricity_degrees) {
-  return half_resolution_degrees * std::log(1.0 / threshold_least) /
-         (decay * (eccentricity_degrees + half_resolution_degrees));
-}
-
 Image times_threshold(const Image& a, const Image& b, const Gaze& gaze) {
   require_comparable(a, b);
   check(a, gaze);

@@ -21,9 +21,6 @@ struct Gaze {
 /// communication, 1998. Above 1 where none is seen.
 double contrast_threshold(double cycles_per_degree, double eccentricity_degrees);
 
-/// The finest grating that is seen at full contrast, cycles a degree.
-double finest_seen(double eccentricity_degrees);
-
 /// The pixels between two distances from where the eye looks.
 struct Ring {
   double from = 0;  // degrees
