@@ -95,14 +95,14 @@ bool decode(Anchor anchor, uint n, uint k, float logit, Hidden covariance, Hidde
 // while the others are found.
 uint decode_anchor(Anchor anchor, uint n, vec3 towards, uint to) {
   float away = length(towards);
-  vec4 sight = vec4(towards / away, away);
-  vec3 mixed = bank_mix(sight);
+  vec4 ray = vec4(towards / away, away);
+  vec3 mixed = bank_mix(ray);
   float logits[OFFSETS];
-  Hidden opacity = hidden_of(OPACITY, n, sight, mixed);
+  Hidden opacity = hidden_of(OPACITY, n, ray, mixed);
   // Up to a number that no compiler knows: unrolled, it takes compilers minutes.
   for (uint k = 0u; k < frame.offset_count; ++k) logits[k] = output_of(OPACITY_ROW + k, opacity);
-  Hidden covariance = hidden_of(COVARIANCE, n, sight, mixed);
-  Hidden colour = hidden_of(COLOUR, n, sight, mixed);
+  Hidden covariance = hidden_of(COVARIANCE, n, ray, mixed);
+  Hidden colour = hidden_of(COLOUR, n, ray, mixed);
   uint bits = 0u;
   for (uint k = 0u; k < frame.offset_count; ++k) {
     if (logits[k] > 0.0 && decode(anchor, n, k, logits[k], covariance, colour, to + k)) bits |= 1u << k;

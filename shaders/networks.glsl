@@ -42,11 +42,11 @@ struct Hidden {
   vec4 quads[QUADS];
 };
 
-vec4 from_sight(uint network, uint quad, vec4 sight) {
+vec4 from_ray(uint network, uint quad, vec4 ray) {
   uint at = network * uint(QUADS + HIDDEN);
   uint row = at + uint(QUADS) + 4u * quad;
-  return weights[at + quad] + vec4(dot(weights[row], sight), dot(weights[row + 1u], sight),
-                                    dot(weights[row + 2u], sight), dot(weights[row + 3u], sight));
+  return weights[at + quad] + vec4(dot(weights[row], ray), dot(weights[row + 1u], ray),
+                                    dot(weights[row + 2u], ray), dot(weights[row + 3u], ray));
 }
 
 float output_of(uint row, Hidden hidden) {
@@ -61,10 +61,10 @@ vec4 from_feature(uint resolution, uint network, uint quad, uint anchor) {
 }
 
 // How much of the feature at a quarter, at half and at all of its resolution a feature bank takes.
-vec3 bank_mix(vec4 sight) {
+vec3 bank_mix(vec4 ray) {
 #if BANK == 1
   Hidden hidden;
-  for (int q = 0; q < QUADS; ++q) hidden.quads[q] = max(from_sight(FEATURE_BANK, uint(q), sight), 0.0);
+  for (int q = 0; q < QUADS; ++q) hidden.quads[q] = max(from_ray(FEATURE_BANK, uint(q), ray), 0.0);
   vec3 w = vec3(output_of(BANK_ROW, hidden), output_of(BANK_ROW + 1u, hidden), output_of(BANK_ROW + 2u, hidden));
   w = exp(w - max(w.x, max(w.y, w.z)));
   return w / (w.x + w.y + w.z);
@@ -73,8 +73,8 @@ vec3 bank_mix(vec4 sight) {
 #endif
 }
 
-// The first layer of a network for an anchor; sight: direction from the eye, and distance.
-Hidden hidden_of(uint network, uint anchor, vec4 sight, vec3 mixed) {
+// The first layer of a network for an anchor; ray: direction from the eye, and distance.
+Hidden hidden_of(uint network, uint anchor, vec4 ray, vec3 mixed) {
   Hidden hidden;
   for (int q = 0; q < QUADS; ++q) {
     uint quad = uint(q);
@@ -84,7 +84,7 @@ Hidden hidden_of(uint network, uint anchor, vec4 sight, vec3 mixed) {
 #else
     vec4 feature = from_feature(0u, network, quad, anchor);
 #endif
-    hidden.quads[q] = max(feature + from_sight(network, quad, sight), 0.0);
+    hidden.quads[q] = max(feature + from_ray(network, quad, ray), 0.0);
   }
   return hidden;
 }

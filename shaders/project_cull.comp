@@ -18,7 +18,7 @@ layout(std430, binding = 8) writeonly buffer NextBounds { float next_bounds[]; }
 uniform uint view_begin;
 uniform uint view_end;  // without the probe
 
-// What the next frame is to know of a Gaussian that this view does not draw: a bound of 1 again for one out of sight,
+// What the next frame is to know of a Gaussian that this view does not draw: a bound of 1 again for one out of view,
 // a little more than before for one that Th leaves out, or it would never be measured again. The drawn are measured.
 #if MEASURES
 void age_bound(uint gaussian, uint v, bool projected, bool drawn, Splat splat) {
@@ -27,7 +27,7 @@ void age_bound(uint gaussian, uint v, bool projected, bool drawn, Splat splat) {
 #if TH != TH_TAU
   if (projected && !drawn) {
     splat.colour.w = visible_level(splat.opacity);
-    left_out = !is_wide(splat) && touches_a_tile(splat, views[v]);  // wide ones may be out of sight
+    left_out = !is_wide(splat) && touches_a_tile(splat, views[v]);  // wide ones may be out of view
   }
 #endif
   float aged = frame.has_bounds == 0u ? 1.0 : min(1.0, float(BOUND_AGEING) * bounds[v * frame.gaussian_count + gaussian]);

@@ -108,9 +108,8 @@ std::vector<Picture> DebugView::exact(std::span<const shared::View> views,
   return exact_->read_pictures();
 }
 
-std::vector<Image> DebugView::map(int what, render::Frame& frame, std::span<const shared::View> views,
-                                  std::span<const Picture> pictures, const render::FrameSettings& settings,
-                                  const Background& background) {
+std::vector<Image> DebugView::map(int what, const DrawnFrame& drawn, const Background& background) {
+  const auto& [frame, views, pictures, settings] = drawn;
   if (what >= SHOW_ALPHAS) return frame.read_debug_view(what);
   std::vector<Image> maps;
   if (what == SHOW_DEPTH) {
@@ -131,18 +130,17 @@ std::vector<Image> DebugView::map(int what, render::Frame& frame, std::span<cons
   return maps;
 }
 
-DebugPictures DebugView::make(int what, render::Frame& frame, std::span<const shared::View> views,
-                              std::span<const Picture> pictures, const render::FrameSettings& settings,
-                              const Background& background, double split) {
+DebugPictures DebugView::make(int what, const DrawnFrame& drawn, const Background& background, double split) {
+  const std::span<const Picture> pictures = drawn.pictures;
   DebugPictures shown;
   if (what == SHOW_PICTURE) {
     shown.pictures.assign(pictures.begin(), pictures.end());
   } else if (what == SHOW_SPLIT) {
-    const std::vector<Picture> right = exact(views, settings);
+    const std::vector<Picture> right = exact(drawn.views, drawn.settings);
     for (std::size_t v = 0; v < pictures.size(); ++v)
       shown.pictures.push_back(split_at(split, pictures[v], right[v]));
   } else {
-    const std::vector<Image> maps = map(what, frame, views, pictures, settings, background);
+    const std::vector<Image> maps = map(what, drawn, background);
     // What is near tells eyes apart; the sky would leave it one colour.
     shown.most = range_of(maps, what == SHOW_DEPTH || what == SHOW_MEDIAN_DEPTH ? 0.8 : 0.99);
     for (const Image& map : maps) shown.pictures.push_back(coloured(map, *shown.most));

@@ -24,19 +24,24 @@ struct DebugPictures {
   std::optional<double> most;     // of a map: the number of the brightest colour; the darkest is 0
 };
 
+/// A frame that was drawn: its own pictures, and what it was asked to draw, left eye first.
+struct DrawnFrame {
+  render::Frame& frame;
+  std::span<const shared::View> views;
+  std::span<const Picture> pictures;
+  const render::FrameSettings& settings;
+};
+
 /// Makes them of the last frame that was drawn, whatever it went by.
 class DebugView {
  public:
   /// Of frames of this model. Context as for render::Frame.
   explicit DebugView(std::shared_ptr<render::GpuModel> model) : model_(std::move(model)) {}
 
-  /// `pictures` are the frame's own, `views` what it was asked to draw, left eye first. All views go by one
-  /// range, which ends at the first of 1, 2, 5, 10 and so on that 99 of 100 pixels do not exceed, of a
-  /// depth 80. SHOW_SPLIT shows the share `split` of each picture's width as it is, and the rest exactly.
-  /// Throws Error as render::Frame does.
-  DebugPictures make(int what, render::Frame& frame, std::span<const shared::View> views,
-                     std::span<const Picture> pictures, const render::FrameSettings& settings,
-                     const Background& background, double split = 0.5);
+  /// All views go by one range, which ends at the first of 1, 2, 5, 10 and so on that 99 of 100 pixels do not
+  /// exceed, of a depth 80. SHOW_SPLIT shows the share `split` of each picture's width as it is, and the rest
+  /// exactly. Throws Error as render::Frame does.
+  DebugPictures make(int what, const DrawnFrame& drawn, const Background& background, double split = 0.5);
 
   /// The exact pictures of these views. They are drawn by a frame of their own, so that what the other one
   /// remembers stays.
@@ -46,9 +51,7 @@ class DebugView {
   void release() { exact_.reset(); }
 
  private:
-  std::vector<Image> map(int what, render::Frame& frame, std::span<const shared::View> views,
-                         std::span<const Picture> pictures, const render::FrameSettings& settings,
-                         const Background& background);
+  std::vector<Image> map(int what, const DrawnFrame& drawn, const Background& background);
 
   std::shared_ptr<render::GpuModel> model_;
   std::unique_ptr<render::Frame> exact_;

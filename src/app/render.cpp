@@ -227,7 +227,7 @@ void draw_all(gl::Context& context, Work& work, RenderReport& report) {
     }
     if (!panorama) drawn.comfort = comfort_of(drawn.shot, report.options.camera.lens.headset(), pictures[0]);
     const stereo::DebugPictures shown =
-        show.make(output.show, frame, views, pictures, of_shot, output.background);
+        show.make(output.show, {frame, views, pictures, of_shot}, output.background);
     drawn.most_shown = shown.most;
     if (video) video->add(frame_of(work.plan, output.background, shown.pictures));
     drawn.files = video ? std::vector{work.plan.video.string()}

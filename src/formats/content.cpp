@@ -1,6 +1,7 @@
 #include "formats/content.h"
 
 #include <algorithm>
+#include <bit>
 
 namespace binosplat {
 
@@ -31,6 +32,18 @@ bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n'; 
 
 bool is_text(char c) { return static_cast<unsigned char>(c) >= 0x20 || is_blank(c); }
 
+/// Whether bytes from 0x80 on are characters of UTF-8; the last one may be truncated. Of one Gaussian in a
+/// .splat no byte need be below 0x20, but hardly ever are they such characters.
+bool is_utf8(std::string_view text) {
+  int following = 0;  // bytes that belong to the character at hand
+  for (const char c : text) {
+    const int ones = std::countl_one(static_cast<unsigned char>(c));
+    if ((following > 0) != (ones == 1) || ones > 4) return false;
+    following = ones > 1 ? ones - 1 : std::max(following - 1, 0);
+  }
+  return true;
+}
+
 }  // namespace
 
 Content content_of(std::span<const std::byte> bytes) {
@@ -41,7 +54,7 @@ Content content_of(std::span<const std::byte> bytes) {
     if (text.starts_with(signature.start)) return signature.content;
   }
   if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);
-  if (!std::all_of(text.begin(), text.end(), is_text)) return Content::unknown;
+  if (!std::all_of(text.begin(), text.end(), is_text) || !is_utf8(text)) return Content::unknown;
   const auto first = std::find_if_not(text.begin(), text.end(), is_blank);
   if (first == text.end()) return Content::text;
   if (*first == '<') return Content::html;

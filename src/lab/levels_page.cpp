@@ -69,7 +69,8 @@ std::vector<std::string> details_of(const LevelsStudy& study) {
   return details;
 }
 
-std::optional<double> ms_of(const LevelsStudy& study, const LevelsScene& scene, const std::string& detail) {
+std::optional<double> ms_of_detail(const LevelsStudy& study, const LevelsScene& scene,
+                                   const std::string& detail) {
   for (const LevelsRow& one : scene.rows) {
     if (detail_text(study, one) == detail) return mean_of(one).frame_ms;
   }
@@ -138,9 +139,9 @@ Table growth_table(const LevelsStudy& study) {
   for (const std::string& detail : details_of(study)) {
     table.columns.push_back(detail + ": ms");
     table.columns.push_back(detail + ": times");
-    const std::optional<double> smallest = ms_of(study, *scenes.front(), detail);
+    const std::optional<double> smallest = ms_of_detail(study, *scenes.front(), detail);
     for (std::size_t k = 0; k < scenes.size(); ++k) {
-      const std::optional<double> ms = ms_of(study, *scenes[k], detail);
+      const std::optional<double> ms = ms_of_detail(study, *scenes[k], detail);
       table.rows[k].emplace_back(ms);
       table.rows[k].emplace_back(ms && smallest ? Cell(*ms / *smallest) : Cell());
     }

@@ -77,13 +77,13 @@ Session::Session(gl::Context& context, Loaded loaded, std::vector<Camera> camera
                  ? loaded_.stream->gpu_model(context, choices.settings.precision)
                  : std::make_shared<render::GpuModel>(context, loaded_.model, choices.settings.precision)),
       presenter_(context),
-      show_(frame_.model()),
-      shown_colours_(context, "pixels to show"),
-      seeks_screen_(choices.seeks_screen) {
-  if (seeks_screen_) choices.rig.convergence.reset();
+      debug_view_(frame_.model()),
+      shown_{{}, gl::Buffer(context, "pixels to show")},
+      screen_{.is_sought = choices.seeks_screen} {
+  if (screen_.is_sought) choices.rig.convergence.reset();
 }
 
-Session::~Session() { context_.gl().DeleteFramebuffers(1, &smaller_framebuffer_); }
+Session::~Session() { context_.gl().DeleteFramebuffers(1, &smaller_.framebuffer); }
 
 void Session::move() {
   moving_ = true;
@@ -146,17 +146,19 @@ void Session::set_up() {
 
 // Maps come by way of the CPU, as files do: slower than pictures, for as long as they are looked at.
 void Session::make_shown(std::span<const shared::View> views) {
-  shown_ = {};
+  shown_.pictures = {};
   if (choices.show == SHOW_PICTURE) {
-    show_.release();
+    debug_view_.release();
     return;
   }
-  shown_ = show_.make(choices.show, frame_, views, frame_.read_pictures(), settings(), choices.background,
-                      choices.split);
+  const std::vector<Picture> pictures = frame_.read_pictures();
+  const render::FrameSettings of_frame = settings();
+  shown_.pictures =
+      debug_view_.make(choices.show, {frame_, views, pictures, of_frame}, choices.background, choices.split);
   std::vector<glm::vec4> colours;
-  for (const Picture& picture : shown_.pictures)
+  for (const Picture& picture : shown_.pictures.pictures)
     colours.insert(colours.end(), picture.colour.begin(), picture.colour.end());
-  shown_colours_.upload(colours);
+  shown_.colours.upload(colours);
 }
 
 render::FrameSettings Session::settings() const {
@@ -167,7 +169,7 @@ render::FrameSettings Session::settings() const {
 
 void Session::follow_levels() {
   if (!loaded_.stream || !loaded_.stream->begin_frame(views(), choices.settings, levels_ms_most)) return;
-  show_.release();
+  debug_view_.release();
   change();
 }
 
@@ -207,17 +209,18 @@ bool Session::draw() {
   }
   if (reports_.size() > reports_kept) reports_.pop_front();
   ++frames_drawn_;
-  if (seeks_screen_ && shown_layout_ != LAYOUT_SEPARATE) find_screen();
+  if (screen_.is_sought && shown_layout_ != LAYOUT_SEPARATE) find_screen();
   return true;
 }
 
 // Once: a screen that moved with the head would make heads swim.
 void Session::find_screen() {
-  seeks_screen_ = false;
+  screen_.is_sought = false;
   if (choices.rig.convergence || choices.rig.cant_degrees != 0.0) return;
-  screen_found_ = stereo::suitable_convergence(eyes_, frame_.read_pictures()[0], choices.rig.units_per_metre);
-  choices.rig.convergence = screen_found_;
-  if (screen_found_) change();
+  screen_.convergence =
+      stereo::suitable_convergence(eyes_, frame_.read_pictures()[0], choices.rig.units_per_metre);
+  choices.rig.convergence = screen_.convergence;
+  if (screen_.convergence) change();
 }
 
 void Session::present() {
@@ -229,18 +232,19 @@ void Session::present() {
   if (divisor_ == 1) {
     target.y = std::max(0, framebuffer_.y - size.y);
   } else {
-    if (smaller_framebuffer_ == 0) context_.gl().CreateFramebuffers(1, &smaller_framebuffer_);
-    if (!smaller_ || !smaller_->is(GL_RGBA8, size.x, size.y)) {
-      smaller_ = std::make_unique<gl::Texture>(context_, GL_RGBA8, size.x, size.y);
-      context_.gl().NamedFramebufferTexture(smaller_framebuffer_, GL_COLOR_ATTACHMENT0, smaller_->id(), 0);
+    if (smaller_.framebuffer == 0) context_.gl().CreateFramebuffers(1, &smaller_.framebuffer);
+    if (!smaller_.texture || !smaller_.texture->is(GL_RGBA8, size.x, size.y)) {
+      smaller_.texture = std::make_unique<gl::Texture>(context_, GL_RGBA8, size.x, size.y);
+      context_.gl().NamedFramebufferTexture(smaller_.framebuffer, GL_COLOR_ATTACHMENT0,
+                                            smaller_.texture->id(), 0);
     }
-    target.texture = smaller_->id();
+    target.texture = smaller_.texture->id();
   }
-  const gl::Buffer& colours = shown_.pictures.empty() ? frame_.colours() : shown_colours_;
+  const gl::Buffer& colours = shown_.pictures.pictures.empty() ? frame_.colours() : shown_.colours;
   const auto draw = [&](std::size_t first, int layout) {
     presenter_.draw(colours, drawn_, first, layout, target, choices.background);
     if (divisor_ > 1) {
-      context_.gl().BlitNamedFramebuffer(smaller_framebuffer_, 0, 0, 0, size.x, size.y, 0, 0, framebuffer_.x,
+      context_.gl().BlitNamedFramebuffer(smaller_.framebuffer, 0, 0, 0, size.x, size.y, 0, 0, framebuffer_.x,
                                          framebuffer_.y, GL_COLOR_BUFFER_BIT, GL_LINEAR);
     }
   };
@@ -281,7 +285,7 @@ std::string Session::save_picture(bool exr) {
   if (exr) {
     save_exr(path, pictures[0], pictures[1], {.half = false, .background = choices.background});
   } else {
-    const std::vector<Picture>& eyes = shown_.pictures.empty() ? pictures : shown_.pictures;
+    const std::vector<Picture>& eyes = shown_.pictures.pictures.empty() ? pictures : shown_.pictures.pictures;
     const int layout = shown_layout_ == LAYOUT_QUAD_BUFFER ? LAYOUT_PARALLEL : shown_layout_;
     const Picture both =
         layout == LAYOUT_SEPARATE ? eyes[0] : stereo::lay_out(layout, eyes[0], eyes[1], choices.background);
@@ -309,7 +313,7 @@ void Session::save_pose(const std::filesystem::path& path) const {
 double Session::psnr_against_exact() {
   draw_at_rest();
   const std::vector<Picture> shown = frame_.read_pictures();
-  const std::vector<Picture> right = show_.exact(views(), choices.settings);
+  const std::vector<Picture> right = debug_view_.exact(views(), choices.settings);
   return measure::psnr(shown, right, choices.background);
 }
 

@@ -127,11 +127,11 @@ class Session {
   /// Of the last frames drawn, newest last.
   const std::deque<render::FrameReport>& reports() const { return reports_; }
   /// Of a map: the number of the brightest colour (stereo/debug_view.h).
-  std::optional<double> most_shown() const { return shown_.most; }
+  std::optional<double> most_shown() const { return shown_.pictures.most; }
   std::size_t frames_drawn() const { return frames_drawn_; }
   const std::string& trouble() const { return trouble_; }
   /// The convergence that suited the first picture, in m, where that was asked for.
-  const std::optional<double>& screen_found() const { return screen_found_; }
+  const std::optional<double>& screen_found() const { return screen_.convergence; }
   const Model& model() const { return loaded_.shown(); }
 
   /// What the next frame draws, left eye first; none before there is a size to draw in.
@@ -154,14 +154,22 @@ class Session {
   std::filesystem::path folder_;
   render::Frame frame_;
   stereo::Presenter presenter_;
-  stereo::DebugView show_;
-  stereo::DebugPictures shown_;  // in place of the frame's own pictures; none: those
-  gl::Buffer shown_colours_;     // as the frame's colours
+  stereo::DebugView debug_view_;
+  /// In place of the frame's own pictures; none: those.
+  struct Shown {
+    stereo::DebugPictures pictures;
+    gl::Buffer colours;  // as the frame's colours
+  };
+  Shown shown_;
   glm::ivec2 framebuffer_{0};
   bool moving_ = false;
-  int divisor_ = 1;                       // of the last frame drawn
-  std::unique_ptr<gl::Texture> smaller_;  // a frame that is shown enlarged
-  std::uint32_t smaller_framebuffer_ = 0;
+  int divisor_ = 1;  // of the last frame drawn
+  /// Where a frame is drawn that is shown enlarged.
+  struct Smaller {
+    std::unique_ptr<gl::Texture> texture;
+    std::uint32_t framebuffer = 0;
+  };
+  Smaller smaller_;
   std::array<Camera, 2> eyes_;
   int shown_layout_ = LAYOUT_SEPARATE;  // of the last frame drawn, as are
   std::vector<shared::View> drawn_;     // its views as the frame has them
@@ -169,8 +177,12 @@ class Session {
   std::size_t frames_drawn_ = 0;
   std::deque<render::FrameReport> reports_;
   std::string trouble_;
-  bool seeks_screen_;
-  std::optional<double> screen_found_;
+  /// Whether the convergence that suits the first picture is sought, and what was found.
+  struct Screen {
+    bool is_sought = false;
+    std::optional<double> convergence;  // m
+  };
+  Screen screen_;
 };
 
 }  // namespace binosplat::preview

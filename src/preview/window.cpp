@@ -72,11 +72,11 @@ Window::~Window() {
 }
 
 void Window::load(Opened scene, bool again) {
-  next_ = std::move(scene);
-  again_ = again;
-  read_ = false;
-  loading_since_ = glfwGetTime();
-  loading_ = std::async(std::launch::async, next_.load);
+  loading_.scene = std::move(scene);
+  loading_.is_same = again;
+  loading_.is_read = false;
+  loading_.since = glfwGetTime();
+  loading_.loaded = std::async(std::launch::async, loading_.scene.load);
 }
 
 void Window::run() {
@@ -97,9 +97,9 @@ void Window::run() {
     if (ui_frames_ > 0) show();
     context_->check_alive();
   }
-  if (loading_.valid() || levels_move()) {
+  if (loading_.loaded.valid() || levels_move()) {
     // Nobody waits for a model that is not looked at, and nothing but memory was taken for it.
-    log_info("left while {} was being read", loading_.valid() ? next_.name : scene_.name);
+    log_info("left while {} was being read", loading_.loaded.valid() ? loading_.scene.name : scene_.name);
     std::quick_exit(0);
   }
   log_info("{} frames were drawn, {} shown", session_ ? session_->frames_drawn() : 0, shown_);
@@ -112,40 +112,43 @@ void Window::wait() {
   drawn_at_.reset();
   std::optional<double> seconds = messages_.next_change(glfwGetTime());
   const auto at_most = [&](double most) { seconds = std::min(seconds.value_or(most), most); };
-  if (loading_.valid()) at_most(0.05);
-  if (levels_moved_ || levels_move()) at_most(0.02);
+  if (loading_.loaded.valid()) at_most(0.05);
+  if (levels_.moved || levels_move()) at_most(0.02);
   if (session_ && session_->moving()) at_most(seconds_to_rest);
   if (!settings_.shader_folder.empty()) at_most(0.5);
   if (!seconds) return glfwWaitEvents();
   glfwWaitEventsTimeout(std::max(*seconds, 1e-3));
-  if (loading_.valid() || messages_.next_change(glfwGetTime()) == 0.0) ui_frames_ = std::max(ui_frames_, 1);
+  if (loading_.loaded.valid() || messages_.next_change(glfwGetTime()) == 0.0)
+    ui_frames_ = std::max(ui_frames_, 1);
 }
 
 void Window::take_loaded() {
-  if (!loading_.valid() || loading_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return;
-  if (!read_) {  // first say so: the driver takes the model in one go
-    read_ = true;
+  if (!loading_.loaded.valid() ||
+      loading_.loaded.wait_for(std::chrono::seconds(0)) != std::future_status::ready)
+    return;
+  if (!loading_.is_read) {  // first say so: the driver takes the model in one go
+    loading_.is_read = true;
     ui_frames_ = 1;
     return;
   }
   try {
-    Loaded loaded = loading_.get();
+    Loaded loaded = loading_.loaded.get();
     Choices choices = session_ ? session_->choices : choices_;
-    Start start = next_.start(loaded.shown(), choices);
+    Start start = loading_.scene.start(loaded.shown(), choices);
     std::optional<Navigator> head;
     std::optional<KeyList> keys;
-    if (session_ && again_) {
+    if (session_ && loading_.is_same) {
       head = session_->head;
       keys = session_->keys;
       choices = session_->choices;
       choices.seeks_screen = choices.seeks_screen && !choices.rig.convergence;  // it stays where it is
     }
     session_.reset();  // its memory first
-    levels_follow_ = loaded.stream != nullptr;
-    levels_moved_ = false;
-    levels_reported_ = loaded.gaussians();
-    log_info("{}: {} Gaussians", next_.name, loaded.gaussians());
-    scene_ = std::move(next_);
+    levels_.follow = loaded.stream != nullptr;
+    levels_.moved = false;
+    levels_.gaussians = loaded.gaussians();
+    log_info("{}: {} Gaussians", loading_.scene.name, loaded.gaussians());
+    scene_ = std::move(loading_.scene);
     session_ = std::make_unique<Session>(*context_, std::move(loaded), std::move(start.cameras), start.up,
                                          choices, scene_.folder);
     announced_ = false;
@@ -160,27 +163,27 @@ void Window::take_loaded() {
   ui_frames_ = 3;
 }
 
-bool Window::levels_move() const { return levels_follow_ && !session_->stream()->settled(); }
+bool Window::levels_move() const { return levels_.follow && !session_->stream()->settled(); }
 
 // What cannot be read leaves the levels as they are.
 void Window::follow_levels() {
-  if (!levels_follow_) return;
+  if (!levels_.follow) return;
   // They may come to rest between two calls, in the thread that reads.
-  const bool moved = levels_moved_ || levels_move();
+  const bool moved = levels_.moved || levels_move();
   try {
     session_->follow_levels();
-    levels_moved_ = levels_move();
+    levels_.moved = levels_move();
     const Stream& stream = *session_->stream();
-    if (moved && !levels_moved_ && stream.gaussians() != levels_reported_) {
-      levels_reported_ = stream.gaussians();
+    if (moved && !levels_.moved && stream.gaussians() != levels_.gaussians) {
+      levels_.gaussians = stream.gaussians();
       const auto db = stream.reported_db();
-      log_info("{}: levels of {} Gaussians{}", scene_.name, levels_reported_,
+      log_info("{}: levels of {} Gaussians{}", scene_.name, levels_.gaussians,
                db ? fmt::format(", {:.1f} dB predicted", *db) : "");
     }
   } catch (const Error& error) {
     // A GPU without room has lost a part of the model by now.
     if (error.code() == ExitCode::no_gl || error.code() == ExitCode::out_of_memory) throw;
-    levels_follow_ = false;
+    levels_.follow = false;
     tell(error.what(), true);
   }
   if (moved) ui_frames_ = 3;
@@ -246,9 +249,9 @@ void Window::show() {
     panel_.playing = playing_.has_value();
     panel_.draw(*session_);
   }
-  if (loading_.valid()) {
-    messages.push_back({fmt::format("reading {}, {:.0f} s\n{}", next_.name, now - loading_since_,
-                                    read_ ? "to the GPU" : latest_progress())});
+  if (loading_.loaded.valid()) {
+    messages.push_back({fmt::format("reading {}, {:.0f} s\n{}", loading_.scene.name, now - loading_.since,
+                                    loading_.is_read ? "to the GPU" : latest_progress())});
   }
   preview::draw(messages, beside);
   ImGui::Render();

@@ -99,7 +99,7 @@ void Window::click() {
 
 void Window::open_file(const std::string& file) {
   ui_frames_ = 3;
-  if (loading_.valid()) return tell(fmt::format("{} is still being read", next_.name), true);
+  if (loading_.loaded.valid()) return tell(fmt::format("{} is still being read", loading_.scene.name), true);
   try {
     load(open_(file));
   } catch (const Error& error) {
@@ -109,7 +109,7 @@ void Window::open_file(const std::string& file) {
 
 // The same model as its file is now.
 void Window::read_again() {
-  if (loading_.valid()) return;
+  if (loading_.loaded.valid()) return;
   load(scene_, true);
 }
 
@@ -172,10 +172,9 @@ void Window::key_of_scene(int key, int by) {
 void Window::play_or_stop() {
   if (playing_) return playing_.reset();
   try {
-    playing_.emplace(session_->keys.keys());
-    playing_since_ = glfwGetTime();
-    session_->go_to(playing_->at(0.0));
-    played_ = session_->head.camera();
+    playing_.emplace(Playing{.path = KeyPath(session_->keys.keys()), .since = glfwGetTime()});
+    session_->go_to(playing_->path.at(0.0));
+    playing_->head = session_->head.camera();
   } catch (const Error& error) {
     tell(error.what(), true);
   }
@@ -185,12 +184,13 @@ void Window::play_or_stop() {
 void Window::play() {
   if (!playing_) return;
   const Camera& head = session_->head.camera();
-  if (head.position != played_.position || head.rotation != played_.rotation) return playing_.reset();
-  const double at = glfwGetTime() - playing_since_;
-  session_->go_to(playing_->at(std::min(at, playing_->seconds())));
-  played_ = session_->head.camera();
+  if (head.position != playing_->head.position || head.rotation != playing_->head.rotation)
+    return playing_.reset();
+  const double at = glfwGetTime() - playing_->since;
+  session_->go_to(playing_->path.at(std::min(at, playing_->path.seconds())));
+  playing_->head = session_->head.camera();
   moved();
-  if (at >= playing_->seconds()) playing_.reset();
+  if (at >= playing_->path.seconds()) playing_.reset();
 }
 
 void Window::delete_key(std::size_t k) {

@@ -73,18 +73,32 @@ class Window {
   std::unique_ptr<Session> session_;
   Panel panel_;
   Messages messages_;
-  Opened scene_, next_;     // what is shown, and what is being read
-  bool read_ = false;       // that is done, and to be handed to the GPU
-  bool again_ = false;      // that is the same one
-  bool announced_ = false;  // that the first frame of what is shown takes longer
-  std::future<Loaded> loading_;
-  bool levels_follow_ = false;       // until they cannot be read
-  bool levels_moved_ = false;        // when they were followed last
-  std::size_t levels_reported_ = 0;  // Gaussians
-  double loading_since_ = 0.0, last_time_ = 0.0, last_click_ = 0.0, moved_at_ = 0.0;
-  std::optional<KeyPath> playing_;
-  Camera played_;  // where that has brought the head
-  double playing_since_ = 0.0;
+  Opened scene_;            // what is shown
+  bool announced_ = false;  // that its first frame takes longer
+  /// A scene that is being read, in place of the one that is shown.
+  struct Loading {
+    Opened scene;
+    bool is_same = false;  // as the one that is shown, whose file may have changed
+    bool is_read = false;  // and to be handed to the GPU
+    std::future<Loaded> loaded;
+    double since = 0.0;
+  };
+  Loading loading_;
+  /// Levels of detail of the scene that is shown.
+  struct Levels {
+    bool follow = false;        // until they cannot be read
+    bool moved = false;         // when they were followed last
+    std::size_t gaussians = 0;  // that the log reported last
+  };
+  Levels levels_;
+  double last_time_ = 0.0, last_click_ = 0.0, moved_at_ = 0.0;
+  /// The path that the head is taken along; it ends where somebody moves the head.
+  struct Playing {
+    KeyPath path;
+    double since = 0.0;
+    Camera head = {};  // where that has brought it
+  };
+  std::optional<Playing> playing_;
   std::optional<double> drawn_at_;    // the last frame, where the next may follow at once
   std::deque<double> frame_seconds_;  // between the last frames that did
   glm::dvec2 cursor_{0.0};

@@ -17,7 +17,7 @@ struct Decoding {
   /// The views that share the Gaussians: the networks look from the middle of their eyes. Empty: the view
   /// by itself.
   std::vector<shared::View> views;
-  bool anchor_cull = true;  // as trained; false: anchors out of sight are decoded, too
+  bool anchor_cull = true;  // as trained; false: anchors out of view are decoded, too
 };
 
 /// A Gaussian that the networks keep.

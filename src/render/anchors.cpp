@@ -100,10 +100,10 @@ std::vector<glm::vec4> pack_networks(const Scaffold& scaffold) {
     for (std::size_t unit = 0; unit < hidden; unit += 4)
       packed.emplace_back(bias[unit], bias[unit + 1], bias[unit + 2], bias[unit + 3]);
     for (std::size_t unit = 0; unit < hidden; ++unit) {
-      glm::vec4& sight = packed.emplace_back(0.0f);
+      glm::vec4& ray = packed.emplace_back(0.0f);
       if (unit >= network.hidden) continue;
       const float* weights = &network.first[unit * network.inputs + features_in(scaffold, i)];
-      sight = {weights[0], weights[1], weights[2], network.distance ? weights[3] : 0.0f};
+      ray = {weights[0], weights[1], weights[2], network.distance ? weights[3] : 0.0f};
     }
   }
   for (const Network* network : networks) {

@@ -15,7 +15,7 @@ const gl::Buffer& kept_of(const ModelBuffers& model, std::size_t page, const Fra
 
 constexpr std::uint32_t fills_a_gpu = 1u << 20;  // Gaussians: some times what an H200 has in work
 
-// Depths of what the group draws; nothing is kept of the splats yet, so that what is out of sight costs no
+// Depths of what the group draws; nothing is kept of the splats yet, so that what is out of view costs no
 // memory.
 void cull(gl::Dispatcher& dispatcher, const FramePlan& plan, OrderGroup views, PairVariant variant,
           const ModelBuffers& model, FrameBuffers& buffers) {

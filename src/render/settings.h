@@ -51,7 +51,7 @@ struct FrameSettings {
   /// ORDER_ and PROJECTION_ of shared/axes.h; none: what the model was trained with. Together `distance` and
   /// `tangent` make pictures that do not depend on where the head is turned.
   std::optional<int> order, projection;
-  bool anchor_cull = true;  // of Scaffold-GS: as trained; false: anchors out of sight are decoded, too
+  bool anchor_cull = true;  // of Scaffold-GS: as trained; false: anchors out of view are decoded, too
   /// px: 8, 16 or 32, on which an exact picture does not depend.
   int tile_size = TILE_SIZE_DEFAULT;
   int precision = PRECISION_FULL;  // PRECISION_: of the model, the splats and all that is made of them

@@ -104,8 +104,8 @@ std::vector<double> room_in(const Map& map) {
   return room;
 }
 
-/// How far one sees, in cells.
-double sight(const Map& map, const glm::dvec2& from, const glm::dvec2& towards) {
+/// How far one gets along straight lines before something is in the way, in cells.
+double free_way(const Map& map, const glm::dvec2& from, const glm::dvec2& towards) {
   double way = 0.0;
   for (; way < 2.0 * space_side; way += 0.5) {
     const glm::ivec2 cell = glm::floor(from + way * towards + 0.5);
@@ -142,7 +142,7 @@ std::optional<Capture::Around> open_space(const CoredModel& cored, const Ground&
   for (int k = 0; k < places; ++k) {
     const double turn = glm::two_pi<double>() * k / places;
     const glm::dvec2 away(std::cos(turn), std::sin(turn));
-    const double seen = sight(map, middle + to_the_border * radius * away, -away);
+    const double seen = free_way(map, middle + to_the_border * radius * away, -away);
     if (seen <= farthest) continue;
     farthest = seen;
     first = away;

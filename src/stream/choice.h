@@ -27,7 +27,7 @@ struct DetailRequest {
   double apart_px = 0.0;  // chunks whose Gaussians are seen no farther apart are fine enough; 0: none is
   std::size_t most = any_number;      // Gaussians of the model
   std::optional<double> db = {};      // instead of apart_px: each view's PSNR against the finest levels
-  bool heads_turn = true;             // by dB: what is out of sight may be seen a moment later
+  bool heads_turn = true;             // by dB: what is out of view may be seen a moment later
   double calibration = 1.0;           // by dB: what levels lose, as a multiple of what is predicted
   std::size_t most_new = any_number;  // by dB: Gaussians that may have to be read, or one chunk's
 };

@@ -126,15 +126,15 @@ void Hands::suggest_bindings() {
     suggest("ext/eye_gaze_interaction", {{gaze_, instance.path("/user/eyes_ext/input/gaze_ext/pose")}});
 }
 
-Deeds Hands::read(XrTime display) {
-  Deeds deeds;
+InputActions Hands::read(XrTime display) {
+  InputActions actions;
   const XrActiveActionSet active{set_, XR_NULL_PATH};
   XrActionsSyncInfo sync{XR_TYPE_ACTIONS_SYNC_INFO};
   sync.countActiveActionSets = 1;
   sync.activeActionSets = &active;
   const XrResult synced = api_.SyncActions(session_.handle(), &sync);
   check(synced, "xrSyncActions");
-  if (synced == XR_SESSION_NOT_FOCUSED) return deeds;
+  if (synced == XR_SESSION_NOT_FOCUSED) return actions;
   for (std::size_t k = 0; k < 2; ++k) {
     XrActionStateGetInfo wanted{XR_TYPE_ACTION_STATE_GET_INFO};
     wanted.subactionPath = paths_[k];
@@ -151,15 +151,15 @@ Deeds Hands::read(XrTime display) {
                                api_.GetActionStateBoolean, "xrGetActionStateBoolean");
     const auto menu = state_of(menu_, XrActionStateBoolean{XR_TYPE_ACTION_STATE_BOOLEAN},
                                api_.GetActionStateBoolean, "xrGetActionStateBoolean");
-    Hand& hand = deeds.hands[k];
+    Hand& hand = actions.hands[k];
     if (stick.isActive) hand.stick = {stick.currentState.x, stick.currentState.y};
     hand.grabs = grab.isActive && grab.currentState;
-    deeds.resets = deeds.resets || (menu.isActive && menu.changedSinceLastSync && menu.currentState);
+    actions.resets = actions.resets || (menu.isActive && menu.changedSinceLastSync && menu.currentState);
     if (!pose.isActive) continue;
     if (const auto at = session_.locate(spaces_[k], display))
       hand.position = glm::dvec3(at->position.x, at->position.y, at->position.z);
   }
-  return deeds;
+  return actions;
 }
 
 std::optional<XrPosef> Hands::gaze(XrTime display) {

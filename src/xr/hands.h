@@ -10,7 +10,7 @@
 namespace binosplat::xr {
 
 /// What the hands do at a moment.
-struct Deeds {
+struct InputActions {
   std::array<Hand, 2> hands;
   bool resets = false;  // the menu button was pushed
 };
@@ -23,7 +23,7 @@ class Hands {
   Hands& operator=(const Hands&) = delete;
 
   /// Where hands will be at that time, and what they do now.
-  Deeds read(XrTime display);
+  InputActions read(XrTime display);
   /// Where the eyes look from and to, in the session's space; nothing where no eye tracker tells.
   std::optional<XrPosef> gaze(XrTime display);
 

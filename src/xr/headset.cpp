@@ -104,7 +104,8 @@ class Viewer {
     const std::optional<XrPosef> gaze =
         settings_.projection.foveation ? hands.gaze(time.display) : std::nullopt;
     const render::FrameReport report =
-        projection->draw(frame_, views, walk_->placement(), settings, effort.scale, beside_.show, gaze);
+        projection->draw(frame_, views, walk_->placement(), settings,
+                         {.scale = effort.scale, .gaze = gaze, .drawn_left = beside_.show});
     times_.push_back(report.total_ms);
     if (budget_) budget_->took(report.total_ms, period_ms);
     session.end_frame(time, projection->layer());
@@ -119,15 +120,15 @@ class Viewer {
 
   /// To where hands take the head.
   void follow(const Session& session, Hands& hands, const std::vector<XrView>& views, const FrameTime& time) {
-    const Deeds deeds = hands.read(time.display);
+    const InputActions actions = hands.read(time.display);
     const Eye left = eye_of(views[0].pose), right = eye_of(views[1].pose);
     Eye head = left;  // between both eyes, which may be canted
     head.position = 0.5 * (left.position + right.position);
     head.orientation =
         left.orientation + glm::sign(glm::dot(left.orientation, right.orientation)) * right.orientation;
     if (!walk_) walk_.emplace(start_of(settings_, session.on_floor(), session.on_stage() ? &head : nullptr));
-    if (deeds.resets) walk_->reset();
-    if (last_) walk_->step(head, deeds.hands, 1e-9 * static_cast<double>(time.display - *last_));
+    if (actions.resets) walk_->reset();
+    if (last_) walk_->step(head, actions.hands, 1e-9 * static_cast<double>(time.display - *last_));
     last_ = time.display;
   }
 

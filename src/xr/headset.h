@@ -25,7 +25,7 @@ struct Beside {
   /// Called after each frame, and while none is wanted; false ends it all.
   std::function<bool()> step;
   /// Shows the left eye's picture. May be empty.
-  Projection::DrawnLeft show;
+  std::function<void(const Target& left, const glm::ivec2& size)> show;
   /// Of a model with levels of detail, called before each frame: changes the model on the GPU a little, to
   /// what these views need; frames are due every `frame_ms`, and drawing the last one took `drawn_ms`.
   /// Returns what of the frame's quality is left for what it leaves out of them. May be empty.

@@ -195,8 +195,8 @@ std::vector<render::ViewRegion> Projection::parts_of(const render::FrameSettings
 }
 
 render::FrameReport Projection::draw(stereo::FoveatedFrame& frame, std::span<const XrView> located,
-                                     const Placement& placement, render::FrameSettings settings, double part,
-                                     const DrawnLeft& drawn_left, const std::optional<XrPosef>& gaze) {
+                                     const Placement& placement, render::FrameSettings settings,
+                                     const Draw& draw) {
   const std::size_t count = eyes_.size();
   if (located.size() != count)
     throw Error(ExitCode::no_gl, fmt::format("{} located {} views of {}", session_.instance().runtime(),
@@ -208,7 +208,8 @@ render::FrameReport Projection::draw(stereo::FoveatedFrame& frame, std::span<con
   std::vector<glm::ivec2> sizes(count);
   for (std::size_t k = 0; k < count; ++k) {
     drawn[place_of(k, count)] = eye_of(located[k].pose, located[k].fov);
-    sizes[place_of(k, count)] = glm::max(glm::ivec2(1), glm::ivec2(glm::round(part * glm::dvec2(sizes_[k]))));
+    sizes[place_of(k, count)] =
+        glm::max(glm::ivec2(1), glm::ivec2(glm::round(draw.scale * glm::dvec2(sizes_[k]))));
   }
   // Hands that enlarge the world do not push the near plane away.
   const double near_plane =
@@ -227,7 +228,7 @@ render::FrameReport Projection::draw(stereo::FoveatedFrame& frame, std::span<con
   render::FrameReport report;
   if (foveates()) {
     stereo::Foveation foveation = *settings_.foveation;
-    if (gaze) foveation.gaze = gaze_of(*gaze, located);
+    if (draw.gaze) foveation.gaze = gaze_of(*draw.gaze, located);
     report = frame.draw(head.views, foveation, settings, {}, canvases.list);
   } else {
     settings.regions = parts_of(settings, located, sizes);
@@ -241,7 +242,7 @@ render::FrameReport Projection::draw(stereo::FoveatedFrame& frame, std::span<con
     if (has_depths) presenter_.draw_depth(frame.frame(), k, depths[k]);
   }
   const std::size_t shown = count == 4 ? place_of(2, count) : 0;  // of four views the inset
-  if (drawn_left) drawn_left(targets[shown], sizes[shown]);
+  if (draw.drawn_left) draw.drawn_left(targets[shown], sizes[shown]);
   submit(located, sizes, near_plane / placement.units_per_metre, far_plane / placement.units_per_metre);
   return report;
 }

@@ -31,13 +31,17 @@ class Projection {
   /// Makes textures of the recommended sizes times the scale, at most the largest that the runtime allows.
   Projection(const Session& session, gl::Context& context, const ProjectionSettings& settings);
 
-  /// Draws the located views, each `part` of its texture's sides, at a place of the model's world. Calls
-  /// `drawn_left`, if any, while the left eye's texture may still be read: its picture lies there in the
-  /// lower left corner, so large. `gaze`, where it is known, is where the foveated eyes look.
-  using DrawnLeft = std::function<void(const Target& left, const glm::ivec2& size)>;
+  /// What a frame is drawn by besides its settings.
+  struct Draw {
+    double scale = 1.0;                // of the sides of the textures that is drawn
+    std::optional<XrPosef> gaze = {};  // where the foveated eyes look, if it is known
+    /// Called while the left eye's texture may still be read: its picture lies there in the lower left
+    /// corner, so large.
+    std::function<void(const Target& left, const glm::ivec2& size)> drawn_left = {};
+  };
+  /// Draws the located views at a place of the model's world.
   render::FrameReport draw(stereo::FoveatedFrame& frame, std::span<const XrView> located,
-                           const Placement& placement, render::FrameSettings settings, double part = 1.0,
-                           const DrawnLeft& drawn_left = {}, const std::optional<XrPosef>& gaze = {});
+                           const Placement& placement, render::FrameSettings settings, const Draw& draw);
 
   /// Whether the runtime recommends other sizes now: a new Projection would have them.
   bool outdated() const { return sizes_ != sizes_now(); }

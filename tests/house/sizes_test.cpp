@@ -22,19 +22,9 @@ const std::set<std::string> not_mended = {
     "lab LevelsWriter",
     "lab Refit",
     "lab Trimmer",
-    "lab add_wall",
     "lab calibrate",
     "lab measure_levels",
-    "preview Session",
-    "preview Window",
-    "reference blend_on",
-    "reference for_each_pixel",
     "render FrameBuffers",
-    "stereo make",
-    "stream ErrorChooser",
-    "stream LevelStream",
-    "stream choose_levels_within",
-    "xr draw",
 };
 
 /// Those that stay over a bound, with the reason.

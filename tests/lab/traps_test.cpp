@@ -49,8 +49,8 @@ std::vector<ShownTrap> frames_of(const StabilityCase& one, const render::FrameSe
   return shown;
 }
 
-double median(const std::vector<ShownTrap>& shown, double ShownTrap::*what, std::size_t begin,
-              std::size_t end) {
+double median_of_frames(const std::vector<ShownTrap>& shown, double ShownTrap::*what, std::size_t begin,
+                        std::size_t end) {
   std::vector<double> values;
   for (std::size_t n = begin; n < end; ++n) values.push_back(shown[n].*what);
   return quantile(std::move(values), 0.5);
@@ -77,11 +77,12 @@ TEST(Traps, AStillCameraSettlesAndDoesNotDrift) {
   render::FrameSettings settings = rule.settings();
   settings.measure_every = 1;  // frames that do not measure show what the next one shows
   const auto shown = frames_of(still, settings, 60);
-  const double early = median(shown, &ShownTrap::db, 5, 20), late = median(shown, &ShownTrap::db, 40, 60);
+  const double early = median_of_frames(shown, &ShownTrap::db, 5, 20),
+               late = median_of_frames(shown, &ShownTrap::db, 40, 60);
   EXPECT_NEAR(late, early, 0.5);
   // Single frames swing by some percent, as what was left out comes back to be measured.
-  const double early_pairs = median(shown, &ShownTrap::pairs, 5, 20);
-  EXPECT_NEAR(median(shown, &ShownTrap::pairs, 40, 60), early_pairs, 0.03 * early_pairs);
+  const double early_pairs = median_of_frames(shown, &ShownTrap::pairs, 5, 20);
+  EXPECT_NEAR(median_of_frames(shown, &ShownTrap::pairs, 40, 60), early_pairs, 0.03 * early_pairs);
   for (std::size_t n = 3; n < shown.size(); ++n) EXPECT_GT(shown[n].db, 37.0) << n;
 }
 

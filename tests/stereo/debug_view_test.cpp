@@ -34,7 +34,7 @@ struct ShowTest : testing::Test {
   }
 
   DebugPictures made(int what, double split = 0.5) {
-    return show.make(what, frame, pair.views, pictures, coarse, glm::vec3(0.0f), split);
+    return show.make(what, {frame, pair.views, pictures, coarse}, glm::vec3(0.0f), split);
   }
   /// What a number is shown as.
   static glm::vec3 colour(double number, double most) {
@@ -132,8 +132,8 @@ TEST_F(ShowTest, DisagreementIsOfEachEye) {
   }
   EXPECT_TRUE(test::fails_saying(
       [&] {
-        show.make(SHOW_DISAGREEMENT, frame, std::span(pair.views).first(1), std::span(pictures).first(1),
-                  coarse, glm::vec3(0.0f));
+        const auto left = std::span(pair.views).first(1);
+        show.make(SHOW_DISAGREEMENT, {frame, left, std::span(pictures).first(1), coarse}, glm::vec3(0.0f));
       },
       {"both eyes"}));
 }
