@@ -32,9 +32,7 @@ using nlohmann::ordered_json;
 constexpr double pixel_share = 0.2;
 // Which pairs are merged is judged once for all levels, as this one sees them.
 constexpr int judged_level = 3;
-
-// Pictures that say what levels lose together: one for so many leaves, so many in all at most, and one of
-// each scene.
+// Pictures of many leaves: one for so many leaves, so many at most, and one of each scene.
 constexpr std::size_t leaves_a_picture = 4, pictures_most = 12;
 constexpr double more_most = 4.0;  // that they may lose more or less than each by itself
 
@@ -274,8 +272,8 @@ class LevelsWriter {
         std::ranges::move(kept ? std::move(kept.mapped()) : written(piece), std::back_inserter(leaves));
         std::ranges::move(errors_of(piece), std::back_inserter(errors));
       }
-      const std::size_t all = std::min(pictures_most, leaves_.size() / leaves_a_picture);
-      const int pictures = std::max(1, static_cast<int>(all / scenes_.size()));
+      const auto all = std::min(pictures_most, leaves_.size() / leaves_a_picture) / scenes_.size();
+      const int pictures = std::max(1, static_cast<int>(all));
       write(scene.losses, json_of(settings_.levels > 1 ? judge_.together(leaves, errors, pictures)
                                                        : std::vector<LossTogether>()));
     }
