@@ -25,7 +25,7 @@ double typical(const Reports& frames, const Value& value) {
   return sum / static_cast<double>(frames.size());
 }
 
-double stage_ms(const std::vector<gl::StageTime>& stages, const std::string& name) {
+double time_of_stage(const std::vector<gl::StageTime>& stages, const std::string& name) {
   const auto found = std::ranges::find(stages, name, &gl::StageTime::name);
   return found == stages.end() ? 0.0 : found->ms;
 }
@@ -55,7 +55,7 @@ Typical typical_of(const Reports& frames) {
   const auto plain = std::ranges::find(frames, false, &render::FrameReport::measured);
   for (const gl::StageTime& stage : (plain == frames.end() ? frames.front() : *plain).stages) {
     all.stages.push_back({stage.name, typical(frames, [&](const render::FrameReport& f) {
-                            return stage_ms(f.stages, stage.name);
+                            return time_of_stage(f.stages, stage.name);
                           })});
   }
   return all;
@@ -68,7 +68,7 @@ Typical mean_of(std::span<const Typical> all) {
   for (const Typical& one : all) {
     result.frame_ms += weight * one.frame_ms;
     result.pairs += weight * one.pairs;
-    for (gl::StageTime& stage : result.stages) stage.ms += weight * stage_ms(one.stages, stage.name);
+    for (gl::StageTime& stage : result.stages) stage.ms += weight * time_of_stage(one.stages, stage.name);
   }
   return result;
 }
