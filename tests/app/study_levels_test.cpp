@@ -40,12 +40,12 @@ struct StudyLevels : test::SceneTest {
 };
 
 TEST_F(StudyLevels, TellWhatRenderTells) {
-  test::save_ply(model, test::random_model(4, 1000, 0));
+  test::save_ply(model, test::random_model(4, 3000, 0));
   const std::string made = make_levels("made");
   const Outcome outcome = study({made}, {"--detail", "25dB,35dB", "-o", out});
   ASSERT_TRUE(good(outcome));
   const auto scene = test::load_json(out + "/study.json").at("scenes").at(0);
-  EXPECT_EQ(scene["finest_gaussians"], 1000);
+  EXPECT_EQ(scene["finest_gaussians"], 3000);
   EXPECT_EQ(scene["eyes"], 2);
   ASSERT_EQ(scene["rows"].size(), 3u);
   EXPECT_EQ(scene["rows"][1]["detail"], 35.0);
