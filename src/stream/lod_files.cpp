@@ -140,8 +140,11 @@ void LodFiles::read(std::span<const std::size_t> from, const LevelChoice& choice
                     const std::function<bool()>& goes_on) const {
   const Reading reading{from, choice, goes_on};
   const TakenOfAll shrinking = taken_of(reading, true), growing = taken_of(reading, false);
-  check_room(choice, shrinking);
-  check_room(choice, growing);
+  check_taken_of(shrinking);
+  check_taken_of(growing);
+  const std::size_t total = count(choice.levels);
+  if (total == 0) fail("{} holds no Gaussians ({})", name(), like_.format);
+  check_total(source_->path, total, source_->bytes);
   for (std::size_t c = 0; c < chunks_.size(); ++c) {
     const auto& levels = chunks_[c].levels;
     if (!levels.empty() && from[c] != reading.level(c) && levels[reading.level(c)].count == 0)
@@ -197,13 +200,10 @@ double LodFiles::worth(const Reading& reading, std::size_t file, const SogLevels
   return sum / static_cast<double>(std::max<std::size_t>(count, 1));
 }
 
-void LodFiles::check_room(const LevelChoice& choice, const TakenOfAll& taken) const {
+void LodFiles::check_taken_of(const TakenOfAll& taken) const {
   for (std::size_t i = 0; i < taken.size(); ++i)
     if (!taken[i].empty())
       check_taken(source_->path, source_->levels.files()[i], *source_->files[i], taken[i]);
-  const std::size_t total = count(choice.levels);
-  if (total == 0) fail("{} holds no Gaussians ({})", name(), like_.format);
-  check_total(source_->path, total, source_->bytes);
 }
 
 ChunkModels LodFiles::finest_of(std::span<const std::size_t> chunks) const {

@@ -76,7 +76,7 @@ class LodFiles {
   void read_some(const Reading& reading, const TakenOfAll& taken, const Take& take) const;
   TakenOfAll taken_of(const Reading& reading, bool shrinks) const;
   double worth(const Reading& reading, std::size_t file, const SogLevels::TakenOfFile& taken) const;
-  void check_room(const LevelChoice& choice, const TakenOfAll& taken) const;
+  void check_taken_of(const TakenOfAll& taken) const;
 
   std::unique_ptr<Source> source_;
   Model like_;

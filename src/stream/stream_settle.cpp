@@ -64,7 +64,7 @@ bool Stream::settle(std::span<const shared::View> views, const render::FrameSett
     if (choice.levels == drawn_) break;
     change(choice);
   }
-  sample_error_ = 0.0;
+  sample_error_ = 0.0;  // where dB are not gone by
   for (int sample = 1; request.db && sample <= samples_most; ++sample) {
     const VisibleChunks visible = calibrate(views, settings, choice);
     DetailRequest finer = request_for(views);
@@ -93,6 +93,7 @@ VisibleChunks Stream::calibrate(std::span<const shared::View> views, const rende
                                 LevelChoice& choice) {
   const std::size_t gaussians = settings_.detail.heads_turn ? sample_of_many : sample_of_one;
   const std::size_t most = std::max<std::size_t>(gaussians * chunks_.size() / files_.finest(), 1);
+  sample_error_ = 0.0;
   ChunkModels finest = files_.finest_of(sample_of(choice, drawn_, most, samples_++));
   if (settings_.room) keep_what_fits(finest, model_, chunks_);
   if (finest.chunks.empty()) return {};
