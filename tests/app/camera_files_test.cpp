@@ -34,9 +34,7 @@ struct CameraFiles : test::SceneTest {
   /// Photos in `images`: what the views themselves show.
   void take_photos() const { ASSERT_TRUE(good(mono({"--view", "all", "-o", folder / "images"}))); }
 
-  Outcome mono(const test::Words& words) const {
-    return render(joined(words, {"--mono", "--json", report}));
-  }
+  Outcome mono(const test::Words& words) const { return render(joined(words, {"--mono", "--json", report})); }
 
   /// The PSNR of each view against its photo; -1 without one.
   std::vector<double> photo_psnr() const {
