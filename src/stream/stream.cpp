@@ -12,6 +12,7 @@ constexpr double between_passes_ms = 100.0;  // in which the worker reads what w
 constexpr int passes_most = 3;               // at the same views: after them a choice hardly changes any more
 constexpr double lead_s = 0.5;               // ahead of a head that moves: until what is requested is drawn
 constexpr std::size_t put_least = 1 << 14;   // Gaussians: fewer do not tell how long more would take
+constexpr double put_share = 0.75;  // of a frame's ms that uploading is expected to take: it may take longer
 // A request goes on while the next one is made, which takes as long as from one to the next; and it has so
 // many Gaussians, however few frames there were.
 constexpr double requests_at_once = 2.0, requested_least = 1 << 14;
@@ -112,7 +113,7 @@ bool Stream::begin_frame(std::span<const shared::View> views, const render::Fram
     request({.views = views_});
     is_due_ = false;
   }
-  could_put_ += ms * put_a_ms_;
+  could_put_ += put_share * ms * put_a_ms_;
   const bool made_pass = std::exchange(made_pass_, false), is_due = pass_is_due();
   // For both no frame has time: they take turns.
   if ((!is_due || made_pass) && put_some(ms)) return true;
@@ -178,7 +179,7 @@ void Stream::request(StreamWorker::Request request) {
 
 bool Stream::put_some(double ms) {
   const auto start = Clock::now();
-  const auto most = static_cast<std::size_t>(ms * put_a_ms_);
+  const auto most = static_cast<std::size_t>(put_share * ms * put_a_ms_);
   std::vector<LodFiles::Piece> pieces = worker_->take(std::max(most, put_least));
   if (pieces.empty()) return false;
   put(pieces);
