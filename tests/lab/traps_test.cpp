@@ -63,7 +63,7 @@ TEST(Traps, AFarWallOfTinyGaussiansGoesAtAToleranceThatIsFineElsewhere) {
   const StabilityCase wall = case_named("far-wall");
   const Rule rule{.th = TH_SQUARED, .transmittance = TRANSMITTANCE_LAST, .tolerance = tolerance_of_34_db};
   const auto open = frames_of(wall, rule.settings(), 8);
-  EXPECT_LT(median_of(open, &ShownTrap::db, 4, 8), 30.0);
+  EXPECT_LT(median_of_frames(open, &ShownTrap::db, 4, 8), 30.0);
   render::FrameSettings steered = rule.settings();
   steered.tolerance = 0;
   steered.quality = 40;
