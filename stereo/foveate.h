@@ -50,8 +50,8 @@ struct FoveatedViews {
   render::FrameSettings settings;
 };
 
-/// Throws Error for more than MAX_VIEWS / 2 eyes, for settings that already have regions or ask for the median
-/// depth, and as foveate() does.
+/// Throws Error for more than MAX_VIEWS / 2 eyes, for settings that already have regions or ask for the
+/// median depth, and as foveate() does.
 FoveatedViews foveated_views(std::span<const shared::View> eyes, const Foveation& foveation,
                              const render::FrameSettings& settings = {});
 

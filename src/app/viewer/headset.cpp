@@ -97,8 +97,7 @@ void view_in_headset(const RenderOptions& o, const preview::Opened& scene, previ
       return static_cast<float>(loaded.stream->quality_left(settings.frame.quality));
     };
   }
-  if (mirror)
-    beside.show = [&](const Target& left, const glm::ivec2& size) { mirror->show(left, size); };
+  if (mirror) beside.show = [&](const Target& left, const glm::ivec2& size) { mirror->show(left, size); };
   xr::run(instance, gpu_model, settings, beside);
 }
 
