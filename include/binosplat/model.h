@@ -15,7 +15,9 @@ struct Model;  // the library's own
 
 /// Which of the models in a file is meant, where it has several.
 struct ModelOptions {
-  std::optional<int> lod = {};  // the level of detail; 0 is the finest, and what is read where none is named
+  /// The level of detail of a streamed SOG; 0 is the finest. Where none is named: the finest of which all
+  /// files are there.
+  std::optional<int> lod = {};
   std::optional<std::size_t> appearance = {};  // of a Scaffold-GS model; the first where none is named
 };
 
@@ -30,10 +32,10 @@ struct Bounds {
 class SplatModel {
  public:
   /// Reads a file, or a folder that holds a model. What it is, is decided by its content, never by its name:
-  /// INRIA's .ply and PlayCanvas' compressed one, .spz, .splat, .ksplat, SOG (a folder, or .sog), glTF with
-  /// Gaussians, and Scaffold-GS's .ply with the networks beside it. Gaussians whose numbers are not finite
-  /// are left out, and counted on standard error. Throws Error(bad_input) for a path that is no such model;
-  /// the text says what it looks like instead.
+  /// INRIA's .ply and PlayCanvas' compressed one, .spz, .splat, .ksplat, SOG (a folder, .sog, or streamed by
+  /// a lod-meta.json), glTF with Gaussians, and Scaffold-GS's .ply with the networks beside it. Gaussians
+  /// whose numbers are not finite are left out, and counted on standard error. Throws Error(bad_input) for a
+  /// path that is no such model; the text says what it looks like instead.
   explicit SplatModel(const std::filesystem::path& path, const ModelOptions& options = {});
 
   /// For the library's own code, which has models in memory. Not null.

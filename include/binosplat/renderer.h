@@ -39,9 +39,10 @@ struct ViewRegion {
   /// px. Of tiles that lie within [hole_begin, hole_end) nothing is drawn, either: what an inset covers.
   glm::uvec2 hole_begin{0}, hole_end{0};
   float tolerance_share = 1.0f;  // the view goes by so many times the frame's tolerance; 0: it is exact
-  /// Of a picture with fewer pixels than what it stands for, as the wide one around an inset: the square of
-  /// how many times fewer it has by degree, at most 1. The low-pass is as many px wide in every picture, so
-  /// that thin Gaussians would be too bright in this one. Changes nothing of anti-aliased models.
+  /// Where this picture has fewer pixels a degree than the one that it stands for, as the wide one around an
+  /// inset has: (its pixels a degree / the other's) squared, at most 1. The low-pass is as many px wide in
+  /// every picture, so thin Gaussians would be too bright in this one; the renderer dims them by that. It
+  /// changes nothing of anti-aliased models.
   float low_pass_share = 1.0f;
 
   bool operator==(const ViewRegion&) const = default;

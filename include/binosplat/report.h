@@ -8,7 +8,7 @@
 namespace binosplat {
 
 struct StageTime {
-  std::string name = {};  // decode, project, order, pairs, tile_sort, ranges, blend
+  std::string name = {};  // decode, project, order, pairs, tile_sort, ranges, blend, probe
   double ms = 0;          // on the GPU
 };
 

@@ -47,15 +47,17 @@ struct Target {
   /// converted.
   bool linear = false;
   /// Shaders may write into it. False, as for a swapchain that OpenXR's runtime makes without
-  /// XR_SWAPCHAIN_USAGE_UNORDERED_ACCESS_BIT, as Monado does of sRGB: it is rendered into, through a copy.
+  /// XR_SWAPCHAIN_USAGE_UNORDERED_ACCESS_BIT, as Monado does of sRGB: the renderer then draws into it,
+  /// through a copy.
   bool in_place = true;
 };
 
 /// Where a view's depths go: a 2D texture, or a layer of an array, of a depth format without stencil, as
 /// XR_KHR_composition_layer_depth takes it. What lies at z (world units, along the view's axis) has the depth
-/// far (1 - near / z) / (far - near), from 0 at `near_plane` to 1 at `far_plane`; either may be infinite, and
-/// near the farther one. What covers less than half of a pixel is infinitely far. The texture may have fewer
-/// pixels than the view: GPUs of servers fill depths slowly, and a headset's runtime needs no more.
+/// far (1 - near / z) / (far - near), from 0 at `near_plane` to 1 at `far_plane`; either may be
+/// infinite, and `near_plane` may be the larger one, which reverses the depths. What covers less than half of
+/// a pixel is infinitely far. The texture may have fewer pixels than the view: GPUs of servers fill depths
+/// slowly, and a headset's runtime needs no more.
 struct DepthTarget {
   std::uint32_t texture = 0;
   int level = 0;

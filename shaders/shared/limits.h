@@ -8,9 +8,10 @@
 #define ALPHA_MAX 0.99
 // The blend stops before a Gaussian that would leave a transmittance of less than this behind it (3D-GS).
 #define TRANSMITTANCE_MIN 1e-4
-// The approximate blend goes by blocks of so many px, and a block ends where no pixel's transmittance is
-// above this times the root of the tolerance, or the most, asked each so many pairs of a list, and of a long
-// one (docs/method.md 5.2).
+// The approximate blend (docs/method.md 5.2) works in blocks of APPROXIMATE_BLOCK x APPROXIMATE_BLOCK px. It
+// ends a block once no pixel's transmittance exceeds DARK_TRANSMITTANCE times the root of the tolerance, at
+// most DARK_TRANSMITTANCE_MOST. It asks that after every APPROXIMATE_STEP_SHORT pairs of a list; of a long
+// list, after every APPROXIMATE_STEP_LONG.
 #define APPROXIMATE_BLOCK 8
 #define DARK_TRANSMITTANCE 0.12
 #define DARK_TRANSMITTANCE_MOST 0.4
@@ -49,9 +50,9 @@
 #define TILE_BLOCK 1024
 #define SUPERTILE_TILES_MOST 4u
 
-// What a frame measured of a Gaussian (docs/method.md 5): never less than the floor, or a hidden one would
-// divide by zero; times the ageing a measuring, up to 1, while Th leaves it out, so that it comes to be
-// measured again.
+// The transmittance that a frame measures of a Gaussian (docs/method.md 5) never falls below BOUND_FLOOR, or
+// a hidden one would divide by zero. While Th leaves a Gaussian out, each frame that measures multiplies its
+// bound by BOUND_AGEING, up to 1, until it is drawn and measured again.
 #define BOUND_FLOOR 0.01
 #define BOUND_AGEING 1.25
 // What a blend measures of each splat, over the pixels that it reaches: nothing, the largest transmittance in

@@ -10,9 +10,9 @@ namespace binosplat {
 /// Gaussians that are taken of any file, whatever its size: who trusts a file says so (--max-memory).
 inline std::atomic<std::uint64_t> gaussians_allowed{0};
 
-/// The most Gaussians in a file of so many bytes as they lie on the disk: one a byte, while real models take
-/// three and more however they are packed, and a million that need no reason, as made-up ones of equal values
-/// need them.
+/// The most Gaussians that readers take of a file of so many bytes on the disk: one a byte, while real models
+/// have three bytes and more for each however they are packed, and a million besides, which made-up models of
+/// equal values need.
 inline std::uint64_t most_gaussians_in(std::uint64_t bytes) {
   return std::max(bytes + (std::uint64_t{1} << 20), gaussians_allowed.load());
 }

@@ -17,14 +17,15 @@ namespace binosplat {
 
 /// Directions in which what levels lose is known: along x, against it, along y and so on.
 constexpr std::size_t detail_directions = 6;
-/// A part of a model: its box, and its levels from the finest to the coarsest.
+
+/// A chunk of a model: its box, and its levels from the finest to the coarsest.
 struct LodChunk {
   struct Level {
     int number = 0;
     std::size_t count = 0;  // Gaussians
-    /// By what its picture of the part, by itself over what looks much like it, differs from that of the
-    /// finest: squared, summed over pixels and meaned over channels; in each direction, in pixels of each
-    /// width.
+    /// The squared difference between pictures of the chunk at this level and at the finest, each drawn by
+    /// itself over the chunk's mean colour: summed over pixels, the mean of channels. A number for each
+    /// direction and, within it, each width of a pixel.
     std::vector<double> errors = {};
   };
   glm::dvec3 low{0.0}, high{0.0};

@@ -25,7 +25,7 @@ struct Settings {
   std::optional<Perspective> perspective;  // none: what the model was trained with
 };
 
-/// The picture of a model in a view. The view's members for the frame (tiles_x to th_group) are not looked
+/// The picture of a model in a view. The view's members for the frame (from tiles_x on) are not looked
 /// at.
 Picture render(const Model& model, const shared::View& view, const Settings& settings = {});
 

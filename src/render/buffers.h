@@ -48,7 +48,7 @@ struct FrameBuffers {
   /// What the frame that was drawn last draws in its view `v`, in index order.
   std::vector<DrawnGaussian> read_drawn(const FramePlan& plan, std::uint32_t v) const;
 
-  /// What tiles are blended by: begin and end in the values, by tile; and those, splats.
+  /// The blend reads these two: the begin and end of each tile's list, and the splats that the lists are of.
   gl::Buffer& ranges_of_tiles(const FramePlan& plan) {
     return plan.supertile_side == 1 ? ranges : tile_ranges;
   }

@@ -28,8 +28,7 @@ struct FrameReport {
   std::uint32_t order_groups = 0;
   std::uint32_t order_passes = 0;      // of the radix sort by depth, of an order group
   std::uint32_t tile_sort_passes = 0;  // of that by tile
-  int attempts = 0;  // with settings.quality: times it was drawn until that held; times are of all, what else
-                     // is told is of the last
+  int attempts = 0;  // with settings.quality: how often the frame was drawn until it reached that
   int redrawn = 0;   // times that buffers had to grow
   std::vector<gl::StageTime> stages;  // GPU time of the last, complete drawing
   double total_ms = 0;                // their sum
@@ -66,9 +65,10 @@ class Frame {
   /// tolerance that was found stays, but no measured transmittance. Throws Error: bad views or settings
   /// (bad_input), no room (out_of_memory).
   ///
-  /// With canvases, one a view and at most MAX_CANVASES, pictures go there and not into colours(), and
-  /// z_sums() are depths, 0 where a pixel has none, of one of `depth_rows` (1 or 2) rows; unless the frame
-  /// needs its pictures for a probe, or something stands in for its blend: the report tells.
+  /// With canvases, one a view and at most MAX_CANVASES, the blend writes pictures there and not into
+  /// colours(), and depths into z_sums(): one row of every `depth_rows` (1 or 2), 0 where a pixel has none.
+  /// Where a probe needs the pictures, or something stands in for the blend, it writes into colours() as
+  /// usual; FrameReport::on_canvases tells which.
   FrameReport draw(std::span<const shared::View> views, const FrameSettings& settings = {},
                    const Workings& workings = {}, std::span<const Canvas> canvases = {}, int depth_rows = 1);
 

@@ -15,8 +15,8 @@ std::uint32_t starting_slots(std::uint32_t gaussians);
 /// Pairs that a first frame has room for: most models need some tiles a Gaussian; what is missing is grown.
 std::int64_t starting_pairs(const FramePlan& plan);
 
-/// Bytes that the model takes on the GPU, and those that a frame of it starts with besides; a plan whose
-/// lists are left to the frame is taken to have one a tile.
+/// Bytes that the model takes on the GPU, and those that a frame of it starts with besides. Where
+/// the plan lets the frame choose its supertiles, this takes each tile to have a list of its own.
 struct MemoryNeeds {
   std::int64_t model = 0;
   std::int64_t frame = 0;

@@ -16,8 +16,8 @@ namespace binosplat::render {
 /// takes a driver 10 us, whatever its size.
 class Scatter {
  public:
-  /// For which there is room on the GPU, or as many as the buffer has. More go there in turns, each of which
-  /// waits for the one before.
+  /// The most records that lie on the GPU at once, side by side; fewer where the buffer has fewer. Larger
+  /// uploads go in turns, each of which waits for the one before.
   static constexpr std::size_t records_at_once = 1 << 18;
 
   explicit Scatter(gl::Context& context);

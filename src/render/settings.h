@@ -35,8 +35,9 @@ struct FrameSettings {
   int transmittance = TRANSMITTANCE_ONE;  // TRANSMITTANCE_ of shared/axes.h: where Th takes T_upper from
   DepthTable depth_table;                 // with TRANSMITTANCE_DEPTH
   /// With a measured transmittance: measuring makes a frame slower, and what was measured holds for a while.
-  /// At least 1 of so many frames measures, so many after a camera cut do, and each whose eyes have gone a
-  /// third of the way to a cut (history.h). Models of Scaffold-GS measure every frame.
+  /// At least one of `measure_every` frames measures, as do the first `measure_every` after a camera cut, and
+  /// each whose eyes have gone a third of the way to a cut (history.h). Models of Scaffold-GS measure every
+  /// frame.
   int measure_every = settling_frames;
   float tolerance = 0.0f;  // what Th may cost, in the unit of its rule (th_choices)
   /// Above 0: the frame chooses its tolerance itself, so that its PSNR against the exact frame comes to so

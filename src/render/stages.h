@@ -18,10 +18,11 @@ void project(gl::Dispatcher& dispatcher, const FramePlan& plan, std::uint32_t gr
 /// Their slots front to back, ties by index.
 void order(gl::Dispatcher& dispatcher, const FramePlan& plan, std::uint32_t group, FrameBuffers& buffers);
 
-/// (tile, splat) for every tile that a splat of the group touches, in depth order, appended to what is there.
+/// (supertile, splat) for every supertile that a splat of the group touches, in depth order, appended to what
+/// is there.
 void pairs(gl::Dispatcher& dispatcher, const FramePlan& plan, std::uint32_t group, FrameBuffers& buffers);
 
-/// All pairs by tile, in depth order within a tile.
+/// All pairs by supertile, in depth order within each.
 void tile_sort(gl::Dispatcher& dispatcher, const FramePlan& plan, FrameBuffers& buffers);
 
 /// Where each tile's list lies among the pairs.

@@ -132,19 +132,19 @@ struct ErrorBudget {
 /// Few Gaussians with which each view loses no more than is allowed. All chunks begin with their coarsest
 /// level; then, as long as a view loses more, that chunk gets that finer level which saves the most error per
 /// Gaussian. The choice is one for all views. Where nothing was measured, nothing is taken to hide anything.
-/// A chunk that no view sees takes part in this as if it were seen, and as hidden as others are on the whole,
-/// and goes on until all such chunks lose no more than that in the pixels of a whole sphere; unless heads do
-/// not turn: then it keeps its coarsest. A chunk of unknown errors gets its finest level. More Gaussians, and
-/// more error, only where they leave no choice, but for a thousandth of `most` that is left. `before` is kept
-/// to: its levels go on until a tenth less is lost, finer ones end at a tenth more.
+/// Chunks that no view sees are refined, too, since heads turn: each is taken to be as hidden as the others
+/// are on the whole, until all of them together lose no more than is allowed of the pixels of a whole sphere.
+/// Where heads do not turn they keep their coarsest level. A chunk of unknown errors gets its finest level.
+/// More Gaussians, and more error, only where they leave no choice, but for a thousandth of `most` that is
+/// left. `before` is kept to: its levels go on until a tenth less is lost, finer ones end at a tenth more.
 LevelChoice choose_within(const std::vector<LodChunk>& chunks, const std::vector<DetailView>& views,
                           const ErrorBudget& budget, const VisibleChunks& visible = {},
                           std::span<const std::size_t> before = {});
 
 /// A level's squared error for each pixel's worth that is seen of the chunk (ChunkVisibility), by an eye that
 /// looks `along`, of any length, where pixels are so wide, world units: by lines between the logarithms of
-/// what is known. Narrower ones lose as much as detail does that grows finer and finer, wider ones as at the
-/// end.
+/// what is known. For wider pixels than the file knows it is the error at the widest; for narrower ones it
+/// goes on as for detail that grows ever finer.
 double relative_error(const LodChunk& chunk, std::size_t level, double width, const glm::dvec3& along);
 
 /// What views lose with levels that change a few at a time: a frame has no time to sum up all chunks.
@@ -154,8 +154,7 @@ class RunningError {
   RunningError(std::shared_ptr<const LevelChoice> choice, std::vector<std::size_t> levels);
   /// Goes by these levels of the chunks from now on.
   void follow(std::span<const std::size_t> levels);
-  /// What that of some views, from `begin` to before `end`, loses which loses most (LevelChoice::error_of),
-  /// but for rounding.
+  /// The error of the worst view of [begin, end) (LevelChoice::error_of), but for rounding.
   double error(std::size_t begin, std::size_t end) const;
   std::size_t views() const { return lost_.size(); }
 

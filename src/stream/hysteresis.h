@@ -16,8 +16,8 @@ inline constexpr std::size_t chunks_at_once = 256;
 /// By how much a level must be too coarse, or finer than need be, before it is left: heads are never still.
 inline constexpr double inertia = 1.1;
 
-/// By how much more a level is needed that is not finer than the one before, and by how much less one that
-/// is.
+/// By what the need of a level is multiplied: by 1.1 if it is not finer than the chunk's level before, else
+/// by 1 / 1.1; by 1 where there was none.
 inline double inertia_of(std::span<const std::size_t> before, std::size_t chunk, std::size_t level) {
   if (before.empty()) return 1.0;
   return level < before[chunk] ? 1.0 / inertia : inertia;

@@ -26,7 +26,8 @@ struct StreamSettings {
   DetailRequest detail;  // `most` and `calibration` are the stream's
   /// Levels may lose half of the squared error that FrameSettings::quality allows, and go by dB then.
   bool shares = false;
-  /// Of so few Gaussians, if there is room for them at first, all are drawn, where dB would be gone by.
+  /// Where levels would be chosen by dB and the finest have at most so many Gaussians, which fit, all are
+  /// drawn.
   std::size_t all_up_to = 0;
   /// Gaussians that there may be beside a frame of these views (none: of a usual pair), with harmonics of a
   /// degree. Empty: any number.

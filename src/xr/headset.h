@@ -28,7 +28,8 @@ struct Beside {
   std::function<void(const Target& left, const glm::ivec2& size)> show;
   /// Of a model with levels of detail, called before each frame: changes the model on the GPU a little, to
   /// what these views need; frames are due every `frame_ms`, and drawing the last one took `drawn_ms`.
-  /// Returns what of the frame's quality is left for what it leaves out of them. May be empty.
+  /// Returns the quality in dB that is left for the frame itself, once levels have their half of the error.
+  /// May be empty.
   std::function<float(std::span<const shared::View> views, double frame_ms, double drawn_ms)> levels;
 };
 
