@@ -35,7 +35,7 @@ struct Completion {
   bool words_only = false;  // and nothing else, as a file or a number
 
   Completion(const CLI::Option& of, std::string called) : option(&of), name(std::move(called)) {
-    const std::string text = of.get_description();
+    const std::string& text = of.get_description();
     help = replaced(text.substr(0, text.find("\n  ")), "\n", " ");
     const std::vector<std::string> choices = CLI::detail::split(of.get_type_name(), '|');
     std::vector<std::string> taken;

@@ -58,10 +58,10 @@ struct Table {
 struct Chart {
   std::string x;
   std::vector<std::string> y;
-  std::string by = "";
-  std::string label = "";               // of a point, for whoever points at it
-  std::string filled = "";              // points are filled where this column is "yes", else hollow
-  std::string title = "";               // of the axis up; otherwise the first of `y`
+  std::string by = {};
+  std::string label = {};               // of a point, for whoever points at it
+  std::string filled = {};              // points are filled where this column is "yes", else hollow
+  std::string title = {};               // of the axis up; otherwise the first of `y`
   std::vector<std::string> order = {};  // texts in `by` whose series come first
   bool bars = false;                    // horizontal, stacked by series, over names in `x`
   bool line = true;                     // the points of a series are joined in their order,

@@ -228,7 +228,11 @@ const std::map<std::string, float> fox_tolerances = {{"tau", 0.0f},
                                                      {"squared, depth", 0.01213f},
                                                      {"squared, last", 0.009286f}};
 
-TEST(Stability, TheTableOfEveryRuleOnEveryCase) {
+/// What thousands of faint Gaussians that lie one behind the other break; nothing else is broken.
+const std::map<std::string, std::string> mist_verdicts = {
+    {"squared, one", "dark"}, {"squared, depth", "dip, wrong, dark"}, {"squared, last", "dip, wrong, dark"}};
+
+TEST(Stability, EveryRuleOnEveryCaseIsAsTheTableSays) {
   if (!test::switched_on("BINOSPLAT_LONG")) GTEST_SKIP() << "minutes on llvmpipe: set BINOSPLAT_LONG=1";
   REQUIRE_SCENE("fox", folder);
   const auto fox = std::make_shared<const Model>(load_model(folder / "fox.ply"));
@@ -244,13 +248,9 @@ TEST(Stability, TheTableOfEveryRuleOnEveryCase) {
       const std::string name = rule.name();
       rule.tolerance = fox_tolerances.at(name);
       const StabilityResult r = run_rule(frame, one, exact, rule, {});
-      // The squared rule may darken pictures of many faint Gaussians, one behind the other
-      // (docs/stability.md).
-      if (rule.th != TH_SQUARED) {
-        EXPECT_EQ(r.verdict, "holds") << one.name << ": " << name << ", signed " << r.signed_mean;
-      } else if (one.name == "mist" && rule.transmittance == TRANSMITTANCE_LAST) {
-        EXPECT_NE(r.verdict, "holds") << "what fails goes unnoticed";
-      }
+      const auto broken = mist_verdicts.find(name);
+      const bool breaks = one.name == "mist" && broken != mist_verdicts.end();
+      EXPECT_EQ(r.verdict, breaks ? broken->second : "holds") << one.name << ": " << name;
       rows[name] += fmt::format(" {:.1f} / {:.1f}{} |", r.worst_db, r.settled_db,
                                 r.verdict == "holds" ? "" : " **" + r.verdict + "**");
     }
