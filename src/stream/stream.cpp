@@ -19,10 +19,6 @@ constexpr double requests_at_once = 2.0, requested_least = 1 << 14;
 // Of a frame's time, ms: what is neither drawing nor levels.
 constexpr double apart_ms = 1.2;
 
-bool same(std::span<const shared::View> a, std::span<const shared::View> b) {
-  return std::ranges::equal(std::as_bytes(a), std::as_bytes(b));
-}
-
 }  // namespace
 
 double time_for_levels(double frame_ms, double drawn_ms) {
@@ -57,6 +53,10 @@ std::optional<double> Stream::db_for(double quality) const {
   if (shows_all_) return std::nullopt;
   if (settings_.shares && quality > 0.0 && files_.has_errors()) return levels_share(quality);
   return settings_.detail.db;
+}
+
+bool Stream::are_last(std::span<const shared::View> views) const {
+  return std::ranges::equal(std::as_bytes(views), std::as_bytes(std::span(views_)));
 }
 
 DetailRequest Stream::request_for(std::span<const shared::View> views) const {
@@ -100,7 +100,7 @@ bool Stream::begin_frame(std::span<const shared::View> views, const render::Fram
   }
   worker_->check();
   motion_.note(views);
-  if (!same(views, views_) || settings.quality != quality_) {
+  if (!are_last(views) || settings.quality != quality_) {
     if (views.size() != views_.size() || settings.quality != quality_) pass_.views.clear();
     views_.assign(views.begin(), views.end());
     quality_ = settings.quality;
@@ -148,7 +148,7 @@ void Stream::make_pass(const render::FrameSettings& settings) {
   if (!visibility_) visibility_.emplace(gpu_model_);
   const std::vector<shared::View> ahead = motion_.ahead(lead_s);
   if (pass_.views.empty()) {
-    const bool moves = !same(ahead, views_);
+    const bool moves = !are_last(ahead);
     pass_ = {.all = std::max<std::size_t>(views_.size(), moves ? 2 : 1), .began = Clock::now()};
     pass_.here = moves ? (pass_.all + 1) / 2 : pass_.all;
   }
@@ -158,7 +158,7 @@ void Stream::make_pass(const render::FrameSettings& settings) {
   pass_.visible.by_view.push_back(std::move(visibility_->measure({&view, 1}, settings, chunks_).front()));
   made_pass_ = true;
   if (pass_.views.size() < pass_.all) return;
-  is_due_ = !same(pass_.views, views_);
+  is_due_ = !are_last(pass_.views);
   pass_.visible.drawn = drawn_;
   request({.views = std::exchange(pass_.views, {}),
            .visible = std::move(pass_.visible),

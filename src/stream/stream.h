@@ -94,6 +94,8 @@ class Stream {
  private:
   DetailRequest request_for(std::span<const shared::View> views) const;
   std::optional<double> db_for(double quality) const;
+  /// Whether these views are, to the bit, those of the last begin_frame() or settle().
+  bool are_last(std::span<const shared::View> views) const;
   void put(std::span<const LodFiles::Piece> pieces);
   bool put_some(double ms);
   void calibrate_at_rest(const render::FrameSettings& settings);

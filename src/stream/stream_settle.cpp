@@ -31,9 +31,8 @@ void show_more(VisibleChunks& visible, const VisibleChunks& other) {
 
 bool Stream::settle(std::span<const shared::View> views, const render::FrameSettings& settings,
                     const std::function<void()>& before_change) {
-  const bool same = !worker_ && settings.quality == quality_ &&
-                    std::ranges::equal(std::as_bytes(views), std::as_bytes(std::span(views_)));
-  if (same || views.empty()) return false;
+  const bool is_settled = !worker_ && settings.quality == quality_ && are_last(views);
+  if (is_settled || views.empty()) return false;
   worker_.reset();
   views_.assign(views.begin(), views.end());
   quality_ = settings.quality;
