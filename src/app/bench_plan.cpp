@@ -172,10 +172,7 @@ lab::BenchNumbers BenchFolder::load(std::size_t point) const {
 }
 
 void BenchFolder::save(std::size_t point, const lab::BenchNumbers& measured) const {
-  if (measured.picture) {
-    const Uninterrupted hold;
-    save_png(fs::path(file(point)).replace_extension(".png"), *measured.picture);
-  }
+  if (measured.picture) save_png(fs::path(file(point)).replace_extension(".png"), *measured.picture);
   save_json(file(point), measured);
 }
 
@@ -193,10 +190,7 @@ void BenchFolder::save_results(const lab::BenchResults& results) const {
   json["plan"].erase("points");
   json["points"] = results.points;
   save_report(folder_, "results.json", json, lab::bench_page(results));
-  const Uninterrupted hold;
-  OutputFile csv(folder_ / "results.csv");
-  csv.write(lab::csv(results.points));
-  csv.commit();
+  write_file(folder_ / "results.csv", lab::csv(results.points));
 }
 
 }  // namespace binosplat::app

@@ -24,17 +24,6 @@ namespace fs = std::filesystem;
 
 namespace {
 
-std::mutex& writing() {
-  static std::mutex mutex;
-  return mutex;
-}
-
-// Of Unfinished; guarded by writing().
-fs::path& unfinished() {
-  static fs::path path;
-  return path;
-}
-
 // Names come from files and may be in any encoding; what is not UTF-8 is replaced rather than refused.
 std::string text_of(const nlohmann::ordered_json& value) {
   return value.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
@@ -84,30 +73,14 @@ void end_cleanly_on_signals() {
   }
   // Threads made from here on inherit the mask: the signals reach nobody but the one that waits for them.
   pthread_sigmask(SIG_BLOCK, &signals, nullptr);
-  std::mutex& mutex = writing();
-  fs::path& partial = unfinished();
-  std::thread([signals, &mutex, &partial] {
+  std::thread([signals] {
     int signal = 0;
     if (sigwait(&signals, &signal) != 0) return;
-    mutex.lock();
-    std::error_code ignored;
-    if (!partial.empty()) fs::remove(partial, ignored);
+    remove_unfinished_files();
     // Ends the process the way the signal does by itself, so that a shell sees why.
     pthread_sigmask(SIG_UNBLOCK, &signals, nullptr);
     raise(signal);
   }).detach();
-}
-
-Uninterrupted::Uninterrupted() : lock_(writing()) {}
-
-Unfinished::Unfinished(const fs::path& path) {
-  const std::lock_guard<std::mutex> lock(writing());
-  unfinished() = path;
-}
-
-Unfinished::~Unfinished() {
-  const std::lock_guard<std::mutex> lock(writing());
-  unfinished().clear();
 }
 
 fs::path place_of(const fs::path& path) {
@@ -152,14 +125,10 @@ nlohmann::ordered_json load_json(const fs::path& path) {
 }
 
 void save_json(const fs::path& path, const nlohmann::ordered_json& value) {
-  const Uninterrupted hold;
-  OutputFile file(path);
-  file.write(text_of(value));
-  file.commit();
+  write_file(path, text_of(value));
 }
 
 bool save_json_as_first(const fs::path& path, const nlohmann::ordered_json& value) {
-  const Uninterrupted hold;
   OutputFile file(path);
   file.write(text_of(value));
   return file.commit_as_first();

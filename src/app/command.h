@@ -3,7 +3,6 @@
 
 #include <filesystem>
 #include <functional>
-#include <mutex>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
@@ -36,27 +35,9 @@ bool has_preview();
 /// In a handler of `main`: says what is wrong, and returns the exit code for it.
 int end_by_what_was_thrown();
 
-/// From now on SIGHUP, SIGINT and SIGTERM end the program at once, or after the file that is being written
-/// (Uninterrupted), so that no half file is left. Call it before any thread is made.
+/// From now on SIGHUP, SIGINT and SIGTERM end the program at once, and no half file is left
+/// (base/output_file.h). Call it before any thread is made.
 void end_cleanly_on_signals();
-
-/// Held while a file is being written.
-class Uninterrupted {
- public:
-  Uninterrupted();
-
- private:
-  std::lock_guard<std::mutex> lock_;
-};
-
-/// A file that is removed where a signal ends the program while this lives. One at a time.
-class Unfinished {
- public:
-  explicit Unfinished(const std::filesystem::path& path);
-  ~Unfinished();
-  Unfinished(const Unfinished&) = delete;
-  Unfinished& operator=(const Unfinished&) = delete;
-};
 
 /// Where a file is written that `path` names: the same for all its spellings and symbolic links.
 std::filesystem::path place_of(const std::filesystem::path& path);

@@ -257,6 +257,7 @@ void add_max_memory(CLI::App& sub) {
          "--max-memory",
          [](double megabytes) {
            gaussians_allowed = static_cast<std::uint64_t>(1e6 * megabytes / gaussian_bytes);
+           picture_memory_allowed = 1e6 * megabytes;
          },
          "Believe a small file that its model takes so much memory (0.4 GB,\nor more where the file is "
          "larger)")

@@ -1,6 +1,7 @@
 #pragma once
 // What holds for the arguments of every sub-command.
 
+#include <atomic>
 #include <string>
 #include <vector>
 
@@ -36,6 +37,9 @@ std::string explain(const CLI::App& command, const std::string& name, const CLI:
 /// to keep no shaders there: they write into mapped files, and SIGBUS would end the program; says so. Call it
 /// before any context is made.
 void settle_shader_caches();
+
+/// What pictures may take that are drawn and not written yet, in bytes (--max-memory).
+inline std::atomic<double> picture_memory_allowed{1e30};
 
 /// --max-memory for a sub-command that reads a model: how much of it is believed of a file that is small
 /// (formats/plausible.h).

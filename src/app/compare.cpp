@@ -138,7 +138,6 @@ ExitCode compare_files(const CompareOptions& options) {
   if (foveated) print_comparison(*foveated);
   if (!options.difference.empty()) {
     const double gain = measure::difference_gain(measure::common_error(a, b));
-    const Uninterrupted hold;
     save_png(options.difference, measure::difference_picture(a, b, gain));
     fmt::print("difference     {} (times {}: white is {:.4g} of 255 and more)\n", options.difference, gain,
                255.0 / gain);

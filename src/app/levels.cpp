@@ -68,12 +68,7 @@ class Folder {
   }
 
   void write(const std::string& name, std::span<const std::byte> bytes) {
-    {
-      const Uninterrupted hold;
-      OutputFile file(folder_ / name);
-      file.write(bytes);
-      file.commit();
-    }
+    write_file(folder_ / name, as_text(bytes));
     const std::lock_guard lock(mutex_);
     has_[name] = true;
   }

@@ -55,7 +55,6 @@ Model load_written(const fs::path& file, const Model& model) {
 lab::TrialWriter trial_writer(const std::string& output, ModelFormat format) {
   return [output, format](const Model& model, int harmonic_bits) {
     OutputFile file(output);
-    const Unfinished unfinished(file.path());
     write_model(file, model, format, harmonic_bits);
     file.flush();
     return lab::WrittenModel{load_written(file.path(), model), fs::file_size(file.path())};
@@ -65,13 +64,8 @@ lab::TrialWriter trial_writer(const std::string& output, ModelFormat format) {
 std::vector<std::string> write_model_file(const std::string& output, const Model& model, ModelFormat format,
                                           int harmonic_bits) {
   OutputFile file(output);
-  std::vector<std::string> losses;
-  {
-    const Unfinished unfinished(file.path());
-    losses = write_model(file, model, format, harmonic_bits);
-    read_back(file, model, format);
-  }
-  const Uninterrupted hold;
+  std::vector<std::string> losses = write_model(file, model, format, harmonic_bits);
+  read_back(file, model, format);
   file.commit();
   return losses;
 }

@@ -50,6 +50,9 @@ void add_output_options(CLI::App& sub, OutputOptions& o) {
       ->type_name("N")
       ->check(positive);
   choose<int>(sub, "--bits", o.bits, "Bits a channel of PNG (8)", {{"8", 8}, {"16", 16}});
+  sub.add_option("--png-level", o.png_level, "How small PNG is made: 0 (fast) to 12, slower by each (1)")
+      ->type_name("N")
+      ->check(between(0, 12, "a level from 0 to 12"));
   choose<bool>(sub, "--exr", o.exr_half, "Write OpenEXR too, with depth; half where only -o FILE.exr asks",
                {{"half", true}, {"float", false}});
   choose<bool>(sub, "--exr-encoding", o.exr_display,
@@ -58,6 +61,8 @@ void add_output_options(CLI::App& sub, OutputOptions& o) {
   choose<Depth>(sub, "--exr-depth", o.exr_depth,
                 "Z of OpenEXR: the mean of what is seen, or by which half of it is (mean)",
                 {{"mean", Depth::mean}, {"median", Depth::median}});
+  choose<bool>(sub, "--exr-compression", o.exr_compressed, "zip is smaller, none is faster (zip)",
+               {{"zip", true}, {"none", false}});
   sub.add_option(
          "--photos", o.photos,
          "Print PSNR against DIR/NAME.jpg, .png or .exr, or the photos found\nbeside the cameras; with "

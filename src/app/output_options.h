@@ -20,9 +20,11 @@ struct OutputOptions {
   std::optional<double> fps;  // of a path, or of a video; none: by the path's times
   Background background = glm::vec3(0.0f);
   std::optional<int> bits;
+  int png_level = 1;                // of libdeflate
   std::optional<bool> exr_half;     // OpenEXR, too, as half or float
   std::optional<bool> exr_display;  // display values instead of light
   Depth exr_depth = Depth::mean;
+  bool exr_compressed = true;
   std::string photos;  // a folder, or photos_beside
   std::string json;
   bool detail_report = false;

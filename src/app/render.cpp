@@ -14,6 +14,7 @@
 #include "app/command_line.h"
 #include "app/demo_eyes.h"
 #include "app/detail.h"
+#include "app/draw_shots.h"
 #include "app/empty_view.h"
 #include "app/followed.h"
 #include "app/foveate_options.h"
@@ -51,19 +52,6 @@ void check_any_photo(const std::string& folder, const std::vector<Camera>& camer
   fail("--photos {}: there is no photo of any view drawn, for one {}.jpg", folder, stem_of(cameras[0].name));
 }
 
-// PSNR of the picture as 8 bits would keep it against the photo, where there is a folder of them.
-std::optional<double> photo_psnr(const std::string& folder, const glm::vec3& background, const Shot& shot,
-                                 const Picture& picture) {
-  if (folder.empty()) return std::nullopt;
-  const auto file = find_view_photo(folder, shot.name);
-  if (!file) {
-    log_info("no photo of {} in {}", shot.name, folder);
-    return std::nullopt;
-  }
-  const Image photo = load_view_photo(*file, shot.eyes.front().camera, background);
-  return measure::psnr(quantised(composite(picture, background)), photo);
-}
-
 // What the model takes on the GPU, and the shot that takes most.
 render::MemoryNeeds memory_needs(render::FrameSettings settings, const Model& model,
                                  const std::vector<Shot>& shots, std::optional<double> vr180_near,
@@ -79,28 +67,8 @@ render::MemoryNeeds memory_needs(render::FrameSettings settings, const Model& mo
   return most;
 }
 
-// What --transmittance depth goes by: the cameras of the list, evenly chosen, as the shots see the scene.
-render::DepthTable depth_table(render::Frame& frame, const Lens& lens, const CameraList& list,
-                               double near_plane, const std::string& axes,
-                               const render::FrameSettings& settings) {
-  constexpr std::size_t views_max = 16;
-  const std::size_t count = std::min(views_max, list.cameras.size());
-  std::vector<shared::View> views;
-  for (std::size_t k = 0; k < count; ++k)
-    views.push_back(
-        make_view(into_axes(sized(lens, list.cameras[k * list.cameras.size() / count]), axes), near_plane));
-  log_info("--transmittance depth: measuring {} view{} of {}", count, count == 1 ? "" : "s", list.source);
-  return measure::measure_depth_table(frame, views,
-                                      {.order = settings.order, .projection = settings.projection});
-}
-
 std::optional<double> finite(const std::optional<double>& metres) {
   return metres && std::isfinite(*metres) ? metres : std::nullopt;
-}
-
-bool is_empty(const Picture& picture) {
-  return std::all_of(picture.colour.begin(), picture.colour.end(),
-                     [](const glm::vec4& c) { return c.a == 1.0f; });
 }
 
 // Whether pictures are for a screen whose distance no option says: both eyes in one, and not for a headset.
@@ -110,33 +78,6 @@ bool seeks_screen(const RenderOptions& o, const OutputPlan& plan) {
          !o.camera.lens.headset();
 }
 
-// That distance, in metres: what suits the first view of the run, whichever part of it is drawn here; nothing
-// where that shows nothing.
-std::optional<double> find_screen(render::Frame& frame, const render::FrameSettings& settings,
-                                  const Shot& first) {
-  frame.draw(std::array{first.eyes[0].view},
-             {.order = settings.order, .projection = settings.projection, .precision = settings.precision});
-  const auto metres = stereo::suitable_convergence({first.eyes[0].camera, first.eyes[1].camera},
-                                                   frame.read_pictures()[0], first.units_per_metre);
-  frame.start_over();
-  if (metres)
-    log_info("convergence {:.3g} m, which suits what {} shows (--convergence METRES for another, or inf)",
-             *metres, first.name);
-  return metres;
-}
-
-// What is drawn, and by what.
-struct Work {
-  OutputPlan plan;
-  CalibratedSettings calibrated;
-  CameraList list;
-  std::vector<Shot> shots;
-  std::optional<Shot> screen;  // what tells how far the screen is, where no option does
-  std::string photos;          // a folder; empty: none
-  bool heads_turn = false;
-  std::unique_ptr<Stream> stream;  // of a model whose levels follow the shots
-};
-
 // Of those that are drawn, before the model is read; and that each has a photo of its own.
 void check_photos_drawn(const RenderOptions& o, const Work& work) {
   if (work.photos.empty() || !work.list.listed) return;
@@ -145,100 +86,6 @@ void check_photos_drawn(const RenderOptions& o, const Work& work) {
   if (o.camera.views.empty() && !work.list.path) cameras.resize(1);
   check_any_photo(work.photos, cameras);
   check_photos(work.photos, cameras);
-}
-
-// What an exact frame takes in the place of the last of a long path, to say whether --quality paid; nothing
-// where a path is too short to tell, or its frames are not drawn whole.
-std::optional<double> exact_frame_ms(render::Frame& frame, const Work& work, const RenderReport& report) {
-  // Frames, of which these two are a small share, or by a CPU, where it hardly ever pays, the one.
-  constexpr std::size_t many = 24, some = 6;
-  const RenderOptions& o = report.options;
-  if (!o.drawing.quality || !work.list.path ||
-      report.drawn.size() < (report.context.software() ? some : many) || work.stream || o.foveate ||
-      work.plan.vr180)
-    return std::nullopt;
-  render::FrameSettings exact = render::exact_of(settings_of(o.drawing));
-  exact.precision = o.drawing.precision;
-  const std::vector<shared::View> views = views_of(report.drawn.back().shot);
-  if (report.drawn.size() >= many) frame.draw(views, exact);  // in which drivers compile their programs
-  return frame.draw(views, exact).total_ms;
-}
-
-// Draws every shot as often as asked for and writes its last frame.
-void draw_all(gl::Context& context, Work& work, RenderReport& report) {
-  const DrawingOptions& drawing = report.options.drawing;
-  const OutputOptions& output = report.options.output;
-  render::FrameSettings settings = settings_of(drawing);
-  settings.background = output.backdrop();
-  const render::Workings workings = workings_of(drawing);
-  if (!work.list.path) settings.probe_tiles = std::numeric_limits<int>::max();  // single pictures: all
-  const auto gpu_model = work.stream
-                             ? work.stream->gpu_model(context, settings.precision)
-                             : std::make_shared<render::GpuModel>(context, report.model, settings.precision);
-  render::Frame frame(gpu_model);
-  stereo::DebugView show(gpu_model);
-  work.calibrated.check_model(report.model);
-  if (settings.transmittance == TRANSMITTANCE_DEPTH && drawing.calibration.empty())
-    settings.depth_table = depth_table(frame, report.options.camera.lens, work.list, report.near_plane,
-                                       report.model.axes, settings);
-  std::optional<stereo::Panorama> panorama;
-  if (work.plan.vr180) panorama.emplace(gpu_model, work.shots[0].eyes[0].camera.width);
-  const std::optional<stereo::Foveation>& foveate = report.options.foveate;
-  std::optional<stereo::FoveatedFrame> foveated;
-  if (foveate) foveated.emplace(gpu_model);
-  if (work.screen) report.convergence = find_screen(frame, settings, *work.screen);
-  if (work.screen && report.convergence) {
-    for (Shot& shot : work.shots) converge(shot, *report.convergence);
-  }
-  const std::unique_ptr<Video> video = open_video(work.plan, work.shots);
-  std::optional<FinestLevels> finest;
-  std::optional<glm::vec3> of_switches;  // the background, where they are reported
-  if (output.detail_report && work.heads_turn) of_switches = settings.background;
-  bool all_empty = true;
-  Progress progress("drawing", work.shots.size() * static_cast<std::size_t>(drawing.frames));
-  std::size_t done = 0;
-  for (Shot& shot : work.shots) {
-    // Single pictures do not depend on which were drawn before them.
-    if (!work.list.path) (foveated ? foveated->frame() : frame).start_over();
-    Drawn& drawn = report.drawn.emplace_back();
-    drawn.shot = std::move(shot);
-    const std::vector<shared::View> views = views_of(drawn.shot);
-    render::FrameSettings of_shot = work.calibrated.of(drawn.shot, settings);
-    of_shot.depth = output.exr_depth;
-    if (work.stream) {
-      drawn.levels = settle_shot(*work.stream, frame, show, views, of_shot, of_switches);
-      of_shot.quality = static_cast<float>(drawn.levels->left);
-    }
-    for (int n = 0; n < drawing.frames; ++n) {
-      drawn.report = panorama   ? draw(*panorama, drawn.shot, report.model.axes, report.near_plane)
-                     : foveated ? foveated->draw(views, *foveate, of_shot, workings)
-                                : frame.draw(views, of_shot, workings);
-      report.times.add(drawn.report);
-      progress.update(++done);
-    }
-    const std::vector<Picture> pictures = panorama   ? panorama->read_pictures()
-                                          : foveated ? foveated->read_pictures()
-                                                     : frame.read_pictures();
-    if (foveated) drawn.foveated = foveated->parts();
-    all_empty = all_empty && std::all_of(pictures.begin(), pictures.end(), is_empty);
-    if (output.detail_report) {
-      if (!finest) finest.emplace(report.options.scene, context);
-      drawn.levels->finest_psnr = finest->psnr(views, pictures, of_shot, settings.background);
-    }
-    if (!panorama) drawn.comfort = comfort_of(drawn.shot, report.options.camera.lens.headset(), pictures[0]);
-    const stereo::DebugPictures shown =
-        show.make(output.show, {frame, views, pictures, of_shot}, output.background);
-    drawn.most_shown = shown.most;
-    if (video) video->add(frame_of(work.plan, output.background, shown.pictures));
-    drawn.files = video ? std::vector{work.plan.video.string()}
-                        : write_outputs(report.options.scene.name, output, work.plan, drawn.shot, shown);
-    drawn.photo_psnr = photo_psnr(work.photos, output.backdrop(), drawn.shot, pictures[0]);
-  }
-  if (video) video->finish();
-  report.exact_ms = exact_frame_ms(frame, work, report);
-  if (all_empty && !drawing.reference_until && !report.drawn.empty())
-    log_warning("the pictures are empty: {}",
-                why_empty(report.model, report.drawn[0].shot, report.near_plane));
 }
 
 void log_model(const std::string& scene, const std::optional<int>& decode, const Model& model,

@@ -67,15 +67,17 @@ int plan_layout(const OutputOptions& options, bool one_picture, bool picture_fil
 }
 
 ExrOptions exr_options(const OutputOptions& options, const Notes& notes) {
-  return {options.exr_half.value_or(true), options.exr_display.value_or(false), options.background, notes};
+  return {options.exr_half.value_or(true), options.exr_display.value_or(false), options.background, notes,
+          options.exr_compressed};
 }
 
-void write_picture(const OutputOptions& options, const OutputPlan& plan, const std::string& path,
-                   const Picture& picture, const Notes& notes) {
-  const Uninterrupted hold;
+void encode_picture(const OutputOptions& options, const OutputPlan& plan, const std::string& base,
+                    const Picture& picture, const Notes& notes, std::vector<EncodedFile>& files) {
   if (plan.png)
-    save_png(path + ".png", composite(picture, options.background), options.bits.value_or(8), notes);
-  if (plan.exr) save_exr(path + ".exr", picture, exr_options(options, notes));
+    files.push_back({base + ".png", png_bytes(composite(picture, options.background),
+                                              {options.bits.value_or(8), options.png_level, notes})});
+  if (plan.exr)
+    files.push_back({base + ".exr", exr_bytes(base + ".exr", picture, exr_options(options, notes))});
 }
 
 // The files of a shot without their endings: one for each eye, or one for both.
@@ -190,7 +192,6 @@ fs::path default_folder(const std::string& scene) {
 }
 
 void claim_folder(const fs::path& folder, const std::string& scene) {
-  const Uninterrupted hold;
   const fs::path model = path_of(scene);
   const bool cut = fs::exists(folder / owner_name) && owner_of(folder).empty();
   OutputFile file(folder / owner_name);
@@ -327,33 +328,34 @@ std::vector<std::string> files_of(const OutputPlan& plan, const Shot& shot) {
   return files;
 }
 
-std::vector<std::string> write_outputs(const std::string& scene, const OutputOptions& options,
-                                       const OutputPlan& plan, const Shot& shot,
-                                       const stereo::DebugPictures& shown) {
+std::vector<EncodedFile> encode_outputs(const std::string& scene, const OutputOptions& options,
+                                        const OutputPlan& plan, const Shot& shot,
+                                        const stereo::DebugPictures& shown) {
   const std::vector<Picture>& pictures = shown.pictures;
   const std::vector<std::string> bases = bases_of(plan, shot);
+  std::vector<EncodedFile> files;
   if (plan.vr_photo) {
-    const Uninterrupted hold;
-    save_vr_photo(bases[0] + ".jpg", composite(pictures[0], options.background),
-                  composite(pictures[1], options.background));
-    return files_of(plan, shot);
+    const std::string name = bases[0] + ".jpg";
+    files.push_back({name, vr_photo_bytes(name, composite(pictures[0], options.background),
+                                          composite(pictures[1], options.background))});
+    return files;
   }
   if (plan.layout == LAYOUT_SEPARATE) {
     for (std::size_t k = 0; k < bases.size(); ++k)
-      write_picture(options, plan, bases[k], pictures[k],
-                    notes_of(scene, options, shot, shot.eyes[k].side, shown.most));
-    return files_of(plan, shot);
+      encode_picture(options, plan, bases[k], pictures[k],
+                     notes_of(scene, options, shot, shot.eyes[k].side, shown.most), files);
+    return files;
   }
   Notes notes = notes_of(scene, options, shot, "left, right", shown.most);
   notes["binosplatLayout"] = layout_choices[plan.layout].name;
   if (plan.layout == LAYOUT_MULTI_VIEW) {
-    const Uninterrupted hold;
-    save_exr(bases[0] + ".exr", pictures[0], pictures[1], exr_options(options, notes));
+    const std::string name = bases[0] + ".exr";
+    files.push_back({name, exr_bytes(name, pictures[0], pictures[1], exr_options(options, notes))});
   } else {
-    write_picture(options, plan, bases[0],
-                  stereo::lay_out(plan.layout, pictures[0], pictures[1], options.background), notes);
+    encode_picture(options, plan, bases[0],
+                   stereo::lay_out(plan.layout, pictures[0], pictures[1], options.background), notes, files);
   }
-  return files_of(plan, shot);
+  return files;
 }
 
 }  // namespace binosplat::app

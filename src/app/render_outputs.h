@@ -57,9 +57,13 @@ Image frame_of(const OutputPlan& plan, const Background& background, const std::
 /// The files that a shot becomes in the plan's folder, or in its file.
 std::vector<std::string> files_of(const OutputPlan& plan, const Shot& shot);
 
-/// Writes what is shown of a shot of the scene, of its eyes in their order, and returns the files' names.
-std::vector<std::string> write_outputs(const std::string& scene, const OutputOptions& options,
-                                       const OutputPlan& plan, const Shot& shot,
-                                       const stereo::DebugPictures& shown);
+struct EncodedFile {
+  std::string name, bytes;
+};
+
+/// The files of what is shown of a shot of the scene, of its eyes in their order.
+std::vector<EncodedFile> encode_outputs(const std::string& scene, const OutputOptions& options,
+                                        const OutputPlan& plan, const Shot& shot,
+                                        const stereo::DebugPictures& shown);
 
 }  // namespace binosplat::app

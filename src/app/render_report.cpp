@@ -296,6 +296,7 @@ void print(const RenderReport& report) {
   fmt::print("GPU time of {} frame{} on {}{}; {:.1f} MB in buffers\n", frames, frames == 1 ? "" : "s",
              report.context.renderer(), frames == 1 ? " (--frames N for more)" : "",
              static_cast<double>(report.context.peak_bytes()) / 1e6);
+  print_run(report);
 }
 
 void save(const std::filesystem::path& path, const RenderReport& report) {
@@ -312,6 +313,10 @@ void save(const std::filesystem::path& path, const RenderReport& report) {
                     ordered_json::array());
   for (const StageTimes::Row& row : report.times.rows())
     json["stages"].push_back(object("stage", row.stage, "median_ms", row.median_ms, "p99_ms", row.p99_ms));
+  const RunTimes& run = report.run;
+  json["run"] = object("seconds", 1e-3 * run.all, "reading_back_seconds", 1e-3 * run.reading,
+                       "waiting_for_files_seconds", 1e-3 * run.waiting, "encoding_thread_seconds",
+                       run.encoding, "writing_thread_seconds", run.writing, "threads", run.threads);
   json["memory"] = object("model_bytes", report.needs.model, "frame_bytes_at_least", report.needs.frame,
                           "gpu_bytes", context.allocated_bytes(), "gpu_peak_bytes", context.peak_bytes());
   save_json(path, json);

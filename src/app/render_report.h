@@ -60,6 +60,15 @@ struct Drawn {
   std::vector<stereo::FoveatedEye> foveated;  // with --foveate, by eye
 };
 
+/// What a run spent its time with, from its first frame to its last file. In ms of the thread that draws,
+/// which reads back and waits for files while it does not draw:
+struct RunTimes {
+  double all = 0.0, reading = 0.0, waiting = 0.0;
+  double gpu = 0.0;                      // ms of the GPU, of all frames
+  double encoding = 0.0, writing = 0.0;  // s of all threads of files together
+  int threads = 0;
+};
+
 struct RenderReport {
   const RenderOptions& options;
   const Model& model;
@@ -69,6 +78,7 @@ struct RenderReport {
   std::optional<double> convergence;  // m, by an option or because it suits; none: infinitely far
   std::vector<Drawn> drawn;
   StageTimes times;
+  RunTimes run;
   std::optional<double> exact_ms;  // GPU time of an exact frame, where --quality draws many
 };
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <string>
 #include <vector>
@@ -104,6 +105,34 @@ void tell_whether_quality_pays(const RenderReport& report) {
         "an exact one is faster",
         *o.drawing.quality, attempts);
   }
+}
+
+void print_run(const RenderReport& report) {
+  const RunTimes& run = report.run;
+  const std::size_t shots = report.drawn.size();
+  if (run.all < 1000.0 || shots < 2) return;
+  const auto percent = [&](double ms) { return static_cast<int>(std::lround(100.0 * ms / run.all)); };
+  const int drawing = percent(run.all - run.reading - run.waiting), files = percent(run.waiting);
+  fmt::print(
+      "{} views in {:.1f} s, {:.3g} a second; of the time: drawing {} %, reading back {} %, waiting for "
+      "files {} %\n",
+      shots, 1e-3 * run.all, 1e3 * static_cast<double>(shots) / run.all, drawing, percent(run.reading),
+      files);
+  if (files > 50) {
+    const OutputOptions& o = report.options.output;
+    const char* const faster = run.writing > run.encoding       ? "a faster disk would help"
+                               : o.exr_half && o.exr_compressed ? "--exr-compression none is faster"
+                               : o.png_level > 0                ? "--png-level 0 is faster"
+                                                                : "more cores would help";
+    fmt::print("{} files on {} core{} bounds this run: {}\n",
+               run.writing > run.encoding ? "writing" : "encoding", run.threads, run.threads == 1 ? "" : "s",
+               faster);
+  }
+  if (!report.context.software() && run.gpu < 0.5 * run.all)
+    fmt::print(
+        "The GPU had nothing to do for {} % of the time and may have run at a low clock: `binosplat bench` "
+        "times a busy one\n",
+        100 - percent(run.gpu));
 }
 
 }  // namespace binosplat::app

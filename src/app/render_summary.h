@@ -22,4 +22,7 @@ void print_way(const RenderReport& report);
 /// a CPU most tiles are drawn exactly as well, to know the error.
 void tell_whether_quality_pays(const RenderReport& report);
 
+/// After a run of several shots that took more than a second: what it spent that with.
+void print_run(const RenderReport& report);
+
 }  // namespace binosplat::app

@@ -38,7 +38,6 @@ void save_report(const std::filesystem::path& folder, const std::string& name,
   save_json(folder / name, results);
   page.facts.emplace_back("command", command_line());
   page.facts.emplace_back("date", fmt::format("{:%Y-%m-%d %H:%M} UTC", fmt::gmtime(std::time(nullptr))));
-  const Uninterrupted hold;
   lab::save_page(folder / "report.html", page, results);
 }
 

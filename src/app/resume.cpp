@@ -23,8 +23,8 @@ namespace {
 constexpr const char* render_run_name = "render-run.json";
 
 // Where it is drawn and which part of it, and what is believed of files.
-constexpr const char* no_matter[] = {"--output", "--shard",      "--resume", "--backend",
-                                     "--device", "--max-memory", "--quiet"};
+constexpr const char* no_matter[] = {"--output",     "--shard", "--resume",    "--backend",        "--device",
+                                     "--max-memory", "--quiet", "--png-level", "--exr-compression"};
 
 std::string views_key(const std::vector<Shot>& shots) {
   std::vector<Camera> cameras;

@@ -15,6 +15,8 @@
 #include "app/split.h"
 #include "base/log.h"
 #include "base/mapped_file.h"
+#include "base/output_file.h"
+#include "formats/content.h"
 #include "formats/model_output.h"
 #include "lab/fields.h"
 #include "lab/trim.h"
@@ -138,12 +140,7 @@ ordered_json trimmed_json(const TrimOptions& o, const lab::Trimmed& found, const
 std::vector<std::string> write_trimmed(const TrimOptions& o, const lab::Trimmed& found, ModelFormat format,
                                        const std::optional<fs::path>& original) {
   if (!found.less && original) {
-    OutputFile file(o.output);
-    const Unfinished unfinished(file.path());
-    const MappedFile bytes(*original);
-    file.write(bytes.bytes());
-    const Uninterrupted hold;
-    file.commit();
+    write_file(o.output, as_text(MappedFile(*original).bytes()));
     return {};
   }
   return write_model_file(o.output, found.model, format, found.harmonic_bits);

@@ -88,14 +88,13 @@ Video::Video(const fs::path& path, int width, int height, double frames_a_second
     : target_(path),
       temporary_(temporary_beside(path)),
       vr180_layout_(vr180 ? std::optional(layout) : std::nullopt),
-      unfinished_(temporary_),
       said_(std::tmpfile(), &std::fclose) {
   if (path.has_parent_path()) {
     std::error_code error;
     fs::create_directories(path.parent_path(), error);
     if (error) fail("cannot make the folder of {}: {}", path.string(), error.message());
   }
-  start(arguments_for(target_, temporary_, width, height, frames_a_second, layout));
+  start(arguments_for(target_, temporary_.path(), width, height, frames_a_second, layout));
 }
 
 void Video::start(const std::vector<std::string>& arguments) {
@@ -134,7 +133,7 @@ Video::~Video() {
     waitpid(ffmpeg_, nullptr, 0);
   }
   std::error_code ignored;
-  fs::remove(temporary_, ignored);
+  fs::remove(temporary_.path(), ignored);
 }
 
 void Video::fail_with_what_it_said() {
@@ -169,9 +168,9 @@ void Video::finish() {
   const pid_t ended = waitpid(ffmpeg_, &status, 0);
   ffmpeg_ = -1;
   if (ended < 0 || !WIFEXITED(status) || WEXITSTATUS(status) != 0) fail_with_what_it_said();
-  if (vr180_layout_) mark_half_sphere(temporary_, *vr180_layout_);
+  if (vr180_layout_) mark_half_sphere(temporary_.path(), *vr180_layout_);
   std::error_code error;
-  fs::rename(temporary_, target_, error);
+  fs::rename(temporary_.path(), target_, error);
   if (error) fail("cannot write {}: {}", target_.string(), error.message());
 }
 

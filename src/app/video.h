@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "app/command.h"
 #include "base/image.h"
+#include "base/output_file.h"
 #include "shared/axes.h"
 
 namespace binosplat::app {
@@ -45,9 +45,9 @@ class Video {
   void start(const std::vector<std::string>& arguments);
   [[noreturn]] void fail_with_what_it_said();
 
-  std::filesystem::path target_, temporary_;
+  std::filesystem::path target_;
+  UnfinishedFile temporary_;
   std::optional<int> vr180_layout_;
-  Unfinished unfinished_;
   std::unique_ptr<std::FILE, int (*)(std::FILE*)> said_;  // ffmpeg's standard error
   int pictures_ = -1;                                     // socket to its standard input
   pid_t ffmpeg_ = -1;

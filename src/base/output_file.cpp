@@ -5,7 +5,9 @@
 
 #include <cerrno>
 #include <cstring>
+#include <mutex>
 #include <random>
+#include <set>
 #include <system_error>
 #include <utility>
 
@@ -30,7 +32,34 @@ bool is_on_disk(const fs::path& path) {
   return good;
 }
 
+/// The unfinished files of all threads. Nobody destroys it: a thread may hold the lock when the process ends.
+struct Unfinished {
+  std::mutex mutex;
+  std::multiset<fs::path> paths;
+};
+
+Unfinished& unfinished() {
+  static auto* const all = new Unfinished;
+  return *all;
+}
+
 }  // namespace
+
+UnfinishedFile::UnfinishedFile(fs::path path) : path_(std::move(path)) {
+  const std::lock_guard lock(unfinished().mutex);
+  unfinished().paths.insert(path_);
+}
+
+UnfinishedFile::~UnfinishedFile() {
+  const std::lock_guard lock(unfinished().mutex);
+  unfinished().paths.extract(path_);
+}
+
+void remove_unfinished_files() {
+  unfinished().mutex.lock();
+  std::error_code ignored;
+  for (const fs::path& path : unfinished().paths) fs::remove(path, ignored);
+}
 
 OutputFile::OutputFile(const fs::path& path) : target_(path) {
   std::error_code ignored;
@@ -57,17 +86,16 @@ OutputFile::OutputFile(const fs::path& path) : target_(path) {
          error.message());
   }
 
-  temporary_ = target_;
   // Processes of one number may share a disk, in containers or on several machines.
-  temporary_ += fmt::format(".part-{}-{:08x}", getpid(), std::random_device()());
-  file_ = std::fopen(temporary_.c_str(), "wb");
+  temporary_.emplace(target_.string() + fmt::format(".part-{}-{:08x}", getpid(), std::random_device()()));
+  file_ = std::fopen(temporary_->path().c_str(), "wb");
   if (file_ == nullptr) fail_to_write();
 }
 
 OutputFile::~OutputFile() {
   if (file_ != nullptr) std::fclose(file_);
   std::error_code ignored;
-  if (!committed_) fs::remove(temporary_, ignored);
+  if (temporary_) fs::remove(temporary_->path(), ignored);
 }
 
 void OutputFile::write(std::span<const std::byte> bytes) {
@@ -82,17 +110,25 @@ void OutputFile::flush() {
 
 void OutputFile::commit() {
   finish();
-  if (std::rename(temporary_.c_str(), target_.c_str()) != 0) fail_to_write();
-  committed_ = true;
+  {
+    const std::lock_guard lock(unfinished().mutex);
+    if (std::rename(temporary_->path().c_str(), target_.c_str()) != 0) fail_to_write();
+  }
+  temporary_.reset();
   sync_folders();
 }
 
 bool OutputFile::commit_as_first() {
   finish();
-  bool first = link(temporary_.c_str(), target_.c_str()) == 0;
-  // Some disks have no links.
-  if (!first && errno != EEXIST)
-    first = renameat2(AT_FDCWD, temporary_.c_str(), AT_FDCWD, target_.c_str(), RENAME_NOREPLACE) == 0;
+  const char* const from = temporary_->path().c_str();
+  bool first = false;
+  {
+    const std::lock_guard lock(unfinished().mutex);
+    first = link(from, target_.c_str()) == 0;
+    // Some disks have no links.
+    if (!first && errno != EEXIST)
+      first = renameat2(AT_FDCWD, from, AT_FDCWD, target_.c_str(), RENAME_NOREPLACE) == 0;
+  }
   if (!first && errno != EEXIST) fail_to_write();
   if (first) sync_folders();
   return first;  // the temporary name goes with this
@@ -102,7 +138,7 @@ void OutputFile::finish() {
   // What is buffered may find the disk full only now.
   if (std::fclose(std::exchange(file_, nullptr)) != 0) fail_to_write();
   // A system may write the new name to the disk before the bytes, and then lose its power.
-  if (!is_on_disk(temporary_)) fail_to_write();
+  if (!is_on_disk(temporary_->path())) fail_to_write();
 }
 
 void OutputFile::sync_folders() const {
@@ -112,9 +148,15 @@ void OutputFile::sync_folders() const {
 void OutputFile::fail_to_write() const {
   const int reason = errno;
   std::error_code ignored;
-  fs::remove(temporary_, ignored);
+  fs::remove(temporary_->path(), ignored);
   throw Error(reason == ENOMEM ? ExitCode::out_of_memory : ExitCode::bad_input,
               fmt::format("cannot write {}: {}", target_.string(), std::strerror(reason)));
+}
+
+void write_file(const fs::path& path, std::string_view contents) {
+  OutputFile file(path);
+  file.write(contents);
+  file.commit();
 }
 
 }  // namespace binosplat

@@ -5,11 +5,31 @@
 #include <cstddef>
 #include <cstdio>
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string_view>
 #include <vector>
 
 namespace binosplat {
+
+/// A file that is being written under a temporary name, for as long as this lives.
+class UnfinishedFile {
+ public:
+  explicit UnfinishedFile(std::filesystem::path path);
+  /// Leaves the file: who made it removes it.
+  ~UnfinishedFile();
+  UnfinishedFile(const UnfinishedFile&) = delete;
+  UnfinishedFile& operator=(const UnfinishedFile&) = delete;
+
+  const std::filesystem::path& path() const { return path_; }
+
+ private:
+  std::filesystem::path path_;
+};
+
+/// Removes all unfinished files of the process, which is to end now: threads that are about to begin another
+/// one, or to give one its name, wait for that end.
+void remove_unfinished_files();
 
 class OutputFile {
  public:
@@ -26,7 +46,7 @@ class OutputFile {
 
   /// The temporary file, for libraries that write by name; what write() is given may not be in it
   /// before commit().
-  const std::filesystem::path& path() const { return temporary_; }
+  const std::filesystem::path& path() const { return temporary_->path(); }
 
   /// Appends. Throws Error, for one when the disk is full.
   void write(std::span<const std::byte> bytes);
@@ -51,9 +71,11 @@ class OutputFile {
 
   std::filesystem::path target_;
   std::vector<std::filesystem::path> folders_;  // the file's, and those above it that were made for it
-  std::filesystem::path temporary_;
+  std::optional<UnfinishedFile> temporary_;     // until it has its name
   std::FILE* file_ = nullptr;
-  bool committed_ = false;
 };
+
+/// Writes a file whose contents are there as a whole. Throws as OutputFile does.
+void write_file(const std::filesystem::path& path, std::string_view contents);
 
 }  // namespace binosplat

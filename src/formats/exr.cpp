@@ -51,7 +51,7 @@ class MemoryStream : public Imf::OStream {
   }
   std::uint64_t tellp() override { return at_; }
   void seekp(std::uint64_t at) override { at_ = at; }
-  const std::string& data() const { return data_; }
+  std::string take() { return std::move(data_); }
 
  private:
   std::string data_;
@@ -97,7 +97,7 @@ void write_planes(Imf::OStream& stream, int width, int height, std::vector<Plane
                   const Imf::StringVector& views, const ExrOptions& options) {
   Imf::Header header(width, height);
   if (!views.empty()) Imf::addMultiView(header, views);
-  header.compression() = Imf::ZIP_COMPRESSION;
+  header.compression() = options.compressed ? Imf::ZIP_COMPRESSION : Imf::NO_COMPRESSION;
   for (const auto& [key, value] : options.notes) header.insert(key, Imf::StringAttribute(value));
   header.insert(encoding_name, Imf::StringAttribute(options.display ? "display" : "linear"));
   Imf::FrameBuffer frame;
@@ -243,9 +243,8 @@ double linear_to_srgb(double v) {
 namespace {
 
 /// Of one picture, or of a default view and those that are named.
-void save(const std::filesystem::path& path, const std::vector<const Picture*>& pictures,
-          const Imf::StringVector& views, const ExrOptions& options) {
-  OutputFile file(path);
+std::string bytes_of(const std::filesystem::path& path, const std::vector<const Picture*>& pictures,
+                     const Imf::StringVector& views, const ExrOptions& options) {
   MemoryStream stream(path.c_str());
   use_all_cores();
   try {
@@ -262,23 +261,31 @@ void save(const std::filesystem::path& path, const std::vector<const Picture*>& 
   } catch (const std::exception& error) {
     fail("cannot write {}: {}", path.string(), error.what());
   }
-  file.write(stream.data());
-  file.commit();
+  return stream.take();
 }
 
 }  // namespace
 
-void save_exr(const std::filesystem::path& path, const Picture& picture, const ExrOptions& options) {
-  save(path, {&picture}, {}, options);
+std::string exr_bytes(const std::filesystem::path& path, const Picture& picture, const ExrOptions& options) {
+  return bytes_of(path, {&picture}, {}, options);
 }
 
-void save_exr(const std::filesystem::path& path, const Picture& left, const Picture& right,
-              const ExrOptions& options) {
+std::string exr_bytes(const std::filesystem::path& path, const Picture& left, const Picture& right,
+                      const ExrOptions& options) {
   if (left.width != right.width || left.height != right.height) {
     fail("cannot write {}: the views of one OpenEXR file have one size, not {} x {} and {} x {} px",
          path.string(), left.width, left.height, right.width, right.height);
   }
-  save(path, {&left, &right}, {"left", "right"}, options);
+  return bytes_of(path, {&left, &right}, {"left", "right"}, options);
+}
+
+void save_exr(const std::filesystem::path& path, const Picture& picture, const ExrOptions& options) {
+  write_file(path, exr_bytes(path, picture, options));
+}
+
+void save_exr(const std::filesystem::path& path, const Picture& left, const Picture& right,
+              const ExrOptions& options) {
+  write_file(path, exr_bytes(path, left, right, options));
 }
 
 Image load_exr(const std::filesystem::path& path, std::span<const std::byte> bytes,

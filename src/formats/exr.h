@@ -30,10 +30,11 @@ double srgb_to_linear(double v);
 double linear_to_srgb(double v);
 
 struct ExrOptions {
-  bool half = true;       // all channels but Z as 16-bit floats
-  bool display = false;   // leave the EOTF out
-  Background background;  // none: associated alpha
-  Notes notes;            // string attributes of the header
+  bool half = true;        // all channels but Z as 16-bit floats
+  bool display = false;    // leave the EOTF out
+  Background background;   // none: associated alpha
+  Notes notes;             // string attributes of the header
+  bool compressed = true;  // by ZIP, without loss
 };
 
 /// Writes a picture. Throws Error naming the file.
@@ -43,5 +44,10 @@ void save_exr(const std::filesystem::path& path, const Picture& picture, const E
 /// differ in size: views share a window.
 void save_exr(const std::filesystem::path& path, const Picture& left, const Picture& right,
               const ExrOptions& options);
+
+/// The bytes of such files; the path is for errors.
+std::string exr_bytes(const std::filesystem::path& path, const Picture& picture, const ExrOptions& options);
+std::string exr_bytes(const std::filesystem::path& path, const Picture& left, const Picture& right,
+                      const ExrOptions& options);
 
 }  // namespace binosplat

@@ -33,11 +33,17 @@ Image load_image(const std::filesystem::path& path, const PictureLimit& limit = 
 /// header and end show: a photo takes milliseconds.
 glm::ivec2 picture_size(const std::filesystem::path& path);
 
-/// Writes round(255 clamp(v)), or 65535 for 16 `bits`, of 1, 3 or 4 channels. No gamma is applied: the values
+struct PngOptions {
+  int bits = 8;   // a channel, or 16
+  int level = 1;  // of libdeflate, 0 (fast) to 12 (small)
+  Notes notes;
+};
+
+/// Writes round(255 clamp(v)), or 65535 for 16 bits, of 1, 3 or 4 channels. No gamma is applied: the values
 /// are sRGB as they are, and the file says so.
-void save_png(const std::filesystem::path& path, const Image& image, int bits = 8, const Notes& notes = {});
+void save_png(const std::filesystem::path& path, const Image& image, const PngOptions& options = {});
 
 /// The bytes of such a file.
-std::string png_bytes(const Image& image, int bits = 8, const Notes& notes = {});
+std::string png_bytes(const Image& image, const PngOptions& options = {});
 
 }  // namespace binosplat

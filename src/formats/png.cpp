@@ -3,7 +3,6 @@
 #include <png.h>
 #include <zlib.h>
 
-#include <algorithm>
 #include <bit>
 #include <csetjmp>
 #include <cstring>
@@ -11,7 +10,6 @@
 #include <vector>
 
 #include "base/error.h"
-#include "base/output_file.h"
 #include "formats/image_file.h"
 #include "formats/picture_readers.h"
 
@@ -32,20 +30,8 @@ struct PngReader {
   ~PngReader() { png_destroy_read_struct(&png, &info, nullptr); }
 };
 
-struct PngWriter {
-  std::string encoded;
-  std::string error;
-  png_structp png = nullptr;
-  png_infop info = nullptr;
-  std::vector<png_byte> row;
-  std::vector<png_text> texts;
-
-  ~PngWriter() { png_destroy_write_struct(&png, &info); }
-};
-
-template <typename Owner>
 [[noreturn]] void on_error(png_structp png, png_const_charp text) {
-  static_cast<Owner*>(png_get_error_ptr(png))->error = text;
+  static_cast<PngReader*>(png_get_error_ptr(png))->error = text;
   png_longjmp(png, 1);
 }
 
@@ -56,10 +42,6 @@ void read_bytes(png_structp png, png_bytep out, std::size_t size) {
   if (size > reader.bytes.size() - reader.at) png_error(png, "the file is cut short");
   std::memcpy(out, reader.bytes.data() + reader.at, size);
   reader.at += size;
-}
-
-void write_bytes(png_structp png, png_bytep data, std::size_t size) {
-  static_cast<PngWriter*>(png_get_io_ptr(png))->encoded.append(reinterpret_cast<const char*>(data), size);
 }
 
 bool read_png_header(PngReader& reader) {
@@ -89,52 +71,9 @@ bool read_rows(PngReader& reader) {
   return true;
 }
 
-/// The image's row `y` as PNG stores it: big-endian. NaN becomes 0.
-void encode_row(const Image& image, int y, int bits, std::vector<png_byte>& row) {
-  const std::size_t count = static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.channels);
-  const float* values = &image.data[static_cast<std::size_t>(y) * count];
-  for (std::size_t i = 0; i < count; ++i) {
-    if (bits == 8) {
-      row[i] = static_cast<png_byte>(step_of(values[i], 255.0f));
-    } else {
-      const auto step = static_cast<std::uint16_t>(step_of(values[i], 65535.0f));
-      row[2 * i] = static_cast<png_byte>(step >> 8);
-      row[2 * i + 1] = static_cast<png_byte>(step & 255);
-    }
-  }
-}
-
-bool write_image(PngWriter& writer, const Image& image, int bits) {
-  if (setjmp(png_jmpbuf(writer.png)) != 0) return false;
-  const int colour = image.channels == 1   ? PNG_COLOR_TYPE_GRAY
-                     : image.channels == 3 ? PNG_COLOR_TYPE_RGB
-                                           : PNG_COLOR_TYPE_RGB_ALPHA;
-  png_set_write_fn(writer.png, &writer, write_bytes, nullptr);
-  png_set_user_limits(writer.png, PNG_UINT_31_MAX, PNG_UINT_31_MAX);
-  png_set_IHDR(writer.png, writer.info, static_cast<png_uint_32>(image.width),
-               static_cast<png_uint_32>(image.height), bits, colour, PNG_INTERLACE_NONE,
-               PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
-  png_set_sRGB(writer.png, writer.info, PNG_sRGB_INTENT_PERCEPTUAL);
-  // Once filtered, drawn pictures hold runs and little else that repeats: looking for nothing else is five
-  // times as fast, and makes files 2 to 6 % larger.
-  png_set_compression_strategy(writer.png, Z_RLE);
-  png_set_text(writer.png, writer.info, writer.texts.data(), static_cast<int>(writer.texts.size()));
-  png_write_info(writer.png, writer.info);
-  for (int y = 0; y < image.height; ++y) {
-    encode_row(image, y, bits, writer.row);
-    png_write_row(writer.png, writer.row.data());
-  }
-  png_write_end(writer.png, nullptr);
-  return true;
-}
-
-}  // namespace
-
-namespace {
-
 /// Reads all up to the pixels, and returns the picture's size.
 glm::ivec2 begin(PngReader& reader) {
-  reader.png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &reader, on_error<PngReader>, on_warning);
+  reader.png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &reader, on_error, on_warning);
   if (reader.png == nullptr || (reader.info = png_create_info_struct(reader.png)) == nullptr)
     throw std::bad_alloc();
   if (!read_png_header(reader)) fail("{}: broken PNG: {}", reader.path.string(), reader.error);
@@ -199,35 +138,6 @@ Image load_png(const std::filesystem::path& path, std::span<const std::byte> byt
     }
   }
   return image;
-}
-
-std::string png_bytes(const Image& image, int bits, const Notes& notes) {
-  if (bits != 8 && bits != 16) fail("a PNG has 8 or 16 bits, not {}", bits);
-  PngWriter writer;
-  writer.png = png_create_write_struct(PNG_LIBPNG_VER_STRING, &writer, on_error<PngWriter>, on_warning);
-  if (writer.png == nullptr || (writer.info = png_create_info_struct(writer.png)) == nullptr)
-    throw std::bad_alloc();
-  writer.row.resize(static_cast<std::size_t>(image.width) *
-                    static_cast<std::size_t>(image.channels * bits / 8));
-  for (const auto& [key, value] : notes) {
-    png_text text{};
-    text.compression = PNG_ITXT_COMPRESSION_NONE;
-    text.key = const_cast<char*>(key.c_str());
-    text.text = const_cast<char*>(value.c_str());
-    writer.texts.push_back(text);
-  }
-  if (!write_image(writer, image, bits)) fail("cannot write a PNG: {}", writer.error);
-  return std::move(writer.encoded);
-}
-
-void save_png(const std::filesystem::path& path, const Image& image, int bits, const Notes& notes) {
-  OutputFile file(path);
-  try {
-    file.write(png_bytes(image, bits, notes));
-  } catch (const Error& error) {
-    fail("{}: {}", path.string(), error.what());
-  }
-  file.commit();
 }
 
 }  // namespace binosplat

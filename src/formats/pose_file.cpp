@@ -50,9 +50,7 @@ void save_pose(const std::filesystem::path& path, const SavedPose& pose) {
   saved["units_per_metre"] = pose.units_per_metre;
   saved["ipd_metres"] = pose.ipd;
   saved["near"] = pose.near_plane;
-  OutputFile file(path);
-  file.write(nlohmann::ordered_json::array({saved}).dump(2) + "\n");
-  file.commit();
+  write_file(path, nlohmann::ordered_json::array({saved}).dump(2) + "\n");
 }
 
 }  // namespace binosplat

@@ -12,7 +12,6 @@
 #include <vector>
 
 #include "base/error.h"
-#include "base/output_file.h"
 #include "base/text.h"
 
 namespace binosplat {
@@ -82,7 +81,7 @@ std::string extension_segments(const std::string& whole, const std::string& name
 
 }  // namespace
 
-void save_vr_photo(const std::filesystem::path& path, const Image& left, const Image& right) {
+std::string vr_photo_bytes(const std::filesystem::path& path, const Image& left, const Image& right) {
   const std::string first = jpeg_of(path, left);
   const std::string rest =
       described("xmlns:GImage=\"http://ns.google.com/photos/1.0/image/\" GImage:Data=\"" +
@@ -93,10 +92,8 @@ void save_vr_photo(const std::filesystem::path& path, const Image& left, const I
   // After the marks of a JPEG and of JFIF, as cameras have it.
   const std::size_t jfif_end =
       4U + (static_cast<unsigned char>(first[4]) << 8) + static_cast<unsigned char>(first[5]);
-  OutputFile file(path);
-  file.write(first.substr(0, jfif_end) + packet(left.width, name) + extension_segments(rest, name) +
-             first.substr(jfif_end));
-  file.commit();
+  return first.substr(0, jfif_end) + packet(left.width, name) + extension_segments(rest, name) +
+         first.substr(jfif_end);
 }
 
 }  // namespace binosplat

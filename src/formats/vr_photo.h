@@ -5,13 +5,14 @@
 // show the left eye.
 
 #include <filesystem>
+#include <string>
 
 #include "base/image.h"
 
 namespace binosplat {
 
-/// Writes two equirectangular pictures, of one size, of 180 degrees across and down, RGB. Throws Error naming
-/// the file.
-void save_vr_photo(const std::filesystem::path& path, const Image& left, const Image& right);
+/// The bytes of two equirectangular pictures, of one size, of 180 degrees across and down, RGB. Throws Error
+/// naming the file.
+std::string vr_photo_bytes(const std::filesystem::path& path, const Image& left, const Image& right);
 
 }  // namespace binosplat

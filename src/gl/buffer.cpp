@@ -80,13 +80,17 @@ void Buffer::check_reach(std::int64_t bytes) const {
 
 void Buffer::allocate(std::int64_t bytes) {
   const Functions& gl = context_.gl();
-  const bool is_written = use_ == Use::written;
-  constexpr GLbitfield writes = GL_MAP_WRITE_BIT | GL_MAP_PERSISTENT_BIT | GL_MAP_COHERENT_BIT;
+  constexpr GLbitfield maps = GL_MAP_PERSISTENT_BIT | GL_MAP_COHERENT_BIT;
+  const bool is_mapped = use_ != Use::on_gpu;
+  const GLbitfield access = maps | (use_ == Use::read ? GL_MAP_READ_BIT : GL_MAP_WRITE_BIT);
   gl.CreateBuffers(1, &id_);
-  gl.NamedBufferStorage(id_, bytes, nullptr, is_written ? writes : GL_DYNAMIC_STORAGE_BIT);
+  gl.NamedBufferStorage(id_, bytes, nullptr,
+                        !is_mapped          ? GL_DYNAMIC_STORAGE_BIT
+                        : use_ == Use::read ? access | GL_CLIENT_STORAGE_BIT
+                                            : access);
   const GLenum error = gl.GetError();
-  if (error == GL_NO_ERROR && is_written) mapped_ = gl.MapNamedBufferRange(id_, 0, bytes, writes);
-  if (error != GL_NO_ERROR || (is_written && mapped_ == nullptr)) {
+  if (error == GL_NO_ERROR && is_mapped) mapped_ = gl.MapNamedBufferRange(id_, 0, bytes, access);
+  if (error != GL_NO_ERROR || (is_mapped && mapped_ == nullptr)) {
     gl.DeleteBuffers(1, &id_);
     id_ = 0;
     throw Error(

@@ -14,8 +14,9 @@ namespace binosplat::gl {
 /// contents are undefined until written.
 class Buffer {
  public:
-  /// Where `written` it is one that the CPU writes to (room()), over and over.
-  enum class Use { on_gpu, written };
+  /// Where it is `written` or `read`, it lies where the CPU writes to it (room()) or reads it (mapped()),
+  /// over and over.
+  enum class Use { on_gpu, written, read };
   Buffer(Context& context, std::string label, Use use = Use::on_gpu);
   ~Buffer();
   Buffer(const Buffer&) = delete;
@@ -44,6 +45,12 @@ class Buffer {
   std::span<T> room(std::size_t count) {
     reserve(static_cast<std::int64_t>(count * sizeof(T)));
     return {static_cast<T*>(mapped_), count};
+  }
+
+  /// What was copied into it (copy()). The GPU must have done that (gl/fence.h); any thread may read it.
+  template <typename T>
+  std::span<const T> mapped(std::size_t count, std::size_t first = 0) const {
+    return std::span(static_cast<const T*>(mapped_) + first, count);
   }
 
   /// Elements from element `first` on, within what is reserved; the others stay.

@@ -5,7 +5,6 @@
 #include <stdexcept>
 
 #include "base/error.h"
-#include "gl/fence.h"
 
 namespace binosplat::gl {
 
@@ -33,6 +32,7 @@ void Dispatcher::begin_stage(const char* name) {
 void Dispatcher::end_frame() {
   if (!marks_.empty()) context_.gl().PopDebugGroup();
   mark("");
+  frame_end_.set();
 }
 
 void Dispatcher::bind(const Program& program, std::initializer_list<Binding> bindings,
@@ -92,10 +92,7 @@ void Dispatcher::start(const Program& program, const DispatchSize& work,
 
 std::vector<StageTime> Dispatcher::wait_and_time() {
   const Functions& gl = context_.gl();
-  Fence fence(context_);
-  fence.set();
-  fence.wait();
-
+  frame_end_.wait();
   std::vector<std::uint64_t> at(marks_.size());
   for (std::size_t i = 0; i < marks_.size(); ++i) {
     gl.GetQueryObjectui64v(marks_[i].query, GL_QUERY_RESULT, &at[i]);

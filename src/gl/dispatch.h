@@ -10,6 +10,7 @@
 
 #include "gl/buffer.h"
 #include "gl/context.h"
+#include "gl/fence.h"
 
 namespace binosplat::gl {
 
@@ -48,7 +49,7 @@ struct StageTime {
 
 class Dispatcher {
  public:
-  explicit Dispatcher(Context& context) : context_(context) {}
+  explicit Dispatcher(Context& context) : context_(context), frame_end_(context) {}
   ~Dispatcher();
   Dispatcher(const Dispatcher&) = delete;
   Dispatcher& operator=(const Dispatcher&) = delete;
@@ -60,6 +61,8 @@ class Dispatcher {
   /// What is dispatched from here on belongs to the stage `name`; a name may come again and is summed up.
   void begin_stage(const char* name);
   void end_frame();
+  /// Whether the GPU has done all of the frame.
+  bool is_done() { return frame_end_.is_done(); }
 
   /// Runs a program, with a barrier after it so that whatever comes next sees what it wrote.
   /// Throws std::logic_error if a block or uniform of the program is not given.
@@ -93,6 +96,7 @@ class Dispatcher {
   Context& context_;
   std::vector<std::uint32_t> queries_;
   std::vector<Mark> marks_;
+  Fence frame_end_;
 };
 
 }  // namespace binosplat::gl

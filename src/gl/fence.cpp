@@ -26,4 +26,9 @@ void Fence::wait() {
   if (state == GL_WAIT_FAILED) throw std::runtime_error("the GPU was lost while drawing a frame");
 }
 
+bool Fence::is_done() {
+  if (sync_ == nullptr) return true;
+  return context_.gl().ClientWaitSync(sync_, GL_SYNC_FLUSH_COMMANDS_BIT, 0) != GL_TIMEOUT_EXPIRED;
+}
+
 }  // namespace binosplat::gl

@@ -17,6 +17,8 @@ class Fence {
   void set();
   /// Waits until the GPU has done what was marked, if anything was. Throws std::runtime_error if it is lost.
   void wait();
+  /// Whether it would not have to wait.
+  bool is_done();
 
  private:
   void remove();

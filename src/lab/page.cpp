@@ -132,9 +132,7 @@ std::string html(const Page& page, const ordered_json& data) {
 }
 
 void save_page(const std::filesystem::path& path, const Page& page, const ordered_json& data) {
-  OutputFile file(path);
-  file.write(html(page, data));
-  file.commit();
+  write_file(path, html(page, data));
 }
 
 }  // namespace binosplat::lab

@@ -89,9 +89,7 @@ void KeyList::set(std::vector<Camera> keys) {
     std::error_code gone;
     if (!changed_by_others) fs::remove(to, gone);
   } else {
-    OutputFile file(to);
-    file.write(text);
-    file.commit();
+    write_file(to, text);
   }
   file_ = to;
   written_ = text;

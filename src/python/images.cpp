@@ -115,7 +115,7 @@ void add_images(py::module_& module) {
         if (bits != 8 && bits != 16) fail("bits {}: expected 8 or 16", bits);
         const Image image = image_of(picture, "picture");
         const Unlocked unlocked;
-        save_png(path, image, bits);
+        save_png(path, image, {.bits = bits});
       },
       py::arg("path"), py::arg("picture"), py::arg("bits") = 8,
       "Writes a picture of 1, 3 or 4 channels, of 8 or 16 bits; the file is there whole or not at all.\n"

@@ -7,88 +7,15 @@
 #include <vector>
 
 #include "base/error.h"
-#include "python/gl_thread.h"
 #include "python/module.h"
+#include "python/renderer.h"
 #include "python/rig.h"
 #include "python/unlocked.h"
-#include "render/frame.h"
 #include "scene/axes.h"
 
 namespace binosplat::python {
 
 namespace {
-
-/// What draw() leaves of a view.
-struct ViewImages {
-  Image colour, transmittance, depth;
-};
-
-struct Drawn {
-  std::vector<ViewImages> views;
-  render::FrameReport report;
-};
-
-ViewImages images_of(const Picture& picture, const glm::vec3& background) {
-  ViewImages images = {composite(picture, background), Image(picture.width, picture.height, 1),
-                       depth_map(picture)};
-  for (std::size_t k = 0; k < picture.colour.size(); ++k) images.transmittance.data[k] = picture.colour[k].a;
-  return images;
-}
-
-class Renderer {
- public:
-  Renderer(std::shared_ptr<Model> model, gl::Backend backend, int device, int precision)
-      : model_(std::move(model)), precision_(precision), thread_(std::make_unique<GlThread>()) {
-    thread_->run([&] { on_gpu_ = std::make_unique<OnGpu>(backend, device, *model_, precision_); });
-    const gl::Context& context = *on_gpu_->context;
-    device_ = fmt::format("{} ({}, OpenGL {})", context.renderer(), context.backend(), context.version());
-  }
-  ~Renderer() {
-    if (GlThread::in_its_process()) {
-      close();
-    } else {  // neither has survived the fork
-      static_cast<void>(thread_.release());
-      static_cast<void>(on_gpu_.release());
-    }
-  }
-  Renderer(const Renderer&) = delete;
-  Renderer& operator=(const Renderer&) = delete;
-
-  void close() {
-    thread_->run([this] { on_gpu_.reset(); });
-  }
-
-  Drawn draw(const std::vector<shared::View>& views, render::FrameSettings settings, bool follow) {
-    settings.precision = precision_;
-    return thread_->run([&] {
-      if (!on_gpu_) fail("this Renderer is closed");
-      render::Frame& frame = on_gpu_->frame;
-      if (!follow) frame.start_over();
-      Drawn drawn;
-      drawn.report = frame.draw(views, settings);
-      for (const Picture& picture : frame.read_pictures())
-        drawn.views.push_back(images_of(picture, settings.background));
-      return drawn;
-    });
-  }
-
-  const Model& model() const { return *model_; }
-  const std::string& device() const { return device_; }
-
- private:
-  struct OnGpu {
-    OnGpu(gl::Backend backend, int number, const Model& model, int precision)
-        : context(gl::Context::open(backend, number)), frame(*context, model, precision) {}
-    std::unique_ptr<gl::Context> context;
-    render::Frame frame;
-  };
-
-  std::shared_ptr<const Model> model_;
-  int precision_;
-  std::string device_;
-  std::unique_ptr<GlThread> thread_;
-  std::unique_ptr<OnGpu> on_gpu_;  // made, used and destroyed on the thread
-};
 
 std::shared_ptr<Renderer> open(std::shared_ptr<Model> model, const std::string& backend,
                                const std::optional<int>& device, const std::string& precision) {
@@ -143,13 +70,13 @@ struct DrawnPicture {
   py::dict report;
 };
 
-// A Renderer that is held here outlives what Python does to its own while it ends.
-py::object draw(const std::shared_ptr<Renderer>& renderer, const std::variant<Camera, Rig>& view,
-                const std::optional<float>& quality, const std::optional<float>& tolerance,
-                const std::optional<std::string>& th, const std::string& transmittance,
-                const std::optional<std::string>& order, const std::optional<std::string>& projection,
-                const std::string& tiles, const std::string& decode, const std::array<float, 3>& background,
-                double near_plane, const std::string& depth, bool follow) {
+/// Of draw()'s keywords.
+Settings settings_of(const Renderer& renderer, const std::optional<float>& quality,
+                     const std::optional<float>& tolerance, const std::optional<std::string>& th,
+                     const std::string& transmittance, const std::optional<std::string>& order,
+                     const std::optional<std::string>& projection, const std::string& tiles,
+                     const std::string& decode, const std::array<float, 3>& background, double near_plane,
+                     const std::string& depth, bool follow) {
   if (!(near_plane > 0.0 && std::isfinite(near_plane)))
     fail("near {}: expected world units above zero", near_plane);
   if (quality && !(*quality >= render::quality_least && *quality <= render::quality_most))
@@ -166,15 +93,15 @@ py::object draw(const std::shared_ptr<Renderer>& renderer, const std::variant<Ca
   settings.tiles = find_choice("tiles", tiles, tiles_choices);
   settings.decode = find_choice("decode", decode, decode_choices);
   settings.background = {background[0], background[1], background[2]};
-  check(settings, given, renderer->model().scaffold != nullptr);
+  settings.precision = renderer.precision();
+  check(settings, given, renderer.model().scaffold != nullptr);
   static constexpr Choice depths[] = {{"mean", ""}, {"median", ""}};
   settings.depth = find_choice("depth", depth, depths) == 0 ? Depth::mean : Depth::median;
-  const auto views = views_of(view, renderer->model().axes, near_plane);
-  Drawn drawn;
-  {
-    const Unlocked unlocked;
-    drawn = renderer->draw(views, settings, follow);
-  }
+  return {settings, near_plane, follow};
+}
+
+/// A view's picture, or those of both eyes.
+py::object pictures_of(Drawn drawn) {
   const py::dict report = dict_of(drawn.report);
   py::list pictures;
   for (ViewImages& images : drawn.views) {
@@ -182,8 +109,73 @@ py::object draw(const std::shared_ptr<Renderer>& renderer, const std::variant<Ca
                                  array_of(std::move(images.transmittance)), array_of(std::move(images.depth)),
                                  report});
   }
-  return views.size() == 1 ? py::object(pictures[0]) : py::object(py::tuple(pictures));
+  return pictures.size() == 1 ? py::object(pictures[0]) : py::object(py::tuple(pictures));
 }
+
+using SeenBy = std::variant<Camera, Rig>;
+
+// A Renderer that is held here outlives what Python does to its own while it ends.
+py::object draw(const std::shared_ptr<Renderer>& renderer, const SeenBy& view, const Settings& settings) {
+  const Views views = views_of(view, renderer->model().axes, settings.near_plane);
+  Drawn drawn;
+  {
+    const Unlocked unlocked;
+    drawn = renderer->draw(views, settings);
+  }
+  return pictures_of(std::move(drawn));
+}
+
+/// Python's iterator of draw_all().
+class PathPictures {
+ public:
+  PathPictures(std::shared_ptr<Renderer> renderer, const py::iterable& views, const Settings& settings)
+      : renderer_(std::move(renderer)), views_(py::iter(views)), settings_(settings) {}
+  ~PathPictures() { end(); }
+  PathPictures(const PathPictures&) = delete;
+  PathPictures& operator=(const PathPictures&) = delete;
+
+  py::object next() {
+    if (const std::optional<Views> first = has_begun_ ? std::nullopt : next_views()) {
+      const Unlocked unlocked;
+      path_ = renderer_->begin(*first, settings_);
+      is_under_way_ = true;
+    }
+    has_begun_ = true;
+    if (!std::exchange(is_under_way_, false)) {
+      end();
+      throw py::stop_iteration();
+    }
+    const std::optional<Views> following = next_views();
+    Drawn drawn;
+    {
+      const Unlocked unlocked;
+      drawn = renderer_->next(path_, following, settings_);
+    }
+    is_under_way_ = following.has_value();
+    return pictures_of(std::move(drawn));
+  }
+
+ private:
+  std::optional<Views> next_views() {
+    if (views_ == py::iterator::sentinel()) return std::nullopt;
+    if (!py::isinstance<Camera>(*views_) && !py::isinstance<Rig>(*views_))
+      throw py::type_error(
+          fmt::format("expected a Camera or a Rig, not {}", Py_TYPE((*views_).ptr())->tp_name));
+    const auto view = py::cast<SeenBy>(*views_);
+    ++views_;
+    return views_of(view, renderer_->model().axes, settings_.near_plane);
+  }
+
+  void end() {
+    if (GlThread::in_its_process() && !path_.expired()) renderer_->end(path_);
+  }
+
+  std::shared_ptr<Renderer> renderer_;
+  py::iterator views_;
+  Settings settings_;
+  std::weak_ptr<Path> path_;
+  bool has_begun_ = false, is_under_way_ = false;
+};
 
 void close(const std::shared_ptr<Renderer>& renderer) {
   const Unlocked unlocked;
@@ -204,6 +196,37 @@ constexpr const char* draw_help =
     "May be called from any thread; pictures of one Renderer are drawn one after the other.\n"
     "Raises InputError for settings that contradict each other, OutOfMemory.";
 
+constexpr const char* draw_all_help =
+    "Draws Cameras or Rigs one after another, from any iterable, and gives what draw() would return of each\n"
+    "while the GPU draws the next one. The settings are draw()'s, and the same for all; with follow they "
+    "are\n"
+    "the frames of a path. Raises as draw(), at the view concerned.";
+
+using RendererClass = py::class_<Renderer, std::shared_ptr<Renderer>>;
+
+/// Defines a method of these keywords.
+template <typename View, typename Draw>
+void add_drawing(RendererClass& renderer, const char* name, const char* view, const Draw& draw,
+                 const char* help) {
+  renderer.def(
+      name,
+      [draw](const std::shared_ptr<Renderer>& of, const View& seen, const std::optional<float>& quality,
+             const std::optional<float>& tolerance, const std::optional<std::string>& th,
+             const std::string& transmittance, const std::optional<std::string>& order,
+             const std::optional<std::string>& projection, const std::string& tiles,
+             const std::string& decode, const std::array<float, 3>& background, double near_plane,
+             const std::string& depth, bool follow) {
+        return draw(of, seen,
+                    settings_of(*of, quality, tolerance, th, transmittance, order, projection, tiles, decode,
+                                background, near_plane, depth, follow));
+      },
+      py::arg(view), py::kw_only(), py::arg("quality") = py::none(), py::arg("tolerance") = py::none(),
+      py::arg("th") = py::none(), py::arg("transmittance") = "one", py::arg("order") = py::none(),
+      py::arg("projection") = py::none(), py::arg("tiles") = "ellipse", py::arg("decode") = "eyes",
+      py::arg("background") = std::array<float, 3>{}, py::arg("near") = near_default,
+      py::arg("depth") = "mean", py::arg("follow") = false, help);
+}
+
 }  // namespace
 
 void add_renderer(py::module_& module) {
@@ -221,24 +244,30 @@ void add_renderer(py::module_& module) {
           "report", &DrawnPicture::report,
           "Of the frame, a dict: total_ms and stages_ms (GPU times), visible, pairs, tolerance and\n"
           "quality (dB) that it came to, attempts, remembered, gpu_bytes.");
-  py::class_<Renderer, std::shared_ptr<Renderer>>(
+  py::class_<PathPictures>(module, "PathPictures", "What draw_all() returns: an iterator.")
+      .def("__iter__", [](PathPictures& pictures) -> PathPictures& { return pictures; })
+      .def("__next__", &PathPictures::next);
+  RendererClass renderer(
       module, "Renderer",
       "A model on a GPU, or in Mesa's software renderer.\n\n"
       "backend: 'auto' (a GPU, else Mesa), 'device', 'surfaceless' or 'osmesa'. device:\n"
       "number of the EGL device. precision: 'full', or 'half' for half the memory at 60 dB\n"
-      "and more. Raises OpenGLError, OutOfMemory, InputError.")
+      "and more. Raises OpenGLError, OutOfMemory, InputError.");
+  renderer
       .def(py::init(&open), py::arg("model").none(false), py::kw_only(), py::arg("backend") = "auto",
            py::arg("device") = py::none(), py::arg("precision") = "full")
-      .def("draw", &draw, py::arg("view"), py::kw_only(), py::arg("quality") = py::none(),
-           py::arg("tolerance") = py::none(), py::arg("th") = py::none(), py::arg("transmittance") = "one",
-           py::arg("order") = py::none(), py::arg("projection") = py::none(), py::arg("tiles") = "ellipse",
-           py::arg("decode") = "eyes", py::arg("background") = std::array<float, 3>{},
-           py::arg("near") = near_default, py::arg("depth") = "mean", py::arg("follow") = false, draw_help)
       .def_property_readonly("device", &Renderer::device, "What it draws with.")
       .def("close", &close,
            "Gives the GPU's memory back; it is also given back with the last reference, and by `with`.")
-      .def("__enter__", [](Renderer& renderer) -> Renderer& { return renderer; })
-      .def("__exit__", [](const std::shared_ptr<Renderer>& renderer, const py::args&) { close(renderer); });
+      .def("__enter__", [](Renderer& self) -> Renderer& { return self; })
+      .def("__exit__", [](const std::shared_ptr<Renderer>& self, const py::args&) { close(self); });
+  add_drawing<SeenBy>(renderer, "draw", "view", &draw, draw_help);
+  add_drawing<py::iterable>(
+      renderer, "draw_all", "views",
+      [](const std::shared_ptr<Renderer>& of, const py::iterable& views, const Settings& settings) {
+        return std::make_unique<PathPictures>(of, views, settings);
+      },
+      draw_all_help);
 }
 
 }  // namespace binosplat::python

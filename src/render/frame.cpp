@@ -43,29 +43,64 @@ Frame::Frame(std::shared_ptr<GpuModel> model)
     : model_(std::move(model)),
       uploads_(model_->uploads()),
       dispatcher_(model_->context()),
-      buffers_(model_->context()) {}
+      buffers_(model_->context()),
+      counters_read_(model_->context(), "counters for the CPU", gl::Buffer::Use::read) {}
 
-FrameReport Frame::draw(std::span<const shared::View> views, const FrameSettings& settings,
-                        const Workings& workings, std::span<const Canvas> canvases, int depth_rows) {
+void Frame::submit(std::span<const shared::View> views, const FrameSettings& settings,
+                   const Workings& workings, std::span<const Canvas> canvases, int depth_rows) {
   const bool fit = canvases.size() == views.size() && canvases.size() <= MAX_CANVASES;
   if (!fit && !canvases.empty())
     fail("{} canvases for {} views: expected one each, at most {}", canvases.size(), views.size(),
          MAX_CANVASES);
-  PlanRequest request;
-  if (!workings.stand_in) request = {.canvases = canvases, .depth_rows = depth_rows};
-  begin(views, settings, workings, request);
-  if (settings.quality > 0.0f) return draw_with_quality(views, settings, workings, request);
-  return attempt(workings);
+  submitted_ = {.views = {views.begin(), views.end()}, .settings = settings, .workings = workings};
+  if (!workings.stand_in) {
+    submitted_.canvases.assign(canvases.begin(), canvases.end());
+    submitted_.depth_rows = depth_rows;
+  }
+  const PlanRequest request{.canvases = submitted_.canvases, .depth_rows = submitted_.depth_rows};
+  begin(request);
+  if (settings.quality > 0.0f) {
+    if (!history_.goes_on(plan_)) tolerance_control_.forget();
+    if (!tolerance_control_.knows(settings) || !history_.probed_lately(plan_, workings.probe_every))
+      return start_search();
+    PlanRequest with = request;
+    with.tolerance = tolerance_control_.tolerance();
+    begin(with);
+  }
+  start_attempt();
+}
+
+FrameReport Frame::finish() {
+  FrameReport report;
+  if (submitted_.searches) {
+    for (;;) {
+      add(finish_attempt(), report);
+      tolerance_control_.measured(probed(plan_, counters_),
+                                  measuring_.uses_last || !measures(submitted_.settings.transmittance));
+      if (tolerance_control_.holds()) break;
+      start_search();
+    }
+  } else {
+    report = finish_attempt();
+  }
+  if (submitted_.settings.quality > 0.0f && submitted_.last == Stage::probe)
+    report.quality = tolerance_control_.quality();
+  return report;
 }
 
 FrameReport Frame::draw_until(Stage last, std::span<const shared::View> views, const FrameSettings& settings,
                               const Workings& workings, const std::optional<Probe>& probe) {
-  begin(views, settings, workings, {.probe = probe});
-  return attempt(workings, last);
+  submitted_ = {
+      .views = {views.begin(), views.end()}, .settings = settings, .workings = workings, .last = last};
+  begin({.probe = probe});
+  start_attempt();
+  return finish_attempt();
 }
 
-void Frame::begin(std::span<const shared::View> views, const FrameSettings& settings,
-                  const Workings& workings, PlanRequest request) {
+void Frame::begin(PlanRequest request) {
+  const std::vector<shared::View>& views = submitted_.views;
+  const FrameSettings& settings = submitted_.settings;
+  const Workings& workings = submitted_.workings;
   check(workings, settings);
   if (model_buffers_ && model_buffers_->precision != settings.precision) {
     model_buffers_.reset();  // first, since both together may not fit
@@ -85,49 +120,38 @@ void Frame::begin(std::span<const shared::View> views, const FrameSettings& sett
     history_.follow_levels(plan_.gaussian_count);
 }
 
-FrameReport Frame::draw_with_quality(std::span<const shared::View> views, const FrameSettings& settings,
-                                     const Workings& workings, const PlanRequest& request) {
-  FrameReport report;
-  if (!history_.goes_on(plan_)) tolerance_control_.forget();
-  if (tolerance_control_.knows(settings) && history_.probed_lately(plan_, workings.probe_every)) {
-    PlanRequest with = request;
-    with.tolerance = tolerance_control_.tolerance();
-    begin(views, settings, workings, with);
-    report = attempt(workings);
-  } else {
-    do {
-      const Probe probe = tolerance_control_.next_probe(views, settings);
-      begin(views, settings, workings, {.probe = probe, .tolerance = tolerance_control_.next_tolerance()});
-      add(attempt(workings), report);
-      tolerance_control_.measured(probed(plan_, counters_),
-                                  measuring_.uses_last || !measures(settings.transmittance));
-    } while (!tolerance_control_.holds());
-  }
-  report.quality = tolerance_control_.quality();
-  return report;
+// An attempt whose probe tells the tolerance of the next one, or that this one is the frame.
+void Frame::start_search() {
+  submitted_.searches = true;
+  const Probe probe = tolerance_control_.next_probe(submitted_.views, submitted_.settings);
+  begin({.probe = probe, .tolerance = tolerance_control_.next_tolerance()});
+  start_attempt();
 }
 
-FrameReport Frame::attempt(const Workings& workings, Stage last) {
+void Frame::start_attempt() {
   measuring_ = history_.decide(plan_);
-  capacity_.start(plan_, workings);
+  capacity_.start(plan_, submitted_.workings);
   const std::uint32_t blocks = (plan_.gaussian_count + COMPACT_BLOCK - 1) / COMPACT_BLOCK;
   buffers_.block_arguments.upload(
       std::vector{primitives::make_arguments(blocks, dispatcher_.context().limits().groups)});
+  record();
+}
+
+FrameReport Frame::finish_attempt() {
   FrameReport report;
   for (;; ++report.redrawn) {
     if (report.redrawn == drawings_max) throw std::logic_error("a frame overflowed again and again");
-    buffers_.reserve(plan_, *model_buffers_, capacity_);
-    buffers_.upload(plan_, measuring_.uses_last);
-    model_buffers_->reserve(plan_);
-    run_stages(workings, last, report);
+    report.stages = dispatcher_.wait_and_time();
+    counters_ = counters_read_.mapped<shared::Counters>(1).front();
     if (counters_.overflow == 0) break;
     capacity_.grow(plan_, counters_);
+    record();
   }
   if (counters_.truncated_lists != 0) {
     forget();  // what this frame left behind is not to be gone by
     refuse_truncated(dispatcher_.context(), counters_);
   }
-  if (last == Stage::probe) {
+  if (submitted_.last == Stage::probe) {
     history_.keep(plan_, measuring_, counters_);
     buffers_.keep_last(measuring_.measures);
   }
@@ -138,15 +162,19 @@ FrameReport Frame::attempt(const Workings& workings, Stage last) {
 }
 
 // The frame: its stages in order, without a read-back between them.
-void Frame::run_stages(const Workings& workings, Stage last, FrameReport& report) {
+void Frame::record() {
+  const Workings& workings = submitted_.workings;
+  buffers_.reserve(plan_, *model_buffers_, capacity_);
+  buffers_.upload(plan_, measuring_.uses_last);
+  model_buffers_->reserve(plan_);
   buffers_.counters.upload(std::vector{shared::Counters{}});
   pictures_stood_in_.clear();
   if (workings.stand_in)
     pictures_stood_in_ = workings.stand_in->fill(model_->model(), plan_, *model_buffers_, buffers_);
-  const auto run = [&](Stage stage, const auto& record) {
-    if (stage > last || (workings.stand_in && stage <= workings.stand_in->until)) return;
+  const auto run = [&](Stage stage, const auto& dispatches) {
+    if (stage > submitted_.last || (workings.stand_in && stage <= workings.stand_in->until)) return;
     dispatcher_.begin_stage(name_of(stage));
-    record();
+    dispatches();
   };
   const auto start = Clock::now();
   dispatcher_.begin_frame();
@@ -167,18 +195,19 @@ void Frame::run_stages(const Workings& workings, Stage last, FrameReport& report
   });
   if (plan_.probe && pictures_stood_in_.empty())
     run(Stage::probe, [&] { probe(dispatcher_, plan_, buffers_); });
-  if (workings.then && last == Stage::probe) {
+  if (workings.then && submitted_.last == Stage::probe) {
     dispatcher_.begin_stage(workings.then_called);
     workings.then(dispatcher_);
   }
+  counters_read_.reserve(sizeof(shared::Counters));
+  counters_read_.copy(buffers_.counters, 0, sizeof(shared::Counters), 0);
   dispatcher_.end_frame();
-  report.submit_ms = ms_since(start);
-  report.stages = dispatcher_.wait_and_time();
-  counters_ = buffers_.counters.read<shared::Counters>(1).front();
+  submit_ms_ = ms_since(start);
 }
 
 void Frame::fill(FrameReport& report) const {
   report.attempts = 1;
+  report.submit_ms = submit_ms_;
   report.visible = counters_.visible;
   report.pairs = plan_.supertile_side == 1 ? counters_.pairs : counters_.tile_pairs;
   report.supertile_pairs = counters_.pairs;

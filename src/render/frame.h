@@ -59,18 +59,32 @@ class Frame {
   Frame(gl::Context& context, const Model& model, int precision = PRECISION_FULL)
       : Frame(std::make_shared<GpuModel>(context, model, precision)) {}
 
-  /// Draws all views at once. Views that follow one another with equal depths (third row and anchor equal to
-  /// the bit) share one depth order; each eye of a rig has the same bits drawn together with the other or
-  /// alone. A frame that overflows its buffers is drawn again with larger ones. After GpuModel::reload() a
-  /// tolerance that was found stays, but no measured transmittance. Throws Error: bad views or settings
-  /// (bad_input), no room (out_of_memory).
+  /// Draws all views at once, and waits for the GPU: submit() and finish(). Views that follow one another
+  /// with equal depths (third row and anchor equal to the bit) share one depth order; each eye of a rig has
+  /// the same bits drawn together with the other or alone. A frame that overflows its buffers is drawn again
+  /// with larger ones. After GpuModel::reload() a tolerance that was found stays, but no measured
+  /// transmittance. Throws Error: bad views or settings (bad_input), no room (out_of_memory).
   ///
   /// With canvases, one a view and at most MAX_CANVASES, the blend writes pictures there and not into
   /// colours(), and depths into z_sums(): one row of every `depth_rows` (1 or 2), 0 where a pixel has none.
   /// Where a probe needs the pictures, or something stands in for the blend, it writes into colours() as
   /// usual; FrameReport::on_canvases tells which.
   FrameReport draw(std::span<const shared::View> views, const FrameSettings& settings = {},
-                   const Workings& workings = {}, std::span<const Canvas> canvases = {}, int depth_rows = 1);
+                   const Workings& workings = {}, std::span<const Canvas> canvases = {}, int depth_rows = 1) {
+    submit(views, settings, workings, canvases, depth_rows);
+    return finish();
+  }
+
+  /// Hands such a frame to the driver and returns while the GPU draws. finish() must be called before the
+  /// next frame of this Frame, and before anything is read of this one.
+  void submit(std::span<const shared::View> views, const FrameSettings& settings = {},
+              const Workings& workings = {}, std::span<const Canvas> canvases = {}, int depth_rows = 1);
+
+  /// Whether finish() would find the GPU done. Even then it may have to draw again.
+  bool is_done() { return dispatcher_.is_done(); }
+
+  /// Waits for the frame, and draws it again where a buffer was too small or its quality missed.
+  FrameReport finish();
 
   /// As draw() with settings.tolerance, but no further than stage `last`: what it leaves is read from
   /// buffers(). Only a frame drawn to its end is one that the next goes by.
@@ -80,6 +94,9 @@ class Frame {
   /// The pictures of the last frame drawn, one a view; where something else stood in for blend, with the mean
   /// depth whatever the settings say.
   std::vector<Picture> read_pictures() const;
+
+  /// Those of them that never were on the GPU, because something else stood in for blend.
+  const std::vector<Picture>& pictures_stood_in() const { return pictures_stood_in_; }
 
   /// The next frame uses nothing that earlier ones measured, as a first one does.
   void forget() { history_.forget(); }
@@ -115,12 +132,22 @@ class Frame {
   ModelBuffers& model_buffers() { return *model_buffers_; }
 
  private:
-  void begin(std::span<const shared::View> views, const FrameSettings& settings, const Workings& workings,
-             PlanRequest request);
-  FrameReport draw_with_quality(std::span<const shared::View> views, const FrameSettings& settings,
-                                const Workings& workings, const PlanRequest& request);
-  FrameReport attempt(const Workings& workings, Stage last = Stage::probe);
-  void run_stages(const Workings& workings, Stage last, FrameReport& report);
+  /// What was submitted, for attempts that follow.
+  struct Submitted {
+    std::vector<shared::View> views;
+    FrameSettings settings;
+    Workings workings;
+    std::vector<Canvas> canvases;
+    int depth_rows = 1;
+    Stage last = Stage::probe;
+    bool searches = false;  // for the tolerance of its quality: each attempt has a probe
+  };
+
+  void begin(PlanRequest request);
+  void start_search();
+  void start_attempt();
+  void record();
+  FrameReport finish_attempt();
   void fill(FrameReport& report) const;
 
   std::shared_ptr<GpuModel> model_;
@@ -128,8 +155,11 @@ class Frame {
   std::shared_ptr<ModelBuffers> model_buffers_;
   gl::Dispatcher dispatcher_;
   FrameBuffers buffers_;
+  Submitted submitted_;
   FramePlan plan_;
   Measuring measuring_;
+  gl::Buffer counters_read_;     // Counters
+  double submit_ms_ = 0.0;       // CPU time of handing the last drawing to the driver
   shared::Counters counters_{};  // of the last drawing
   double tiles_a_splat_ = 0.0;   // likewise
   Capacity capacity_;

@@ -55,7 +55,7 @@ TEST_F(Photos, AreComparedAsEightBits) {
   save_png(photo, exact);
   EXPECT_EQ(psnr({"--bits", "16"}), INFINITY);
   for (const int bits : {8, 16}) {  // opaque alpha is left out
-    save_png(photo, rgba(1.0f), bits);
+    save_png(photo, rgba(1.0f), {.bits = bits});
     EXPECT_EQ(psnr(), INFINITY) << bits;
     EXPECT_EQ(run_program({"compare", folder / "exact.png", photo, "--min-psnr", "200"}).code, 0);
   }

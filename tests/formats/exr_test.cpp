@@ -177,7 +177,7 @@ TEST(Exr, AgreesWithPngOfTheSameFrame) {
   for (glm::vec4& colour : picture.colour) colour = glm::vec4(glm::vec3(colour) / 4.0f, colour.a);
   for (const Background& background : {Background(), Background(glm::vec3(0.5f))}) {
     save_exr(folder / "a.exr", picture, {.half = false, .background = background});
-    save_png(folder / "a.png", composite(picture, background), 16);
+    save_png(folder / "a.png", composite(picture, background), {.bits = 16});
     const Image exr = load_image(folder / "a.exr");
     const Image png = load_image(folder / "a.png");
     EXPECT_EQ(exr.channels, png.channels);

@@ -86,7 +86,7 @@ TEST(Png, RoundTripIsExactToTheLevel) {
       for (const auto& [width, height] :
            {std::pair(1, 1), std::pair(7, 5), std::pair(1, 40), std::pair(300, 200)}) {
         const Image image = noise_beyond(width, height, channels);
-        save_png(folder / "image.png", image, bits);
+        save_png(folder / "image.png", image, {.bits = bits});
         const Image loaded = load_image(folder / "image.png");
         Image kept = quantised(image, bits == 8 ? 255 : 65535);
         EXPECT_TRUE(equal_images(loaded, kept)) << bits << " bits, " << channels << " channels";
@@ -107,15 +107,15 @@ TEST(Png, RoundsAndClamps) {
                 127.51f / 255,
                 std::numeric_limits<float>::quiet_NaN(),
                 std::numeric_limits<float>::infinity()};
-  save_png(folder / "image.png", image, 8);
+  save_png(folder / "image.png", image, {.bits = 8});
   EXPECT_TRUE(equal_images(load_image(folder / "image.png"),
                            image_of(6, 1, 1, {0, 1, 127.0f / 255, 128.0f / 255, 0, 1})));
 }
 
 TEST(Png, CarriesNotesAndSaysThatItIsSrgb) {
   const test::TempFolder folder;
-  save_png(folder / "image.png", noise_beyond(2, 2, 3), 8,
-           {{"units-per-metre", "1.5"}, {"view", "caf\xc3\xa9"}});
+  save_png(folder / "image.png", noise_beyond(2, 2, 3),
+           {.notes = {{"units-per-metre", "1.5"}, {"view", "caf\xc3\xa9"}}});
   const std::string bytes = test::read_text(folder / "image.png");
   EXPECT_NE(bytes.find("sRGB"), std::string::npos);
   EXPECT_NE(bytes.find("units-per-metre"), std::string::npos);
@@ -163,7 +163,7 @@ TEST(Png, MayBeInterlaced) {
 
 std::string png_bytes() {
   const test::TempFolder folder;
-  save_png(folder / "image.png", noise_beyond(40, 30, 3), 8);
+  save_png(folder / "image.png", noise_beyond(40, 30, 3), {.bits = 8});
   return test::read_text(folder / "image.png");
 }
 
@@ -214,7 +214,7 @@ TEST(Png, FullDisksAreReported) {
 
 TEST(Png, OtherBitsAreRefused) {
   const test::TempFolder folder;
-  EXPECT_TRUE(test::fails_saying([&] { save_png(folder / "a.png", noise_beyond(1, 1, 3), 12); },
+  EXPECT_TRUE(test::fails_saying([&] { save_png(folder / "a.png", noise_beyond(1, 1, 3), {.bits = 12}); },
                                  {"8 or 16 bits, not 12"}));
   EXPECT_TRUE(folder.names().empty());
 }

@@ -114,8 +114,8 @@ TEST(DamagedFiles, Pictures) {
   Picture picture(20, 10);
   for (std::size_t k = 0; k < picture.colour.size(); ++k)
     picture.colour[k] = glm::vec4(0.001f * static_cast<float>(k));
-  save_png(folder / "8.png", composite(picture, glm::vec3(0)), 8);
-  save_png(folder / "16.png", composite(picture, {}), 16);
+  save_png(folder / "8.png", composite(picture, glm::vec3(0)), {.bits = 8});
+  save_png(folder / "16.png", composite(picture, {}), {.bits = 16});
   save_exr(folder / "half.exr", picture, {});
   save_exr(folder / "float.exr", picture, {.half = false, .background = glm::vec3(0)});
   std::vector<std::string> files;

@@ -52,7 +52,7 @@ struct PictureSize : testing::Test {
 TEST_F(PictureSize, IsThatOfTheHeader) {
   for (const int channels : {1, 3, 4}) {
     for (const int bits : {8, 16})
-      EXPECT_EQ(size_of(png_bytes(noise_image(40, 30, channels), bits)), glm::ivec2(40, 30));
+      EXPECT_EQ(size_of(png_bytes(noise_image(40, 30, channels), {.bits = bits})), glm::ivec2(40, 30));
   }
   EXPECT_EQ(size_of(jpeg_of(TJPF_RGB, TJSAMP_420)), glm::ivec2(40, 30));
   EXPECT_EQ(size_of(jpeg_of(TJPF_RGB, TJSAMP_444, TJFLAG_PROGRESSIVE)), glm::ivec2(40, 30));

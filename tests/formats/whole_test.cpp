@@ -46,7 +46,8 @@ struct Whole : testing::Test {
 TEST_F(Whole, PicturesOfOurs) {
   const Picture picture = noise_picture();
   save_png(folder / "8.png", composite(picture, glm::vec3(0.0f)));
-  save_png(folder / "16.png", composite(picture, std::nullopt), 16, {{"Software", "test"}});
+  save_png(folder / "16.png", composite(picture, std::nullopt),
+           {.bits = 16, .notes = {{"Software", "test"}}});
   save_exr(folder / "half.exr", picture, {.half = true});
   save_exr(folder / "float.exr", picture, {.half = false, .background = std::nullopt});
   save_exr(folder / "both.exr", picture, picture, {});

@@ -186,3 +186,50 @@ def test_pictures_without_room_are_refused_and_the_next_is_drawn(renderer, camer
         renderer.draw(cameras["front"].resized(40000, 40000))
     assert isinstance(raised.value, MemoryError) and "MiB" in str(raised.value)
     assert renderer.draw(cameras["front"]).colour.any()
+
+
+def test_all_of_a_path_are_what_each_is_alone(renderer, cameras):
+    rig = binosplat.Rig(cameras["front"], ipd=0.1)
+    views = [cameras["front"], rig, cameras["side"], cameras["front"]]
+    drawn = list(renderer.draw_all(iter(views), background=(0, 1, 0)))
+    assert len(drawn) == 4
+    for view, pictures in zip(views, drawn):
+        expected = renderer.draw(view, background=(0, 1, 0))
+        pairs = [(pictures, expected)] if view is not rig else zip(pictures, expected)
+        for a, b in pairs:
+            assert same(a.colour, b.colour) and same(a.depth, b.depth) and same(a.transmittance, b.transmittance)
+    assert not same(drawn[0].colour, drawn[2].colour)
+    assert list(renderer.draw_all([])) == []
+
+
+def test_a_path_may_end_early_and_others_be_drawn_meanwhile(renderer, cameras):
+    expected = renderer.draw(cameras["side"])
+    path = renderer.draw_all(cameras[name] for name in ["front", "side", "front"])
+    next(path)
+    assert same(renderer.draw(cameras["side"]).colour, expected.colour)
+    assert same(next(path).colour, expected.colour)
+    del path
+    assert same(renderer.draw(cameras["side"]).colour, expected.colour)
+
+
+def test_a_path_says_what_is_wrong_where_it_is(renderer, cameras, scene):
+    with pytest.raises(binosplat.InputError, match="near -1"):
+        renderer.draw_all([], near=-1)
+    path = renderer.draw_all([cameras["front"], "no camera"])
+    with pytest.raises(TypeError, match="a Camera or a Rig, not str"):
+        next(path)
+    with binosplat.Renderer(binosplat.load_model(scene / "model.ply"), backend="surfaceless") as closing:
+        path = closing.draw_all([cameras["front"]] * 3)
+        next(path)
+        closing.close()
+        with pytest.raises(binosplat.InputError, match="this Renderer is closed"):
+            next(path)
+
+
+def test_a_path_goes_by_what_came_before_only_where_it_follows(renderer, cameras):
+    settings = {"tolerance": 0.5, "transmittance": "last"}
+    views = [cameras["front"]] * 3
+    followed = [p.report["remembered"] for p in renderer.draw_all(views, follow=True, **settings)]
+    alone = [p.report["remembered"] for p in renderer.draw_all(views, **settings)]
+    assert followed == [False, True, True]
+    assert alone == [False, False, False]

@@ -1,0 +1,32 @@
+#pragma once
+// Drawing all shots of `binosplat render`.
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/calibrated.h"
+#include "app/render_outputs.h"
+#include "app/render_report.h"
+#include "app/shots.h"
+#include "stream/stream.h"
+
+namespace binosplat::app {
+
+/// What is drawn, and by what.
+struct Work {
+  OutputPlan plan;
+  CalibratedSettings calibrated;
+  CameraList list;
+  std::vector<Shot> shots;
+  std::optional<Shot> screen;  // what tells how far the screen is, where no option does
+  std::string photos;          // a folder; empty: none
+  bool heads_turn = false;
+  std::unique_ptr<Stream> stream;  // of a model whose levels follow the shots
+};
+
+/// Draws every shot as often as asked for, and leaves the files of its last frame.
+void draw_all(gl::Context& context, Work& work, RenderReport& report);
+
+}  // namespace binosplat::app

@@ -1,0 +1,102 @@
+#include "app/shot_files.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "app/command_line.h"
+#include "app/photos.h"
+#include "base/clock.h"
+#include "base/log.h"
+#include "base/memory.h"
+#include "base/parallel.h"
+#include "measure/metrics.h"
+
+namespace binosplat::app {
+
+namespace {
+
+bool is_empty(const Picture& picture) {
+  return std::all_of(picture.colour.begin(), picture.colour.end(),
+                     [](const glm::vec4& c) { return c.a == 1.0f; });
+}
+
+// PSNR of the picture as 8 bits would keep it against the photo, where there is a folder of them.
+std::optional<double> photo_psnr(const std::string& folder, const glm::vec3& background, const Shot& shot,
+                                 const Picture& picture) {
+  if (folder.empty()) return std::nullopt;
+  const auto file = find_view_photo(folder, shot.name);
+  if (!file) {
+    log_info("no photo of {} in {}", shot.name, folder);
+    return std::nullopt;
+  }
+  const Image photo = load_view_photo(*file, shot.eyes.front().camera, background);
+  return measure::psnr(quantised(composite(picture, background)), photo);
+}
+
+// Memory of a shot from the GPU to the file: twice its colours and depths, and what they are encoded to.
+double bytes_of(const Shot& shot) {
+  constexpr double bytes_a_pixel = 2 * 20 + 24;
+  double pixels = 0.0;
+  for (const Eye& eye : shot.eyes) pixels += double{1} * eye.camera.width * eye.camera.height;
+  return bytes_a_pixel * pixels;
+}
+
+// Adds what it takes to run something.
+template <typename Run>
+auto timed(std::atomic<std::int64_t>& ns, const Run& run) {
+  const auto start = Clock::now();
+  const auto result = run();
+  ns += static_cast<std::int64_t>(1e6 * ms_since(start));
+  return result;
+}
+
+}  // namespace
+
+ShotFiles::ShotFiles(const RenderOptions& options, const OutputPlan& plan, std::string photos,
+                     const std::vector<Shot>& shots)
+    : options_(options), plan_(plan), photos_(std::move(photos)), video_(open_video(plan, shots)) {
+  double most = 1.0;
+  for (const Shot& shot : shots) most = std::max(most, bytes_of(shot));
+  const double budget = std::min(0.25 * memory_bytes(), picture_memory_allowed.load());
+  // Besides one that waits and one that is on its way from the GPU. A video takes its frames one by one.
+  const double fit = budget / most - 2.0;
+  const int useful =
+      video_ ? 1 : std::min(core_count(), static_cast<int>(std::min<std::size_t>(shots.size(), 1024)));
+  threads_ = static_cast<int>(std::clamp(fit, 1.0, std::max(1.0, double{1} * useful)));
+  queue_ = std::make_unique<JobQueue>(threads_, 1);
+}
+
+void ShotFiles::add(Drawn& drawn, std::function<ShotPictures()> take) {
+  queue_->add([this, &drawn, take = std::move(take)] { make(drawn, take()); });
+}
+
+void ShotFiles::make(Drawn& drawn, ShotPictures of) {
+  std::vector<Picture>& pictures = of.pictures;
+  if (!std::all_of(pictures.begin(), pictures.end(), is_empty)) all_empty_ = false;
+  if (!plan_.vr180) drawn.comfort = comfort_of(drawn.shot, options_.camera.lens.headset(), pictures[0]);
+  drawn.photo_psnr = photo_psnr(photos_, options_.output.backdrop(), drawn.shot, pictures[0]);
+  if (!of.shown) of.shown = {std::move(pictures), std::nullopt};
+  const stereo::DebugPictures& shown = *of.shown;
+  if (video_) {
+    const Image frame =
+        timed(encoding_ns_, [&] { return frame_of(plan_, options_.output.background, shown.pictures); });
+    timed(writing_ns_, [&] { return video_->add(frame), 0; });
+    drawn.files = {plan_.video.string()};
+    return;
+  }
+  const std::vector<EncodedFile> files = timed(encoding_ns_, [&] {
+    return encode_outputs(options_.scene.name, options_.output, plan_, drawn.shot, shown);
+  });
+  timed(writing_ns_, [&] {
+    for (const EncodedFile& file : files) write_file(file.name, file.bytes);
+    return 0;
+  });
+  for (const EncodedFile& file : files) drawn.files.push_back(file.name);
+}
+
+void ShotFiles::finish() {
+  queue_->finish();
+  if (video_) video_->finish();
+}
+
+}  // namespace binosplat::app

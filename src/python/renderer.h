@@ -1,0 +1,152 @@
+#pragma once
+// A model on the GPU, drawn on a thread of its own.
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "base/error.h"
+#include "python/gl_thread.h"
+#include "render/frame.h"
+#include "render/read_back.h"
+#include "scene/camera.h"
+
+namespace binosplat::python {
+
+/// What draw() leaves of a view.
+struct ViewImages {
+  Image colour, transmittance, depth;
+};
+
+struct Drawn {
+  std::vector<ViewImages> views;
+  render::FrameReport report;
+};
+
+inline ViewImages images_of(const Picture& picture, const glm::vec3& background) {
+  ViewImages images = {composite(picture, background), Image(picture.width, picture.height, 1),
+                       depth_map(picture)};
+  for (std::size_t k = 0; k < picture.colour.size(); ++k) images.transmittance.data[k] = picture.colour[k].a;
+  return images;
+}
+
+inline Drawn drawn_of(render::FrameReport report, const std::vector<Picture>& pictures,
+                      const glm::vec3& background) {
+  Drawn drawn{{}, std::move(report)};
+  for (const Picture& picture : pictures) drawn.views.push_back(images_of(picture, background));
+  return drawn;
+}
+
+using Views = std::vector<shared::View>;
+
+/// What a frame is drawn by; `follow`: it goes by what the one before measured.
+struct Settings {
+  render::FrameSettings frame;
+  double near_plane = near_default;  // world units
+  bool follow = false;
+};
+
+/// Frames of which the GPU draws the next one while Python has the last one.
+struct Path {
+  Path(gl::Context& context, std::shared_ptr<render::GpuModel> model)
+      : frame(std::move(model)), read_back(context) {}
+
+  void submit(const Views& views, const Settings& settings) {
+    if (!settings.follow) frame.start_over();
+    frame.submit(views, settings.frame);
+  }
+
+  render::Frame frame;
+  render::ReadBack read_back;
+};
+
+class Renderer {
+ public:
+  Renderer(std::shared_ptr<Model> model, gl::Backend backend, int device, int precision)
+      : model_(std::move(model)), precision_(precision), thread_(std::make_unique<GlThread>()) {
+    thread_->run([&] { on_gpu_ = std::make_unique<OnGpu>(backend, device, *model_, precision_); });
+    const gl::Context& context = *on_gpu_->context;
+    device_ = fmt::format("{} ({}, OpenGL {})", context.renderer(), context.backend(), context.version());
+  }
+  ~Renderer() {
+    if (GlThread::in_its_process()) {
+      close();
+    } else {  // neither has survived the fork
+      static_cast<void>(thread_.release());
+      static_cast<void>(on_gpu_.release());
+    }
+  }
+  Renderer(const Renderer&) = delete;
+  Renderer& operator=(const Renderer&) = delete;
+
+  void close() {
+    thread_->run([this] { on_gpu_.reset(); });
+  }
+
+  Drawn draw(const Views& views, const Settings& settings) {
+    return thread_->run([&] {
+      render::Frame& frame = on_gpu().frame;
+      if (!settings.follow) frame.start_over();
+      render::FrameReport report = frame.draw(views, settings.frame);
+      return drawn_of(std::move(report), frame.read_pictures(), settings.frame.background);
+    });
+  }
+
+  /// A path that begins with these views. It ends with end() or close().
+  std::weak_ptr<Path> begin(const Views& views, const Settings& settings) {
+    return thread_->run([&] {
+      auto path = std::make_shared<Path>(*on_gpu().context, on_gpu().frame.model());
+      path->submit(views, settings);
+      return std::weak_ptr(on_gpu().paths.emplace_back(std::move(path)));
+    });
+  }
+
+  /// What was begun; where there are views to follow, the GPU draws them from now on.
+  Drawn next(const std::weak_ptr<Path>& of, const std::optional<Views>& following, const Settings& settings) {
+    return thread_->run([&] {
+      const std::shared_ptr<Path> path = of.lock();
+      if (!path) fail(closed);
+      render::FrameReport report = path->frame.finish();
+      const auto pictures = path->read_back.start(path->frame);
+      if (following) path->submit(*following, settings);
+      pictures->wait();
+      return drawn_of(std::move(report), pictures->take(), settings.frame.background);
+    });
+  }
+
+  void end(const std::weak_ptr<Path>& path) {
+    thread_->run([&] {
+      if (on_gpu_) std::erase(on_gpu_->paths, path.lock());
+    });
+  }
+
+  const Model& model() const { return *model_; }
+  const std::string& device() const { return device_; }
+  int precision() const { return precision_; }
+
+ private:
+  static constexpr const char* closed = "this Renderer is closed";
+
+  struct OnGpu {
+    OnGpu(gl::Backend backend, int number, const Model& model, int precision)
+        : context(gl::Context::open(backend, number)), frame(*context, model, precision) {}
+    std::unique_ptr<gl::Context> context;
+    render::Frame frame;
+    std::vector<std::shared_ptr<Path>> paths;
+  };
+
+  OnGpu& on_gpu() {
+    if (!on_gpu_) fail(closed);
+    return *on_gpu_;
+  }
+
+  std::shared_ptr<const Model> model_;
+  int precision_;
+  std::string device_;
+  std::unique_ptr<GlThread> thread_;
+  std::unique_ptr<OnGpu> on_gpu_;  // made, used and destroyed on the thread
+};
+
+}  // namespace binosplat::python

@@ -1,0 +1,65 @@
+#pragma once
+// Pictures on their way from the GPU, which draws the next ones meanwhile.
+
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <vector>
+
+#include "base/image.h"
+#include "gl/buffer.h"
+#include "gl/fence.h"
+#include "render/frame.h"
+
+namespace binosplat::render {
+
+/// Copies pictures into memory that the CPU reads, and uses that again once they are taken.
+class ReadBack {
+  struct Copy {
+    explicit Copy(gl::Context& context)
+        : colours(context, "colours for the CPU", gl::Buffer::Use::read),
+          z_sums(context, "depths for the CPU", gl::Buffer::Use::read),
+          done(context) {}
+
+    gl::Buffer colours, z_sums;
+    gl::Fence done;
+  };
+
+ public:
+  explicit ReadBack(gl::Context& context) : context_(context) {}
+  ReadBack(const ReadBack&) = delete;
+  ReadBack& operator=(const ReadBack&) = delete;
+
+  /// The pictures of one frame. The ReadBack must outlive them.
+  class Pictures {
+   public:
+    explicit Pictures(ReadBack& of);
+    ~Pictures();
+    Pictures(const Pictures&) = delete;
+    Pictures& operator=(const Pictures&) = delete;
+
+    /// Waits until the GPU has copied them. On the context's thread, before take().
+    void wait() { copy_->done.wait(); }
+    /// The pictures as Frame::read_pictures() has them. On any thread.
+    std::vector<Picture> take() const;
+
+   private:
+    friend class ReadBack;
+
+    ReadBack& of_;
+    std::unique_ptr<Copy> copy_;
+    std::vector<shared::View> views_;
+    bool has_depth_ = false;
+    std::vector<Picture> stood_in_;  // for the blend: they never were on the GPU
+  };
+
+  /// Asks for the pictures of a frame that is drawn. It may draw the next ones at once.
+  std::unique_ptr<Pictures> start(const Frame& frame);
+
+ private:
+  gl::Context& context_;
+  std::mutex mutex_;
+  std::vector<std::unique_ptr<Copy>> free_;
+};
+
+}  // namespace binosplat::render

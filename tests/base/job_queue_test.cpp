@@ -1,0 +1,90 @@
+#include "base/job_queue.h"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <chrono>
+#include <stdexcept>
+#include <thread>
+
+namespace binosplat {
+namespace {
+
+TEST(JobQueue, DoesEachJobOnce) {
+  for (const int threads : {1, 3}) {
+    std::vector<std::atomic<int>> times(200);
+    JobQueue queue(threads, 2);
+    for (std::atomic<int>& job : times) queue.add([&job] { ++job; });
+    queue.finish();
+    for (const std::atomic<int>& job : times) EXPECT_EQ(job, 1);
+  }
+}
+
+TEST(JobQueue, OneThreadKeepsTheOrder) {
+  std::vector<int> order, expected;
+  JobQueue queue(1, 3);
+  for (int k = 0; k < 50; ++k) {
+    expected.push_back(k);
+    queue.add([&order, k] { order.push_back(k); });
+  }
+  queue.finish();
+  EXPECT_EQ(order, expected);
+}
+
+TEST(JobQueue, HoldsNoMoreThanItMay) {
+  constexpr int threads = 2, waiting = 1;
+  std::atomic<int> held = 0, most = 0;
+  struct Held {
+    explicit Held(std::atomic<int>& count) : count_(count) { ++count_; }
+    ~Held() { --count_; }
+    std::atomic<int>& count_;
+  };
+  JobQueue queue(threads, waiting);
+  for (int k = 0; k < 40; ++k) {
+    queue.add(
+        [one = std::make_shared<Held>(held)] { std::this_thread::sleep_for(std::chrono::milliseconds(1)); });
+    most = std::max(most.load(), held.load());
+  }
+  queue.finish();
+  EXPECT_EQ(held, 0);
+  EXPECT_LE(most, threads + waiting);
+  EXPECT_EQ(most, threads + waiting);  // and it used them
+}
+
+TEST(JobQueue, EndsWithTheFirstFailure) {
+  std::atomic<int> begun = 0;
+  JobQueue queue(2, 2);
+  EXPECT_THROW(
+      {
+        for (int k = 0; k < 1000; ++k) {
+          queue.add([&begun, k] {
+            ++begun;
+            if (k == 6) throw std::runtime_error("the seventh");
+          });
+        }
+        queue.finish();
+      },
+      std::runtime_error);
+  EXPECT_LT(begun, 20);
+  const int before = begun;
+  EXPECT_THROW(queue.add([&begun] { ++begun; }), std::runtime_error);
+  EXPECT_THROW(queue.finish(), std::runtime_error);
+  EXPECT_EQ(begun, before);
+}
+
+TEST(JobQueue, EndsWithoutWhatNobodyWaitsFor) {
+  std::atomic<int> done = 0;
+  {
+    JobQueue queue(1, 100);
+    for (int k = 0; k < 100; ++k) {
+      queue.add([&done] {
+        std::this_thread::sleep_for(std::chrono::milliseconds(5));
+        ++done;
+      });
+    }
+  }
+  EXPECT_LT(done, 50);
+}
+
+}  // namespace
+}  // namespace binosplat
