@@ -18,7 +18,7 @@ enum class ExitCode {
 /// What the library throws where the caller, a file or the machine is at fault. what() is written for people:
 /// it names the file or the argument, what was expected, and what to do. Besides it the library lets
 /// std::bad_alloc pass, and throws std::runtime_error where OpenGL reports an error that is the library's
-/// own. What threw can be used again afterwards, unless its GPU was reset, and destroyed in any case.
+/// own. The object whose call threw can be used again, unless its GPU was reset, and destroyed in any case.
 class Error : public std::runtime_error {
  public:
   Error(ExitCode code, const std::string& text) : std::runtime_error(text), code_(code) {}

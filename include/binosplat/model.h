@@ -18,7 +18,7 @@ struct ModelOptions {
   /// The level of detail of a streamed SOG; 0 is the finest. Where none is named: the finest of which all
   /// files are there.
   std::optional<int> lod = {};
-  std::optional<std::size_t> appearance = {};  // of a Scaffold-GS model; the first where none is named
+  std::optional<std::size_t> appearance = {};  // for Scaffold-GS models; none: the first
 };
 
 /// A box with sides along the axes of the model's world.

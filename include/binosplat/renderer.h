@@ -38,7 +38,7 @@ struct ViewRegion {
   std::vector<glm::uvec2> columns = {};
   /// px. Of tiles that lie within [hole_begin, hole_end) nothing is drawn, either: what an inset covers.
   glm::uvec2 hole_begin{0}, hole_end{0};
-  float tolerance_share = 1.0f;  // the view goes by so many times the frame's tolerance; 0: it is exact
+  float tolerance_share = 1.0f;  // times the frame's tolerance is the view's; 0: the view is exact
   /// Where this picture has fewer pixels a degree than the one that it stands for, as the wide one around an
   /// inset has: (its pixels a degree / the other's) squared, at most 1. The low-pass is as many px wide in
   /// every picture, so thin Gaussians would be too bright in this one; the renderer dims them by that. It
@@ -60,8 +60,11 @@ struct View {
 
 /// A model on the GPU, and what drawing it needs there.
 ///
-/// Threads: everything belongs to the thread that the caller's context is current on, which it must be in
-/// every call, the destructor included. Renderers of different contexts do not know of each other.
+/// Threads: call all of it, the destructor included, on the thread where the caller's context is current.
+/// Renderers of different contexts do not know of each other.
+///
+/// Time: the renderer compiles its shaders at the first frame of each combination of settings, which may take
+/// seconds, and keeps them in $XDG_CACHE_HOME/binosplat, or ~/.cache/binosplat, for later runs.
 ///
 /// State: after each call, and after an error, the context's state is what it was before, but for a program
 /// in use that was deleted, which OpenGL does not set again. What is bound, enabled or masked does not change
@@ -76,17 +79,20 @@ class Renderer {
   Renderer(Renderer&&) noexcept;
   Renderer& operator=(Renderer&&) noexcept;
 
-  /// Draws up to 8 views of one head in one frame, each into its target; or, with another layout than
-  /// `separate`, the left and the right eye's, of one size, into the first one's. Waits until the GPU
-  /// has drawn the frame, but not for copies into targets; what reads them next sees it.
+  /// Draws up to 8 views of one head in one frame, each into its target. With another layout than `separate`
+  /// it draws two views of one size, the left eye's first, into the first view's target. Waits until the GPU
+  /// has blended the frame, but not for what it then writes into targets; commands that the caller gives
+  /// in this context afterwards see the pictures, without a glMemoryBarrier.
   ///
   /// Views that look the same way from the same depth share a depth order, which saves time, if they follow
   /// one another: put an eye's views side by side. Those of one orientation that lie before or behind the
   /// first one by less than a millionth of its distance from the eyes' origin are moved to its depth: poses
   /// of parallel eyes are as far apart by rounding.
   ///
-  /// With a quality, or a transmittance that is measured, a frame goes by what earlier ones measured; after a
-  /// jump of the head it is drawn as a first one is.
+  /// With a quality, or a transmittance that is measured, a frame uses what earlier ones measured. It begins
+  /// anew where a view has turned by more than 15 degrees, has moved by more than a tenth of the median depth
+  /// of what was drawn, or has another size, frustum or set of tiles, and where there are more or fewer
+  /// views.
   ///
   /// Throws Error: bad_input for an orientation that is not finite or zero, a frustum that encloses no
   /// picture, an empty picture, settings that contradict each other, a target that cannot be drawn into,

@@ -12,10 +12,12 @@ struct StageTime {
   double ms = 0;          // on the GPU
 };
 
+/// Times are sums over all attempts at a quality, without drawings for which a buffer was too small. What is
+/// written into targets after the blend is not timed.
 struct Report {
-  std::vector<StageTime> stages = {};  // of the last, complete drawing; empty where the driver tells no times
-  double gpu_ms = 0;                   // their sum; with a quality of all attempts
-  double submit_ms = 0;                // CPU time of handing the last drawing to the driver
+  std::vector<StageTime> stages = {};  // empty where the driver tells no times
+  double gpu_ms = 0;                   // their sum
+  double submit_ms = 0;                // CPU time of handing the frame to the driver
   std::int64_t gpu_bytes = 0;          // in the renderer's buffers, the model's included
 
   std::uint64_t visible = 0;  // Gaussians drawn, summed over the order groups
@@ -23,12 +25,15 @@ struct Report {
   /// Depth orders: one where the views look the same way from the same depth, as those of parallel eyes do.
   std::uint32_t order_groups = 0;
 
-  float tolerance = 0.0f;  // that the frame went by; 0: it is exact
+  float tolerance = 0.0f;  // that the frame was drawn with; 0: it is exact
   double quality = 0.0;    // with Settings::quality: PSNR in dB, as measured; infinite where nothing differs
   int attempts = 0;        // times that it was drawn until the quality held
   int redrawn = 0;         // times that it was drawn again, since a buffer was too small
 
-  bool in_place = false;  // the pictures were written into the targets themselves, without a copy
+  /// All pictures were blended straight into their targets. Not where there are more than 4 views, a layout
+  /// other than `separate` or a target that takes a copy, nor in frames that measure the error for a quality:
+  /// these are blended into a buffer of the renderer's, and from there written into the targets.
+  bool in_place = false;
   /// OpenGL errors that were recorded before the frame began: the caller's own. The frame is drawn all the
   /// same.
   std::vector<std::uint32_t> callers_errors = {};

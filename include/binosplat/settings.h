@@ -29,8 +29,8 @@ enum class Order {
   distance,  // from the point between the eyes
 };
 
-/// What a ray sees of a Gaussian. With Order::distance and Projection::tangent pictures do not depend on
-/// where the head is turned.
+/// How a Gaussian is projected. With Order::distance and Projection::tangent pictures do not depend on where
+/// the head is turned.
 enum class Projection {
   affine,   // 3D Gaussian Splatting's, which stretches what is far off the view's axis
   tangent,  // onto the plane that touches the unit sphere where the ray goes through (docs/method.md, 2)
@@ -43,11 +43,11 @@ enum class DepthKind {
 };
 
 struct Settings {
-  /// RGB behind the scene, from 0 to 1, display-referred. None: colours are premultiplied by the alpha beside
-  /// them.
+  /// RGB behind the scene, from 0 to 1, display-referred; the target's alpha is then 1. None: colours are
+  /// premultiplied by the alpha beside them.
   std::optional<glm::vec3> background = {};
 
-  /// Exact unless one of these is given, and never both.
+  /// Give a quality or a tolerance, or neither: then frames are exact.
   ///
   /// Quality: the PSNR in dB, from 10 to 100, that the view that errs most should have against the exact
   /// picture, both as 8 bits would keep them. The renderer finds the tolerance, measures the error of a part
@@ -61,11 +61,15 @@ struct Settings {
 
   std::optional<Order> order = {};            // none: as the model was trained
   std::optional<Projection> projection = {};  // likewise
-  DepthKind depth = DepthKind::mean;          // of views with a depth target
+  DepthKind depth = DepthKind::mean;          // what is written into depth targets
   Layout layout = Layout::separate;
-  double near_plane = near_default;  // world units, above 0: what is nearer to an eye is not drawn
-  /// Of Scaffold-GS models only: the Gaussians of both eyes are made for a point between them. Faster, and
-  /// not exact. Views come in pairs, the eyes of one at 2k and 2k + 1.
+  /// World units, above 0. Gaussians whose middle has no larger depth along the view's axis are not drawn; by
+  /// Order::distance with Projection::tangent, no larger distance from the eye. DepthTarget::near_plane
+  /// leaves nothing out: it says which depth is written as 0.
+  double near_plane = near_default;
+  /// For Scaffold-GS models only: the Gaussians of views 2k and 2k + 1 are made once, for the point between
+  /// their eyes. Faster, and not exact. Give the left and the right eye's view; of four views first both wide
+  /// ones, then both insets.
   bool cyclopean = false;
 };
 

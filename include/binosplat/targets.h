@@ -2,7 +2,8 @@
 // Textures and framebuffers of the caller's that pictures and depths are drawn into. They stay the caller's,
 // belong to the context that the renderer was made in, and may be deleted between frames.
 //
-// Rows are OpenGL's: the top of a picture is the texture's top, t = 1.
+// Rows are OpenGL's: the top of a picture is the texture's top, t = 1, and y counts from the bottom (in a
+// ViewRegion, rows count from the top).
 
 #include <cstdint>
 #include <limits>
@@ -11,8 +12,10 @@
 
 namespace binosplat {
 
-/// How both eyes are shown. But for `separate` they become one picture, in one target. Those from anaglyph on
-/// mix colours for red-cyan glasses, red before the left eye, and need a background.
+/// How both eyes are shown. In all layouts but `separate` they become one picture, in one target; depths
+/// still go into each view's depth target. The layouts from anaglyph on mix colours for red-cyan glasses, red
+/// before the left eye, and need a background. Numbers are the program's; its layouts 1 and 2 are for files
+/// and windows.
 enum class Layout {
   separate = 0,      // each view in a target of its own
   parallel = 3,      // side by side, the left eye's on the left: twice as wide
@@ -27,11 +30,12 @@ enum class Layout {
   grey = 12,         // grey in both eyes
 };
 
-/// Where a picture goes: a texture of any colour-renderable format, or a framebuffer. A 2D texture, or a
-/// layer of an array, is written without a copy where its format is GL_RGBA8, RGBA16, RGBA16F, RGBA32F or
-/// RGB10_A2, or GL_SRGB8_ALPHA8 with immutable storage (glTextureStorage2D and its like), and so is a
-/// framebuffer that has one such texture and no other colours; all else takes a picture of the renderer's
-/// own, of 4 bytes a pixel, or of 16 where the target keeps more than 8 bits of a colour.
+/// Where a picture goes: a texture of any colour-renderable format, or a framebuffer; Target{} is the default
+/// framebuffer. A 2D texture, or a layer of an array, is written without a copy where its format is GL_RGBA8,
+/// RGBA16, RGBA16F, RGBA32F or RGB10_A2, or GL_SRGB8_ALPHA8 with immutable storage (glTextureStorage2D and
+/// its like), and so is a framebuffer that has one such texture and no other colours; all else takes a
+/// picture of the renderer's own, of 4 bytes a pixel, or of 16 where the target keeps more than 8 bits of a
+/// colour.
 ///
 /// Colours are display-referred, as models are trained: numbers as a screen takes them, which is what a
 /// texture of GL_SRGB8_ALPHA8 holds. GL_FRAMEBUFFER_SRGB, blending, masks and tests of the caller's do not
@@ -46,18 +50,18 @@ struct Target {
   /// Its numbers mean linear light, as OpenXR's runtimes have it of every format but sRGB's: colours are
   /// converted.
   bool linear = false;
-  /// Shaders may write into it. False, as for a swapchain that OpenXR's runtime makes without
-  /// XR_SWAPCHAIN_USAGE_UNORDERED_ACCESS_BIT, as Monado does of sRGB: the renderer then draws into it,
-  /// through a copy.
+  /// Whether shaders may write into it. Set false for a swapchain that OpenXR's runtime makes without
+  /// XR_SWAPCHAIN_USAGE_UNORDERED_ACCESS_BIT, as Monado does of sRGB: the renderer then draws a picture of
+  /// its own and copies it into the target.
   bool in_place = true;
 };
 
 /// Where a view's depths go: a 2D texture, or a layer of an array, of a depth format without stencil, as
-/// XR_KHR_composition_layer_depth takes it. What lies at z (world units, along the view's axis) has the depth
-/// far (1 - near / z) / (far - near), from 0 at `near_plane` to 1 at `far_plane`; either may be
-/// infinite, and `near_plane` may be the larger one, which reverses the depths. What covers less than half of
-/// a pixel is infinitely far. The texture may have fewer pixels than the view: GPUs of servers fill depths
-/// slowly, and a headset's runtime needs no more.
+/// XR_KHR_composition_layer_depth takes it. All of the texture is overwritten. What lies at z (world units,
+/// along the view's axis) has the depth far (1 - near / z) / (far - near), from 0 at `near_plane` to 1 at
+/// `far_plane`; either may be infinite, and `near_plane` may be the larger one, which reverses the depths. A
+/// pixel of which half or less is covered is infinitely far. The texture may have fewer pixels than the view:
+/// GPUs of servers fill depths slowly, and a headset's runtime needs no more.
 struct DepthTarget {
   std::uint32_t texture = 0;
   int level = 0;
