@@ -81,8 +81,8 @@ class Renderer {
 
   /// Draws up to 8 views of one head in one frame, each into its target. With another layout than `separate`
   /// it draws two views of one size, the left eye's first, into the first view's target. Waits until the GPU
-  /// has blended the frame, but not for what it then writes into targets; commands that the caller gives
-  /// in this context afterwards see the pictures, without a glMemoryBarrier.
+  /// has blended the frame, but not for what it then writes into targets; commands that the caller gives in
+  /// this context afterwards see the pictures, without a glMemoryBarrier.
   ///
   /// Views that look the same way from the same depth share a depth order, which saves time, if they follow
   /// one another: put an eye's views side by side. Those of one orientation that lie before or behind the

@@ -1,6 +1,7 @@
 #pragma once
-// What levels of detail truly lose, measured with a sample of chunks at their finest levels: what is
-// predicted is known of each chunk by itself, and in the mean of a scene, but not of what a view shows of it.
+// What levels of detail truly lose in a view, measured with a sample of chunks at their finest levels. The
+// prediction has been made for each chunk by itself and is right in the mean of a scene; one view may lose
+// more or less.
 
 #include <algorithm>
 #include <cstddef>
@@ -13,12 +14,12 @@
 
 namespace binosplat {
 
-/// Chunks that room is kept for (LodFiles::spare).
+/// The chunks of a sample for which a model keeps room (LodFiles::spare).
 inline constexpr std::size_t sample_room = 24;
 
-/// So many chunks, or fewer, that are not at their finest level, each as likely as the root of what the first
-/// view is predicted to lose by it is large; those that are predicted to lose nothing come last, since that
-/// may be wrong, too. The same seed draws the same chunks.
+/// Draws up to `most` chunks that are not at their finest level. The likelihood of each grows with the root
+/// of the error that it is predicted to cause in the first view. Chunks that are predicted to cause none come
+/// last; they are drawn, too, since that may be wrong. The same seed draws the same chunks.
 std::vector<std::size_t> sample_of(const LevelChoice& choice, std::span<const std::size_t> levels,
                                    std::size_t most, unsigned seed);
 
@@ -28,37 +29,38 @@ struct ChunkModels {
   std::vector<Model> models;
 };
 
-/// Leaves out what a model's `room` may be too small for.
+/// Leaves out the last chunks of `others` for which the model's `room` may be too small.
 void keep_what_fits(ChunkModels& others, const Model& model, const ModelChunks& chunks);
 
-/// Puts others in the place of chunks of a model, and returns those that were there.
+/// Puts `others` into the model in the place of the same chunks, and returns the Gaussians that were there.
 ChunkModels exchange(const ChunkModels& others, Model& model, ModelChunks& chunks);
 
-/// What a view loses by a sample of chunks: squared, meaned over pixels and channels.
+/// The error that the chunks of a sample cause in a view: squared, meaned over pixels and channels.
 struct SampleError {
   double predicted = 0.0, measured = 0.0;
-  double all = 0.0;        // that all chunks are predicted to lose
-  std::size_t chunks = 0;  // of the sample
+  double all = 0.0;        // what all chunks are predicted to cause
+  std::size_t chunks = 0;  // how many are in the sample
 };
 
-/// By the first view of a choice, with these levels of all chunks.
+/// The error of a sample in the first view of a choice, where all chunks have `levels`.
 SampleError sample_error(const LevelChoice& choice, std::span<const std::size_t> levels,
                          std::span<const std::size_t> sample, double measured);
 
-/// What levels are measured to lose, as a multiple of what is predicted: what was measured first counts less
-/// and less, and nothing once all that is lost was in a sample.
+/// The calibration factor: the measured error of levels over the predicted one. It is a mean over samples, in
+/// which earlier ones fade; a sample with all chunks that lose anything replaces it.
 class Calibration {
  public:
   void add(const SampleError& error);
   double factor() const { return measured_ / chunks_; }
-  /// The same, but levels that seem to lose nothing are not made as coarse as that allows: a sample of other
-  /// chunks would show them to be wrong.
+  /// The same, but at least 1/8, for choosing levels: a sample that shows hardly any error allows levels so
+  /// coarse that the next sample would show them to be wrong.
   double to_choose_by() const { return std::max(factor(), 1.0 / 8.0); }
 
  private:
-  static constexpr double prior = 8.0;  // chunks of which nothing is known but what is predicted
+  static constexpr double prior = 8.0;  // chunks that count as measured to be as predicted, at first
 
-  double chunks_ = prior, measured_ = prior;  // and times what is predicted, with what was measured before
+  double chunks_ = prior;    // sum of the samples' weights, in chunks
+  double measured_ = prior;  // sum of weight times measured over predicted error
 };
 
 }  // namespace binosplat

@@ -1,5 +1,5 @@
 #pragma once
-// Choices of levels one after the other.
+// Choices of levels that follow one another.
 
 #include <span>
 #include <string>
@@ -10,15 +10,15 @@
 
 namespace binosplat {
 
-/// Each choice goes by the one before it (choose_levels). Warns where even the coarsest levels do not fit.
+/// Gives each choice the one before it (choose_levels), and warns where even the coarsest levels do not fit.
 class Chooser {
  public:
-  /// Of files that must outlive it.
+  /// The files must outlive it.
   explicit Chooser(const LodFiles& files) : files_(files) {}
 
   LevelChoice choose(std::span<const shared::View> views, const DetailRequest& request,
                      const VisibleChunks& visible);
-  /// There is no choice before the next one.
+  /// The next choice is made as a first one.
   void forget() { before_.clear(); }
 
  private:
@@ -27,7 +27,7 @@ class Chooser {
   bool warned_ = false;
 };
 
-/// That not even the coarsest levels fit.
+/// Warns that the coarsest levels have `total` Gaussians and only `most` fit.
 void warn_of_no_room(const std::string& name, std::size_t total, std::size_t most);
 
 }  // namespace binosplat

@@ -1,5 +1,5 @@
 #pragma once
-// What views see of chunks, and what levels of detail lose of that: what choose_within() goes by.
+// What views see of chunks, and what levels of detail lose of that, for choose_within().
 
 #include <cstddef>
 #include <glm/glm.hpp>
@@ -10,22 +10,23 @@
 
 namespace binosplat {
 
-/// What is seen of all chunks by each view, and by the sphere around them, which comes last and sees what
-/// none of them does.
+/// What each view sees of all chunks, and what the sphere around them does, which comes last and sees the
+/// chunks that no view sees.
 class ChunkErrors {
  public:
-  /// Of chunks, and what was measured of them, which must outlive it.
+  /// `chunks` and `visible` must outlive it.
   ChunkErrors(const std::vector<LodChunk>& chunks, const std::vector<DetailView>& views,
               const VisibleChunks& visible, bool heads_turn);
 
-  /// Squared error of each level of a chunk, summed over px; left as it is where it is none.
+  /// Writes the squared error of each level of chunk `c`, summed over px; writes nothing where the view does
+  /// not see the chunk or its errors are not known.
   void find_errors(std::size_t view, std::size_t c, double* errors) const;
 
   double longest_focal() const { return focal_.back(); }
 
  private:
   struct Seen : ChunkVisibility {
-    double outside = 0.0;  // how far beside the picture it lies, world units
+    double outside = 0.0;  // how far beside the picture the chunk lies, world units
   };
   double area(std::size_t view, std::size_t c, std::size_t level) const;
 

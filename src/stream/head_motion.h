@@ -10,15 +10,16 @@
 
 namespace binosplat {
 
-/// Goes by the views of the last tenth of a second or two: eyes go on along a straight line, and turn as they
-/// do. What only jumps from one place to another has no motion, nor has what is seen too rarely to tell.
+/// Predicts from the views of the last tenth of a second or two that eyes go on along a straight line, and go
+/// on turning. Views that jump from one place to another have no motion, nor have views that are noted too
+/// rarely.
 class HeadMotion {
  public:
-  /// The views of a frame, always as many, in one frame of reference. From where there are more or fewer it
-  /// begins anew.
+  /// Takes the views of a frame, in one frame of reference. It begins anew where there are more or fewer than
+  /// before.
   void note(std::span<const shared::View> views, Clock::time_point now = Clock::now());
 
-  /// The views noted last, as they will be in so many seconds; the same bits where nothing moves.
+  /// The views noted last, as they will be in `seconds`; the same bits where nothing moves.
   std::vector<shared::View> ahead(double seconds) const;
 
  private:
@@ -27,7 +28,7 @@ class HeadMotion {
     Clock::time_point at;
   };
   std::vector<shared::View> views_;
-  std::array<Pose, 3> poses_;  // apart enough to tell how fast; the latest first
+  std::array<Pose, 3> poses_;  // the latest first, far enough apart in time to tell a speed
 };
 
 }  // namespace binosplat

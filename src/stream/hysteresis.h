@@ -10,21 +10,22 @@
 
 namespace binosplat {
 
-/// Chunks that are worth a thread's while.
+/// The chunks that a thread handles at a time.
 inline constexpr std::size_t chunks_at_once = 256;
 
-/// By how much a level must be too coarse, or finer than need be, before it is left: heads are never still.
+/// The factor by which a chunk's error or spacing must miss what is asked for before its level changes: heads
+/// are never still.
 inline constexpr double inertia = 1.1;
 
-/// By what the need of a level is multiplied: by 1.1 if it is not finer than the chunk's level before, else
-/// by 1 / 1.1; by 1 where there was none.
+/// The factor of the need of a level: 1.1 if it is not finer than the chunk's level before, else 1 / 1.1; 1
+/// where there was no choice before.
 inline double inertia_of(std::span<const std::size_t> before, std::size_t chunk, std::size_t level) {
   if (before.empty()) return 1.0;
   return level < before[chunk] ? 1.0 / inertia : inertia;
 }
 
-/// From an eye to the box, at least a hundredth of its diagonal: 0 within it would hide how coarse its
-/// Gaussians are.
+/// The distance from an eye to the chunk's box, at least a hundredth of the box's diagonal: 0 within the box
+/// would hide how coarse its Gaussians are.
 inline double distance_to(const LodChunk& chunk, const glm::dvec3& eye) {
   return std::max(glm::distance(eye, glm::clamp(eye, chunk.low, chunk.high)),
                   0.01 * glm::distance(chunk.low, chunk.high));

@@ -13,7 +13,7 @@ namespace binosplat {
 
 /// How much of a model with levels of detail may be there, and from where it is looked at.
 struct DetailBudget {
-  std::function<std::size_t(int degree)> gaussians;  // at most so many, where they have harmonics of a degree
+  std::function<std::size_t(int degree)> gaussians;  // how many at most, with harmonics of a degree
   std::vector<glm::dvec3> eyes;                      // in the model's frame; empty: as if from far away
 };
 

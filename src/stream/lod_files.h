@@ -1,6 +1,6 @@
 #pragma once
-// The files of a streamed SOG (formats/streamed_sog.h), of which chunks are read at levels of detail that
-// somebody chooses.
+// The files of a streamed SOG (formats/streamed_sog.h), from which chunks are read at chosen levels of
+// detail.
 
 #include <filesystem>
 #include <functional>
@@ -16,10 +16,10 @@
 
 namespace binosplat {
 
-/// Opens them once, and then only reads: several threads may call it at a time.
+/// The constructor opens the files; several threads may call all else at a time.
 class LodFiles {
  public:
-  /// In the place of a level: the chunk was not read.
+  /// Stands for the level of a chunk that was not read.
   static constexpr std::size_t not_read = any_number;
 
   /// `path`: a lod-meta.json or the folder of one. Opens what is there of its SOGs. Throws Error as
@@ -29,22 +29,23 @@ class LodFiles {
 
   /// The path of lod-meta.json, for messages.
   std::string name() const;
-  /// The model without Gaussians.
+  /// The model without its Gaussians.
   const Model& like() const { return like_; }
-  /// The leaves of its tree.
+  /// The leaves of the file's tree.
   const std::vector<LodChunk>& chunks() const { return chunks_; }
   /// The Gaussians that belong to every level.
   Model environment() const;
   std::size_t environment_count() const;
 
-  /// Gaussians at such levels of the chunks, with the environment.
+  /// The Gaussians of the environment and of all chunks at these levels.
   std::size_t count(std::span<const std::size_t> levels) const;
   /// The same at the finest levels.
   std::size_t finest() const;
-  /// Gaussians that a model has room for beside those of the levels chosen: half empty blocks, and for a
-  /// calibration sample at its finest, of an eighth of all at most.
+  /// The Gaussians for which a model needs room beside those of its levels: for blocks that are half empty
+  /// and, where the files have errors, for a calibration sample at its finest levels, an eighth of all
+  /// Gaussians at most.
   std::size_t spare() const { return spare_; }
-  /// Whether it says what its levels lose, so that they can be chosen by dB.
+  /// Whether the files say what their levels lose, so that levels can be chosen by dB.
   bool has_errors() const;
   /// Throws Error where dB are asked for of a file that has no errors.
   void check(const DetailRequest& request) const;
@@ -56,11 +57,14 @@ class LodFiles {
   };
   using Take = std::function<void(Piece piece)>;
 
-  /// Reads the chunks whose level in `from` is another one than the choice's, and hands them to `take`, one
-  /// at a time, maybe in other threads; those that get fewer Gaussians first, so that there are never more
-  /// than before or after, then by dB those files that save the most error per Gaussian, else coarse levels
-  /// before fine ones. Asks `goes_on` after some, where it is not empty, and leaves out the rest if it does
-  /// not; files then come as soon as they are decoded. Throws Error where a file has become unreadable.
+  /// Reads the chunks whose level in `from` differs from the choice's, and hands them to `take`, one at a
+  /// time, on any thread. The order is:
+  /// - chunks that get fewer Gaussians come first, so that there are never more than before or after;
+  /// - then files that save the most error per Gaussian, where the choice is by dB; else coarse levels before
+  ///   fine.
+  ///
+  /// With `goes_on`, a file is handed over as soon as it is decoded, and no other file is begun once
+  /// `goes_on` returns false. Throws Error where a file has become unreadable.
   void read(std::span<const std::size_t> from, const LevelChoice& choice, const Take& take,
             const std::function<bool()>& goes_on = {}) const;
   /// Reads the finest levels of some chunks.
@@ -69,7 +73,7 @@ class LodFiles {
  private:
   struct Source;
   struct Reading;
-  /// By number of the file, what is taken of it.
+  /// What is taken of each file, by the file's number.
   using TakenOfAll = std::vector<SogLevels::TakenOfFile>;
   std::vector<Piece> read_file(std::size_t file, const SogLevels::TakenOfFile& taken,
                                std::span<const std::size_t> levels) const;

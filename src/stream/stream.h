@@ -1,5 +1,5 @@
 #pragma once
-// A model whose levels of detail follow what is seen of it.
+// A model whose levels of detail are chosen by what views see of it.
 
 #include <filesystem>
 #include <functional>
@@ -23,17 +23,18 @@
 namespace binosplat {
 
 struct StreamSettings {
-  DetailRequest detail;  // `most` and `calibration` are the stream's
-  /// Levels may lose half of the squared error that FrameSettings::quality allows, and go by dB then.
+  DetailRequest detail;  // the stream sets `calibration`, and lowers `most` to what `room` says
+  /// With FrameSettings::quality, levels are chosen by dB and may lose half of the squared error that it
+  /// allows.
   bool shares = false;
-  /// Where levels would be chosen by dB and the finest have at most so many Gaussians, which fit, all are
-  /// drawn.
+  /// Where levels would be chosen by dB, a model whose finest levels have at most this many Gaussians, and
+  /// fit, is drawn at these.
   std::size_t all_up_to = 0;
-  /// Gaussians that there may be beside a frame of these views (none: of a usual pair), with harmonics of a
-  /// degree. Empty: any number.
+  /// Returns how many Gaussians with harmonics of a degree fit beside a frame of these views (no views: a
+  /// usual pair). Empty: any number fits.
   std::function<std::size_t(std::span<const shared::View> views, int degree)> room = {};
-  /// Gaussians that memory is made ready for at first, so that no frame waits for that: begin_frame() is to
-  /// be called.
+  /// The constructor takes memory for this many Gaussians, so that no begin_frame() waits for memory. 0 where
+  /// only settle() is called.
   std::size_t reserve = 0;
 };
 
@@ -41,8 +42,8 @@ struct StreamSettings {
 /// draws it calls begin_frame() before each frame, or settle() before each picture, and draws gpu_model().
 class Stream {
  public:
-  /// Opens the files and reads the coarsest levels. Throws Error as LodFiles does, and for dB of a file that
-  /// tells no errors.
+  /// Opens the files and reads the coarsest levels. Throws Error as LodFiles does, and where levels are to be
+  /// chosen by dB and the file has no errors of levels.
   Stream(const std::filesystem::path& path, StreamSettings settings);
   Stream(const Stream&) = delete;
   Stream& operator=(const Stream&) = delete;
@@ -53,36 +54,37 @@ class Stream {
   const ModelChunks& chunks() const { return chunks_; }
   const LodFiles& files() const { return files_; }
 
-  /// The model on the GPU, in a PRECISION_ of shared/axes.h at first, which is uploaded in the first call;
-  /// the context must be current in all that follows, and frames of it must end before the stream.
+  /// The model on the GPU. The first call uploads it, in a PRECISION_ of shared/axes.h; from then on the
+  /// context must be current in every call. Frames that draw it must be destroyed before the stream.
   std::shared_ptr<render::GpuModel> gpu_model(gl::Context& context, int precision);
 
-  /// For frames that must not wait, a call each: within about so many ms it puts what was read meanwhile into
-  /// the model and onto the GPU, or measures what one of the views shows; what the views need is chosen and
-  /// read by a thread of its own. While the views move, half of them are measured where they will be by the
-  /// time that levels are there; once they rest and all has come, one frame takes longer, and calibrates what
-  /// levels lose. The views are those of one frame in the model's frame. Returns whether the model has
-  /// changed. Of the settings count quality and those of a visibility pass. Throws what reading threw; then
-  /// nothing more is read.
+  /// To be called before each frame that must not wait. Within about `ms` it puts what the worker thread has
+  /// read into the model and onto the GPU, or draws one view of a visibility pass (where levels are chosen by
+  /// dB). The worker chooses and reads what the views need. While the views move, the second half of them is
+  /// measured where they will be by the time that levels are read. Once the views rest and the model has what
+  /// they need, one call takes longer than `ms`: it calibrates what levels lose. The views are those of one
+  /// frame, in the model's frame of reference. Of the settings it uses `quality` and what
+  /// Visibility::measure() uses. Returns whether the model has changed. Throws what the worker threw, which
+  /// then reads nothing more.
   bool begin_frame(std::span<const shared::View> views, const render::FrameSettings& settings, double ms);
   /// Whether the model has what the views of the last begin_frame() need, and nothing is to be measured
   /// again.
   bool settled() const;
 
-  /// For pictures that may wait: chooses, reads and uploads what the views need, by dB up to eleven times,
-  /// with a calibration for these views. By DetailRequest::heads_turn levels go on from those of the views
-  /// before; else they are the same whatever was drawn before. Returns whether levels have changed, and calls
-  /// `before_change` first if so. Throws Error where a file has become unreadable.
+  /// For pictures that may wait: chooses, reads and uploads what the views need before it returns; by dB up
+  /// to eleven times, with a calibration for these views. With DetailRequest::heads_turn the choice starts
+  /// from the levels of the views before; without, it does not depend on them. Returns whether levels have
+  /// changed; calls `before_change` before they do. Throws Error where a file has become unreadable.
   bool settle(std::span<const shared::View> views, const render::FrameSettings& settings,
               const std::function<void()>& before_change = {});
 
   /// Gaussians of the model.
   std::size_t gaussians() const { return chunks_.gaussians(); }
-  /// PSNR in dB that the views are predicted to have against the finest levels with the levels that the model
-  /// has now, by the calibration: of those that were measured last, where they were and ahead of that, by how
-  /// long ago it was. None where dB are not gone by, or nothing was measured yet.
+  /// The calibrated prediction of the views' PSNR against the finest levels, in dB, with the levels that the
+  /// model has now. It is of the views that were measured last, and changes from those where the eyes were to
+  /// those ahead as time goes by. None where levels are not chosen by dB, or nothing was measured yet.
   std::optional<double> reported_db() const;
-  /// How many dB are left for a frame of so many dB for frame and levels together.
+  /// The dB that a frame itself must keep, so that frame and levels together keep `together_db`.
   double quality_left(double together_db) const;
 
   /// ms that reading and uploading took in settle() since the last call.
@@ -120,41 +122,41 @@ class Stream {
   bool shows_all_ = false;
   std::shared_ptr<render::GpuModel> gpu_model_;
   std::optional<Visibility> visibility_;
-  std::vector<shared::View> views_;  // of the last begin_frame() or settle(),
-  double quality_ = 0.0;             // and FrameSettings::quality
+  std::vector<shared::View> views_;  // the arguments of the last begin_frame() or settle()
+  double quality_ = 0.0;             // likewise: FrameSettings::quality
 
   // Of begin_frame():
   struct Pass {
-    std::vector<shared::View> views;  // that were measured, here first, and those ahead,
-    std::size_t here = 0, all = 0;    // of so many;
-    VisibleChunks visible;            // by them
+    std::vector<shared::View> views;  // measured so far: first those where the eyes are, then those ahead
+    std::size_t here = 0, all = 0;    // how many views of the first kind, and in all, the pass measures
+    VisibleChunks visible;            // what `views` show
     Clock::time_point began = {};
     bool is_outdated = false;  // the model has changed since
   };
   HeadMotion motion_;
   Pass pass_;                   // the last one, or that under way
-  int passes_ = 0;              // at these views, each of all of them
-  bool is_due_ = false;         // a request for these views
-  bool is_calibrated_ = false;  // for these views
-  bool made_pass_ = false;      // in the last frame
-  double could_put_ = 0.0;      // Gaussians, since the last request,
-  double put_a_ms_ = 1 << 14;   // by the last frames
+  int passes_ = 0;              // whole passes at views_
+  bool is_due_ = false;         // whether a request for views_ is still to be made
+  bool is_calibrated_ = false;  // for views_
+  bool made_pass_ = false;      // whether the last frame drew a view of a pass
+  double could_put_ = 0.0;      // Gaussians that there was time to put into the model since the last request
+  double put_a_ms_ = 1 << 14;   // Gaussians put in a millisecond, as the last frames show
   std::unique_ptr<StreamWorker> worker_;
 
   // Of settle():
   Chooser chooser_;
   Calibration calibration_;
   unsigned samples_ = 0;
-  double sample_error_ = 0.0;  // that the last one was measured to have
+  double sample_error_ = 0.0;  // measured with the last sample
   Times times_;
   StreamWorker::Chosen chosen_;
 };
 
-/// Of a frame, for begin_frame().
+/// The most that begin_frame() is given of a frame.
 inline constexpr double levels_ms_most = 6.0;
 
-/// What is left for begin_frame() of a frame that is due after so many ms, where drawing takes so long: 2.5
-/// ms at least, or a head would wait for levels forever.
+/// The ms for begin_frame() where frames are due every `frame_ms` and drawing takes `drawn_ms`: 2.5 at least,
+/// or a head would wait for levels forever, and levels_ms_most at most.
 double time_for_levels(double frame_ms, double drawn_ms);
 
 }  // namespace binosplat

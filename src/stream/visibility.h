@@ -1,6 +1,6 @@
 #pragma once
-// The visibility pass: what views show of the chunks of a model on the GPU. Levels of detail are chosen by it
-// (stream/choice.h).
+// The visibility pass: what views show of the chunks of a model on the GPU, which stream/choice.h uses to
+// choose levels of detail.
 
 #include <memory>
 #include <optional>
@@ -16,13 +16,14 @@ namespace binosplat {
 
 class Visibility {
  public:
-  /// Of a model that others draw, too; its context must be current in every call. Not of Scaffold-GS.
+  /// Others may draw the model, too, which must not be of Scaffold-GS. Its context must be current in every
+  /// call.
   explicit Visibility(std::shared_ptr<render::GpuModel> model);
 
-  /// For each of the views what it shows of each chunk, which are the model's. Draws the views, smaller where
-  /// they are large: by up to `shrink_most` along each axis, or what is fast, to pictures of at least 512 px.
-  /// Of the settings count those of exact_of(), and the precision. Distances are means of the logarithm, over
-  /// at most 2^32 world units. The same bits each time. Throws as Frame::draw() does.
+  /// Returns for each view what it shows of each of the model's `chunks`. Draws the views; large ones are
+  /// shrunk, by up to `shrink_most` along each axis (none: what is fast here), but not below 512 px. Uses the
+  /// settings that exact_of() keeps, and the precision. Distances are means of the logarithm, over at most
+  /// 2^32 world units. The same bits each time. Throws as Frame::draw() does.
   std::vector<std::vector<ChunkVisibility>> measure(std::span<const shared::View> views,
                                                     const render::FrameSettings& settings,
                                                     const ModelChunks& chunks,
@@ -39,9 +40,9 @@ class Visibility {
 
   render::Frame frame_;
   gl::Dispatcher dispatcher_;
-  gl::Buffer sums_;    // by splat, alpha T^2: VISIBILITY_LOW_BITS of what tiles have, and those above
-  gl::Buffer owners_;  // uint by block
-  /// (view, chunk): 64 bits of alpha T^2, and of that times the logarithm of the distance.
+  gl::Buffer sums_;  // alpha T^2 by splat: sums of the tiles' low VISIBILITY_LOW_BITS, and of the bits above
+  gl::Buffer owners_;  // uint by block: its chunk
+  /// (view, chunk): alpha T^2 in 64 bits, then alpha T^2 times the logarithm of the distance.
   gl::Buffer of_chunks_;
   render::SquaredError kept_;
 };

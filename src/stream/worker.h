@@ -18,35 +18,35 @@
 
 namespace binosplat {
 
-/// Reads what was requested last, a piece after the other, until another request comes. Decoding is done on
-/// several cores, the rest of which are for frames.
+/// Chooses levels for the last request and reads their pieces, one after another, until another request
+/// comes. Its loops use up to half of the cores; the others are for frames.
 class StreamWorker {
  public:
-  /// A choice that is to be made: the views are those of one frame in the model's frame.
+  /// A choice that is to be made, for views of one frame in the model's frame of reference.
   struct Request {
     std::vector<shared::View> views;
     DetailRequest detail;
     VisibleChunks visible;
-    std::size_t here = 0;       // of the views: they come first, and others lie ahead
+    std::size_t here = 0;       // views where the eyes were; they come first, and others lie ahead
     Clock::time_point at = {};  // when the eyes were there
   };
   /// The last choice.
   struct Chosen {
-    std::shared_ptr<RunningError> error;  // that its views lose; none where it is not by dB
-    bool is_limited = false;              // more is needed than it was allowed to have read
-    std::size_t here = 0;                 // as the request says
+    std::shared_ptr<RunningError> error;  // what its views lose; none where levels are not chosen by dB
+    bool is_limited = false;              // more is needed than the request allowed to read
+    std::size_t here = 0;                 // as in the request, like `at`
     Clock::time_point at = {};
     Clock::time_point made_at = {};
   };
 
-  /// Of files, which must outlive it, whose chunks are `there` at these levels.
+  /// The files must outlive it. `there` has the level of each chunk that the model has already.
   StreamWorker(const LodFiles& files, std::vector<std::size_t> there);
   StreamWorker(const StreamWorker&) = delete;
   StreamWorker& operator=(const StreamWorker&) = delete;
 
-  /// Has this chosen and read instead of what was requested before; nothing, once something was thrown.
+  /// Replaces the request before. Does nothing once choosing or reading has thrown.
   void request(Request request);
-  /// Some of the pieces that were read, until they have so many Gaussians; none where there are none.
+  /// Takes pieces that were read, until they have `gaussians` Gaussians; none where none were read.
   std::vector<LodFiles::Piece> take(std::size_t gaussians);
   /// Whether all that was requested has been taken.
   bool is_idle() const;
@@ -65,9 +65,9 @@ class StreamWorker {
   const LodFiles& files_;
   Chooser chooser_;
 
-  mutable std::mutex mutex_;  // of what follows
+  mutable std::mutex mutex_;  // guards what follows
   std::condition_variable_any changed_;
-  std::vector<std::size_t> there_;  // levels, of chunks that were taken
+  std::vector<std::size_t> there_;  // the chunks' levels in the model, by what was taken
   std::optional<Request> request_;
   bool is_at_work_ = false, is_choosing_ = false;
   std::deque<LodFiles::Piece> pieces_;
