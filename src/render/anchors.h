@@ -27,7 +27,7 @@ struct NetworkBuffers {
   void upload(const Scaffold& scaffold);
 
   gl::Buffer weights;        // vec4, see networks.glsl
-  std::int64_t bytes = 0;    // of those
+  std::int64_t bytes = 0;    // that the weights take
   std::uint32_t hidden = 0;  // units of each network as the shader counts them: in fours
   bool bank = false;         // there is a feature bank
 };

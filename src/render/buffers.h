@@ -38,14 +38,14 @@ struct FrameBuffers {
   /// What the CPU knows of a frame: its parameters, its views and its table of depths.
   void upload(const FramePlan& plan, bool uses_measured);
 
-  /// Room for a frame of this plan, so large. Before upload().
+  /// Makes room for a frame of this plan, as `capacity` says. To be called before upload().
   void reserve(const FramePlan& plan, const ModelBuffers& model, const Capacity& capacity);
 
-  /// Once a frame is complete: what it kept, and what it measured, if it did, is the last frame's for the
-  /// next.
+  /// To be called once a frame is complete: `kept` becomes the next frame's `kept_last`, and `next_bounds`
+  /// its `bounds`, if the frame measured.
   void keep_last(bool measured_now);
 
-  /// What the frame that was drawn last draws in its view `v`, in index order.
+  /// The Gaussians that the last frame drew in its view `v`, in index order.
   std::vector<DrawnGaussian> read_drawn(const FramePlan& plan, std::uint32_t v) const;
 
   /// The blend reads these two: the begin and end of each tile's list, and the splats that the lists are of.
@@ -63,7 +63,7 @@ struct FrameBuffers {
   gl::Buffer region_rows;  // uvec2 by row of tiles of a view, where a view is not drawn whole
   gl::Buffer counters;     // Counters
 
-  // Of the order group at hand.
+  // Filled for one order group after another.
   gl::Buffer depth_keys;          // uint by Gaussian
   gl::Buffer block_arguments;     // DispatchArguments of the compaction's blocks
   gl::Buffer block_counts;        // uint, Gaussians drawn by block of COMPACT_BLOCK, scanned
@@ -72,36 +72,36 @@ struct FrameBuffers {
 
   std::vector<std::unique_ptr<DrawnBuffers>> drawn;  // by order group
 
-  // What is measured for the next frame's Th, T_upper as float (view, Gaussian); written while the last
+  // T_upper as float (view, Gaussian), measured for the next frame's Th: one is written while the last
   // frame's is read. Empty where nothing is measured.
   std::unique_ptr<gl::Buffer> bounds;
   std::unique_ptr<gl::Buffer> next_bounds;
-  // Of Scaffold-GS, by page of the model, uint (decoding, anchor): bit k: Gaussian k is there; KEPT_HIDDEN:
+  // For Scaffold-GS, by page of the model, uint (decoding, anchor): bit k: Gaussian k is there; KEPT_HIDDEN:
   // none is, these are the last frame's. Written while the last frame's is read.
   std::vector<std::unique_ptr<gl::Buffer>> kept, kept_last;
   gl::Buffer measured;     // uint by splat, bits of the largest float
   gl::Buffer depth_table;  // float by bin
 
-  // Of all views.
+  // Filled for all views together.
   gl::Buffer splats;     // Splat, or Halves (view, slot)
   gl::Buffer coverages;  // uint (slot, view): supertiles.glsl
   gl::Buffer tall;       // splats over many rows of tiles
-  // In their place, once their tiles are counted: uint (rank, view of the group), supertiles.glsl.
+  // The same buffer, once tall splats are counted: uint (rank, view of the group), supertiles.glsl.
   gl::Buffer& coverage_in_order = tall;
-  gl::Buffer pair_arguments;      // of the pairs at hand: arguments.comp
+  gl::Buffer pair_arguments;      // DispatchArguments of the pairs that arguments.comp counted
   primitives::PairBuffers pairs;  // supertile (view with --tiles all), splat (supertiles.glsl)
   gl::Buffer ranges;              // begin, end by supertile
   // Where supertiles are of several tiles, in place of `ranges`.
   gl::Buffer tile_counts;  // uint, pairs by tile of a supertile, then by block of TILE_BLOCK, scanned
   gl::Buffer tile_ranges;  // begin, end by tile
-  gl::Buffer tile_values;  // splats by these
+  gl::Buffer tile_values;  // splats, where tile_ranges says
   gl::Buffer long_lists;   // tiles with more than LONG_LIST pairs
 
-  gl::Buffer canvases;  // Canvas by view, where pictures go into images; then nothing goes into
+  gl::Buffer canvases;  // Canvas by view, where pictures go into images, and nothing into `colours`
   gl::Buffer colours;   // vec4 by pixel: C, T
   gl::Buffer z_sums;    // float by pixel
 
-  // Of blend_debug_view().
+  // Filled by blend_debug_view().
   gl::Buffer debug_values;         // float by pixel
   gl::Buffer debug_transmittance;  // uint by splat, bits of the largest T
 

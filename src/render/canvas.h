@@ -27,7 +27,7 @@ constexpr std::uint32_t steps_of(GLenum format) {
   return format == GL_RGBA16 ? 65535 : 0;
 }
 
-/// As shaders have it.
+/// The canvas as shaders have it.
 constexpr shared::Canvas on_gpu(const Canvas& canvas) {
   return {.left = static_cast<std::uint32_t>(canvas.x),
           .bottom = static_cast<std::uint32_t>(canvas.y),

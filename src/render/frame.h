@@ -21,23 +21,22 @@ namespace binosplat::render {
 
 /// What drawing a frame took.
 struct FrameReport {
-  std::uint64_t visible =
-      0;  // Gaussians in depth order, summed over the order groups (1 for parallel eyes, else 2)
-  std::uint64_t pairs = 0;            // Gaussian-tile pairs over all views, a probe's included
+  std::uint64_t visible = 0;  // Gaussians in depth order, summed over the order groups (1 for parallel eyes)
+  std::uint64_t pairs = 0;    // Gaussian-tile pairs over all views, a probe's included
   std::uint64_t supertile_pairs = 0;  // those that were sorted: fewer where supertiles are of several tiles
   std::uint32_t order_groups = 0;
-  std::uint32_t order_passes = 0;      // of the radix sort by depth, of an order group
+  std::uint32_t order_passes = 0;      // of the radix sort by depth, for the first order group
   std::uint32_t tile_sort_passes = 0;  // of that by tile
   int attempts = 0;  // with settings.quality: how often the frame was drawn until it reached that
   int redrawn = 0;   // times that buffers had to grow
-  std::vector<gl::StageTime> stages;  // GPU time of the last, complete drawing
+  std::vector<gl::StageTime> stages;  // GPU time of the complete drawing, summed over attempts
   double total_ms = 0;                // their sum
-  double submit_ms = 0;               // CPU time of handing the last drawing to the driver
+  double submit_ms = 0;               // CPU time of handing it to the driver, likewise
   std::int64_t gpu_bytes = 0;         // in buffers, the model's included
   int tile_size = 0;                  // px
   int supertile_side = 0;             // tiles along a side of a supertile
-  float tolerance = 0.0f;             // K or kappa that the frame went by
-  bool used_measured = false;         // it went by what an earlier frame measured
+  float tolerance = 0.0f;             // K or kappa that the frame was drawn with
+  bool used_measured = false;         // it used the transmittance that an earlier frame measured
   bool measured = false;              // it measured for later ones
   bool on_canvases = false;           // its pictures are on the canvases that it was given, and nowhere else
   double quality = 0.0;  // with settings.quality: its PSNR in dB, as this and earlier frames' probes tell
@@ -52,10 +51,10 @@ struct MeasuredGaussian {
 
 class Frame {
  public:
-  /// Frames of a model that others may draw, too: each has buffers and a memory of its own. The context must
+  /// Frames of a model that others may draw, too: each has buffers and a history of its own. The context must
   /// be current in every call.
   explicit Frame(std::shared_ptr<GpuModel> model);
-  /// Of a model that no other frame draws: uploads it. Both must outlive the frame. Throws as GpuModel does.
+  /// The same of a model that is uploaded for this frame alone, and must outlive it. Throws as GpuModel does.
   Frame(gl::Context& context, const Model& model, int precision = PRECISION_FULL)
       : Frame(std::make_shared<GpuModel>(context, model, precision)) {}
 
@@ -87,7 +86,7 @@ class Frame {
   FrameReport finish();
 
   /// As draw() with settings.tolerance, but no further than stage `last`: what it leaves is read from
-  /// buffers(). Only a frame drawn to its end is one that the next goes by.
+  /// buffers(). The next frame uses measurements only of frames that were drawn to their end.
   FrameReport draw_until(Stage last, std::span<const shared::View> views, const FrameSettings& settings = {},
                          const Workings& workings = {}, const std::optional<Probe>& probe = {});
 
@@ -112,10 +111,10 @@ class Frame {
   /// a reload of the model.
   std::vector<MeasuredGaussian> read_measured(std::uint32_t v) const;
 
-  /// A debug view of the last frame, SHOW_ALPHAS to SHOW_MEDIAN_DEPTH of shared/axes.h: what its blend came
-  /// by in each pixel, one image of one channel a view; below 0 where there is nothing to tell. Walks the
-  /// frame's lists again. Throws Error after a frame whose blend something else stood in for: its lists never
-  /// get to the GPU.
+  /// A debug view of the last frame, SHOW_ALPHAS to SHOW_MEDIAN_DEPTH of shared/axes.h: what its blend met in
+  /// each pixel, one image of one channel a view; below 0 where there is nothing to tell. Walks the frame's
+  /// lists again. Throws Error after a frame whose blend something else stood in for: its lists never get to
+  /// the GPU.
   std::vector<Image> read_debug_view(int what);
 
   const std::shared_ptr<GpuModel>& model() const { return model_; }
@@ -151,7 +150,7 @@ class Frame {
   void fill(FrameReport& report) const;
 
   std::shared_ptr<GpuModel> model_;
-  int uploads_ = 0;  // of the model, as far as was seen
+  int uploads_ = 0;  // GpuModel::uploads() at the last frame
   std::shared_ptr<ModelBuffers> model_buffers_;
   gl::Dispatcher dispatcher_;
   FrameBuffers buffers_;

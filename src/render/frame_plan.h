@@ -20,7 +20,7 @@ namespace binosplat::render {
 struct OrderGroup {
   std::uint32_t begin = 0;
   std::uint32_t end = 0;
-  // What depths are sorted by: their bits less those of the near plane, of which so many can be set.
+  // Depths are sorted by their bits as an integer less nearest_key, which has at most key_bits bits.
   std::uint32_t nearest_key = 0;
   std::uint32_t key_bits = 32;
 };
@@ -44,13 +44,13 @@ struct Probed {
 /// by make_plan(); what frames remember of one another is history.h's.
 struct FramePlan {
   FrameSettings settings;
-  float tolerance = 0.0f;       // that the frame goes by: the settings', or one that was found for a quality
-  bool anchor_reuse = true;     // Workings
-  bool between_pixels = false;  // likewise
+  float tolerance = 0.0f;            // K or kappa: the settings', or one that was found for a quality
+  bool anchor_reuse = true;          // Workings
+  bool between_pixels = false;       // likewise
   bool visibility_as_depth = false;  // likewise
-  int supertile_side = 1;            // tiles along a side of what pairs are sorted by
-  int degree = 0;                    // of the model's SH
-  double kernel_px2 = KERNEL_PX2;    // of the model
+  int supertile_side = 1;            // tiles along a side of a supertile
+  int degree = 0;                    // the degree of the model's SH
+  double kernel_px2 = KERNEL_PX2;    // the model's
   bool antialiased = false;
   Perspective perspective;
   std::uint32_t gaussian_count = 0;
@@ -60,12 +60,12 @@ struct FramePlan {
   std::optional<Probe> probe;
   std::vector<OrderGroup> groups;
   std::vector<glm::uvec2>
-      region_rows;  // of all views' rows of tiles (tiles/regions.glsl), where any is not drawn whole
+      region_rows;  // by row of tiles of all views (tiles/regions.glsl), where any view is not drawn whole
   std::vector<Canvas> canvases;       // where pictures go; empty: into the frame's own buffer
-  int depth_rows = 1;                 // with canvases: depths are wanted of one of so many rows, 1 or 2
+  int depth_rows = 1;                 // with canvases: depths are wanted in every row, or every second one
   std::uint32_t supertile_count = 0;  // over all views
   std::int64_t pixel_count = 0;       // over all views
-  // Of Scaffold-GS; K is 0 for other models.
+  // For Scaffold-GS; K is 0 for other models.
   std::uint32_t offset_count = 0;        // K
   std::uint32_t views_per_decoding = 1;  // views that share what the networks made
   std::int64_t anchor_bytes = 0;
@@ -106,9 +106,9 @@ struct PlanRequest {
   std::optional<Bounds> box;  // world, around all Gaussians: their depths need fewer bits to be sorted by
 };
 
-/// Of a model of this size, whatever the model says: somebody else may be at its Gaussians. Throws
-/// Error(bad_input) for no views, more than MAX_VIEWS, an empty or huge picture, and settings that contradict
-/// each other or the views.
+/// Makes the plan for a model of this size, whatever model.count() says: another thread may be changing its
+/// Gaussians. Throws Error(bad_input) for no views, more than MAX_VIEWS, an empty or huge picture, and
+/// settings that contradict each other or the views.
 FramePlan make_plan(std::span<const shared::View> views, const FrameSettings& settings, const Model& model,
                     const ModelSize& size, const Workings& workings, const PlanRequest& request = {});
 inline FramePlan make_plan(std::span<const shared::View> views, const FrameSettings& settings,

@@ -15,9 +15,9 @@
 
 namespace binosplat::render {
 
-/// The model in one precision, in pages of Gaussians whose buffers a shader can reach. Of Scaffold-GS a page
-/// holds whole anchors, and its Gaussians and their colours (as harmonics of degree 0) are made anew each
-/// frame, once for each decoding: (decoding, id).
+/// The model in one precision, in pages of Gaussians whose buffers a shader can reach. A page of a
+/// Scaffold-GS model holds whole anchors, and each frame makes its Gaussians and their colours (as harmonics
+/// of degree 0) anew, once for each decoding: (decoding, id).
 struct ModelBuffers {
   struct Page {
     std::uint32_t first = 0;  // Gaussian of the model
@@ -27,17 +27,17 @@ struct ModelBuffers {
     std::unique_ptr<AnchorBuffers> anchors;
   };
 
-  /// Uploads. `page_gaussians` limits a page, 0: what the driver reaches.
+  /// Uploads the model. A page has at most `page_gaussians`; 0: as many as a shader reaches in one buffer.
   ModelBuffers(gl::Context& context, const Model& model, int precision, std::uint32_t page_gaussians);
 
-  /// Another model in the place of this one, in the buffers that there are where they are large enough.
+  /// Uploads another model in the place of this one, into the same buffers where they are large enough.
   void upload(gl::Context& context, const Model& model);
 
-  /// What of the model has changed, which has grown if anything: places that were never filled have an
-  /// opacity of 0. Of no Scaffold-GS.
+  /// Uploads what has changed of the model, which may have grown but not shrunk; places that were never
+  /// filled have an opacity of 0. Not for Scaffold-GS.
   void upload(gl::Context& context, const Model& model, const ModelChunks::Changes& changes);
 
-  /// Room for what a frame of this plan decodes.
+  /// Makes room for what a frame of this plan decodes.
   void reserve(const FramePlan& plan);
 
   const int precision;  // PRECISION_ of shared/axes.h
@@ -54,7 +54,7 @@ struct ModelBuffers {
 
   std::uint32_t page_gaussians_;
   std::size_t page_step_ = 0;            // Gaussians
-  Scatter to_gaussians_, to_harmonics_;  // two, since one waits until the GPU has read what it had before
+  Scatter to_gaussians_, to_harmonics_;  // two, since each waits until the GPU has read its last upload
 };
 
 class GpuModel {
@@ -67,25 +67,24 @@ class GpuModel {
 
   gl::Context& context() const { return context_; }
   const Model& model() const { return model_; }
-  /// Of the model, as it was uploaded last: frames draw that, whatever became of it since.
+  /// The model's size when it was uploaded last: frames draw that, whatever became of the model since.
   const ModelSize& size() const { return size_; }
 
-  /// The model in that precision: uploaded where no frame has it so. A precision stays on the GPU while a
-  /// frame holds it, the last one asked for besides, until a reload of another one. Throws as the constructor
-  /// does.
+  /// The model in that precision, which is uploaded where no frame holds it. It stays on the GPU as long as a
+  /// frame holds it; the precision asked for last stays besides, until a reload while frames hold the other
+  /// one only. Throws as the constructor does.
   std::shared_ptr<ModelBuffers> in(int precision);
 
   /// Uploads the model again, which has changed since: it is the same scene at other levels of detail.
   /// Buffers are used again where they are large enough. Frames see by `uploads` that what they measured is
   /// of another model. Throws as the constructor does.
   void reload();
-  /// The same of these places only (ModelBuffers::upload): what frames measured of all others is of the same
-  /// Gaussians still.
+  /// The same, but uploads these places only (ModelBuffers::upload).
   void reload(const ModelChunks::Changes& changes);
   int uploads() const { return uploads_; }
 
  private:
-  /// What is uploaded, without what nobody draws any more.
+  /// Calls upload() for each precision that is held, and drops the other.
   template <typename Upload>
   void upload_all(const Upload& upload);
 

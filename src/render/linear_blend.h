@@ -17,18 +17,18 @@ class LinearBlend {
   /// does.
   LinearBlend(gl::Context& context, const Model& model)
       : LinearBlend(std::make_shared<GpuModel>(context, model)) {}
-  /// Of a model that others draw, too.
+  /// The same for a model that others draw, too.
   explicit LinearBlend(std::shared_ptr<GpuModel> model);
 
-  /// W becomes that of a view, and the picture undefined. Of the settings count those of exact_of(). Throws
-  /// as Frame::draw() does.
+  /// W becomes that of a view, and the picture undefined. Uses the settings that exact_of() keeps. Throws as
+  /// Frame::draw() does.
   void set_view(const shared::View& view, const FrameSettings& settings = {}, const Workings& workings = {});
 
   /// The Gaussians that the view draws, in index order: W has a column for each.
   const std::vector<DrawnGaussian>& drawn() const { return drawn_; }
 
-  /// The picture becomes W c, of a colour for each of drawn(), of either sign. Throws Error(out_of_memory)
-  /// for lists of splats that are too long for the driver, as does transposed().
+  /// The picture becomes W c. `colours` has one for each of drawn(), of either sign. Throws
+  /// Error(out_of_memory) for lists of splats that are too long for the driver, as does transposed().
   void set_colours(std::span<const glm::vec3> colours);
 
   /// Another picture in its place: a vec4 for each of the view's pixels, rows from the top.
@@ -41,9 +41,9 @@ class LinearBlend {
   /// each pixel's to the nearest, the same bits always. No channel may be larger than `largest`.
   std::vector<glm::dvec4> transposed(float largest);
 
-  /// What the picture would change by without each of drawn() alone: squared, over its pixels and channels,
-  /// each pixel's to the nearest 1 / CHANGE_SCALE and no more than CHANGE_MOST. Of the model's own colours,
-  /// or those that were set last.
+  /// The change of the picture without each of drawn() alone, in the model's colours or those that were set
+  /// last: squared, summed over pixels and channels, each pixel's to the nearest 1 / CHANGE_SCALE and no more
+  /// than CHANGE_MOST.
   std::vector<double> changes();
 
  private:

@@ -8,15 +8,16 @@
 
 namespace binosplat::render {
 
-/// Room that a frame starts with for the Gaussians it draws: of a small model all may be in view; of a large
-/// one hardly ever, and what is missing is grown.
+/// How many Gaussians a first frame has room to draw: all of a small model, a part of a large one, which is
+/// hardly ever all in view. A frame that needs more grows its buffers.
 std::uint32_t starting_slots(std::uint32_t gaussians);
 
-/// Pairs that a first frame has room for: most models need some tiles a Gaussian; what is missing is grown.
+/// How many pairs a first frame has room for: some tiles a Gaussian, as most models need. A frame that needs
+/// more grows its buffers.
 std::int64_t starting_pairs(const FramePlan& plan);
 
-/// Bytes that the model takes on the GPU, and those that a frame of it starts with besides. Where
-/// the plan lets the frame choose its supertiles, this takes each tile to have a list of its own.
+/// The bytes that the model takes on the GPU, and those that a first frame takes besides. Where the plan
+/// leaves the supertiles to the frame, this assumes supertiles of one tile.
 struct MemoryNeeds {
   std::int64_t model = 0;
   std::int64_t frame = 0;

@@ -16,7 +16,7 @@ class RayBlend {
   /// The model's context must be current in every call.
   explicit RayBlend(std::shared_ptr<GpuModel> model) : frame_(std::move(model)), dispatcher_(context()) {}
 
-  /// Makes the lists of views. Of the settings count those of exact_of(). Throws as Frame::draw() does.
+  /// Makes the lists of views. Uses the settings that exact_of() keeps. Throws as Frame::draw() does.
   FrameReport set_views(std::span<const shared::View> views, const FrameSettings& settings = {});
 
   /// Blends `count` rays (shared::PlacedRay) of view `v`, which must meet its picture: C and T as vec4, and

@@ -15,18 +15,18 @@
 
 namespace binosplat::render {
 
-/// What TRANSMITTANCE_DEPTH goes by: the largest T in front of any Gaussian whose view depth lies in a bin
-/// (AdaGScale, section 4.1), in equal bins over [0, far) world units. 1 beyond, and in a bin of 0, which no
-/// Gaussian was seen in.
+/// The table of TRANSMITTANCE_DEPTH: the largest T in front of any Gaussian whose view depth lies in a bin
+/// (AdaGScale, section 4.1), in equal bins over [0, far) world units. A bin of 0 is one in which no Gaussian
+/// was seen: there, and beyond `far`, frames take 1.
 struct DepthTable {
   float far = 0.0f;
   std::vector<float> bounds;
 };
 
-/// Whether frames measure the transmittance that their successors go by.
+/// Whether frames measure transmittance for later ones.
 constexpr bool measures(int transmittance) { return transmittance == TRANSMITTANCE_LAST; }
 
-/// Frames after a camera cut by which what they measure of themselves has settled; most have after three.
+/// The frames after a camera cut in which what they measure settles; three are enough for most.
 constexpr int settling_frames = 8;
 
 struct FrameSettings {
@@ -40,27 +40,26 @@ struct FrameSettings {
   /// frame.
   int measure_every = settling_frames;
   float tolerance = 0.0f;  // what Th may cost, in the unit of its rule (th_choices)
-  /// Above 0: the frame chooses its tolerance itself, so that its PSNR against the exact frame comes to so
-  /// many dB, both as 8 bits would keep them, in the view that errs most. A frame that measures its
-  /// error draws some tiles of a view exactly, too, and the next tolerance follows from what they show; one
-  /// that misses, and the first one, is drawn again (tolerance_control.h). About so many tiles; all of the
-  /// view where it has no more.
+  /// dB. Above 0: the frame chooses its tolerance itself, so that the view that errs most has about this PSNR
+  /// against the exact frame, both as 8 bits would keep them. A frame that measures its error draws some
+  /// tiles of a view exactly, too, and the next tolerance follows from what they show; one that misses, and
+  /// the first one, is drawn again (tolerance_control.h).
   float quality = 0.0f;
-  int probe_tiles = 256;
-  /// DECODE_; of Scaffold-GS only. Cyclopean needs views in pairs, the eyes at 2k and 2k + 1.
+  int probe_tiles = 256;  // how many tiles about, at least; all of the view where it has no more
+  /// DECODE_, for Scaffold-GS only. Cyclopean decodes views 2k and 2k + 1 together, from between their eyes.
   int decode = DECODE_EYES;
   /// ORDER_ and PROJECTION_ of shared/axes.h; none: what the model was trained with. Together `distance` and
   /// `tangent` make pictures that do not depend on where the head is turned.
   std::optional<int> order, projection;
-  bool anchor_cull = true;  // of Scaffold-GS: as trained; false: anchors out of view are decoded, too
+  bool anchor_cull = true;  // for Scaffold-GS: as trained; false: anchors out of view are decoded, too
   /// px: 8, 16 or 32, on which an exact picture does not depend.
   int tile_size = TILE_SIZE_DEFAULT;
-  int precision = PRECISION_FULL;  // PRECISION_: of the model, the splats and all that is made of them
+  int precision = PRECISION_FULL;  // PRECISION_, for the model, the splats and all that is made of them
   /// The median is the depth at which T falls below a half: z_sum is then (1 - T) times that. With none z_sum
   /// is 0, and a frame takes some 3 % less time. Foveated frames have the mean, on canvases none.
   Depth depth = Depth::mean;
   std::vector<ViewRegion> regions;  // what is drawn of each view; empty: all of every view
-  glm::vec3 background{0.0f};       // behind the scene, for the probe only: the pictures are without
+  glm::vec3 background{0.0f};       // behind the scene on canvases and in the probe; pictures are without
 };
 
 /// Throws Error for values that no frame has and for settings that contradict each other: an exact rule with
@@ -68,16 +67,17 @@ struct FrameSettings {
 /// `prefix` goes before the names of settings in the text: "--" where they were given as options.
 void check(const FrameSettings& settings, std::string_view prefix = "");
 
-/// What draws the exact pictures of what `settings` draw otherwise: in full precision, and with each eye's
-/// own Gaussians.
+/// Settings for the exact pictures of the same views: in full precision, and with each eye's own Gaussians.
+/// They keep order, projection, anchor_cull and tile_size of `settings`.
 FrameSettings exact_of(const FrameSettings& settings);
 
-/// What somebody may ask for as a quality, dB: less is no picture any more, and pictures of 8 bits tell no
-/// more from exact ones.
+/// The qualities that may be asked for, dB: below there is no picture any more, and above a picture of 8 bits
+/// is the exact one.
 constexpr double quality_least = 10.0, quality_most = 100.0;
 
-/// The same as check() for what somebody chose to draw by, where all must have an effect: no transmittance
-/// with a rule that uses no bound. (A frame may measure by any rule, as measure_depth_table does.)
+/// The same as check() for settings that a user chose, of which each must have an effect: it throws for a
+/// transmittance with a rule that uses no bound, too. (A frame may measure with any rule, as
+/// measure_depth_table does.)
 void check_choice(const FrameSettings& settings, std::string_view prefix = "");
 
 }  // namespace binosplat::render

@@ -14,16 +14,16 @@ namespace binosplat::render {
 
 class SquaredError {
  public:
-  /// What should be drawn, in the order of a frame's views. `levels`: 0 compares values as they are, 255 as 8
-  /// bits would keep them.
+  /// `wanted` is what should be drawn, in the order of a frame's views. `levels`: 0 compares values as they
+  /// are, 255 as 8 bits would keep them.
   SquaredError(gl::Context& context, std::span<const Picture> wanted, std::uint32_t levels = 0);
 
-  /// The same of what add() adds.
+  /// Wants nothing yet: add() says what should be drawn.
   explicit SquaredError(gl::Context& context);
 
-  /// As many more pixels that should be drawn, as a frame has just drawn them: they stay on the GPU.
+  /// Adds to what should be drawn the pixels that a frame has just drawn; they stay on the GPU.
   void add(const gl::Buffer& colours, std::uint32_t pixels);
-  /// The same of a window: its first pixel is number `first` of all, its rows are `pitch` pixels apart.
+  /// The same for a window: its first pixel is number `first` of all, its rows are `pitch` pixels apart.
   void add_window(const gl::Buffer& colours, glm::uvec2 size, std::uint32_t first, std::uint32_t pitch);
   /// Nothing should be drawn any more, until more is added.
   void clear() { pixels_ = 0; }

@@ -6,7 +6,7 @@
 
 namespace binosplat::render {
 
-/// `decode` of Scaffold-GS only, `probe` of frames that measure their error. A stage is a file here,
+/// `decode` is run for Scaffold-GS only, `probe` by frames that measure their error. A stage is a file here,
 /// programs and a test of one name.
 enum class Stage { decode, project, order, pairs, tile_sort, ranges, blend, probe };
 constexpr std::array stage_names = {"decode",    "project", "order", "pairs",
@@ -14,7 +14,7 @@ constexpr std::array stage_names = {"decode",    "project", "order", "pairs",
 static_assert(stage_names.size() == static_cast<std::size_t>(Stage::probe) + 1);
 constexpr const char* name_of(Stage stage) { return stage_names[static_cast<std::size_t>(stage)]; }
 
-/// So many of them, from the first on, the float64 reference can stand in for (measure/twins.h).
+/// The number of stages, from the first on, that the float64 reference can stand in for (measure/twins.h).
 constexpr int stages_with_twins = static_cast<int>(Stage::blend) + 1;
 
 }  // namespace binosplat::render

@@ -1,5 +1,5 @@
 #pragma once
-// --quality: which tolerance keeps frames at a wanted error, found from frame to frame without calibration.
+// --quality: finds from frame to frame, without calibration, which tolerance keeps frames at a wanted error.
 
 #include <cstdint>
 #include <span>
@@ -10,19 +10,20 @@
 
 namespace binosplat::render {
 
-/// Chooses the tolerance of each frame by what probes of it and of those before showed: tiles evenly spread
-/// over a view, in turn over all views and all of their tiles. The view that errs most must keep the promise.
-/// A rule's mean squared error grows as a power of its tolerance (docs/method.md 8: kappa^1.3, K^2 on trained
-/// scenes; kappa^10 where thousands of like Gaussians go at once), which each search after a camera cut finds
-/// anew; so the tolerance falls at once and rises carefully. A quality that is asked for may change a little
-/// from frame to frame, and is followed likewise.
+/// Chooses the tolerance of each frame by what probes of it and of frames before showed. A probe has tiles
+/// evenly spread over a view; probes take views, and the tiles of each, in turn. The control aims at the
+/// quality asked for in the view that errs most; single frames may miss it by some tenths of a dB. A rule's
+/// mean squared error grows as a power of its tolerance (docs/method.md 8: kappa^1.3, K^2 on trained scenes;
+/// kappa^10 where thousands of like Gaussians go at once), which each search after a camera cut finds anew;
+/// so the tolerance falls at once and rises carefully. The quality asked for may change a little from frame
+/// to frame; the tolerance follows it likewise.
 ///
-/// A frame that does not hold is to be drawn again: one after a camera cut, until every view was seen to
-/// hold, or one whose probe shows what nobody could foresee. Each attempt is
+/// A frame that does not hold is to be drawn again: after a camera cut, until every view was seen to hold, or
+/// where a probe shows much more error than was expected. Each attempt is
 ///   next_probe(), next_tolerance(), the drawing, measured(), and again unless holds().
 class ToleranceControl {
  public:
-  /// What was measured so far is of other views. The tolerance stays, as a first guess.
+  /// Forgets what was measured, which is of other views. The tolerance stays, as a first guess.
   void forget();
 
   /// Whether enough is known of a frame of these settings to draw it at tolerance(), without a probe.
@@ -35,7 +36,8 @@ class ToleranceControl {
   /// The tolerance for the next attempt.
   float next_tolerance();
 
-  /// What its probe showed. `settled`: the frame went by all that its successors will go by.
+  /// Takes what the attempt's probe showed. `settled`: the frame used measured transmittance, if later ones
+  /// will.
   void measured(const Probed& probed, bool settled);
 
   /// Whether the last attempt is the frame.
@@ -47,12 +49,12 @@ class ToleranceControl {
 
  private:
   struct Estimate {
-    double error = 0.0;      // squared error of a view: mean of what was seen,
-    double weight = 0.0;     // of so many tiles, fewer the longer ago,
-    double tolerance = 0.0;  // as of this tolerance
+    double error = 0.0;      // mean squared error of the view's tiles that were seen
+    double weight = 0.0;     // how many tiles; those seen longer ago count less
+    double tolerance = 0.0;  // to which `error` belongs
   };
-  // Of the attempts at one frame: the largest tolerance seen to hold and the smallest seen to miss, and what
-  // they cost.
+  // The largest tolerance that attempts at one frame showed to hold, the smallest shown to miss, and their
+  // errors.
   struct Bracket {
     double held = 0.0, held_error = 0.0;
     double missed = 0.0, missed_error = 0.0;
@@ -63,23 +65,23 @@ class ToleranceControl {
   void take(const Probed& probed);
   void learn(double target);
   double error_now(const Estimate& view) const;  // at the tolerance last given
-  double worst() const;                          // of the estimates
+  double worst() const;                          // the largest error of the estimates
   double target() const;
 
-  FrameSettings settings_;  // of the frames so far
+  FrameSettings settings_;  // the last frame's
   double slope_ = 1.0;      // squared error grows about as tolerance^slope_ here
-  double tolerance_ = 0.0;  // of the last attempt that was not exact
+  double tolerance_ = 0.0;  // the last attempt's that was not exact
   bool cut_ = true;         // no frame was kept since the cut
-  bool fresh_ = true;       // nor did the last attempt hold: all of a view is to be seen
+  bool fresh_ = true;       // after a cut or a miss: the next probe has all of a view
   std::size_t found_ = 0;   // views that hold in the frame after a cut
   bool holds_ = true;
-  bool exact_ = false;  // the attempt at hand
-  int attempts_ = 0;    // at the frame at hand, to find this view's tolerance
+  bool exact_ = false;  // whether this attempt is exact
+  int attempts_ = 0;    // at this frame, to find this view's tolerance
   Bracket bracket_;
-  std::uint32_t next_ = 0;    // of the probes, in their order: one a frame
-  Probe probe_;               // of the attempt at hand
-  double probe_tiles_ = 0.0;  // of it
-  double unevenness_ = 0.0;   // of tiles, as probes show it
+  std::uint32_t next_ = 0;    // number of the next probe in their order, one a frame
+  Probe probe_;               // this attempt's
+  double probe_tiles_ = 0.0;  // how many tiles it has
+  double unevenness_ = 0.0;   // Probed::unevenness, as the last probes show it
   std::vector<Estimate> views_;
 };
 

@@ -13,14 +13,14 @@
 
 namespace binosplat::render {
 
-/// PROJECTION_ of shared/axes.h.
+/// The define of a PROJECTION_ of shared/axes.h.
 gl::Number projection_number(int projection);
 
-/// WITH_SUBGROUPS, for programs that do the same by subgroups of 32 where there are some.
+/// The define WITH_SUBGROUPS, for programs that use subgroups of 32 where there are some.
 gl::Number subgroups_number(const gl::Context& context);
 
-/// Of what decides which pairs there are: project_cull.comp, project.comp, project_count_tall.comp,
-/// pairs.comp.
+/// The variant of the programs that decide which pairs there are: project_cull.comp, project.comp,
+/// project_count_tall.comp, pairs.comp.
 struct PairVariant {
   explicit PairVariant(const FramePlan& plan);
 
@@ -30,7 +30,7 @@ struct PairVariant {
   int order, projection;
   bool between_pixels;
   float kernel_px2;  // 0: that of shared/limits.h
-  // Not of all of them.
+  // Set for some of these programs only:
   bool measures = false;  // for later frames
   int eyes = 1;           // invocations along y of project_cull.comp
   int sh_degree = 0;
@@ -66,7 +66,7 @@ struct BlendVariant {
   std::array<gl::Number, 14> numbers() const;
 };
 
-/// All that are legal.
+/// All variants that are legal.
 std::vector<BlendVariant> blend_variants();
 
 }  // namespace binosplat::render
