@@ -32,8 +32,9 @@ struct DisparityRange {
 /// for the viewer; none: infinitely far.
 std::optional<double> screen_distance(const std::array<Camera, 2>& eyes);
 
-/// From the left eye's picture and its depth. `focus` is the distance in world units that the eyes focus on,
-/// screen_distance() or that of a headset's optics; none: infinite. Nothing where no pixel has a depth.
+/// Finds the range in the left eye's picture and its depth. `focus` is the distance in world units that the
+/// eyes focus on, screen_distance() or that of a headset's optics; none: infinite. Nothing where no pixel has
+/// a depth.
 std::optional<DisparityRange> disparity_range(const std::array<Camera, 2>& eyes, const Picture& left,
                                               std::optional<double> focus);
 
@@ -50,10 +51,10 @@ struct ComfortableRig {
 /// comfortable: what is nearest and what is farthest equally far from the screen.
 ComfortableRig comfortable_rig(const DisparityRange& range, const std::array<Camera, 2>& eyes);
 
-/// A distance of the screen for parallel eyes, in metres of so many world units: half of the left eye's
-/// picture lies nearer, unless another brings what is nearest or farthest within comfortable_degrees and
-/// leaves the other end there. To three digits, so that an option can say the same. Nothing where no pixel
-/// has a depth, or all that has is infinitely far.
+/// A distance of the screen for parallel eyes, in metres of `units_per_metre` world units: half of the left
+/// eye's picture lies nearer, unless another distance brings what is nearest or farthest within
+/// comfortable_degrees and leaves the other end there. Rounded to three digits, so that an option can say the
+/// same. Nothing where no pixel has a depth, or all that has is infinitely far.
 std::optional<double> suitable_convergence(const std::array<Camera, 2>& eyes, const Picture& left,
                                            double units_per_metre);
 

@@ -11,7 +11,7 @@
 
 namespace binosplat::stereo {
 
-/// Which of them are the eyes' only together, and which are numbers, shown as colours.
+/// Which debug views need both eyes, and which are maps: numbers, shown as colours.
 constexpr bool needs_both_eyes(int show) { return show == SHOW_DISAGREEMENT; }
 constexpr bool is_map(int show) { return show >= SHOW_DIFFERENCE; }
 
@@ -21,7 +21,7 @@ glm::vec3 map_colour(float number);
 
 struct DebugPictures {
   std::vector<Picture> pictures;  // one a view; maps have no depth, and T is 1 where there is no number
-  std::optional<double> most;     // of a map: the number of the brightest colour; the darkest is 0
+  std::optional<double> most;     // for maps: the number of the brightest colour; the darkest is 0
 };
 
 /// A frame that was drawn: its own pictures, and what it was asked to draw, left eye first.
@@ -32,19 +32,19 @@ struct DrawnFrame {
   const render::FrameSettings& settings;
 };
 
-/// Makes them of the last frame that was drawn, whatever it went by.
+/// Makes debug views of the last frame that was drawn, whatever its settings.
 class DebugView {
  public:
-  /// Of frames of this model. Context as for render::Frame.
+  /// For frames of this model. Context as for render::Frame.
   explicit DebugView(std::shared_ptr<render::GpuModel> model) : model_(std::move(model)) {}
 
-  /// All views go by one range, which ends at the first of 1, 2, 5, 10 and so on that 99 of 100 pixels do not
-  /// exceed, of a depth 80. SHOW_SPLIT shows the share `split` of each picture's width as it is, and the rest
-  /// exactly. Throws Error as render::Frame does.
+  /// All views share one range, which ends at the first of 1, 2, 5, 10 and so on that 99 of 100 pixels do not
+  /// exceed; of depths, 80 of 100. SHOW_SPLIT shows the share `split` of each picture's width as it is, and
+  /// the rest exactly. Throws Error as render::Frame does.
   DebugPictures make(int what, const DrawnFrame& drawn, const Background& background, double split = 0.5);
 
-  /// The exact pictures of these views. They are drawn by a frame of their own, so that what the other one
-  /// remembers stays.
+  /// The exact pictures of these views. A Frame of their own draws them, so that the other one's history
+  /// stays.
   std::vector<Picture> exact(std::span<const shared::View> views, const render::FrameSettings& settings);
 
   /// Gives the memory of that frame back.

@@ -1,6 +1,6 @@
 #pragma once
-// Foveated pictures: of each eye a window about its gaze, exact to the bit, and around it the same picture in
-// fewer pixels, brought to one size on the GPU. Both are views of one frame and share its depth order.
+// Foveated pictures: for each eye a window about its gaze, exact to the bit, and around it the same picture
+// in fewer pixels, brought to one size on the GPU. Both are views of one frame and share its depth order.
 
 #include <array>
 #include <glm/glm.hpp>
@@ -19,23 +19,24 @@ namespace binosplat::stereo {
 /// wherever that lies in an asymmetric frustum.
 struct Foveation {
   double inset_degrees = 20.0;  // across what is exact, all around the gaze
-  double context_scale = 0.4;   // of the picture's pixels along each axis, above 0 and up to 1
-  /// By eye, or one for all: degrees to the right of its axis and above it; empty: along it.
+  double context_scale = 0.4;   // the context's pixels along each axis over the picture's, above 0, up to 1
+  /// Degrees to the right of the eye's axis and above it, by eye or one for all; empty: along the axis.
   std::vector<glm::dvec2> gaze;
-  /// Of the inset: beyond it the window goes over into the context in so much more on each side. 0: at once.
+  /// The width of the border around the inset in which the window fades into the context, over the inset's.
+  /// 0: no border.
   double seam = 0.1;
 };
 
 /// Throws Error for numbers that no eye has; `prefix` goes before their names.
 void check(const Foveation& foveation, std::string_view prefix = "");
 
-/// Of one eye's picture, px.
+/// How one eye's picture is drawn, px.
 struct FoveatedEye {
-  glm::uvec2 inset_begin{0}, inset_end{0};  // of its pixels, those that are exact
-  double seam = 0.0;                        // around them
+  glm::uvec2 inset_begin{0}, inset_end{0};  // the pixels that are exact
+  double seam = 0.0;                        // the border's width around them
   shared::View context;                     // the picture in fewer pixels
   render::ViewRegion context_part;          // without what only the inset shows
-  render::ViewRegion window;                // of the eye's own view: the inset and its seam
+  render::ViewRegion window;                // what is drawn of the eye's own view: the inset and its seam
 };
 
 /// What is drawn of an eye's view. `nth` is the eye's place in foveation.gaze. Throws Error for what check()
@@ -43,7 +44,7 @@ struct FoveatedEye {
 FoveatedEye foveate(const shared::View& eye, const Foveation& foveation, std::size_t nth = 0);
 
 /// The views of a frame that draws these eyes, two each (its context, then its window), and the frame's
-/// settings, by whose tolerance the contexts go. The insets are exact.
+/// settings, whose tolerance is for the contexts. The insets are exact.
 struct FoveatedViews {
   std::vector<FoveatedEye> eyes;
   std::vector<shared::View> views;

@@ -32,9 +32,9 @@ class Panorama {
   Panorama(std::shared_ptr<render::GpuModel> model, int side);
 
   /// Draws what one eye or two see from their places, which their cameras say with the directions; the lenses
-  /// of these do not matter. By distance and with the tangent projection whatever the settings say, of which
-  /// those of exact_of() count; sorted from the point between the eyes. The near plane, world units, is a
-  /// distance. What is told is the sum over five views. Throws as render::RayBlend does.
+  /// of these do not matter. Uses the settings that exact_of() keeps, but always sorts by distance (from the
+  /// point between the eyes) and takes the tangent projection. `near_plane` is a distance, world units. The
+  /// report sums up five views. Throws as render::RayBlend does.
   render::FrameReport draw(std::span<const Camera> eyes, double near_plane,
                            const render::FrameSettings& settings = {});
 

@@ -19,13 +19,14 @@
 
 namespace binosplat::stereo {
 
-/// render::Canvas by view, and what they go by.
+/// render::Canvas by view, and the texture views that they use.
 struct Canvases {
   std::vector<render::Canvas> list;
-  std::vector<std::unique_ptr<gl::Texture>> views;  // of textures of sRGB
+  std::vector<std::unique_ptr<gl::Texture>> views;  // of the targets that are sRGB textures
 };
 
-/// Of how many rows a frame with canvases must know one's depth, 1 or 2, to fill these targets.
+/// The `depth_rows` of Frame::draw() with canvases, 1 or 2, with which it knows enough depths to fill these
+/// targets.
 int depth_rows(const gl::Context& context, std::span<const shared::View> views,
                std::span<const DepthTarget> targets);
 
@@ -56,9 +57,9 @@ class Presenter {
   void draw(const gl::Buffer& colours, std::span<const shared::View> views, std::size_t first, int layout,
             const Target& target, const Background& background);
 
-  /// What a frame's own blend may draw these targets by, one a view, each by itself (LAYOUT_SEPARATE): the
-  /// same bits as draw() writes afterwards, in less time. None where one of them takes a copy. Throws as
-  /// draw() does.
+  /// The canvases through which a frame's own blend may draw into these targets, one a view
+  /// (LAYOUT_SEPARATE): the same bits as draw() writes afterwards, in less time. None for more than
+  /// MAX_CANVASES targets, or where one of them takes a copy. Throws as draw() does.
   Canvases canvases(std::span<const Target> targets, const Background& background);
 
   /// Fills all of a target with the depths of view `v` of the last frame. State as for draw(). Throws

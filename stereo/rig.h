@@ -29,7 +29,7 @@ struct RigSettings {
 
 struct EyePair {
   std::array<Camera, 2> cameras;      // named NAME_left and NAME_right
-  std::array<shared::View, 2> views;  // of one anchor; tiles, offsets and groups are left to the frame
+  std::array<shared::View, 2> views;  // both have one anchor; the frame fills in tiles, offsets and groups
   bool parallel = true;  // the views' third rows are equal to the bit: one depth order serves both
 };
 

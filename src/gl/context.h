@@ -79,7 +79,7 @@ class Context {
   const Program& program(std::string_view name, const Number& variant) {
     return program(name, {&variant, 1});
   }
-  /// Of a struct that lists its numbers.
+  /// The same for a variant that is a struct with numbers().
   template <typename Variant>
   requires requires(const Variant& variant) { variant.numbers(); }
   const Program& program(std::string_view name, const Variant& variant) {
@@ -88,7 +88,8 @@ class Context {
   }
   /// Shaders are read from this folder from now on; empty: the embedded ones.
   void set_shader_folder(const std::filesystem::path& folder);
-  /// Where compiled programs are kept from now on; empty: nowhere. At first ProgramCache::default_folder().
+  /// Compiled programs are kept in this folder from now on; empty: nowhere. At first it is
+  /// ProgramCache::default_folder().
   void set_program_cache(const std::filesystem::path& folder);
   const ProgramCache& program_cache() const { return *program_cache_; }
 

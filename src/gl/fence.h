@@ -13,9 +13,9 @@ class Fence {
   Fence(const Fence&) = delete;
   Fence& operator=(const Fence&) = delete;
 
-  /// Marks what was asked of the GPU so far, instead of what was marked before.
+  /// Marks the commands given so far, instead of those marked before.
   void set();
-  /// Waits until the GPU has done what was marked, if anything was. Throws std::runtime_error if it is lost.
+  /// Waits until the GPU has run the commands marked, if any. Throws std::runtime_error if it is lost.
   void wait();
   /// Whether it would not have to wait.
   bool is_done();

@@ -1,5 +1,5 @@
 #pragma once
-// A compiled compute shader, or a fragment shader that all of a texture is drawn by, and the names in it.
+// A compiled compute shader, or a fragment shader that draws all of a texture, and the names in it.
 
 #include <cstdint>
 #include <string>
@@ -24,9 +24,9 @@ class Program {
     std::int32_t location;
   };
 
-  /// A name that ends with .frag is of a fragment shader, which goes behind whole.vert.
-  /// Takes the program from the cache, or compiles and links it. Throws Error(no_gl) with the driver's log,
-  /// places given as file:line.
+  /// A name that ends with .frag is a fragment shader's, which is linked with whole.vert. Takes the program
+  /// from the cache, or compiles and links it. Throws Error(no_gl) with the driver's log, places given as
+  /// file:line.
   Program(const Functions& gl, const std::string& name, const Defines& defines,
           const std::filesystem::path& folder, const ProgramCache& cache);
   ~Program();

@@ -1,6 +1,6 @@
 #pragma once
 // Compiled programs kept on disk: NVIDIA compiles a shader in a third of a second and loads its binary in a
-// few milliseconds. And what was found out about a driver by running some.
+// few milliseconds. It also keeps what running some programs showed about a driver.
 
 #include <cstdint>
 #include <filesystem>
@@ -23,14 +23,14 @@ class ProgramCache {
   /// home.
   static std::filesystem::path default_folder();
 
-  /// Fills a program that was made from `source` before. False: compile it.
+  /// Loads the binary of a program that was made from `source` before. False: compile it.
   bool load(const Functions& gl, std::uint32_t program, const std::string& source) const;
 
   /// Keeps a linked program. Drivers without program binaries keep none.
   void store(const Functions& gl, std::uint32_t program, const std::string& source) const;
 
-  /// What remember() was told of this driver; nothing: find it out. `asked` is what finds it, such as the
-  /// sources of shaders.
+  /// What remember() was told of this driver; nothing: find it out. `asked` names the question, such as by
+  /// the sources of the shaders that answer it.
   std::optional<std::string> recall(const std::string& asked) const;
   void remember(const std::string& asked, const std::string& found) const;
 

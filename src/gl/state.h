@@ -15,12 +15,11 @@ namespace binosplat::gl {
 /// bindings, of binding 0 and the general ones; the buffer of indirect dispatches; the images of the first
 /// MAX_CANVASES units; the scissor test of index 0, the conversion to sRGB and the rasterizer's discarding.
 ///
-/// A program that was deleted while it was in use cannot be set again: then none is.
-/// What triangles go by is kept by KeptDrawing where one is drawn.
-/// Nothing else is touched: nothing is bound to draw with (vertex arrays, framebuffers, textures, samplers),
-/// and neither are other images, pixel store, clear values, viewports, masks, tests, blending or the debug
-/// callback. Not to be used within transform feedback or conditional rendering; queries that are active count
-/// what is done here.
+/// A program that was deleted while it was in use cannot be set again: then none is. Frames and pictures
+/// leave all else alone, such as vertex arrays, framebuffers, textures, samplers, other images, pixel store,
+/// clear values, viewports, masks, tests, blending and the debug callback; where a triangle is drawn, a
+/// KeptDrawing keeps what that changes of these. Not to be used within transform feedback or conditional
+/// rendering; queries that are active count what is done here.
 class KeptState {
  public:
   explicit KeptState(const Context& context);
@@ -28,8 +27,8 @@ class KeptState {
   KeptState(const KeptState&) = delete;
   KeptState& operator=(const KeptState&) = delete;
 
-  /// What a copy reaches a framebuffer whole and unchanged with: no scissors, no conversion to sRGB, nothing
-  /// discarded (NVIDIA's driver discards copies, too).
+  /// Sets the state in which a copy reaches a framebuffer whole and unchanged: no scissors, no conversion to
+  /// sRGB, nothing discarded (NVIDIA's driver discards copies, too).
   void set_plain() const;
 
  private:
@@ -51,9 +50,10 @@ class KeptState {
   Range uniforms_;
 };
 
-/// Remembers what a triangle into a texture of depths goes by, sets it so that the triangle writes all of the
-/// texture, and sets it again when it goes: the framebuffer and vertex array to draw with, viewport 0, clip
-/// control, polygon mode, and the tests of depth, stencil, faces and clip distances. Beside a KeptState.
+/// Remembers the state that drawing a triangle into a texture of depths uses, sets it so that the triangle
+/// writes all of the texture, and restores it when destroyed: the framebuffer and vertex array to draw with,
+/// viewport 0, clip control, polygon mode, and the tests of depth, stencil, faces and clip distances. Beside
+/// a KeptState.
 class KeptDrawing {
  public:
   KeptDrawing(const Context& context, std::uint32_t framebuffer, std::uint32_t vertices, int width,

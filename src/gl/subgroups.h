@@ -1,5 +1,5 @@
 #pragma once
-// Whether a context's subgroups are what the shaders that know subgroups take them for.
+// Whether a context's subgroups are as the shaders that use subgroups expect.
 
 #include <string>
 
@@ -13,7 +13,7 @@ namespace binosplat::gl {
 /// what they found. Leaves the context's state as it is.
 std::string why_no_subgroups(Context& context);
 
-/// The last of that, found anew, without asking what the driver says.
+/// Runs those dispatches, whatever the driver and the cache say; what they found wrong, or empty.
 std::string found_in_subgroups(Context& context);
 
 }  // namespace binosplat::gl

@@ -12,13 +12,13 @@ namespace binosplat::gl {
 struct Number {
   const char* name;
   std::uint64_t value;
-  std::uint64_t count;         // of values that it may have, from 0 on
-  const char* word = nullptr;  // NAME_NAME, where files of the variant have the number's name
+  std::uint64_t count;         // how many values it may have, from 0 on
+  const char* word = nullptr;  // the value's name, defined as NAME_NAME: files of the variant are called so
   bool is_real = false;        // bits of a float; 0 leaves the shader its own number
 };
 
-/// One number for all of them: no other variant of the shader has it, since all have these in this order.
-/// Throws std::logic_error for a value that its number may not have, and where 64 bits are too few.
+/// One number for all of them, which no other variant of the shader has: all list the same numbers in one
+/// order. Throws std::logic_error for a value that its number may not have, and where 64 bits are too few.
 std::uint64_t key_of(std::span<const Number> numbers);
 
 Defines defines_of(std::span<const Number> numbers);

@@ -18,8 +18,8 @@ struct Core {
 /// Throws Error if the model is empty.
 Core core_of(const Model& model);
 
-/// A model with its core, which takes a while to find in a large one: who calls several functions that go by
-/// it makes this once. Refers to the model. Throws as core_of() does.
+/// A model with its core, which takes a while to find in a large model: a caller of several functions that
+/// use the core makes this once. Refers to the model. Throws as core_of() does.
 struct CoredModel {
   const Model& model;
   Core core;

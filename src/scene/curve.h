@@ -6,9 +6,9 @@
 
 namespace binosplat {
 
-/// Catmull-Rom's slope at a knot from those of the chords into it and out of it, which take so long. Where
-/// one of them is much slower than the other (a turn on the spot, a walk straight ahead) it is bounded so
-/// that no way overshoots.
+/// Catmull-Rom's slope at a knot from the slopes of the chords into it and out of it, which take the times
+/// `before` and `after`. Where one of them is much slower than the other (a turn on the spot, a walk straight
+/// ahead) it is bounded so that no way overshoots.
 template <typename V>
 V slope_between(const V& in, const V& out, double before, double after) {
   const V slope = (after * in + before * out) / (before + after);

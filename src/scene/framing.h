@@ -36,10 +36,10 @@ struct Capture {
 /// Nothing for no cameras, and for those that have no common up, unless `up` says what is up.
 std::optional<Capture> capture_of(std::span<const Camera> cameras, const std::optional<glm::dvec3>& up = {});
 
-/// The same for a model without cameras, with the ground that was found in it. In a place it is stood
-/// on the floor, with the `eyes` so high above it (world units; less in a tiny model), among what the model
-/// is about and where the least stands in the way of looking at that; or, where much does, in an open space.
-/// Throws Error if the model is empty.
+/// The same for a model without cameras, with the ground that was found in it. In a place, the camera stands
+/// on the floor, `eyes` world units above it (less in a tiny model), within the model's core, where the least
+/// stands in the way of looking at the core; or, where much does, in an open space. Throws Error if the model
+/// is empty.
 Capture capture_of(const CoredModel& cored, const Ground& ground, double eyes);
 
 /// A camera that looks at the densest part of the model from slightly above, so far away that the part fills

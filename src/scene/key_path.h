@@ -21,16 +21,16 @@ bool are_keys(std::span<const Camera> cameras);
 /// time and have one velocity on both sides of it. Rests before the first and after the last key.
 class KeyPath {
  public:
-  /// By the keys' own times, which must rise, from the first one on; or in so many `seconds`, at a pace as
-  /// even as places and turns allow. Throws Error for fewer than two keys, times that do not rise, and
-  /// seconds that are not above 0.
+  /// Without `seconds` the path takes the keys' own times, which must rise, from the first one on; with them
+  /// it takes that long, at a pace as even as places and turns allow. Throws Error for fewer than two keys,
+  /// times that do not rise, and seconds that are not above 0.
   explicit KeyPath(std::span<const Camera> keys, const std::optional<double>& seconds = {});
 
-  /// From the first key to the last.
+  /// How long it takes from the first key to the last.
   double seconds() const { return knots_.back().at; }
 
-  /// Where it is so many seconds after the first key, with that `time`. Its size is the first key's, to which
-  /// the others' lenses are resized().
+  /// The camera `seconds` after the first key, with that `time`. Its size is the first key's, to which the
+  /// others' lenses are resized().
   Camera at(double seconds) const;
 
  private:
@@ -49,7 +49,7 @@ class KeyPath {
   std::vector<Knot> knots_;
 };
 
-/// The cameras of a path, so many a second from its first key to its last, called path_00000 and so on.
+/// The cameras of a path, `frames_per_second` from its first key to its last, called path_00000 and so on.
 /// Throws Error for more than a million.
 std::vector<Camera> frames_of(const KeyPath& path, double frames_per_second);
 

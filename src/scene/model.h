@@ -37,8 +37,8 @@ struct Perspective {
 /// unit length: readers leave out what is not, and count it.
 struct Model {
   std::string name;                 // for people: the file's or scene's name
-  std::string format;               // of its file, for people
-  int degree = 0;                   // of the spherical harmonics, 0 to 3
+  std::string format;               // the file's, for people
+  int degree = 0;                   // the spherical harmonics' degree, 0 to 3
   std::vector<glm::vec3> position;  // world units
   std::vector<glm::vec3> scale;     // standard deviations, world units (not logarithms)
   std::vector<glm::vec4> rotation;  // unit quaternions (w, x, y, z)
@@ -50,7 +50,7 @@ struct Model {
   Perspective perspective;   // that it was trained with
   std::string axes = "RDF";  // where the model's x, y and z point in the cameras' world (scene/axes.h)
   /// Gaussians that it may come to have while it is drawn (scene/model_chunks.h): whoever draws it makes room
-  /// for so many at once, since no frame should wait for that.
+  /// for all of them at once, since no frame should wait for that.
   std::size_t room = 0;
   /// Where there is one, it makes the Gaussians anew for each eye, and all arrays above but `position` are
   /// stand-ins (scene/scaffold.h).
@@ -87,7 +87,7 @@ Bounds core_bounds(const Model& model);
 /// Box around all positions, far outliers included; the model must not be empty.
 Bounds all_bounds(const Model& model);
 
-/// What includes nothing to begin with.
+/// A box that is empty at first.
 struct Box {
   glm::dvec3 low{INFINITY}, high{-INFINITY};
 
@@ -97,7 +97,7 @@ struct Box {
   }
 };
 
-/// Around the ellipsoids of one standard deviation of all Gaussians, or of some.
+/// The box around the ellipsoids of one standard deviation of all Gaussians, or of some.
 Box reach_of(const Model& model);
 Box reach_of(const Model& model, std::span<const std::uint32_t> indices);
 

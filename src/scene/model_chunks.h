@@ -17,26 +17,26 @@ class ModelChunks {
  public:
   static constexpr std::size_t block = 64;  // Gaussians
 
-  /// Of a model without Gaussians.
+  /// Begins with a model without Gaussians.
   explicit ModelChunks(std::size_t chunks) : blocks_(chunks), counts_(chunks) {}
 
   std::size_t size() const { return counts_.size(); }
-  /// Gaussians of all chunks.
+  /// How many Gaussians all chunks have.
   std::size_t gaussians() const { return gaussians_; }
-  /// Of a Gaussian of a chunk.
+  /// The chunk of a Gaussian, which must belong to one.
   std::size_t chunk_of(std::size_t gaussian) const { return owners_[gaussian / block]; }
-  /// By block; of those of no chunk it says nothing.
+  /// The chunk of each block; for blocks of no chunk it has any number.
   const std::vector<std::uint32_t>& owners() const { return owners_; }
-  /// In which blocks a chunk lies, in the order of its Gaussians.
+  /// The blocks in which a chunk lies, in the order of its Gaussians.
   const std::vector<std::size_t>& blocks(std::size_t chunk) const { return blocks_[chunk]; }
 
   /// The Gaussians of a chunk.
   Model chunk(const Model& model, std::size_t chunk) const;
 
-  /// Puts `by`, of the model's degree, in the place of a chunk. The model, which is the same in every call,
-  /// grows where there is no place left, and its `room` by an eighth where that is full.
+  /// Puts `by`, of the model's degree, in the place of a chunk. The model must be the same in every call. It
+  /// grows where it has no free block, and its `room` by an eighth where that is full.
   void replace(Model& model, std::size_t chunk, const Model& by);
-  /// The same for several, each another chunk, side by side.
+  /// The same for several chunks, on several cores.
   struct Replacement {
     std::size_t chunk = 0;
     const Model* by = nullptr;
@@ -46,9 +46,9 @@ class ModelChunks {
   struct Range {
     std::size_t first = 0, count = 0;  // Gaussians of the model
   };
-  /// Places that are others than before; those that were never filled are not among them.
+  /// Places whose Gaussians have changed; places that were never filled are not among them.
   struct Changes {
-    std::vector<Range> filled, emptied;  // in order and apart
+    std::vector<Range> filled, emptied;  // each in order, and no two side by side
     bool empty() const { return filled.empty() && emptied.empty(); }
   };
   /// What has changed since the last call.
@@ -65,8 +65,8 @@ class ModelChunks {
   std::vector<std::vector<std::size_t>> blocks_;  // by chunk
   std::vector<std::size_t> counts_;               // by chunk
   std::vector<std::uint32_t> owners_;             // by block
-  std::vector<std::uint64_t> free_;               // a bit by block
-  std::size_t none_before_ = 0;                   // of its words has any
+  std::vector<std::uint64_t> free_;               // a bit for each block, 1 where it is free
+  std::size_t none_before_ = 0;                   // words of free_ before this one are 0
   std::vector<Change> changes_;                   // by block, since the last take_changes()
   std::vector<std::size_t> changed_;              // blocks
   std::size_t gaussians_ = 0;

@@ -9,9 +9,9 @@
 
 namespace binosplat {
 
-/// A circle to stand on, with eyes so many world units above the ground, which must have a height: around the
-/// middle of the widest open space near the middle of the model, the first place where one sees farthest
-/// across it. Nothing where there is no floor with room for a person.
+/// A circle to stand on around the middle of the widest open space near the middle of the model, with the
+/// eyes `eyes` world units above the ground, which must have a height. Its first place is where one sees
+/// farthest across the space. Nothing where there is no floor with room for a person.
 std::optional<Capture::Around> open_space(const CoredModel& cored, const Ground& ground, double eyes);
 
 }  // namespace binosplat

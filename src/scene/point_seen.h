@@ -11,9 +11,9 @@ namespace binosplat {
 struct PointSeen {
   double ahead = 0.0;    // how far along the camera's axis, world units; below 0 behind it
   glm::dvec2 at{0.0};    // px from the picture's upper left corner, where it lies ahead
-  glm::dvec2 size{0.0};  // of the picture, px
+  glm::dvec2 size{0.0};  // the picture's, px
 
-  /// Whether it lies in the picture, so many px from its sides.
+  /// Whether it lies in the picture, at least `margin` px from its sides.
   bool is_within(double margin) const {
     return at.x >= margin && at.x < size.x - margin && at.y >= margin && at.y < size.y - margin;
   }

@@ -35,7 +35,7 @@ struct Scaffold {
   std::size_t feature_count = 0;    // F
   std::vector<glm::vec3> position;  // by anchor, world units
   std::vector<glm::vec3>
-      offset_scale;                 // world units of an offset; with `rotation` what the anchor cull goes by
+      offset_scale;                 // world units of an offset; with `rotation` what the anchor cull projects
   std::vector<glm::vec3> scale;     // the largest standard deviations of its Gaussians, world units
   std::vector<glm::vec4> rotation;  // unit quaternions (w, x, y, z)
   std::vector<glm::vec3> offset;    // (anchor, K), in offset_scale

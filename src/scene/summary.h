@@ -10,13 +10,13 @@
 namespace binosplat {
 
 struct ModelSummary {
-  Bounds all;                             // of all positions, in the model's frame and units
+  Bounds all;                             // around all positions, in the model's frame and units
   Bounds core;                            // core_bounds
   std::array<std::size_t, 10> opacity{};  // Gaussians by tenths of opacity; 1 counts to the last
   /// Gaussians by decades of their largest scale: n for scales from 10^n up to 10^(n+1), world units.
   std::map<int, std::size_t> scale;
   double opacity_median = 0.0;
-  double scale_median = 0.0;  // of the largest of each three, world units
+  double scale_median = 0.0;  // each Gaussian's largest scale counts, world units
 
   std::size_t invisible = 0;            // opacity below tau, so that no pixel ever sees them
   std::size_t without_size = 0;         // all three scales are 0; in none of the decades

@@ -26,16 +26,16 @@ struct Motion {
 /// does not do, for what must hold all the same).
 const std::vector<Motion>& head_motions();
 
-/// World units that may be taken for a metre where no scale is known, as who takes photos goes about a
-/// step between two: from each camera to its nearest neighbour elsewhere, in the median. 1 for fewer than two
-/// places. Of heads_of() the cameras, as tours are.
+/// World units that may be taken for a metre where no scale is known, as who takes photos goes about a step
+/// between two: from each camera to its nearest neighbour elsewhere, in the median. 1 for fewer than two
+/// places. Eyes of a pair count as one head (heads_of()), as in tours.
 double metre_of(std::span<const Camera> cameras);
 
 struct TourSettings {
   Motion motion;
   double frames_per_second = 90.0;
   double units_per_metre = 1.0;                              // world units
-  double seconds = std::numeric_limits<double>::infinity();  // of the tour: at most the first so many
+  double seconds = std::numeric_limits<double>::infinity();  // the tour is cut off there
 };
 
 /// The cameras of a head that goes through all of `cameras`, from the first on, each next the nearest that is

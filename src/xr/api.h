@@ -54,14 +54,14 @@ namespace binosplat::xr {
   X(GetActionStateVector2f)            \
   X(GetActionStatePose)
 
-/// Of an instance; those of extensions are asked for by name (find).
+/// An instance's functions; those of extensions are asked for by name (find).
 struct Api {
 #define BINOSPLAT_XR_MEMBER(name) PFN_xr##name name = nullptr;
   BINOSPLAT_XR_FUNCTIONS(BINOSPLAT_XR_MEMBER)
 #undef BINOSPLAT_XR_MEMBER
 };
 
-/// The loader's own, before there is an instance. Throws Error(no_gl) without a loader.
+/// The loader's own functions, before there is an instance. Throws Error(no_gl) without a loader.
 struct Loader {
   PFN_xrGetInstanceProcAddr GetInstanceProcAddr = nullptr;
   PFN_xrEnumerateInstanceExtensionProperties EnumerateInstanceExtensionProperties = nullptr;
@@ -82,7 +82,8 @@ Function find(XrInstance instance, const char* name) {
 /// "XR_ERROR_RUNTIME_FAILURE"
 std::string name_of(XrResult result);
 
-/// What a call came to; throws Error(no_gl) that names it for a failure, and Lost where the runtime is gone.
+/// Checks the result of `call`: throws Error(no_gl) that names both for a failure, and Lost where the runtime
+/// is gone.
 void check(XrResult result, const char* call);
 
 /// The session or the whole instance is lost, and all that belongs to it.

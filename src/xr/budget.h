@@ -8,21 +8,22 @@ namespace binosplat::xr {
 /// How much is drawn.
 struct Effort {
   float quality = 0.0f;  // dB, as FrameSettings; 0: exactly
-  double scale = 1.0;    // of both sides of the pictures
+  double scale = 1.0;    // both sides of the pictures over those asked for
 };
 
 /// Exact frames where these are in time; else less quality, down to 37 dB, and then smaller pictures, down to
 /// half of both sides.
 class Budget {
  public:
-  /// `ms` for a frame.
+  /// A frame may take `ms`.
   explicit Budget(double ms) : ms_(ms) {}
 
   Effort effort() const;
 
-  /// What a frame of this effort took; the first of an effort does not count. One that is late by a third, or
-  /// two in a row that are late, lessen the effort; a second of frames that take less than three quarters of
-  /// the time raise it again, and after each raise that was too much it takes twice as long, up to 32 s.
+  /// A frame of this effort took `ms`, where the runtime shows one every `period_ms`. The first of an effort
+  /// does not count. One that is late by a third, or two in a row that are late, lessen the effort. A second
+  /// of frames that take less than three quarters of the time raises it again; after each raise that was too
+  /// much, the next one takes twice as many seconds, up to 32.
   void took(double ms, double period_ms);
 
  private:

@@ -35,7 +35,7 @@ class Hands {
 
   Session& session_;
   const Api& api_;
-  std::array<XrPath, 2> paths_;  // of the hands
+  std::array<XrPath, 2> paths_;  // the hands' paths
   XrActionSet set_ = XR_NULL_HANDLE;
   XrAction pose_ = XR_NULL_HANDLE, stick_ = XR_NULL_HANDLE, grab_ = XR_NULL_HANDLE, menu_ = XR_NULL_HANDLE;
   XrAction gaze_ = XR_NULL_HANDLE;  // where the runtime has eye tracking

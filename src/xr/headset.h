@@ -13,7 +13,7 @@ namespace binosplat::xr {
 struct HeadsetSettings {
   ProjectionSettings projection;
   render::FrameSettings frame;
-  std::optional<double> budget_ms;  // of a frame: quality and size follow it; 0: what the runtime has for one
+  std::optional<double> budget_ms;  // for a frame, by quality and size; 0: a share of the runtime's period
   /// Where a standing viewer's eyes are at first, and what is up: world units, in the model's own frame.
   Camera start;
   glm::dvec3 up{0.0, -1.0, 0.0};
@@ -26,10 +26,10 @@ struct Beside {
   std::function<bool()> step;
   /// Shows the left eye's picture. May be empty.
   std::function<void(const Target& left, const glm::ivec2& size)> show;
-  /// Of a model with levels of detail, called before each frame: changes the model on the GPU a little, to
-  /// what these views need; frames are due every `frame_ms`, and drawing the last one took `drawn_ms`.
-  /// Returns the quality in dB that is left for the frame itself, once levels have their half of the error.
-  /// May be empty.
+  /// For a model with levels of detail; else empty. Called before each frame with the views drawn last:
+  /// changes the model on the GPU a little, to what these need. Frames are due every `frame_ms`, and drawing
+  /// the last one took `drawn_ms`. Returns the PSNR in dB that the frame itself must keep, since levels lose
+  /// a part of what FrameSettings::quality allows; 0: the frame is drawn without a quality.
   std::function<float(std::span<const shared::View> views, double frame_ms, double drawn_ms)> levels;
 };
 

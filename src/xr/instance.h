@@ -21,7 +21,7 @@ class Instance {
   XrInstance handle() const { return instance_; }
   XrSystemId system() const { return system_; }
   const Api& api() const { return api_; }
-  /// Of an extension that is asked for where there is one.
+  /// Whether the instance has an extension, one of those that are optional.
   bool has(const char* extension) const { return extensions_.contains(extension); }
 
   const std::string& runtime() const { return runtime_; }  // "Monado 21.0.0"
@@ -50,7 +50,7 @@ class Instance {
   XrViewConfigurationType view_configuration_ = XR_VIEW_CONFIGURATION_TYPE_PRIMARY_STEREO;
 };
 
-/// What OpenXR has as a count, then that many of them.
+/// A list of OpenXR's, which `enumerate` tells by its count first, and then by its elements.
 template <typename T, typename Enumerate>
 std::vector<T> all_of(const char* call, const T& empty, const Enumerate& enumerate) {
   std::uint32_t count = 0;

@@ -18,11 +18,11 @@ namespace binosplat::xr {
 
 /// How the views of a headset are drawn.
 struct ProjectionSettings {
-  double scale = 1.0;                // of the sizes that the runtime recommends
-  double near_plane = near_default;  // world units, of a world in which a metre has
-  double units_per_metre = 1.0;      // so many
+  double scale = 1.0;                // sides of the textures over those that the runtime recommends
+  double near_plane = near_default;  // world units, while a metre has units_per_metre of them
+  double units_per_metre = 1.0;
   glm::vec3 background{0.0f};
-  /// Of a headset with two views; one with four has insets of its own. No depths go with composed pictures.
+  /// For a headset with two views; one with four has insets of its own. No depths go with composed pictures.
   std::optional<stereo::Foveation> foveation;
 };
 
@@ -31,12 +31,12 @@ class Projection {
   /// Makes textures of the recommended sizes times the scale, at most the largest that the runtime allows.
   Projection(const Session& session, gl::Context& context, const ProjectionSettings& settings);
 
-  /// What a frame is drawn by besides its settings.
+  /// How a frame is drawn, besides its settings.
   struct Draw {
-    double scale = 1.0;                // of the sides of the textures that is drawn
+    double scale = 1.0;                // sides of the pictures over those of the textures
     std::optional<XrPosef> gaze = {};  // where the foveated eyes look, if it is known
-    /// Called while the left eye's texture may still be read: its picture lies there in the lower left
-    /// corner, so large.
+    /// Called while the left eye's texture may still be read: its picture, of `size` px, lies there in the
+    /// lower left corner.
     std::function<void(const Target& left, const glm::ivec2& size)> drawn_left = {};
   };
   /// Draws the located views at a place of the model's world.
@@ -65,7 +65,7 @@ class Projection {
   /// Depths go from the nearest to the farthest, m.
   void submit(std::span<const XrView> located, std::span<const glm::ivec2> sizes, double nearest,
               double farthest);
-  /// Of formats that the runtime offers.
+  /// Make the textures, of formats that the runtime offers.
   void make_colours(std::span<const std::int64_t> offered);
   void make_depths(std::span<const std::int64_t> offered);
   std::vector<render::ViewRegion> parts_of(const render::FrameSettings& settings,
@@ -85,7 +85,7 @@ class Projection {
   XrCompositionLayerProjection layer_;
 };
 
-/// As the library takes it.
+/// The eye as the library takes it.
 Eye eye_of(const XrPosef& pose, const XrFovf& fov = {});
 
 }  // namespace binosplat::xr

@@ -19,8 +19,8 @@ struct FrameTime {
 
 class Session {
  public:
-  /// Of the OpenGL context that is current, which must stay so. Throws Error(no_gl) for a runtime that does
-  /// not take it.
+  /// Begins a session with the OpenGL context that is current, which must stay so. Throws Error(no_gl) for a
+  /// runtime that does not take it.
   explicit Session(const Instance& instance);
   ~Session();
   Session(const Session&) = delete;
@@ -31,7 +31,7 @@ class Session {
   /// x right, y up, z backward, metres. Its origin lies on the floor, or where the head was.
   XrSpace space() const { return space_; }
   bool on_floor() const { return on_floor_; }
-  /// Whether it is that of the room, whose middle is not where a head is at first.
+  /// Whether the space is the room's, whose middle is not where a head is at first.
   bool on_stage() const { return on_stage_; }
 
   /// Takes the events that have come, and begins and ends the session as they ask. False once it is over.
@@ -39,10 +39,10 @@ class Session {
   bool poll();
   /// Whether frames are to be waited for.
   bool running() const { return running_; }
-  /// Whether hands reach the program.
+  /// Whether the program gets what hands do.
   bool focused() const { return state_ == XR_SESSION_STATE_FOCUSED; }
-  /// Whether the space was moved, or is another, between the last frame asked for and this one, which then
-  /// follows nothing.
+  /// Whether the space was moved or replaced since the frame for which this was asked last: the frame shown
+  /// at `display` then continues none.
   bool take_recentred(XrTime display);
   /// Whether the visibility masks were changed since the last call.
   bool take_masks_changed();

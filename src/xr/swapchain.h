@@ -18,8 +18,7 @@ class Swapchain {
 
   const glm::ivec2& size() const { return size_; }
 
-  /// Waits until the runtime has read a texture, whose name it returns. It is to be released before the frame
-  /// ends.
+  /// Waits until the runtime has read a texture, and returns its name. Call release() before the frame ends.
   std::uint32_t acquire();
   void release();
 

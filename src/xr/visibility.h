@@ -1,5 +1,5 @@
 #pragma once
-// What lenses show of a view: tiles that they do not are not drawn (XR_KHR_visibility_mask).
+// What lenses show of a view (XR_KHR_visibility_mask): other tiles are not drawn.
 
 #include <glm/glm.hpp>
 #include <span>
@@ -16,11 +16,11 @@ struct Visible {
   std::vector<std::uint32_t> indices;  // three a triangle
 };
 
-/// Of a view of the session; empty where the runtime tells nothing.
+/// What can be seen of a view of the session; empty where the runtime tells nothing.
 Visible visible_of(const Session& session, std::uint32_t view);
 
-/// Of each row of `tile` x `tile` px of a picture, top first, the columns [x, y) that can be seen of it, and
-/// a pixel more; none, (0, 0), of some. Empty: all.
+/// For each row of tiles of `tile` x `tile` px of a picture, top first, the columns [x, y) of tiles that can
+/// be seen, with a margin of a pixel; (0, 0): none. Empty: all can be seen.
 std::vector<glm::uvec2> visible_columns(const Visible& visible, const XrFovf& fov, const glm::ivec2& size,
                                         int tile);
 

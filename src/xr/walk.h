@@ -27,9 +27,9 @@ class Walk {
   const Placement& placement() const { return placement_; }
   void reset() { placement_ = start_; }
 
-  /// So many seconds later. The left stick walks, level and towards where the head looks; the right one
-  /// turns by 30 degrees a push, and pushed forward or back raises or lowers. A hand that grabs holds the
-  /// world where it is; two turn it about the vertical and scale it, too.
+  /// Moves by what hands did in the last `seconds`. The left stick walks, level and towards where the head
+  /// looks; the right one turns by 30 degrees a push, and pushed forward or back raises or lowers. A hand
+  /// that grabs holds the world where it is; two turn it about the vertical and scale it, too.
   void step(const Eye& head, const std::array<Hand, 2>& hands, double seconds);
 
  private:
@@ -40,7 +40,7 @@ class Walk {
 
   Placement start_, placement_;
   std::array<Hand, 2> last_;
-  bool turned_ = false;  // by the push at hand
+  bool turned_ = false;  // whether this push of the stick has turned already
 };
 
 }  // namespace binosplat::xr
