@@ -1,5 +1,5 @@
-// The choices that options, shader variants and charts name. GLSL and C++ include this file; a choice's file
-// is shaders/tiles/NAME.glsl or shaders/threshold/NAME.glsl.
+// The choices that options, shader variants and charts name. GLSL and C++ include this file. Choices of
+// --tiles, --th and --projection have a file each: NAME.glsl in shaders/tiles/, threshold/ and projection/.
 #ifndef BINOSPLAT_SHARED_AXES_H
 #define BINOSPLAT_SHARED_AXES_H
 
@@ -28,11 +28,11 @@
 #define ORDER_DEPTH 0
 #define ORDER_DISTANCE 1
 
-// --projection: what a ray sees of a Gaussian (docs/method.md 2).
+// --projection: how a Gaussian is projected (docs/method.md 2).
 #define PROJECTION_AFFINE 0
 #define PROJECTION_TANGENT 1
 
-// --precision: of what a frame keeps of Gaussians and splats.
+// --precision: in how many bits a frame keeps Gaussians and splats.
 #define PRECISION_FULL 0
 #define PRECISION_HALF 1
 
@@ -51,7 +51,8 @@
 #define LAYOUT_HALF_COLOUR 11
 #define LAYOUT_GREY 12
 
-// --show: what of a frame is shown. Those from SHOW_ALPHAS on are what the blend comes by.
+// --show: what of a frame is shown. Those from SHOW_DIFFERENCE on are maps in colours; those from SHOW_ALPHAS
+// on are made by a walk through the blend's lists.
 #define SHOW_PICTURE 0
 #define SHOW_SPLIT 1
 #define SHOW_DIFFERENCE 2
@@ -94,7 +95,7 @@ inline constexpr Choice th_choices[] = {
 inline constexpr Choice transmittance_choices[] = {
     {"one", "all of it"},
     {"depth", "AdaGScale's table: the most that reaches each depth of the scene"},
-    {"last", "as the last frame measured it: for heads that stand still"},
+    {"last", "as an earlier frame measured it: for heads that stand still"},
 };
 
 inline constexpr Choice decode_choices[] = {

@@ -43,8 +43,8 @@
 // use some.
 #define MAX_CANVASES 4
 
-// Where supertiles are of several tiles, so many bits of a pair's value are its splat; above, a bit for each
-// tile.
+// Bits of a pair's value that are its splat, where supertiles are of several tiles; above them is a bit for
+// each tile.
 #define SUPERTILE_SPLAT_BITS 28
 // Sorted pairs that a work group splits among their tiles.
 #define TILE_BLOCK 1024
@@ -62,28 +62,29 @@
 #define MEASURE_TRANSPOSED 2
 #define MEASURE_CHANGES 3
 #define MEASURE_VISIBILITY 4
-// What the transposed blend sums, alpha T of a pixel times its picture of 1 at most, is rounded to steps of
-// this: the least weight that a pixel can blend, tau times the least T, is more than half of one, and the sum
-// of a tile of 1,024 px fits a word with its sign.
+// The transposed blend sums alpha T of a pixel times its picture of 1 at most, times this and rounded: the
+// least weight that a pixel can blend, tau times the least T, is more than half of one, and the sum of a tile
+// of 1,024 px fits a word with its sign.
 #define TRANSPOSED_SCALE 2097152.0
-// The squared change of a pixel without a splat, likewise, which counts as no more than this.
+// The squared change of a pixel without a splat is cut off at CHANGE_MOST, multiplied by CHANGE_SCALE and
+// rounded.
 #define CHANGE_SCALE 67108864.0
 #define CHANGE_MOST 0.015625
-// Visibility: what a splat shows in a pixel, alpha T^2; nothing once T is below the least: all that follows
-// would show no more than half of its square.
+// Visibility is what a splat shows in a pixel, alpha T^2, times VISIBILITY_SCALE and rounded. A pixel ends
+// once its T is below VISIBILITY_LEAST: all that follows would show no more than half of that squared.
 #define VISIBILITY_SCALE 1048576.0
 #define VISIBILITY_LEAST 0.01
-#define VISIBILITY_LOW_BITS 14  // of a sum over a tile: summed up apart from those above
-// What a blend tells of a pixel's depth; the last at least in every second row. Or, in its place, the sum of
-// the visibility of its splats.
+#define VISIBILITY_LOW_BITS 14  // the low bits of a tile's sum, which are summed up apart from those above
+// What a blend writes as a pixel's depth: nothing, the mean, the sum of its splats' visibility in place of a
+// depth, the median, or the median in every second row at least.
 #define DEPTH_NONE 0
 #define DEPTH_MEAN 1
 #define DEPTH_VISIBILITY 2
 #define DEPTH_MEDIAN 3
 #define DEPTH_MEDIAN_OF_TWO_ROWS 4
 
-// A splat that reaches over more rows of tiles than this has its tiles counted by many invocations together;
-// so many splats a work group, and so many groups along x.
+// The tiles of a splat that reaches over more than TALL_ROWS rows of tiles are counted by many invocations
+// together: TALL_EACH splats a work group, TALL_ROW groups along x.
 #ifndef TALL_ROWS
 #define TALL_ROWS 4u
 #endif
@@ -107,7 +108,8 @@
 #ifndef SORT_BLOCK
 #define SORT_BLOCK 2048
 #endif
-// Bits of a radix sort's digit: at most so many, where that saves a pass over 8 (primitives/radix_sort.h).
+// The most bits of a radix sort's digit; it has more than 8 where that saves a pass
+// (primitives/radix_sort.h).
 #define SORT_BITS_MAX 9
 #define SORT_PASSES_MAX 4u
 // Groups that count the digits of all passes: what an H200 has in work. More would add more counts to the

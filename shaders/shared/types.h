@@ -13,10 +13,10 @@ using vec2 = glm::vec2;
 using vec4 = glm::vec4;
 #endif
 
-// One eye's camera. World to eye is v = rows * (p - anchor) + translation, rows the camera's axes (x right, y
-// down, z forward) in the world. The anchor is a point near all views, the same number in the views of a rig:
-// subtracting it first keeps fp32 exact far from the origin, and views with equal anchors and third rows see
-// equal depths to the bit.
+// One view's camera. World to eye is v = rows * (p - anchor) + translation, rows the camera's axes (x right,
+// y down, z forward) in the world. The anchor is a point near all views, the same number in the views of a
+// rig: subtracting it first keeps fp32 exact far from the origin, and views with equal anchors and third rows
+// see equal depths to the bit.
 struct View {
   vec4 row_x;   // axis x, then translation x
   vec4 row_y;   // axis y, then translation y
@@ -34,15 +34,15 @@ struct View {
   uint supertile_offset;  // this view's first supertile in the frame
   uint pixel_offset;      // this view's first pixel in the frame's pixel buffers
   uint order_group;       // views of equal number share one depth order
-  uint pitch;  // px from one of its tiles to the next: a tile's side, more in a probe, whose tiles lie apart
+  uint pitch;  // px from one of its tiles to the next: a tile's side; more in a probe, whose tiles lie apart
   uint shift_x;  // px, where its first tile begins
   uint shift_y;
   uint is_probe;          // 1: only tiles that lie apart, drawn exactly
-  uint left;              // px of the picture that its first pixel is: above 0 in a window, whose `width` and
-  uint top;               // `height` are its own
-  uint first_row;         // of its tiles among the rows that say which are drawn (tiles/regions.glsl)
-  float tolerance_share;  // of the frame's tolerance
-  float low_pass_share;   // of the low-pass, px^2, by which no Gaussian loses weight (projection.glsl)
+  uint left;              // px: where its picture begins in the whole one; above 0 in a window, whose
+  uint top;               // `width` and `height` are its own
+  uint first_row;         // place of its first row of tiles in region_rows (tiles/regions.glsl)
+  float tolerance_share;  // its tolerance over the frame's
+  float low_pass_share;   // share of the low-pass that takes no weight from Gaussians (projection.glsl)
 };
 
 // What holds for all of a frame. It lies in a uniform block, whose std140 agrees with std430 where there are
@@ -51,19 +51,19 @@ struct FrameParameters {
   vec4 background;      // rgb, display-referred; w: unused
   float tolerance;      // of the threshold rule: K or kappa
   float far;            // world units, where the table of depths ends
-  uint depth_bins;      // of that table
+  uint depth_bins;      // how many bins it has
   uint has_bounds;      // 0: no earlier frame measured bounds of the transmittance for this one
   uint view_count;      // with the probe
-  uint asked;           // without it; views from here on are exact
-  uint probed;          // the view that the probe is of; MAX_VIEWS without one
-  uint gaussian_count;  // of the model
-  uint slots;           // that each view has room for
-  uint tile_count;      // over all views, as their supertiles have them
+  uint asked;           // views without the probe, which comes next and is exact
+  uint probed;          // the number of the view that the probe is of; MAX_VIEWS without one
+  uint gaussian_count;  // the model's
+  uint slots;           // how many each view has room for
+  uint tile_count;      // tiles of all supertiles, over all views
   uint list_per_view;   // 1 with --tiles all: a view's tiles share one list
-  // Of Scaffold-GS.
+  // For Scaffold-GS:
   uint offset_count;        // K
   uint views_per_decoding;  // views that share what the networks made
-  uint decoding_of_probe;   // that of the view it belongs to
+  uint decoding_of_probe;   // number of the decoding that the probe shares with its view
   uint anchor_cull;         // 1: anchors that touch no tile of 3D-GS are not decoded
   uint unused;
 };
@@ -79,7 +79,7 @@ struct Gaussian {
 struct Anchor {
   vec4 position;      // world
   vec4 rotation;      // unit quaternion (w, x, y, z)
-  vec4 offset_scale;  // world units of an offset; with `rotation` what the anchor cull goes by
+  vec4 offset_scale;  // world units of an offset; with `rotation` what the anchor cull projects
   vec4 scale;         // the largest standard deviations of its Gaussians, world units
 };
 
@@ -89,24 +89,24 @@ struct Splat {
   float depth;    // view z, world units
   float opacity;  // sigma
   vec4 conic;     // Q.xx, Q.xy, Q.yy in px^-2; w: sqrt(det C2) in px^2
-  vec4 colour;  // rgb, display-referred; w: rho = 2 ln(sigma / Th), the level that tile tests go by, and the
-                // blocks of the approximate blend
+  vec4 colour;    // rgb, display-referred; w: rho = 2 ln(sigma / Th), the level that tile tests use, and the
+                  // blocks of the approximate blend
 };
 
 // Where the blend writes a view's picture as it is shown, in the image of the view's number.
 struct Canvas {
   uint left;  // px, its lower left corner
   uint bottom;
-  uint steps;        // that the image's colours have above 0; 0: they are floats
+  uint steps;        // how many values above 0 the image's colours have; 0: they are floats
   uint keeps_alpha;  // 1: no background, but associated alpha
   uint linear;       // 1: the image's numbers mean light, not what a screen takes
   uint unused_1, unused_2, unused_3;
 };
 
-// A ray of a picture of its own, by where it meets a view's.
+// A ray for a pixel of another picture (a panorama), by where it meets a view's picture.
 struct PlacedRay {
-  vec2 pixel;  // of the view; (0, 0) is the centre of the first
-  uint place;  // in its own picture, row by row
+  vec2 pixel;  // in the view's picture; (0, 0) is the centre of the first pixel
+  uint place;  // number of its pixel in the other picture, row by row
   uint unused;
 };
 
@@ -116,10 +116,10 @@ struct PlacedRay {
 struct Counters {
   uint visible;          // Gaussians in depth order, summed over the order groups
   uint order_wanted;     // the most Gaussians that one order group had
-  uint pairs;            // Gaussian-supertile pairs wanted, all views
+  uint pairs;            // Gaussian-supertile pairs wanted, over all views
   uint overflow;         // OVERFLOW_ bits
   uint truncated_lists;  // tiles whose list the driver ended early: the picture must not be used
-  uint median_depth;     // bits of a float: of what the last order group drew, world units
+  uint median_depth;     // bits of a float: median of what the last order group was sorted by, world units
   uint probe_low;   // squared error of the probe, summed over pixels and channels, times PROBE_SCALE: low and
   uint probe_high;  // high half
   uint probe_squares_low;  // squares of such sums of THREADS pixels each, likewise
@@ -128,13 +128,13 @@ struct Counters {
   uint long_x, long_y, long_z;
   uint tall;  // splats whose tiles are counted together, and the groups of that launch
   uint tall_x, tall_y, tall_z;
-  uint tile_pairs;  // Gaussian-tile pairs wanted where supertiles are of several tiles, all views
+  uint tile_pairs;  // Gaussian-tile pairs wanted, over all views, where supertiles are of several tiles
 };
 
-#define KEPT_HIDDEN 0x80000000u  // among the bits of an anchor's Gaussians: not decoded, the last frame's
+#define KEPT_HIDDEN 0x80000000u  // bit of an anchor that was not decoded; the others are the last frame's
 #define COUNT_MAX 0xFFFFFFFFu
 #define PROBE_SCALE 4194304.0       // 2^22: a work group's sum of at most 3 * THREADS stays below 2^32
-#define DEPTH_KEY_NONE 0xFFFFFFFFu  // of a Gaussian that no view of the order group draws
+#define DEPTH_KEY_NONE 0xFFFFFFFFu  // the key of a Gaussian that no view of the order group draws
 #define ARGUMENTS_ORDER 0u          // what a total counts: the Gaussians of one order group
 #define ARGUMENTS_PAIRS 1u          // the pairs of one order group, after those of the groups before it
 #define ARGUMENTS_ALL_PAIRS 2u      // the pairs of all groups
