@@ -36,7 +36,7 @@ struct ViewRegion {
   /// For each row of tiles the columns of tiles [x, y) that are drawn; nothing is drawn of others, such as
   /// those that no lens shows. Empty: all.
   std::vector<glm::uvec2> columns = {};
-  /// px. Of tiles that lie within [hole_begin, hole_end) nothing is drawn, either: what an inset covers.
+  /// px. Tiles that lie within [hole_begin, hole_end) are not drawn, either: what an inset covers.
   glm::uvec2 hole_begin{0}, hole_end{0};
   float tolerance_share = 1.0f;  // times the frame's tolerance is the view's; 0: the view is exact
   /// Where this picture has fewer pixels a degree than the one that it stands for, as the wide one around an

@@ -44,7 +44,7 @@ struct Picture {
         z_sum(static_cast<std::size_t>(w) * h) {}
 };
 
-/// Of a pixel: not asked for, the mean of all that is seen in it, or where T falls below a half.
+/// A pixel's depth: not asked for, the mean of all that is seen in it, or where T falls below a half.
 enum class Depth { none, mean, median };
 
 /// Whether pictures are the same in number, size and every bit.

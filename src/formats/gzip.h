@@ -13,7 +13,7 @@ struct z_stream_s;
 
 namespace binosplat {
 
-/// The best that deflate, which zip archives have, too, reaches: so many bytes of one.
+/// The most bytes that deflate, which zip archives use, too, can make of one.
 inline constexpr std::size_t deflate_growth_most = 1032;
 
 class GzipReader {

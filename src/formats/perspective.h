@@ -10,8 +10,9 @@
 
 namespace binosplat {
 
-/// Of an object with "sortingMethod" (cameraDistance or zDepth) and "projection" (perspective or tangential);
-/// what it does not say is `unless_said`, and so, with a warning, is what is not known.
+/// Reads "sortingMethod" (cameraDistance or zDepth) and "projection" (perspective or tangential) of an
+/// object. What it does not say is taken from `unless_said`, and so, with a warning, is a word that is not
+/// known.
 Perspective read_perspective(const JsonValue& holder, const Perspective& unless_said = {});
 
 /// Adds them to an object where they are not 3D-GS's.

@@ -10,7 +10,7 @@ namespace binosplat {
 /// Gaussians that are taken of any file, whatever its size: who trusts a file says so (--max-memory).
 inline std::atomic<std::uint64_t> gaussians_allowed{0};
 
-/// The most Gaussians that readers take of a file of so many bytes on the disk: one a byte, while real models
+/// The most Gaussians that readers take of a file of `bytes` bytes on the disk: one a byte, while real models
 /// have three bytes and more for each however they are packed, and a million besides, which made-up models of
 /// equal values need.
 inline std::uint64_t most_gaussians_in(std::uint64_t bytes) {

@@ -10,7 +10,8 @@
 
 namespace binosplat {
 
-/// The higher harmonics of up to so many entries, which labels of 16 bits name, lie in rows of so many.
+/// The palette of higher harmonics has up to sog_palette_most entries, which labels of 16 bits name, in rows
+/// of sog_palette_columns.
 inline constexpr std::size_t sog_palette_columns = 64, sog_palette_most = 65536;
 
 /// Whether a JSON file is the meta.json of a SOG.

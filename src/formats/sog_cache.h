@@ -16,7 +16,7 @@ class SogCache {
   /// So many bytes at most, beside those that are in use.
   explicit SogCache(std::size_t most) : most_(most) {}
 
-  /// The pictures of a SOG, which goes by a number. Throws Error as decoding them does.
+  /// The pictures of the SOG that has this number. Throws Error as decoding them does.
   std::shared_ptr<const SogSource::Textures> textures(std::size_t number, const SogSource& source);
   bool has(std::size_t number);
 

@@ -43,8 +43,8 @@ class SogLevels {
   };
   using TakenOfFile = std::vector<Taken>;
 
-  /// Of the parsed lod-meta.json at `path`. Throws Error, here as in all that follows, naming the key that is
-  /// wrong.
+  /// Reads the parsed lod-meta.json at `path`. Throws Error, here as in all that follows, naming the key that
+  /// is wrong.
   SogLevels(const std::filesystem::path& path, const nlohmann::json& json);
 
   int count() const { return count_; }
@@ -90,8 +90,8 @@ class SogLevels {
 void check_taken(const std::filesystem::path& lod_meta, const std::filesystem::path& file,
                  const SogSource& source, std::span<const SogLevels::Taken> taken);
 
-/// Throws Error where so many Gaussians are wanted of files of so many bytes (SogSource::bytes) in all: each
-/// may have its million without a reason, but not a thousand files.
+/// Throws Error where `total` Gaussians are too many for files of `bytes` bytes (SogSource::bytes) in all:
+/// each may have its million without a reason, but not a thousand files.
 void check_total(const std::filesystem::path& lod_meta, std::size_t total, std::uint64_t bytes);
 
 }  // namespace binosplat

@@ -6,9 +6,9 @@
 
 namespace binosplat {
 
-/// Of PNG, by the sums of its chunks up to the last; of OpenEXR in lines, by its blocks; of WebP, by the size
-/// in its header; of JSON, by reading it. What is packed in them is not unpacked. False for other files, and
-/// where there is none or it cannot be read.
+/// Tells it of PNG by the sums of its chunks up to the last; of OpenEXR in lines, by its blocks; of WebP, by
+/// the size in its header; of JSON, by reading it. What is packed in them is not unpacked. False for other
+/// files, and where there is none or it cannot be read.
 bool is_whole(const std::filesystem::path& file);
 
 /// Whether a SOG has its meta.json and all files that this names, whole.

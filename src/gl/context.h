@@ -98,8 +98,8 @@ class Context {
   std::int64_t peak_bytes() const { return peak_; }
   void count_allocation(std::int64_t bytes);
 
-  /// GL errors recorded before this call, oldest first: asked before drawing, those of whoever used the
-  /// context until then.
+  /// GL errors recorded before this call, oldest first; where it is called before drawing they are the
+  /// caller's.
   std::vector<GLenum> take_errors() const;
 
   /// Throws Error(no_gl) if the GPU was reset, after which nothing that was on it can be used. Drivers tell

@@ -26,7 +26,7 @@ Image before(const glm::vec3& background, const Image& image);
 /// alpha stays, and counts. Returns whether something that is seen through was put before a background.
 bool make_shown(Image& a, Image& b, const Background& background = {});
 
-/// Of two such pictures. Throws Error where they cannot be compared (measure/comparable.h).
+/// Compares two such pictures. Throws Error where they cannot be compared (measure/comparable.h).
 Comparison compare(const Image& a, const Image& b, double pixels_per_degree = flip_pixels_per_degree);
 
 }  // namespace binosplat::measure

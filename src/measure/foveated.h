@@ -16,8 +16,8 @@ struct Gaze {
   double fov_degrees = 0;  // that the picture's width takes, its middle straight ahead
 };
 
-/// The contrast that a grating needs to be seen, in cycles a degree and so many degrees from where the eye
-/// looks: Geisler and Perry, A real-time foveated multiresolution system for low-bandwidth video
+/// The contrast that a grating of `cycles_per_degree` needs to be seen `eccentricity_degrees` from where the
+/// eye looks: Geisler and Perry, A real-time foveated multiresolution system for low-bandwidth video
 /// communication, 1998. Above 1 where none is seen.
 double contrast_threshold(double cycles_per_degree, double eccentricity_degrees);
 
@@ -36,8 +36,8 @@ struct FoveatedComparison {
   double visible = 0;       // of all pixels
 };
 
-/// Of two such pictures as measure::psnr() takes. Throws Error where they cannot be compared, and for a gaze
-/// outside the picture or a field of view that no pinhole has.
+/// Compares two such pictures as measure::psnr() takes. Throws Error where they cannot be compared, and for a
+/// gaze outside the picture or a field of view that no pinhole has.
 FoveatedComparison compare_foveated(const Image& a, const Image& b, const Gaze& gaze);
 
 /// By pixel, how many times the threshold the difference reaches, one channel.

@@ -11,7 +11,7 @@ struct ToleranceSearch {
   double largest = 1e9;
   double within = 0.01;     // the search ends where a value that holds is this near to the target
   double narrowest = 1e-6;  // ... or where the next tolerance that fails is only this share larger: a step
-  int evaluations = 40;     // ... or after so many
+  int evaluations = 40;     // ... or after this many evaluations
 };
 
 struct FoundTolerance {

@@ -21,7 +21,7 @@ class Mirror {
 
   gl::Context& context() { return *context_; }
 
-  /// Takes what lies in the lower left corner of a texture, so many px, as large as the window has room for.
+  /// Takes the `size` px in the lower left corner of a texture, scaled to what the window has room for.
   void show(const Target& picture, const glm::ivec2& size);
 
   /// Brings it onto the screen, and takes the window's events: false once it is closed, or Escape was pressed

@@ -75,14 +75,13 @@ class Session {
   Navigator head;
   Choices choices;
 
-  /// Of a stream: has its levels follow what the next frame shows, which takes some ms; all else stays.
-  /// Throws what reading them threw.
+  /// Has the stream's levels, if there is one, follow what the next frame shows, which takes some ms; all
+  /// else stays. Throws what reading them threw.
   void follow_levels();
   /// None where the model has no levels that follow.
   const Stream* stream() const { return loaded_.stream.get(); }
 
-  /// What is seen next is drawn anew; with thresholds that go by what frames measure, until those have
-  /// settled.
+  /// What is seen next is drawn anew; with thresholds that use what frames measure, until those have settled.
   void change();
   /// The same while the head is under way: frames may be smaller, until it rests.
   void move();
@@ -124,9 +123,9 @@ class Session {
   /// PSNR of what is drawn against the exact frame, dB, over both eyes.
   double psnr_against_exact();
 
-  /// Of the last frames drawn, newest last.
+  /// The reports of the last frames drawn, newest last.
   const std::deque<render::FrameReport>& reports() const { return reports_; }
-  /// Of a map: the number of the brightest colour (stereo/debug_view.h).
+  /// The number of a map's brightest colour (stereo/debug_view.h).
   std::optional<double> most_shown() const { return shown_.pictures.most; }
   std::size_t frames_drawn() const { return frames_drawn_; }
   const std::string& trouble() const { return trouble_; }

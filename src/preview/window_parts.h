@@ -44,7 +44,7 @@ class Window {
   void rescale();
   void tell(const std::string& message, bool trouble = false);
 
-  // Of hands.
+  // What hands do.
   bool down(int key) const { return glfwGetKey(window_, key) == GLFW_PRESS; }
   glm::dvec3 direction() const;
   bool going() const { return direction() != glm::dvec3(0.0); }

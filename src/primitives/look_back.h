@@ -13,7 +13,7 @@ class LookBack {
  public:
   explicit LookBack(gl::Context& context) : words_(context, "counts that are looked back at") {}
 
-  /// Room for so many groups; no dispatch may be under way that uses it.
+  /// Makes room for `groups` groups; no dispatch may be under way that uses it.
   void reserve(std::int64_t groups) {
     const std::int64_t bytes = (4 + 2 * groups) * 4;
     if (words_.bytes() >= bytes) return;

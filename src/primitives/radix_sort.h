@@ -40,17 +40,17 @@ class RadixSort {
         digits_(context, "digits of the radix sort"),
         scan_(context) {}
 
-  /// Room to sort as many pairs as they have room for by so many bits.
+  /// Makes room to sort as many pairs as `pairs` has room for, by `bits` bits.
   void reserve(const PairBuffers& pairs, std::uint32_t bits);
 
-  /// Pairs that a work group has where there is room for so many: fewer where it is for few. Who fills
-  /// SortArguments for them needs it.
+  /// The pairs of a work group where there is room for `capacity` pairs: fewer where that is for few. To fill
+  /// SortArguments with.
   static std::uint32_t block(std::int64_t capacity);
 
-  /// Counters (uint) that a sort of so many pairs by `bits` bits takes besides.
+  /// The counters (uint) that a sort of `capacity` pairs by `bits` bits takes besides.
   static std::int64_t counters_of(std::int64_t capacity, std::uint32_t bits);
 
-  /// Bits that each pass of a sort by `bits` bits takes: 8, or 9 where that makes a pass less; and the
+  /// The bits that each pass of a sort by `bits` bits takes: 8, or 9 where that saves a pass; and how many
   /// passes.
   static std::uint32_t digit_bits(std::uint32_t bits);
   static std::uint32_t passes(std::uint32_t bits);

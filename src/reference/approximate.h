@@ -20,7 +20,7 @@ struct Approximation {
 /// By a tile test and a rule of shared/axes.h; `tolerance` as of threshold().
 Approximation approximation_of(int tiles, int th, double tolerance);
 
-/// Whether a splat is blended in the block that holds pixel (x, y), of tiles of so many px.
+/// Whether a splat is blended in the block that holds pixel (x, y), with tiles of `tile_size` px.
 bool reaches_block(const Splat& splat, int x, int y, int tile_size);
 
 }  // namespace binosplat::reference

@@ -42,7 +42,7 @@ struct Splat {
   glm::dvec3 conic{0.0};         // Q, the inverse of C2, in px^-2
   double det = 0.0;              // of C2, px^4; with a cone in px of the picture's middle
   glm::dvec3 colour{0.0};        // display-referred, not below 0, without an upper limit
-  double threshold = ALPHA_MIN;  // Th, the alpha whose reach the tile tests go by; see threshold.h
+  double threshold = ALPHA_MIN;  // Th, the alpha whose reach the tile tests use; see threshold.h
   std::optional<Cone> cone;      // with PROJECTION_TANGENT, in the place of covariance
                                  // and conic
   bool drawn = false;            // deeper than the near plane, det > 0, and Th (threshold.h) not above sigma

@@ -1,7 +1,7 @@
 #pragma once
 // Th, the alpha below which a Gaussian makes no pair with a tile (docs/method.md 5). By the squared rule the
-// blend leaves it out of blocks, too, where its alpha stays below (approximate.h); else it goes by tau and
-// the true alpha.
+// blend leaves it out of blocks, too, where its alpha stays below (approximate.h); else it uses tau and the
+// true alpha.
 
 #include <span>
 #include <vector>

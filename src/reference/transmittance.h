@@ -1,5 +1,5 @@
 #pragma once
-// How much of each Gaussian a view shows: what Th may go by in the next frame (docs/method.md 5).
+// How much of each Gaussian a view shows: what Th may use in the next frame (docs/method.md 5).
 
 #include <vector>
 

@@ -23,7 +23,7 @@ inline constexpr std::size_t sample_room = 24;
 std::vector<std::size_t> sample_of(const LevelChoice& choice, std::span<const std::size_t> levels,
                                    std::size_t most, unsigned seed);
 
-/// The Gaussians of some chunks, each another one.
+/// Some chunks, each named once, and the Gaussians of each.
 struct ChunkModels {
   std::vector<std::size_t> chunks;
   std::vector<Model> models;

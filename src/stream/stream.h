@@ -63,9 +63,9 @@ class Stream {
   /// dB). The worker chooses and reads what the views need. While the views move, the second half of them is
   /// measured where they will be by the time that levels are read. Once the views rest and the model has what
   /// they need, one call takes longer than `ms`: it calibrates what levels lose. The views are those of one
-  /// frame, in the model's frame of reference. Of the settings it uses `quality` and what
-  /// Visibility::measure() uses. Returns whether the model has changed. Throws what the worker threw, which
-  /// then reads nothing more.
+  /// frame, in the model's frame of reference. It uses the settings `quality` and what Visibility::measure()
+  /// uses. Returns whether the model has changed. Throws what the worker threw, which then reads nothing
+  /// more.
   bool begin_frame(std::span<const shared::View> views, const render::FrameSettings& settings, double ms);
   /// Whether the model has what the views of the last begin_frame() need, and nothing is to be measured
   /// again.
@@ -107,7 +107,7 @@ class Stream {
   bool has_all() const;
   bool needs_another_pass() const;
   double reported(double error) const;
-  // Of settle():
+  // Used by settle():
   void start_over();
   void bring_to(const LevelChoice& choice);
   VisibleChunks measure(std::span<const shared::View> views, const render::FrameSettings& settings);
@@ -125,7 +125,7 @@ class Stream {
   std::vector<shared::View> views_;  // the arguments of the last begin_frame() or settle()
   double quality_ = 0.0;             // likewise: FrameSettings::quality
 
-  // Of begin_frame():
+  // Used by begin_frame():
   struct Pass {
     std::vector<shared::View> views;  // measured so far: first those where the eyes are, then those ahead
     std::size_t here = 0, all = 0;    // how many views of the first kind, and in all, the pass measures
@@ -143,7 +143,7 @@ class Stream {
   double put_a_ms_ = 1 << 14;   // Gaussians put in a millisecond, as the last frames show
   std::unique_ptr<StreamWorker> worker_;
 
-  // Of settle():
+  // Used by settle():
   Chooser chooser_;
   Calibration calibration_;
   unsigned samples_ = 0;
