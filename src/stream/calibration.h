@@ -59,8 +59,8 @@ class Calibration {
  private:
   static constexpr double prior = 8.0;  // chunks that count as measured to be as predicted, at first
 
-  double chunks_ = prior;    // sum of the samples' weights, in chunks
-  double measured_ = prior;  // sum of weight times measured over predicted error
+  // The sum of the samples' weights, in chunks, and the sum of weight times measured over predicted error.
+  double chunks_ = prior, measured_ = prior;
 };
 
 }  // namespace binosplat
