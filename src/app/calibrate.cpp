@@ -56,7 +56,7 @@ ExitCode calibrate(const CalibrateOptions& o) {
   leave_out_blind("calibrate", *context, scene.model, scene.near_plane, views);
   Progress progress("calibrating", lab::calibrated_settings().size());
   const lab::Calibration found =
-      lab::calibrate(*context, scene.model, views, scene.near_plane, o.target.target(), o.table,
+      lab::calibrate(*context, scene.model, views, scene.near_plane, {o.target.target(), o.table},
                      [&](std::size_t entries, std::size_t) { progress.update(entries); });
   save_json(o.output, lab::to_json(found));
   print_calibration(found, o);

@@ -111,7 +111,7 @@ lab::LevelsScene measured(gl::Context& context, const StudyOptions& options, con
   Progress progress("measuring " + scene.name, shots.size());
   std::size_t done = 0;
   lab::measure_levels(
-      scene, context, shots, models, [&] { return load_scene(listed.scene); }, frames,
+      scene, shots, models, [&] { return load_scene(listed.scene); }, frames,
       [&] { progress.update(++done); });
   return scene;
 }

@@ -149,10 +149,9 @@ std::vector<render::FrameSettings> calibrated_settings() {
 }
 
 Calibration calibrate(gl::Context& context, const Model& model, const std::vector<CalibrationView>& views,
-                      double near_plane, const CalibrationTarget& target,
-                      const measure::DepthTableSettings& table,
+                      double near_plane, const CalibrationSettings& wanted,
                       const std::function<void(std::size_t, std::size_t)>& done) {
-  Calibrator calibrator(context, model, views, near_plane, target.kind);
+  Calibrator calibrator(context, model, views, near_plane, wanted.target.kind);
   Calibration c;
   c.model_name = model.name;
   c.gaussians = model.count();
@@ -160,13 +159,13 @@ Calibration calibrate(gl::Context& context, const Model& model, const std::vecto
   c.width = views.front().camera.width;
   c.height = views.front().camera.height;
   c.near_plane = near_plane;
-  c.target = target;
+  c.target = wanted.target;
   for (const CalibrationView& view : views) {
     c.views.push_back({view.camera.name, view.camera.position});
     c.focal += view.camera.fx / static_cast<double>(views.size());
   }
   const Clock::time_point start = Clock::now();
-  c.depth_table = calibrator.depth_table(table);
+  c.depth_table = calibrator.depth_table(wanted.table);
   c.depth_table_seconds = 1e-3 * ms_since(start);
   const std::vector<render::FrameSettings> all = calibrated_settings();
   for (render::FrameSettings settings : all) {
@@ -174,7 +173,7 @@ Calibration calibrate(gl::Context& context, const Model& model, const std::vecto
     // What a rule found with another source is near: each question less is a frame, or eight.
     if (!c.entries.empty() && c.entries.back().th == settings.th && c.entries.back().tolerance > 0.0)
       settings.tolerance = static_cast<float>(c.entries.back().tolerance);
-    c.entries.push_back(calibrator.find(settings, target.db));
+    c.entries.push_back(calibrator.find(settings, wanted.target.db));
     if (done) done(c.entries.size(), all.size());
   }
   return c;

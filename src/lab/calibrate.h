@@ -84,13 +84,18 @@ class Calibrator {
   std::vector<std::unique_ptr<Reference>> references_;
 };
 
+/// What a calibration looks for, and how its table of bounds is measured.
+struct CalibrationSettings {
+  CalibrationTarget target;
+  measure::DepthTableSettings table = {};
+};
+
 /// The ways to draw that a calibration has entries for: both rules by every source that one eye has.
 std::vector<render::FrameSettings> calibrated_settings();
 
 /// Measures the table of bounds by depth, then finds every entry, and calls `done(entries, of)` after each.
 Calibration calibrate(gl::Context& context, const Model& model, const std::vector<CalibrationView>& views,
-                      double near_plane, const CalibrationTarget& target,
-                      const measure::DepthTableSettings& table = {},
+                      double near_plane, const CalibrationSettings& wanted,
                       const std::function<void(std::size_t, std::size_t)>& done = {});
 
 }  // namespace binosplat::lab

@@ -120,9 +120,10 @@ std::optional<double> worst_db(const LevelsRow& row) {
   });
 }
 
-void measure_levels(LevelsScene& scene, gl::Context& context, std::span<const LevelsShot> shots,
+void measure_levels(LevelsScene& scene, std::span<const LevelsShot> shots,
                     std::span<const FollowingModel> models, const std::function<Model()>& load_finest,
                     int frames, const std::function<void()>& progress) {
+  gl::Context& context = models.front().model->context();
   std::vector<std::unique_ptr<render::Frame>> of_models;
   for (const FollowingModel& one : models) {
     of_models.push_back(std::make_unique<render::Frame>(one.model));

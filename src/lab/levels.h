@@ -74,8 +74,9 @@ struct LevelsStudy {
 };
 
 /// Draws each shot with each of the models and, if there is room for them, with the finest levels, compares,
-/// and times all in turns. `load_finest` is called once. `progress` is called after each shot.
-void measure_levels(LevelsScene& scene, gl::Context& context, std::span<const LevelsShot> shots,
+/// and times all in turns. There is at least one of each, and all models are in one context. `load_finest`
+/// is called once. `progress` is called after each shot.
+void measure_levels(LevelsScene& scene, std::span<const LevelsShot> shots,
                     std::span<const FollowingModel> models, const std::function<Model()>& load_finest,
                     int frames, const std::function<void()>& progress);
 

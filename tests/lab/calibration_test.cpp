@@ -204,9 +204,9 @@ TEST_F(Calibrating, ReachesItsTarget) {
 
 TEST_F(Calibrating, TheWholeFile) {
   std::size_t done = 0;
-  const Calibration c =
-      calibrate(test::gl_context(), model, views, near_default, {CalibrationTarget::Kind::quality, 40.0},
-                {.bins = 5, .far = 6.5f}, [&](std::size_t, std::size_t) { ++done; });
+  const Calibration c = calibrate(test::gl_context(), model, views, near_default,
+                                  {{CalibrationTarget::Kind::quality, 40.0}, {.bins = 5, .far = 6.5f}},
+                                  [&](std::size_t, std::size_t) { ++done; });
   EXPECT_EQ(c.entries.size(), calibrated_settings().size());
   EXPECT_EQ(done, c.entries.size());
   EXPECT_EQ(c.depth_table.bounds.size(), 5);

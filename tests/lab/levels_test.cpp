@@ -55,7 +55,7 @@ struct LevelsStudyTest : testing::Test {
                            }});
     }
     measure_levels(
-        scene, context, shots, following,
+        scene, shots, following,
         [&] {
           ++loaded;
           return finest();
