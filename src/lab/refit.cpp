@@ -40,6 +40,20 @@ void add_scaled(Vector& a, double factor, const Vector& b) {
       a.size(), [&](std::size_t k) { a[k] += f * b[k]; }, chunk);
 }
 
+/// The gradient by what each coefficient weighs, in all channels, times (1 + damping).
+Vector preconditioned(const Vector& gradient, const Vector& weight, double damping) {
+  Vector z(gradient.size());
+  parallel_for(
+      weight.size(),
+      [&](std::size_t k) {
+        const double of = static_cast<double>(weight[k]) * (1.0 + damping);
+        for (std::size_t c = 3 * k; c < 3 * k + 3; ++c)
+          z[c] = of > 0.0 ? static_cast<float>(static_cast<double>(gradient[c]) / of) : 0.0f;
+      },
+      chunk);
+  return z;
+}
+
 float largest_of(std::span<const glm::vec3> colours) {
   float largest = 1e-12f;
   for (const glm::vec3& c : colours) {
@@ -179,23 +193,9 @@ class Refit {
     }
   }
 
-  /// The gradient by what each coefficient weighs, times (1 + damping).
-  Vector preconditioned() const {
-    Vector z(gradient_.size());
-    parallel_for(
-        weight_.size(),
-        [&](std::size_t k) {
-          const double of = static_cast<double>(weight_[k]) * (1.0 + settings_.damping);
-          for (std::size_t c = 3 * k; c < 3 * k + 3; ++c)
-            z[c] = of > 0.0 ? static_cast<float>(static_cast<double>(gradient_[c]) / of) : 0.0f;
-        },
-        chunk);
-    return z;
-  }
-
   /// A round of conjugate gradients. False where nothing is left to gain.
   bool step() {
-    const Vector z = preconditioned();
+    const Vector z = preconditioned(gradient_, weight_, settings_.damping);
     const double slope = dot(gradient_, z);
     if (!(slope > 0.0)) return false;
     const auto before = static_cast<float>(slope_ > 0.0 ? slope / slope_ : 0.0);
