@@ -25,27 +25,132 @@ constexpr int trial_rounds = 4;                             // that colours of a
 constexpr std::size_t some = 256;                           // Gaussians that a thread takes at a time
 constexpr double after_bits = 0.25, after_harmonics = 0.5;  // shares of the bound
 
+/// What a model loses in the views that had no say in it, and whether the bound allows for that.
+class TrimJudge {
+ public:
+  TrimJudge(gl::Context& context, const Model& original, const ViewSplit& views,
+            const CalibrationTarget& target)
+      : target_(target) {
+    const auto open = [&](const std::vector<CalibrationView>& of) {
+      return of.empty() ? nullptr
+                        : std::make_unique<Calibrator>(context, original, of, views.near_plane, target.kind);
+    };
+    held_back_ = open(views.held_back);
+    held_back_own_ = open(views.held_back_own);
+    test_ = open(views.test);
+    test_own_ = open(views.test_own);
+  }
+
+  /// What the bound is on: the mean of the views held back, in the size that loses more.
+  double judged(const Model& model) {
+    const std::size_t views = held_back_->views().size();
+    Progress progress(fmt::format("judging {} Gaussians of degree {}", model.count(), model.degree),
+                      views + (held_back_own_ ? held_back_own_->views().size() : 0));
+    const double db = held_back_->cost(model, 1, [&](std::size_t done) { progress.update(done); }).mean_db;
+    if (!held_back_own_) return db;
+    const auto tell = [&](std::size_t done) { progress.update(views + done); };
+    return std::min(db, held_back_own_->cost(model, 1, tell).mean_db);
+  }
+
+  /// The same, less where it is better.
+  double loss(const Model& model) { return -sign() * judged(model); }
+
+  /// A drop is counted from what this model loses: shares of the bound are of what it leaves.
+  void start_from(const Model& whole) { start_ = judged(whole); }
+
+  bool holds(double db, double share) const { return sign() * db >= sign() * bound(share); }
+
+  /// The largest amount that holds a share of the bound, at which the model's cost is `db(amount)`; 0 must
+  /// hold.
+  double largest(const std::function<double(double)>& db, double share,
+                 measure::ToleranceSearch search) const {
+    search.within = is_drop() ? 0.03 * (target_.db - start_) : 0.1;
+    const auto value = [&](double amount) { return sign() * db(amount); };
+    return measure::find_tolerance(value, sign() * bound(share), search).tolerance;
+  }
+
+  /// Measures what a step has to tell of its model, in all views.
+  void report(const Model& model, TrimStep& step) {
+    step.held_back = held_back_->cost(model, drawings);
+    if (held_back_own_) step.held_back_own = held_back_own_->cost(model);
+    if (test_) step.test = test_->cost(model);
+    if (test_own_) step.test_own = test_own_->cost(model);
+  }
+
+ private:
+  bool is_drop() const { return target_.kind == CalibrationTarget::Kind::drop; }
+  double sign() const { return is_drop() ? -1.0 : 1.0; }
+
+  /// The least PSNR, or the largest drop, for a share of what the whole bound allows to be lost.
+  double bound(double share) const {
+    return is_drop() ? start_ + share * (target_.db - start_) : target_.db - 10.0 * std::log10(share);
+  }
+
+  CalibrationTarget target_;
+  double start_ = 0.0;  // what the whole model loses, as a drop: below 0 where fitting gained
+  std::unique_ptr<Calibrator> held_back_, held_back_own_;  // own: in the cameras' own size, or none
+  std::unique_ptr<Calibrator> test_, test_own_;
+};
+
+ColourFit::Coefficients coefficients(const Model& model, std::size_t gaussian) {
+  const auto count = static_cast<std::size_t>(sh_count(model.degree));
+  ColourFit::Coefficients now{};
+  for (std::size_t k = 0; k < std::min(count, now.size()); ++k) {
+    const float* c = &model.sh[3 * (gaussian * count + k)];
+    now[k] = {c[0], c[1], c[2]};
+  }
+  return now;
+}
+
+/// Harmonics of so many degrees, nearest to the colours that the training views see.
+Model nearest_of_degrees(const Model& whole, const Weights& weights,
+                         const std::vector<std::uint8_t>& degrees) {
+  Model model = with_degrees(whole, degrees);
+  const auto count = static_cast<std::size_t>(sh_count(model.degree));
+  parallel_for(
+      degrees.size(),
+      [&](std::size_t i) {
+        if (degrees[i] >= whole.degree) return;
+        const auto near = weights.colours[i].fitted(degrees[i], coefficients(whole, i));
+        for (std::size_t k = 0; k < static_cast<std::size_t>(sh_count(degrees[i])); ++k) {
+          for (int c = 0; c < 3; ++c)
+            model.sh[3 * (i * count + k) + static_cast<std::size_t>(c)] = static_cast<float>(near[k][c]);
+        }
+      },
+      some);
+  return model;
+}
+
+/// How much the colours of each Gaussian change at each degree below this one (ColourFit::change).
+std::vector<std::array<double, 3>> changes_below(int degree, const Model& whole, const Weights& weights) {
+  std::vector<std::array<double, 3>> changes(whole.count());
+  parallel_for(
+      changes.size(),
+      [&](std::size_t i) {
+        for (int lower = 0; lower < degree; ++lower)
+          changes[i][static_cast<std::size_t>(lower)] =
+              weights.colours[i].change(lower, coefficients(whole, i));
+      },
+      some);
+  return changes;
+}
+
 class Trimmer {
  public:
   Trimmer(gl::Context& context, const Model& model, const ViewSplit& views, const TrimSettings& settings)
-      : context_(context), views_(views), settings_(settings), original_(model) {
-    const auto open = [&](const std::vector<CalibrationView>& of) {
-      return of.empty()
-                 ? nullptr
-                 : std::make_unique<Calibrator>(context, model, of, views.near_plane, settings.target.kind);
-    };
-    judge_ = open(views.held_back);
-    judge_own_ = open(views.held_back_own);
-    test_ = open(views.test);
-    test_own_ = open(views.test_own);
+      : context_(context),
+        views_(views),
+        settings_(settings),
+        original_(model),
+        judge_(context, model, views, settings.target) {
     add_step("as it was", model, 0);
   }
 
   Trimmed run() {
     if (settings_.refit) {
       refitted_ = original_;
-      found_.less = fit(*refitted_, {}, judge());
-      start_ = judged(*refitted_);
+      found_.less = fit(*refitted_, {});
+      judge_.start_from(*refitted_);
       add_step("colours fitted", *refitted_, 0);
     }
     const bool has_harmonics = whole().degree > 0 && settings_.format != ModelFormat::splat;
@@ -54,7 +159,7 @@ class Trimmer {
     model_ = whole();
     const std::string name = written_format(settings_.format).name;
     const bool packs = settings_.format == ModelFormat::spz;
-    if (!holds(cost(model_, 8), 1.0)) {
+    if (!holds(model_, 8, 1.0)) {
       found_.fits = false;
       add_written_step("as " + name);
     } else {
@@ -70,122 +175,52 @@ class Trimmer {
   }
 
  private:
-  /// What the bound is on: the mean of the views held back, in the size that loses more.
-  double judged(const Model& model) {
-    const std::size_t views = views_.held_back.size();
-    Progress progress(fmt::format("judging {} Gaussians of degree {}", model.count(), model.degree),
-                      views + views_.held_back_own.size());
-    const double db = judge_->cost(model, 1, [&](std::size_t done) { progress.update(done); }).mean_db;
-    if (!judge_own_) return db;
-    const auto tell = [&](std::size_t done) { progress.update(views + done); };
-    return std::min(db, judge_own_->cost(model, 1, tell).mean_db);
-  }
-
-  double cost(const Model& model, int bits) { return judged(settings_.write(model, bits).model); }
+  double cost(const Model& model, int bits) { return judge_.judged(settings_.write(model, bits).model); }
+  bool holds(const Model& model, int bits, double share) { return judge_.holds(cost(model, bits), share); }
 
   /// What is trimmed.
   const Model& whole() const { return refitted_ ? *refitted_ : original_; }
 
   /// Whether it got nearer.
-  bool fit(Model& model, const RefitSettings& settings, const RefitJudge& judge) const {
+  bool fit(Model& model, const RefitSettings& settings) {
     const RefitTargets targets{original_, views_.training, *settings_.refit, views_.near_plane};
-    Refitted found = refit(context_, model, targets, settings, judge);
+    Refitted found = refit(context_, model, targets, settings,
+                           [this](const Model& fitting) { return judge_.loss(fitting); });
     model.sh = std::move(found.sh);
     return found.best_round > 0;
   }
 
   /// A candidate, its colours fitted again where that is asked for and helps.
   Model fitted(Model model) {
-    if (settings_.refit) fit(model, {.rounds = trial_rounds, .keep_zeros = true}, judge());
+    if (settings_.refit) fit(model, {.rounds = trial_rounds, .keep_zeros = true});
     return model;
   }
 
-  RefitJudge judge() {
-    return [this](const Model& model) { return -sign() * judged(model); };
-  }
-
-  /// The least PSNR, or the largest drop, for a share of what the whole bound allows to be lost.
-  double bound(double share) const {
-    const auto& [kind, db] = settings_.target;
-    return kind == CalibrationTarget::Kind::drop ? start_ + share * (db - start_)
-                                                 : db - 10.0 * std::log10(share);
-  }
-  double sign() const { return settings_.target.kind == CalibrationTarget::Kind::drop ? -1.0 : 1.0; }
-  bool holds(double db, double share) const { return sign() * db >= sign() * bound(share); }
-
-  /// The largest amount that holds a share of the bound, at which the model's cost is `db(amount)`; 0 must
-  /// hold.
-  double largest(const std::function<double(double)>& db, double share, measure::ToleranceSearch search) {
-    search.within =
-        settings_.target.kind == CalibrationTarget::Kind::drop ? 0.03 * (settings_.target.db - start_) : 0.1;
-    const auto value = [&](double amount) { return sign() * db(amount); };
-    return measure::find_tolerance(value, sign() * bound(share), search).tolerance;
-  }
-
   void lower_bits() {
-    while (found_.harmonic_bits > 1 && holds(cost(model_, found_.harmonic_bits - 1), after_bits))
+    while (found_.harmonic_bits > 1 && holds(model_, found_.harmonic_bits - 1, after_bits))
       --found_.harmonic_bits;
     found_.less = found_.less || found_.harmonic_bits < 8;
   }
 
-  ColourFit::Coefficients coefficients(std::size_t gaussian) const {
-    const auto count = static_cast<std::size_t>(sh_count(whole().degree));
-    ColourFit::Coefficients now{};
-    for (std::size_t k = 0; k < std::min(count, now.size()); ++k) {
-      const float* c = &whole().sh[3 * (gaussian * count + k)];
-      now[k] = {c[0], c[1], c[2]};
-    }
-    return now;
-  }
-
-  /// Harmonics of so many degrees, nearest to the colours that the training views see.
   Model lowered(const std::vector<std::uint8_t>& degrees) {
-    Model model = with_degrees(whole(), degrees);
-    const auto count = static_cast<std::size_t>(sh_count(model.degree));
-    parallel_for(
-        degrees.size(),
-        [&](std::size_t i) {
-          if (degrees[i] >= whole().degree) return;
-          const auto near = weights_.colours[i].fitted(degrees[i], coefficients(i));
-          for (std::size_t k = 0; k < static_cast<std::size_t>(sh_count(degrees[i])); ++k) {
-            for (int c = 0; c < 3; ++c)
-              model.sh[3 * (i * count + k) + static_cast<std::size_t>(c)] = static_cast<float>(near[k][c]);
-          }
-        },
-        some);
-    return fitted(std::move(model));
+    return fitted(nearest_of_degrees(whole(), weights_, degrees));
   }
 
   void lower_harmonics(bool packs) {
     const std::size_t count = whole().count();
     for (int degree = 0; degree < whole().degree; ++degree) {
       Model lower = lowered(std::vector<std::uint8_t>(count, static_cast<std::uint8_t>(degree)));
-      if (!holds(cost(lower, found_.harmonic_bits), after_harmonics)) continue;
+      if (!holds(lower, found_.harmonic_bits, after_harmonics)) continue;
       model_ = std::move(lower);
       take(fmt::format("degree {} instead of {}", degree, whole().degree));
       break;
     }
-    if (packs && model_.degree > 0 && holds(cost(model_, found_.harmonic_bits), after_harmonics))
-      lower_degrees();
-  }
-
-  /// How much the colours of each Gaussian change at each lower degree (ColourFit::change).
-  std::vector<std::array<double, 3>> changes_of_degrees() const {
-    std::vector<std::array<double, 3>> changes(whole().count());
-    parallel_for(
-        changes.size(),
-        [&](std::size_t i) {
-          for (int degree = 0; degree < model_.degree; ++degree)
-            changes[i][static_cast<std::size_t>(degree)] =
-                weights_.colours[i].change(degree, coefficients(i));
-        },
-        some);
-    return changes;
+    if (packs && model_.degree > 0 && holds(model_, found_.harmonic_bits, after_harmonics)) lower_degrees();
   }
 
   /// Zeros are packed well: a degree for each Gaussian.
   void lower_degrees() {
-    const std::vector<std::array<double, 3>> changes = changes_of_degrees();
+    const std::vector<std::array<double, 3>> changes = changes_below(model_.degree, whole(), weights_);
     std::vector<double> positive;
     for (const auto& of : changes) {
       if (of[0] > 0.0) positive.push_back(of[0]);
@@ -203,7 +238,7 @@ class Trimmer {
     const auto db = [&](double change) {
       return cost(change > 0.0 ? lowered(degrees(change)) : model_, found_.harmonic_bits);
     };
-    const double change = largest(db, after_harmonics, {.start = start});
+    const double change = judge_.largest(db, after_harmonics, {.start = start});
     if (change == 0.0) return;
     const std::vector<std::uint8_t> of = degrees(change);
     const auto lower = std::count_if(of.begin(), of.end(), [&](int d) { return d < model_.degree; });
@@ -235,7 +270,7 @@ class Trimmer {
     };
     const auto most = static_cast<double>(count - 1);
     const double start = std::clamp(static_cast<double>(found_.unseen), 1.0, most);
-    const double dropped = largest(db, 1.0, {.start = start, .smallest = 1.0, .largest = most});
+    const double dropped = judge_.largest(db, 1.0, {.start = start, .smallest = 1.0, .largest = most});
     if (dropped == 0.0) return;
     model_ = without(dropped);
     take("fewer Gaussians");
@@ -254,24 +289,20 @@ class Trimmer {
   void add_step(const std::string& name, const Model& model, std::uintmax_t bytes) {
     TrimStep& step =
         found_.steps.emplace_back(TrimStep{name, model.count(), model.degree, bytes, {}, {}, {}, {}});
-    step.held_back = judge_->cost(model, drawings);
-    if (judge_own_) step.held_back_own = judge_own_->cost(model);
-    if (test_) step.test = test_->cost(model);
-    if (test_own_) step.test_own = test_own_->cost(model);
-    log_info(
-        "{}: {} Gaussians, {:.3f} dB{}", name, step.gaussians, step.held_back.mean_db,
-        judge_own_ ? fmt::format(", {:.3f} dB in the cameras' own size", step.held_back_own->mean_db) : "");
+    judge_.report(model, step);
+    log_info("{}: {} Gaussians, {:.3f} dB{}", name, step.gaussians, step.held_back.mean_db,
+             step.held_back_own
+                 ? fmt::format(", {:.3f} dB in the cameras' own size", step.held_back_own->mean_db)
+                 : "");
   }
 
   gl::Context& context_;
   const ViewSplit& views_;
   const TrimSettings& settings_;
   const Model& original_;
+  TrimJudge judge_;
   std::optional<Model> refitted_;  // the original with fitted colours, where that is asked for
   Model model_;                    // as trimmed so far
-  std::unique_ptr<Calibrator> judge_, judge_own_;  // own: in the cameras' own size, or none
-  std::unique_ptr<Calibrator> test_, test_own_;
-  double start_ = 0.0;  // what the whole model loses, as a drop: below 0 where fitting gained
   Weights weights_;
   Trimmed found_;
 };
