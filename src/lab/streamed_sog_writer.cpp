@@ -36,8 +36,6 @@ constexpr int judged_level = 3;
 constexpr std::size_t leaves_a_picture = 4, pictures_most = 12;
 constexpr double more_most = 4.0;  // that they may lose more or less than each by itself
 
-constexpr const char* meta_name = "/meta.json";
-
 /// A leaf of the tree.
 struct Leaf {
   std::span<const std::uint32_t> indices;
@@ -58,6 +56,8 @@ struct File {
   std::size_t first_leaf = 0, leaves = 0;
   std::size_t count = 0;
   bool is_there = false;
+
+  std::string meta_name() const { return folder + "/meta.json"; }
 };
 
 /// Leaves that are worked on together, and the files in which all their levels lie.
@@ -74,6 +74,107 @@ struct Scene {
   std::string losses;  // the file of what its pictures lose
   std::size_t first_piece = 0, pieces = 0, count = 0;
 };
+
+/// What goes where, decided before anything is written.
+struct Plan {
+  SpaceTree tree;
+  std::vector<Leaf> leaves;
+  std::vector<Piece> pieces;
+  std::vector<Scene> scenes;
+  std::vector<std::string> filenames;         // of all SOGs, as leaves number them
+  std::vector<std::size_t> gaussians, files;  // by level
+};
+
+/// The largest nodes of so many Gaussians at most, and leaves where these have more, in order.
+void find_nodes(const SpaceNode& node, std::size_t most, std::vector<const SpaceNode*>& nodes) {
+  if (node.count <= most || node.children.empty()) return nodes.push_back(&node);
+  for (const SpaceNode& child : node.children) find_nodes(child, most, nodes);
+}
+
+void add_files(std::size_t level, std::size_t most, Piece& piece, Plan& plan) {
+  for (std::size_t i = piece.first_leaf; i < plan.leaves.size(); ++i) {
+    Leaf& leaf = plan.leaves[i];
+    const std::size_t count = leaf.count(static_cast<int>(level));
+    if (i == piece.first_leaf || piece.files.back().count + count > most) {
+      piece.files.push_back({fmt::format("{}_{}", level, plan.files[level]++), static_cast<int>(level), i});
+      plan.filenames.push_back(piece.files.back().meta_name());
+    }
+    File& file = piece.files.back();
+    leaf.lods[std::to_string(level)] = {
+        {"file", plan.filenames.size() - 1}, {"offset", file.count}, {"count", count}};
+    ++file.leaves;
+    file.count += count;
+    plan.gaussians[level] += count;
+  }
+}
+
+Plan make_plan(const Model& model, const LevelSettings& settings) {
+  Plan plan{.tree = make_space_tree(model.position, settings.leaf)};
+  for (auto* by_level : {&plan.gaussians, &plan.files})
+    by_level->resize(static_cast<std::size_t>(settings.levels));
+  std::vector<const SpaceNode*> nodes;
+  find_nodes(plan.tree.root, settings.piece, nodes);
+  const std::size_t all = model.count(), scenes = (all - 1) / settings.together + 1;
+  for (std::size_t i = 0; i < nodes.size();) {
+    Piece piece{fmt::format("errors_{}.json", plan.pieces.size()), plan.leaves.size(), 0, {}};
+    // Nodes that follow one another share a piece, since what lies far out is a node of a few.
+    std::size_t count = 0;
+    std::vector<const SpaceNode*> leaves;
+    do {
+      find_nodes(*nodes[i], 0, leaves);
+      count += nodes[i]->count;
+    } while (++i < nodes.size() && count + nodes[i]->count <= settings.piece);
+    for (const SpaceNode* leaf : leaves)
+      plan.leaves.push_back({std::span(plan.tree.order).subspan(leaf->first, leaf->count), {}, {}});
+    piece.leaves = leaves.size();
+    for (std::size_t level = 0; level < plan.files.size(); ++level)
+      add_files(level, settings.file, piece, plan);
+    // Scenes are of about as many Gaussians.
+    if (plan.scenes.empty() || plan.scenes.back().count * scenes >= all)
+      plan.scenes.push_back({fmt::format("together_{}.json", plan.scenes.size()), plan.pieces.size()});
+    ++plan.scenes.back().pieces;
+    plan.scenes.back().count += count;
+    plan.pieces.push_back(std::move(piece));
+  }
+  const auto measure = [&](Leaf& leaf) { leaf.box = reach_of(model, leaf.indices); };
+  parallel_for(plan.leaves.size(), [&](std::size_t i) { measure(plan.leaves[i]); });
+  return plan;
+}
+
+ordered_json box_json(const Box& b) {
+  return {{"min", {b.low.x, b.low.y, b.low.z}}, {"max", {b.high.x, b.high.y, b.high.z}}};
+}
+
+/// The node and the box around it, from the next leaf on.
+std::pair<ordered_json, Box> node_json(const SpaceNode& node, const Leaf*& next) {
+  if (node.children.empty()) {
+    const Leaf& leaf = *next++;
+    return {
+        {{"bound", box_json(leaf.box)}, {"pixels", leaf.pixels}, {"seen", leaf.seen}, {"lods", leaf.lods}},
+        leaf.box};
+  }
+  Box around;
+  ordered_json children;
+  for (const SpaceNode& child : node.children) {
+    auto [json, box] = node_json(child, next);
+    children.push_back(std::move(json));
+    around.include(box.low, box.high);
+  }
+  return {{{"bound", box_json(around)}, {"children", std::move(children)}}, around};
+}
+
+/// lod-meta.json, once the leaves have the errors of their levels.
+ordered_json meta_json(const Plan& plan) {
+  const Leaf* next = plan.leaves.data();
+  return {{"version", 1},
+          {"asset", {{"generator", "binosplat"}}},
+          {"count", std::accumulate(plan.gaussians.begin(), plan.gaussians.end(), std::size_t{0})},
+          {"counts", plan.gaussians},
+          {"lodLevels", plan.gaussians.size()},
+          {"environment", nullptr},
+          {"filenames", plan.filenames},
+          {"tree", node_json(plan.tree.root, next).first}};
+}
 
 /// In Morton order, whose pictures pack best.
 Model finest(const Model& model, const Leaf& leaf) {
@@ -93,10 +194,6 @@ Levels levels_of(const Model& model, const Leaf& leaf, int coarsest) {
   return levels;
 }
 
-ordered_json box_json(const Box& b) {
-  return {{"min", {b.low.x, b.low.y, b.low.z}}, {"max", {b.high.x, b.high.y, b.high.z}}};
-}
-
 class LevelsWriter {
  public:
   LevelsWriter(const Model& model, const LevelSettings& settings, const LevelFolder& folder,
@@ -105,104 +202,32 @@ class LevelsWriter {
         settings_(settings),
         folder_(folder),
         judge_(judge),
-        tree_(make_space_tree(model.position, settings.leaf)),
-        gaussians_(static_cast<std::size_t>(settings.levels)) {
-    plan();
-    const auto measure = [&](Leaf& leaf) { leaf.box = reach_of(model_, leaf.indices); };
-    parallel_for(leaves_.size(), [&](std::size_t i) { measure(leaves_[i]); });
-  }
+        plan_(make_plan(model, settings)) {}
 
   LevelsWritten write() {
-    LevelsWritten written{gaussians_, filenames_.size(), 0, sog_losses(model_)};
+    LevelsWritten written{plan_.gaussians, plan_.filenames.size(), 0, sog_losses(model_)};
     std::size_t work = 0;
-    for (Piece& piece : pieces_) {
+    for (Piece& piece : plan_.pieces) {
       for (File& file : piece.files) {
-        file.is_there = folder_.has(file.folder + meta_name);
+        file.is_there = folder_.has(file.meta_name());
         (file.is_there ? written.kept : work) += file.is_there ? 1 : file.count;
       }
       for (std::size_t i = 0; i < piece.leaves && !std::ranges::all_of(piece.files, &File::is_there); ++i)
-        work += leaves_[piece.first_leaf + i].count(0);
+        work += plan_.leaves[piece.first_leaf + i].count(0);
     }
     Progress progress("writing levels of detail", work);
     write_pieces(progress);
     add_errors();
-    std::size_t leaf = 0;
-    const ordered_json meta = {
-        {"version", 1},
-        {"asset", {{"generator", "binosplat"}}},
-        {"count", std::accumulate(gaussians_.begin(), gaussians_.end(), std::size_t{0})},
-        {"counts", gaussians_},
-        {"lodLevels", settings_.levels},
-        {"environment", nullptr},
-        {"filenames", filenames_},
-        {"tree", node_json(tree_.root, leaf).first}};
-    write("lod-meta.json", meta);
+    write("lod-meta.json", meta_json(plan_));
     return written;
   }
 
  private:
-  /// Which leaves are a piece, and what of it goes where. Nodes that follow one another share a piece, since
-  /// what lies far out is a node of a few.
-  void plan() {
-    std::vector<const SpaceNode*> nodes;
-    find_nodes(tree_.root, nodes);
-    for (std::size_t i = 0; i < nodes.size();) {
-      Piece piece{fmt::format("errors_{}.json", pieces_.size()), leaves_.size(), 0, {}};
-      std::size_t count = 0;
-      do {
-        add_leaves(*nodes[i]);
-        count += nodes[i]->count;
-      } while (++i < nodes.size() && count + nodes[i]->count <= settings_.piece);
-      piece.leaves = leaves_.size() - piece.first_leaf;
-      for (int level = 0; level < settings_.levels; ++level) add_files(piece, level);
-      add_to_scene(count);
-      pieces_.push_back(std::move(piece));
-    }
-  }
-
-  /// Scenes are of about as many Gaussians.
-  void add_to_scene(std::size_t count) {
-    const std::size_t all = model_.count(), scenes = (all - 1) / settings_.together + 1;
-    if (scenes_.empty() || scenes_.back().count * scenes >= all)
-      scenes_.push_back({fmt::format("together_{}.json", scenes_.size()), pieces_.size()});
-    ++scenes_.back().pieces;
-    scenes_.back().count += count;
-  }
-
-  /// Those that fit into a piece, in order.
-  void find_nodes(const SpaceNode& node, std::vector<const SpaceNode*>& nodes) const {
-    if (node.count <= settings_.piece || node.children.empty()) return nodes.push_back(&node);
-    for (const SpaceNode& child : node.children) find_nodes(child, nodes);
-  }
-
-  void add_leaves(const SpaceNode& node) {
-    for (const SpaceNode& child : node.children) add_leaves(child);
-    if (node.children.empty())
-      leaves_.push_back({std::span(tree_.order).subspan(node.first, node.count), {}, {}});
-  }
-
-  void add_files(Piece& piece, int level) {
-    for (std::size_t i = piece.first_leaf; i < leaves_.size(); ++i) {
-      Leaf& leaf = leaves_[i];
-      const std::size_t count = leaf.count(level);
-      if (i == piece.first_leaf || piece.files.back().count + count > settings_.file) {
-        piece.files.push_back({fmt::format("{}_{}", level, files_of_level_[level]++), level, i});
-        filenames_.push_back(piece.files.back().folder + meta_name);
-      }
-      File& file = piece.files.back();
-      leaf.lods[std::to_string(level)] = {
-          {"file", filenames_.size() - 1}, {"offset", file.count}, {"count", count}};
-      ++file.leaves;
-      file.count += count;
-      gaussians_[static_cast<std::size_t>(level)] += count;
-    }
-  }
-
   /// While one is judged, which one thread does that may leave all cores idle, the next is written and the
   /// one after it is merged.
   void write_pieces(Progress& progress) {
     std::vector<const Piece*> left;
-    for (const Piece& piece : pieces_) {
+    for (const Piece& piece : plan_.pieces) {
       if (!is_judged(piece)) left.push_back(&piece);
     }
     const auto merge = [&](const Piece& piece) {
@@ -239,7 +264,7 @@ class LevelsWriter {
     }
     std::vector<Levels> levels(coarsest < 0 ? 0 : piece.leaves);
     parallel_for(levels.size(), [&](std::size_t i) {
-      const Leaf& leaf = leaves_[piece.first_leaf + i];
+      const Leaf& leaf = plan_.leaves[piece.first_leaf + i];
       levels[i] = levels_of(model_, leaf, coarsest);
       count(progress, leaf.count(0));
     });
@@ -253,15 +278,14 @@ class LevelsWriter {
 
   /// As far as the folder has it.
   bool is_judged(const Piece& piece) const {
-    return folder_.has(piece.errors) && std::ranges::all_of(piece.files, [&](const File& file) {
-             return folder_.has(file.folder + meta_name);
-           });
+    return folder_.has(piece.errors) &&
+           std::ranges::all_of(piece.files, [&](const File& file) { return folder_.has(file.meta_name()); });
   }
 
   /// Those of which all pieces are judged.
   void judge_scenes() {
-    for (const Scene& scene : scenes_) {
-      const auto pieces = std::span(pieces_).subspan(scene.first_piece, scene.pieces);
+    for (const Scene& scene : plan_.scenes) {
+      const auto pieces = std::span(plan_.pieces).subspan(scene.first_piece, scene.pieces);
       if (folder_.has(scene.losses) ||
           !std::ranges::all_of(pieces, [&](const Piece& p) { return is_judged(p); }))
         continue;
@@ -272,7 +296,7 @@ class LevelsWriter {
         std::ranges::move(kept ? std::move(kept.mapped()) : written(piece), std::back_inserter(leaves));
         std::ranges::move(errors_of(piece), std::back_inserter(errors));
       }
-      const auto all = std::min(pictures_most, leaves_.size() / leaves_a_picture) / scenes_.size();
+      const auto all = std::min(pictures_most, plan_.leaves.size() / leaves_a_picture) / plan_.scenes.size();
       const int pictures = std::max(1, static_cast<int>(all));
       write(scene.losses, json_of(settings_.levels > 1 ? judge_.together(leaves, errors, pictures)
                                                        : std::vector<LossTogether>()));
@@ -285,11 +309,11 @@ class LevelsWriter {
   }
 
   std::vector<Levels> written(const Piece& piece) const {
-    std::vector<Levels> levels(piece.leaves, Levels(gaussians_.size()));
+    std::vector<Levels> levels(piece.leaves, Levels(plan_.gaussians.size()));
     parallel_for(piece.files.size(), [&](std::size_t i) {
       const File& file = piece.files[i];
       const auto level = static_cast<std::size_t>(file.level);
-      const std::string meta = file.folder + meta_name;
+      const std::string meta = file.meta_name();
       const SogSource sog(meta, parse_json(meta, folder_.read(meta)), [&](const std::string& name) {
         const std::string text = folder_.read(file.folder + "/" + name);
         const auto bytes = std::as_bytes(std::span(text));
@@ -302,7 +326,7 @@ class LevelsWriter {
       std::vector<SogSource::Range> ranges;
       std::size_t at = 0;
       for (std::size_t k = 0; k < file.leaves; ++k) {
-        const std::size_t of_leaf = leaves_[file.first_leaf + k].count(file.level);
+        const std::size_t of_leaf = plan_.leaves[file.first_leaf + k].count(file.level);
         ranges.push_back({std::exchange(at, at + of_leaf), of_leaf, 0});
       }
       std::vector<Model> models = sog.decode_each(model_, ranges, *sog.textures());
@@ -331,60 +355,36 @@ class LevelsWriter {
 
   void add_errors() {
     const double more = lost_together();
-    for (const Piece& piece : pieces_) {
+    for (const Piece& piece : plan_.pieces) {
       const std::vector<LeafErrors> errors = errors_of(piece);
       for (std::size_t i = 0; i < piece.leaves; ++i) {
-        Leaf& leaf = leaves_[piece.first_leaf + i];
+        Leaf& leaf = plan_.leaves[piece.first_leaf + i];
         leaf.pixels = json_of(errors[i].pixels);
         leaf.seen = json_of(errors[i].seen);
-        for (std::size_t level = 0; level < gaussians_.size(); ++level)
+        for (std::size_t level = 0; level < plan_.gaussians.size(); ++level)
           leaf.lods[std::to_string(level)]["errors"] = json_of(errors[i].of_level[level], more);
       }
     }
   }
 
   std::vector<LeafErrors> errors_of(const Piece& piece) const {
-    return leaf_errors(piece.errors, folder_.read(piece.errors), piece.leaves, gaussians_.size());
+    return leaf_errors(piece.errors, folder_.read(piece.errors), piece.leaves, plan_.gaussians.size());
   }
 
   /// Over what each by itself would lose: the median, since eyes from which hardly anything is seen are far
   /// off.
   double lost_together() const {
     std::vector<double> shares;
-    for (const Scene& scene : scenes_)
+    for (const Scene& scene : plan_.scenes)
       std::ranges::copy(loss_shares(scene.losses, folder_.read(scene.losses)), std::back_inserter(shares));
     return shares.empty() ? 1.0 : std::clamp(quantile(shares, 0.5), 1.0 / more_most, more_most);
-  }
-
-  /// The node and the box around it, from the next leaf on.
-  std::pair<ordered_json, Box> node_json(const SpaceNode& node, std::size_t& next_leaf) const {
-    if (node.children.empty()) {
-      const Leaf& leaf = leaves_[next_leaf++];
-      return {
-          {{"bound", box_json(leaf.box)}, {"pixels", leaf.pixels}, {"seen", leaf.seen}, {"lods", leaf.lods}},
-          leaf.box};
-    }
-    Box around;
-    ordered_json children;
-    for (const SpaceNode& child : node.children) {
-      auto [json, box] = node_json(child, next_leaf);
-      children.push_back(std::move(json));
-      around.include(box.low, box.high);
-    }
-    return {{{"bound", box_json(around)}, {"children", std::move(children)}}, around};
   }
 
   const Model& model_;
   const LevelSettings& settings_;
   const LevelFolder& folder_;
   const JudgeLevels& judge_;
-  SpaceTree tree_;
-  std::vector<Leaf> leaves_;
-  std::vector<Piece> pieces_;
-  std::vector<Scene> scenes_;
-  std::vector<std::string> filenames_;
-  std::map<int, int> files_of_level_;
-  std::vector<std::size_t> gaussians_;                   // by level
+  Plan plan_;
   std::map<const Piece*, std::vector<Levels>> decoded_;  // until they are drawn together
   std::mutex counting_;
   std::size_t done_ = 0;
