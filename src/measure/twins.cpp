@@ -203,12 +203,12 @@ void upload_pairs(const std::vector<Pair>& pairs, std::uint32_t supertile_bits, 
     values.push_back(splat);
   }
   const auto count = static_cast<std::uint32_t>(pairs.size());
-  buffers.pairs.reserve(count);
-  buffers.sort.reserve(buffers.pairs, supertile_bits);
-  buffers.pairs.keys().upload(keys);
-  buffers.pairs.values().upload(values);
-  buffers.pair_arguments.upload(std::vector{primitives::make_sort_arguments(
-      count, primitives::RadixSort::digit_bits(supertile_bits), groups_max, buffers.pairs.block())});
+  buffers.lists.pairs.reserve(count);
+  buffers.sort.reserve(buffers.lists.pairs, supertile_bits);
+  buffers.lists.pairs.keys().upload(keys);
+  buffers.lists.pairs.values().upload(values);
+  buffers.lists.pair_arguments.upload(std::vector{primitives::make_sort_arguments(
+      count, primitives::RadixSort::digit_bits(supertile_bits), groups_max, buffers.lists.pairs.block())});
 }
 
 void upload_projection(const FramePlan& plan, const std::vector<Slots>& slots,
@@ -222,8 +222,8 @@ void upload_projection(const FramePlan& plan, const std::vector<Slots>& slots,
       pair_counts[slot * plan.view_count() + v] = results[v].pair_counts[indices[slot]];
     }
   }
-  upload_in(plan.settings.precision, splats, buffers.splats);
-  buffers.coverages.upload(pair_counts);
+  upload_in(plan.settings.precision, splats, buffers.projected.splats);
+  buffers.projected.coverages.upload(pair_counts);
 }
 
 // The slots as the stage project leaves them, or `sorted` as the stage order does.
@@ -244,11 +244,11 @@ void upload_order(const OrderGroup& group, const Slots& slots, const std::vector
   std::vector<std::uint32_t> keys;
   for (const std::uint32_t slot : values)
     keys.push_back(std::bit_cast<std::uint32_t>(static_cast<float>(depth(slot))) - group.nearest_key);
-  buffers.order.keys().upload(keys);
-  buffers.order.values().upload(values);
+  buffers.ordering.order.keys().upload(keys);
+  buffers.ordering.order.values().upload(values);
   const auto count = static_cast<std::uint32_t>(values.size());
   buffers.drawn.front()->arguments.upload(std::vector{primitives::make_sort_arguments(
-      count, primitives::RadixSort::digit_bits(group.key_bits), groups_max, buffers.order.block())});
+      count, primitives::RadixSort::digit_bits(group.key_bits), groups_max, buffers.ordering.order.block())});
 }
 
 void upload_ranges(const FramePlan& plan, const std::vector<Pair>& sorted, FrameBuffers& buffers) {
@@ -258,7 +258,7 @@ void upload_ranges(const FramePlan& plan, const std::vector<Pair>& sorted, Frame
     if (k == 0 || sorted[k - 1].first != supertile) ranges[2 * supertile] = k;
     ranges[2 * supertile + 1] = k + 1;
   }
-  buffers.ranges.upload(ranges);
+  buffers.lists.ranges.upload(ranges);
 }
 
 std::vector<Picture> fill_until(Stage until, const Model& model, const FramePlan& plan,

@@ -74,16 +74,16 @@ void run(gl::Dispatcher& dispatcher, const FramePlan& plan, FrameBuffers& buffer
                      {{"Frame", buffers.parameters},
                       {"Views", buffers.views},
                       {"RegionRows", buffers.region_rows},
-                      {"Ranges", buffers.ranges_of_tiles(plan)},
-                      {"Values", buffers.values_of_tiles(plan)},
-                      {"Splats", buffers.splats},
-                      {"Colours", buffers.colours},
-                      {"Canvases", buffers.canvases},
-                      {"ZSums", buffers.z_sums},
+                      {"Ranges", buffers.lists.ranges_of_tiles(plan)},
+                      {"Values", buffers.lists.values_of_tiles(plan)},
+                      {"Splats", buffers.projected.splats},
+                      {"Colours", buffers.pictures.colours},
+                      {"Canvases", buffers.pictures.canvases},
+                      {"ZSums", buffers.pictures.z_sums},
                       {"FrameCounters", buffers.counters},
-                      {"LongLists", buffers.long_lists},
+                      {"LongLists", buffers.lists.long_lists},
                       {"Measured", measured},
-                      {"DebugView", buffers.debug_values}},
+                      {"DebugView", buffers.pictures.debug_values}},
                      {{"scale", std::bit_cast<std::uint32_t>(task.scale)}});
   };
   draw(true, gl::DispatchSize::indirect(buffers.counters, offsetof(shared::Counters, long_x)));
@@ -99,8 +99,8 @@ void find_long_lists(gl::Dispatcher& dispatcher, const FramePlan& plan, FrameBuf
   dispatcher.run(dispatcher.context().program("blend_long_lists.comp"),
                  gl::DispatchSize::threads(plan.tile_count(), THREADS),
                  {{"Frame", buffers.parameters},
-                  {"Ranges", buffers.ranges_of_tiles(plan)},
-                  {"LongLists", buffers.long_lists},
+                  {"Ranges", buffers.lists.ranges_of_tiles(plan)},
+                  {"LongLists", buffers.lists.long_lists},
                   {"FrameCounters", buffers.counters}});
 }
 
@@ -108,23 +108,23 @@ void blend(gl::Dispatcher& dispatcher, const FramePlan& plan, bool measures, dou
            FrameBuffers& buffers) {
   run(dispatcher, plan, buffers,
       {.measure = measures ? MEASURE_TRANSMITTANCE : MEASURE_NONE, .tiles_a_splat = tiles_a_splat},
-      buffers.measured);
+      buffers.transmittance.measured);
 }
 
 void blend_debug_view(gl::Dispatcher& dispatcher, const FramePlan& plan, int what, FrameBuffers& buffers) {
-  buffers.debug_values.reserve(plan.pixel_count * 4);
+  buffers.pictures.debug_values.reserve(plan.pixel_count * 4);
   if (what == SHOW_LIGHT) {  // which is measured first
-    buffers.debug_transmittance.reserve_zeros(std::int64_t{buffers.slots} * plan.view_count() * 4);
+    buffers.pictures.debug_transmittance.reserve_zeros(std::int64_t{buffers.slots} * plan.view_count() * 4);
     run(dispatcher, plan, buffers, {.measure = MEASURE_TRANSMITTANCE, .debug_view = SHOW_VISIBLE},
-        buffers.debug_transmittance);
+        buffers.pictures.debug_transmittance);
   }
-  run(dispatcher, plan, buffers, {.debug_view = what}, buffers.debug_transmittance);
+  run(dispatcher, plan, buffers, {.debug_view = what}, buffers.pictures.debug_transmittance);
 }
 
 void recolour(gl::Dispatcher& dispatcher, std::uint32_t slots, const gl::Buffer& colours,
               FrameBuffers& buffers) {
   dispatcher.run(dispatcher.context().program("recolour.comp"), gl::DispatchSize::threads(slots, THREADS),
-                 {{"Colours", colours}, {"Splats", buffers.splats}}, {{"slot_count", slots}});
+                 {{"Colours", colours}, {"Splats", buffers.projected.splats}}, {{"slot_count", slots}});
 }
 
 void blend_transposed(gl::Dispatcher& dispatcher, const FramePlan& plan, FrameBuffers& buffers, float scale,
@@ -161,10 +161,10 @@ void keep_measured(gl::Dispatcher& dispatcher, const FramePlan& plan, bool measu
         {{"Frame", buffers.parameters},
          {"Arguments", drawn.arguments},
          {"Indices", drawn.indices},
-         {"Coverages", buffers.coverages},
-         {"Measured", buffers.measured},
-         {"NextBounds", *buffers.next_bounds},
-         {"OrderKeys", buffers.order.keys()},
+         {"Coverages", buffers.projected.coverages},
+         {"Measured", buffers.transmittance.measured},
+         {"NextBounds", *buffers.transmittance.next_bounds},
+         {"OrderKeys", buffers.ordering.order.keys()},
          {"FrameCounters", buffers.counters}},
         {{"nearest_key", plan.groups[group].nearest_key},
          {"view_begin", plan.groups[group].begin},

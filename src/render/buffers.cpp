@@ -41,30 +41,30 @@ FrameBuffers::FrameBuffers(gl::Context& context)
       views(context, "views"),
       region_rows(context, "regions of views"),
       counters(context, "counters"),
-      depth_keys(context, "depth keys"),
-      block_arguments(context, "arguments of blocks"),
-      block_counts(context, "block counts"),
-      order(context, "depth order"),
-      pair_offsets(context, "pair offsets"),
-      bounds(std::make_unique<gl::Buffer>(context, "measured transmittance")),
-      next_bounds(std::make_unique<gl::Buffer>(context, "transmittance for the next frame")),
-      measured(context, "transmittance by splat"),
-      depth_table(context, "transmittance by depth"),
-      splats(context, "splats"),
-      coverages(context, "tile coverage"),
-      tall(context, "tall splats"),
-      pair_arguments(context, "arguments of pairs"),
-      pairs(context, "Gaussian-tile pairs"),
-      ranges(context, "ranges of supertiles"),
-      tile_counts(context, "tiles' counts"),
-      tile_ranges(context, "ranges of tiles"),
-      tile_values(context, "lists of tiles"),
-      long_lists(context, "tiles with long lists"),
-      canvases(context, "canvases"),
-      colours(context, "pixels"),
-      z_sums(context, "depth of pixels"),
-      debug_values(context, "debug view"),
-      debug_transmittance(context, "transmittance of a debug view"),
+      transmittance{.depth_table = {context, "transmittance by depth"},
+                    .bounds = std::make_unique<gl::Buffer>(context, "measured transmittance"),
+                    .next_bounds = std::make_unique<gl::Buffer>(context, "transmittance for the next frame"),
+                    .measured = {context, "transmittance by splat"}},
+      ordering{.depth_keys = {context, "depth keys"},
+               .block_arguments = {context, "arguments of blocks"},
+               .block_counts = {context, "block counts"},
+               .order = {context, "depth order"},
+               .pair_offsets = {context, "pair offsets"}},
+      projected{.splats = {context, "splats"},
+                .coverages = {context, "tile coverage"},
+                .tall = {context, "tall splats"}},
+      lists{.pair_arguments = {context, "arguments of pairs"},
+            .pairs = {context, "Gaussian-tile pairs"},
+            .ranges = {context, "ranges of supertiles"},
+            .tile_counts = {context, "tiles' counts"},
+            .tile_ranges = {context, "ranges of tiles"},
+            .tile_values = {context, "lists of tiles"},
+            .long_lists = {context, "tiles with long lists"}},
+      pictures{.canvases = {context, "canvases"},
+               .colours = {context, "pixels"},
+               .z_sums = {context, "depth of pixels"},
+               .debug_values = {context, "debug view"},
+               .debug_transmittance = {context, "transmittance of a debug view"}},
       scan(context),
       sort(context),
       look_back(context),
@@ -75,12 +75,12 @@ void FrameBuffers::upload(const FramePlan& plan, bool uses_measured) {
   views.upload(plan.views);
   std::vector<shared::Canvas> of_views;
   for (const Canvas& canvas : plan.canvases) of_views.push_back(on_gpu(canvas));
-  if (!of_views.empty()) canvases.upload(of_views);
+  if (!of_views.empty()) pictures.canvases.upload(of_views);
   if (plan.draws_regions()) region_rows.upload(plan.region_rows);
   if (plan.settings.transmittance != TRANSMITTANCE_DEPTH) return;
   std::vector<float> table = plan.settings.depth_table.bounds;
   for (float& bound : table) bound = bound > 0.0f ? std::max(bound, static_cast<float>(BOUND_FLOOR)) : 1.0f;
-  depth_table.upload(table);
+  transmittance.depth_table.upload(table);
 }
 
 void FrameBuffers::reserve(const FramePlan& plan, const ModelBuffers& model, const Capacity& capacity) {
@@ -88,17 +88,17 @@ void FrameBuffers::reserve(const FramePlan& plan, const ModelBuffers& model, con
   slots = static_cast<std::uint32_t>(capacity.slots);
   const std::int64_t blocks = (gaussians + COMPACT_BLOCK - 1) / COMPACT_BLOCK;
   counters.reserve(sizeof(shared::Counters));
-  depth_keys.reserve(gaussians * 4);
-  block_counts.reserve(blocks * 4);
+  ordering.depth_keys.reserve(gaussians * 4);
+  ordering.block_counts.reserve(blocks * 4);
   while (drawn.size() < plan.groups.size()) drawn.push_back(std::make_unique<DrawnBuffers>(context_));
   for (const auto& group : drawn) {
     group->arguments.reserve(sizeof(primitives::SortArguments));
     group->indices.reserve(capacity.slots * 4);
   }
   if (measures(plan.settings.transmittance)) {
-    bounds->reserve(gaussians * plan.asked * 4);
-    next_bounds->reserve(gaussians * plan.asked * 4);
-    measured.reserve(capacity.slots * plan.view_count() * 4);
+    transmittance.bounds->reserve(gaussians * plan.asked * 4);
+    transmittance.next_bounds->reserve(gaussians * plan.asked * 4);
+    transmittance.measured.reserve(capacity.slots * plan.view_count() * 4);
   }
   for (std::size_t page = 0; plan.offset_count > 0 && page < model.pages.size(); ++page) {
     for (auto* each : {&kept, &kept_last}) {
@@ -107,29 +107,29 @@ void FrameBuffers::reserve(const FramePlan& plan, const ModelBuffers& model, con
       (*each)[page]->reserve(std::int64_t{plan.decoding_count()} * model.pages[page].anchors->count * 4);
     }
   }
-  order.reserve(capacity.slots);
-  pair_offsets.reserve(capacity.slots * 4);
-  splats.reserve(capacity.slots * plan.view_count() * splat_bytes(plan.settings.precision));
-  coverages.reserve(capacity.slots * plan.view_count() * 4);
-  tall.reserve(capacity.slots * plan.view_count() * 4);
-  pair_arguments.reserve(4 * sizeof(shared::DispatchArguments));
-  pairs.reserve(capacity.pairs);
-  ranges.reserve(std::max<std::int64_t>(plan.supertile_count, plan.view_count()) * 8);
+  ordering.order.reserve(capacity.slots);
+  ordering.pair_offsets.reserve(capacity.slots * 4);
+  projected.splats.reserve(capacity.slots * plan.view_count() * splat_bytes(plan.settings.precision));
+  projected.coverages.reserve(capacity.slots * plan.view_count() * 4);
+  projected.tall.reserve(capacity.slots * plan.view_count() * 4);
+  lists.pair_arguments.reserve(4 * sizeof(shared::DispatchArguments));
+  lists.pairs.reserve(capacity.pairs);
+  lists.ranges.reserve(std::max<std::int64_t>(plan.supertile_count, plan.view_count()) * 8);
   if (plan.supertile_side > 1) {
-    const std::int64_t blocks_of_pairs = (pairs.capacity() + TILE_BLOCK - 1) / TILE_BLOCK;
+    const std::int64_t blocks_of_pairs = (lists.pairs.capacity() + TILE_BLOCK - 1) / TILE_BLOCK;
     const std::int64_t counts = blocks_of_pairs * plan.tiles_a_supertile();
-    tile_counts.reserve(counts * 4);
+    lists.tile_counts.reserve(counts * 4);
     scan.reserve(counts);
-    tile_ranges.reserve(plan.tile_count() * 8LL);
-    tile_values.reserve(capacity.tile_pairs * 4);
+    lists.tile_ranges.reserve(plan.tile_count() * 8LL);
+    lists.tile_values.reserve(capacity.tile_pairs * 4);
   }
-  long_lists.reserve(plan.tile_count() * 4LL);
-  if (plan.canvases.empty()) colours.reserve(plan.pixel_count * 16);
-  if (plan.depth() != DEPTH_NONE) z_sums.reserve(plan.pixel_count * 4);
+  lists.long_lists.reserve(plan.tile_count() * 4LL);
+  if (plan.canvases.empty()) pictures.colours.reserve(plan.pixel_count * 16);
+  if (plan.depth() != DEPTH_NONE) pictures.z_sums.reserve(plan.pixel_count * 4);
   scan.reserve(std::max(blocks, capacity.slots));
   look_back.reserve(std::max(blocks, capacity.slots / SCAN_BLOCK) + 1);
-  for (const OrderGroup& group : plan.groups) sort.reserve(order, group.key_bits);
-  sort.reserve(pairs, plan.supertile_bits());
+  for (const OrderGroup& group : plan.groups) sort.reserve(ordering.order, group.key_bits);
+  sort.reserve(lists.pairs, plan.supertile_bits());
 }
 
 std::vector<DrawnGaussian> FrameBuffers::read_drawn(const FramePlan& plan, std::uint32_t v) const {
@@ -137,7 +137,7 @@ std::vector<DrawnGaussian> FrameBuffers::read_drawn(const FramePlan& plan, std::
   const std::uint32_t count = of_group.arguments.read<shared::DispatchArguments>(1).front().count;
   const auto indices = of_group.indices.read<std::uint32_t>(count);
   const std::size_t view_count = plan.view_count();
-  const auto covers = coverages.read<std::uint32_t>(count * view_count);
+  const auto covers = projected.coverages.read<std::uint32_t>(count * view_count);
   std::vector<DrawnGaussian> found;
   for (std::uint32_t slot = 0; slot < count; ++slot) {
     if (covers[slot * view_count + v] != 0) found.push_back({indices[slot], slot});
@@ -146,7 +146,7 @@ std::vector<DrawnGaussian> FrameBuffers::read_drawn(const FramePlan& plan, std::
 }
 
 void FrameBuffers::keep_last(bool measured_now) {
-  if (measured_now) std::swap(bounds, next_bounds);
+  if (measured_now) std::swap(transmittance.bounds, transmittance.next_bounds);
   std::swap(kept, kept_last);
 }
 

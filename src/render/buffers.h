@@ -48,14 +48,6 @@ struct FrameBuffers {
   /// The Gaussians that the last frame drew in its view `v`, in index order.
   std::vector<DrawnGaussian> read_drawn(const FramePlan& plan, std::uint32_t v) const;
 
-  /// The blend reads these two: the begin and end of each tile's list, and the splats that the lists are of.
-  gl::Buffer& ranges_of_tiles(const FramePlan& plan) {
-    return plan.supertile_side == 1 ? ranges : tile_ranges;
-  }
-  gl::Buffer& values_of_tiles(const FramePlan& plan) {
-    return plan.supertile_side == 1 ? pairs.values() : tile_values;
-  }
-
   std::uint32_t slots = 0;  // room for the Gaussians that one order group draws
 
   gl::Buffer parameters;   // FrameParameters
@@ -63,47 +55,68 @@ struct FrameBuffers {
   gl::Buffer region_rows;  // uvec2 by row of tiles of a view, where a view is not drawn whole
   gl::Buffer counters;     // Counters
 
-  // Filled for one order group after another.
-  gl::Buffer depth_keys;          // uint by Gaussian
-  gl::Buffer block_arguments;     // DispatchArguments of the compaction's blocks
-  gl::Buffer block_counts;        // uint, Gaussians drawn by block of COMPACT_BLOCK, scanned
-  primitives::PairBuffers order;  // depth bits, slot
-  gl::Buffer pair_offsets;        // uint by rank in the depth order, scanned
+  /// The upper bounds of transmittance that thresholds go by: T_upper from a table, or by (view, Gaussian) as
+  /// measured for the next frame, written while the last frame's is read. Empty where nothing is measured.
+  struct Transmittance {
+    gl::Buffer depth_table;                           // float by bin
+    std::unique_ptr<gl::Buffer> bounds, next_bounds;  // float
+    gl::Buffer measured;                              // uint by splat, bits of the largest float
+  } transmittance;
 
-  std::vector<std::unique_ptr<DrawnBuffers>> drawn;  // by order group
-
-  // T_upper as float (view, Gaussian), measured for the next frame's Th: one is written while the last
-  // frame's is read. Empty where nothing is measured.
-  std::unique_ptr<gl::Buffer> bounds;
-  std::unique_ptr<gl::Buffer> next_bounds;
   // For Scaffold-GS, by page of the model, uint (decoding, anchor): bit k: Gaussian k is there; KEPT_HIDDEN:
   // none is, these are the last frame's. Written while the last frame's is read.
   std::vector<std::unique_ptr<gl::Buffer>> kept, kept_last;
-  gl::Buffer measured;     // uint by splat, bits of the largest float
-  gl::Buffer depth_table;  // float by bin
 
-  // Filled for all views together.
-  gl::Buffer splats;     // Splat, or Halves (view, slot)
-  gl::Buffer coverages;  // uint (slot, view): supertiles.glsl
-  gl::Buffer tall;       // splats over many rows of tiles
-  // The same buffer, once tall splats are counted: uint (rank, view of the group), supertiles.glsl.
-  gl::Buffer& coverage_in_order = tall;
-  gl::Buffer pair_arguments;      // DispatchArguments of the pairs that arguments.comp counted
-  primitives::PairBuffers pairs;  // supertile (view with --tiles all), splat (supertiles.glsl)
-  gl::Buffer ranges;              // begin, end by supertile
-  // Where supertiles are of several tiles, in place of `ranges`.
-  gl::Buffer tile_counts;  // uint, pairs by tile of a supertile, then by block of TILE_BLOCK, scanned
-  gl::Buffer tile_ranges;  // begin, end by tile
-  gl::Buffer tile_values;  // splats, where tile_ranges says
-  gl::Buffer long_lists;   // tiles with more than LONG_LIST pairs
+  std::vector<std::unique_ptr<DrawnBuffers>> drawn;  // by order group
 
-  gl::Buffer canvases;  // Canvas by view, where pictures go into images, and nothing into `colours`
-  gl::Buffer colours;   // vec4 by pixel: C, T
-  gl::Buffer z_sums;    // float by pixel
+  /// The depth order, of one order group after another.
+  struct Ordering {
+    gl::Buffer depth_keys;          // uint by Gaussian
+    gl::Buffer block_arguments;     // DispatchArguments of the compaction's blocks
+    gl::Buffer block_counts;        // uint, Gaussians drawn by block of COMPACT_BLOCK, scanned
+    primitives::PairBuffers order;  // depth bits, slot
+    gl::Buffer pair_offsets;        // uint by rank in the depth order, scanned
+  } ordering;
 
-  // Filled by blend_debug_view().
-  gl::Buffer debug_values;         // float by pixel
-  gl::Buffer debug_transmittance;  // uint by splat, bits of the largest T
+  /// What `project` makes of the Gaussians that are drawn, for all views.
+  struct Projected {
+    gl::Buffer splats;     // Splat, or Halves (view, slot)
+    gl::Buffer coverages;  // uint (slot, view): supertiles.glsl
+    gl::Buffer tall;       // splats over many rows of tiles
+    // The same buffer, once tall splats are counted: uint (rank, view of the group), supertiles.glsl.
+    gl::Buffer& coverage_in_order = tall;
+  } projected;
+
+  /// The pairs of all views, and which of them are each tile's list.
+  struct Lists {
+    gl::Buffer pair_arguments;      // DispatchArguments of the pairs that arguments.comp counted
+    primitives::PairBuffers pairs;  // supertile (view with --tiles all), splat (supertiles.glsl)
+    gl::Buffer ranges;              // begin, end by supertile
+    // Where supertiles are of several tiles, in place of `ranges`.
+    gl::Buffer tile_counts;  // uint, pairs by tile of a supertile, then by block of TILE_BLOCK, scanned
+    gl::Buffer tile_ranges;  // begin, end by tile
+    gl::Buffer tile_values;  // splats, where tile_ranges says
+    gl::Buffer long_lists;   // tiles with more than LONG_LIST pairs
+
+    /// The blend reads these two: the begin and end of each tile's list, and the splats that the lists are
+    /// of.
+    gl::Buffer& ranges_of_tiles(const FramePlan& plan) {
+      return plan.supertile_side == 1 ? ranges : tile_ranges;
+    }
+    gl::Buffer& values_of_tiles(const FramePlan& plan) {
+      return plan.supertile_side == 1 ? pairs.values() : tile_values;
+    }
+  } lists;
+
+  /// What the blend makes of the lists.
+  struct Pictures {
+    gl::Buffer canvases;  // Canvas by view, where pictures go into images, and not into the next two
+    gl::Buffer colours;   // vec4 by pixel: C, T
+    gl::Buffer z_sums;    // float by pixel
+    // Filled by blend_debug_view().
+    gl::Buffer debug_values;         // float by pixel
+    gl::Buffer debug_transmittance;  // uint by splat, bits of the largest T
+  } pictures;
 
   primitives::Scan scan;
   primitives::RadixSort sort;

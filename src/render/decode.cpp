@@ -62,7 +62,7 @@ void decode(gl::Dispatcher& dispatcher, const FramePlan& plan, const ModelBuffer
                     {"Harmonics", *page.harmonics},
                     {"Kept", *buffers.kept[p]},
                     {"KeptLast", *buffers.kept_last[p]},
-                    {"Bounds", *buffers.bounds}},
+                    {"Bounds", *buffers.transmittance.bounds}},
                    {{"anchor_count", anchors.count}, {"page_first", page.first}});
   }
 }

@@ -132,7 +132,7 @@ void Frame::start_attempt() {
   measuring_ = history_.decide(plan_);
   capacity_.start(plan_, submitted_.workings);
   const std::uint32_t blocks = (plan_.gaussian_count + COMPACT_BLOCK - 1) / COMPACT_BLOCK;
-  buffers_.block_arguments.upload(
+  buffers_.ordering.block_arguments.upload(
       std::vector{primitives::make_arguments(blocks, dispatcher_.context().limits().groups)});
   record();
 }

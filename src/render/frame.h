@@ -120,9 +120,9 @@ class Frame {
   const std::shared_ptr<GpuModel>& model() const { return model_; }
   /// The pictures on the GPU: vec4 (C, T) by pixel, a view's from its pixel_offset on. Not where something
   /// else stood in for blend, whose pictures never get there, nor those of a frame on canvases.
-  const gl::Buffer& colours() const { return buffers_.colours; }
+  const gl::Buffer& colours() const { return buffers_.pictures.colours; }
   /// Their Z by pixel, likewise; of a frame on canvases depths (draw). Nothing with Depth::none.
-  const gl::Buffer& z_sums() const { return buffers_.z_sums; }
+  const gl::Buffer& z_sums() const { return buffers_.pictures.z_sums; }
   /// The views of the last frame drawn, with tiles, offsets and groups; a probe's comes last.
   const std::vector<shared::View>& views() const { return plan_.views; }
   const FramePlan& plan() const { return plan_; }

@@ -13,10 +13,10 @@ std::vector<Picture> Frame::read_pictures() const {
   if (!pictures_stood_in_.empty()) return pictures_stood_in_;
   if (!plan_.canvases.empty()) fail("the pictures went onto canvases, and are whose those are");
   const auto pixels = static_cast<std::size_t>(plan_.pixel_count);
-  const auto colours = buffers_.colours.read<glm::vec4>(pixels);
+  const auto colours = buffers_.pictures.colours.read<glm::vec4>(pixels);
   const bool has_depth = plan_.depth() != DEPTH_NONE;
   std::vector<float> z_sums;
-  if (has_depth) z_sums = buffers_.z_sums.read<float>(pixels);
+  if (has_depth) z_sums = buffers_.pictures.z_sums.read<float>(pixels);
   std::vector<Picture> pictures;
   for (const shared::View& view : std::span(plan_.views).first(plan_.asked)) {
     Picture& picture = pictures.emplace_back(static_cast<int>(view.width), static_cast<int>(view.height));
@@ -31,7 +31,7 @@ std::vector<Image> Frame::read_debug_view(int what) {
   if (!pictures_stood_in_.empty())
     fail("--show {}: the GPU does not walk the lists of --reference-until blend", show_choices[what].name);
   blend_debug_view(dispatcher_, plan_, what, buffers_);
-  const auto values = buffers_.debug_values.read<float>(static_cast<std::size_t>(plan_.pixel_count));
+  const auto values = buffers_.pictures.debug_values.read<float>(static_cast<std::size_t>(plan_.pixel_count));
   std::vector<Image> images;
   for (const shared::View& view : std::span(plan_.views).first(plan_.asked)) {
     Image& image = images.emplace_back(static_cast<int>(view.width), static_cast<int>(view.height), 1);
@@ -44,7 +44,8 @@ std::vector<MeasuredGaussian> Frame::read_measured(std::uint32_t v) const {
   if (!measuring_.measures || uploads_ != model_->uploads()) return {};
   const shared::View& view = plan_.views.at(v);
   const std::vector<DrawnGaussian> drawn = buffers_.read_drawn(plan_, v);
-  const auto largest = buffers_.measured.read<float>(buffers_.slots, std::size_t{v} * buffers_.slots);
+  const auto largest =
+      buffers_.transmittance.measured.read<float>(buffers_.slots, std::size_t{v} * buffers_.slots);
   std::vector<MeasuredGaussian> measured;
   for (const auto& [i, slot] : drawn) {
     const glm::vec3 p = model_->model().position[i] - glm::vec3(view.anchor);

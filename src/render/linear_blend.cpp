@@ -41,7 +41,8 @@ void LinearBlend::set_colours(std::span<const glm::vec3> colours) {
 }
 
 std::vector<glm::vec4> LinearBlend::read_picture() {
-  return frame_.buffers().colours.read<glm::vec4>(static_cast<std::size_t>(frame_.plan().pixel_count));
+  return frame_.buffers().pictures.colours.read<glm::vec4>(
+      static_cast<std::size_t>(frame_.plan().pixel_count));
 }
 
 // Four of each slot.

@@ -32,7 +32,9 @@ class LinearBlend {
   void set_colours(std::span<const glm::vec3> colours);
 
   /// Another picture in its place: a vec4 for each of the view's pixels, rows from the top.
-  void set_picture(std::span<const glm::vec4> pixels) { frame_.buffers().colours.upload_part(pixels, 0); }
+  void set_picture(std::span<const glm::vec4> pixels) {
+    frame_.buffers().pictures.colours.upload_part(pixels, 0);
+  }
 
   /// vec4 by pixel: after set_colours() with the transmittance left in a.
   std::vector<glm::vec4> read_picture();

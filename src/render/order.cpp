@@ -4,7 +4,8 @@ namespace binosplat::render {
 
 void order(gl::Dispatcher& dispatcher, const FramePlan& plan, std::uint32_t group, FrameBuffers& buffers) {
   // Depths are positive floats: their bits sort as unsigned numbers do.
-  buffers.sort.run(dispatcher, buffers.drawn[group]->arguments, buffers.order, plan.groups[group].key_bits);
+  buffers.sort.run(dispatcher, buffers.drawn[group]->arguments, buffers.ordering.order,
+                   plan.groups[group].key_bits);
 }
 
 }  // namespace binosplat::render

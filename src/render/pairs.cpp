@@ -18,29 +18,29 @@ void count(gl::Dispatcher& dispatcher, const FramePlan& plan, std::uint32_t grou
   const bool looks_back =
       context.limits().subgroups_of_32 && std::uint64_t{SCAN_BLOCK} * plan.supertile_count < COUNT_MAX;
   const std::array variant = {gl::Number{"BOTH_EYES", both_eyes, 2}, gl::Number{"LOOKS_BACK", looks_back, 2},
-                              buffers.pairs.block_number()};
+                              buffers.lists.pairs.block_number()};
   dispatcher.run(
       context.program("pairs_count.comp", variant),
       gl::DispatchSize::indirect(drawn, looks_back ? offsetof(shared::DispatchArguments, scan_x)
                                                    : offsetof(shared::DispatchArguments, threads_x)),
       {{"Frame", buffers.parameters},
        {"OrderArguments", drawn},
-       {"Order", buffers.order.values()},
-       {"Coverages", buffers.coverages},
-       {"PairOffsets", buffers.pair_offsets},
-       {"CoverageInOrder", buffers.coverage_in_order},
-       {"Arguments", buffers.pair_arguments},
+       {"Order", buffers.ordering.order.values()},
+       {"Coverages", buffers.projected.coverages},
+       {"PairOffsets", buffers.ordering.pair_offsets},
+       {"CoverageInOrder", buffers.projected.coverage_in_order},
+       {"Arguments", buffers.lists.pair_arguments},
        {"FrameCounters", buffers.counters},
        {"LookBack", buffers.look_back.words()}},
       {{"view_begin", views.begin},
        {"view_end", views.end},
        {"look_back_half", looks_back ? buffers.look_back.next_half() : 0},
        {"kind", ARGUMENTS_PAIRS},
-       {"capacity", static_cast<std::uint32_t>(buffers.pairs.capacity())},
+       {"capacity", static_cast<std::uint32_t>(buffers.lists.pairs.capacity())},
        {"groups_max", context.limits().groups},
        {"digit_bits", primitives::RadixSort::digit_bits(plan.supertile_bits())}});
   if (looks_back) return;
-  buffers.scan.run(dispatcher, drawn, 0, buffers.pair_offsets);
+  buffers.scan.run(dispatcher, drawn, 0, buffers.ordering.pair_offsets);
   count_pairs(dispatcher, plan, ARGUMENTS_PAIRS, buffers);
 }
 
@@ -49,13 +49,13 @@ void count(gl::Dispatcher& dispatcher, const FramePlan& plan, std::uint32_t grou
 void count_pairs(gl::Dispatcher& dispatcher, const FramePlan& plan, std::uint32_t kind,
                  FrameBuffers& buffers) {
   gl::Context& context = dispatcher.context();
-  dispatcher.run(context.program("arguments.comp", buffers.pairs.block_number()),
+  dispatcher.run(context.program("arguments.comp", buffers.lists.pairs.block_number()),
                  gl::DispatchSize::of_groups(1),
-                 {{"Arguments", buffers.pair_arguments},
+                 {{"Arguments", buffers.lists.pair_arguments},
                   {"Total", buffers.scan.total()},
                   {"FrameCounters", buffers.counters}},
                  {{"kind", kind},
-                  {"capacity", static_cast<std::uint32_t>(buffers.pairs.capacity())},
+                  {"capacity", static_cast<std::uint32_t>(buffers.lists.pairs.capacity())},
                   {"groups_max", context.limits().groups},
                   {"digit_bits", primitives::RadixSort::digit_bits(plan.supertile_bits())}});
 }
@@ -69,18 +69,18 @@ void pairs(gl::Dispatcher& dispatcher, const FramePlan& plan, std::uint32_t grou
   variant.subgroups = context.limits().subgroups_of_32;
   dispatcher.run(
       context.program("pairs.comp", variant),
-      gl::DispatchSize::indirect(buffers.pair_arguments, offsetof(shared::DispatchArguments, scan_x)),
+      gl::DispatchSize::indirect(buffers.lists.pair_arguments, offsetof(shared::DispatchArguments, scan_x)),
       {{"Frame", buffers.parameters},
        {"OrderArguments", drawn},
-       {"PairArguments", buffers.pair_arguments},
+       {"PairArguments", buffers.lists.pair_arguments},
        {"Views", buffers.views},
        {"RegionRows", buffers.region_rows},
-       {"Order", buffers.order.values()},
-       {"PairOffsets", buffers.pair_offsets},
-       {"CoverageInOrder", buffers.coverage_in_order},
-       {"Splats", buffers.splats},
-       {"Keys", buffers.pairs.keys()},
-       {"Values", buffers.pairs.values()}},
+       {"Order", buffers.ordering.order.values()},
+       {"PairOffsets", buffers.ordering.pair_offsets},
+       {"CoverageInOrder", buffers.projected.coverage_in_order},
+       {"Splats", buffers.projected.splats},
+       {"Keys", buffers.lists.pairs.keys()},
+       {"Values", buffers.lists.pairs.values()}},
       {{"view_begin", views.begin}, {"view_end", views.end}});
 }
 

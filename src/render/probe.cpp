@@ -25,7 +25,7 @@ void probe(gl::Dispatcher& dispatcher, const FramePlan& plan, FrameBuffers& buff
       gl::DispatchSize::threads(std::uint64_t{exact.tiles_x} * exact.tiles_y * side * side, THREADS),
       {{"Frame", buffers.parameters},
        {"Views", buffers.views},
-       {"Colours", buffers.colours},
+       {"Colours", buffers.pictures.colours},
        {"FrameCounters", buffers.counters}});
 }
 

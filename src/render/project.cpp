@@ -34,10 +34,10 @@ void cull(gl::Dispatcher& dispatcher, const FramePlan& plan, OrderGroup views, P
                     {"RegionRows", buffers.region_rows},
                     {"Gaussians", *page.gaussians},
                     {"Kept", kept_of(model, p, buffers)},
-                    {"DepthKeys", buffers.depth_keys},
-                    {"Bounds", *buffers.bounds},
-                    {"DepthTable", buffers.depth_table},
-                    {"NextBounds", *buffers.next_bounds}},
+                    {"DepthKeys", buffers.ordering.depth_keys},
+                    {"Bounds", *buffers.transmittance.bounds},
+                    {"DepthTable", buffers.transmittance.depth_table},
+                    {"NextBounds", *buffers.transmittance.next_bounds}},
                    {{"page_first", page.first},
                     {"page_count", page.count},
                     {"view_begin", views.begin},
@@ -51,14 +51,14 @@ void compact(gl::Dispatcher& dispatcher, const FramePlan& plan, OrderGroup group
   const auto blocks = gl::DispatchSize::threads(std::max(1u, plan.gaussian_count), COMPACT_BLOCK);
   const std::uint32_t digit_bits = primitives::RadixSort::digit_bits(group.key_bits);
   if (context.limits().subgroups_of_32) {
-    const std::array variant = {buffers.order.block_number(), gl::Number{"LOOKS_BACK", 1, 2}};
+    const std::array variant = {buffers.ordering.order.block_number(), gl::Number{"LOOKS_BACK", 1, 2}};
     return dispatcher.run(context.program("project_compact.comp", variant), blocks,
                           {{"Frame", buffers.parameters},
                            {"Arguments", drawn.arguments},
-                           {"DepthKeys", buffers.depth_keys},
+                           {"DepthKeys", buffers.ordering.depth_keys},
                            {"LookBack", buffers.look_back.words()},
-                           {"Keys", buffers.order.keys()},
-                           {"Values", buffers.order.values()},
+                           {"Keys", buffers.ordering.order.keys()},
+                           {"Values", buffers.ordering.order.values()},
                            {"Indices", drawn.indices},
                            {"FrameCounters", buffers.counters}},
                           {{"nearest_key", group.nearest_key},
@@ -70,25 +70,26 @@ void compact(gl::Dispatcher& dispatcher, const FramePlan& plan, OrderGroup group
   }
   dispatcher.run(context.program("project_compact_count.comp"), blocks,
                  {{"Frame", buffers.parameters},
-                  {"DepthKeys", buffers.depth_keys},
-                  {"BlockCounts", buffers.block_counts}});
-  buffers.scan.run(dispatcher, buffers.block_arguments, 0, buffers.block_counts);
+                  {"DepthKeys", buffers.ordering.depth_keys},
+                  {"BlockCounts", buffers.ordering.block_counts}});
+  buffers.scan.run(dispatcher, buffers.ordering.block_arguments, 0, buffers.ordering.block_counts);
   dispatcher.run(
-      context.program("arguments.comp", buffers.order.block_number()), gl::DispatchSize::of_groups(1),
+      context.program("arguments.comp", buffers.ordering.order.block_number()),
+      gl::DispatchSize::of_groups(1),
       {{"Arguments", drawn.arguments}, {"Total", buffers.scan.total()}, {"FrameCounters", buffers.counters}},
       {{"kind", ARGUMENTS_ORDER},
        {"capacity", buffers.slots},
        {"groups_max", context.limits().groups},
        {"digit_bits", digit_bits}});
-  dispatcher.run(context.program("project_compact.comp",
-                                 std::array{buffers.order.block_number(), gl::Number{"LOOKS_BACK", 0, 2}}),
+  dispatcher.run(context.program("project_compact.comp", std::array{buffers.ordering.order.block_number(),
+                                                                    gl::Number{"LOOKS_BACK", 0, 2}}),
                  blocks,
                  {{"Frame", buffers.parameters},
                   {"Arguments", drawn.arguments},
-                  {"DepthKeys", buffers.depth_keys},
-                  {"BlockCounts", buffers.block_counts},
-                  {"Keys", buffers.order.keys()},
-                  {"Values", buffers.order.values()},
+                  {"DepthKeys", buffers.ordering.depth_keys},
+                  {"BlockCounts", buffers.ordering.block_counts},
+                  {"Keys", buffers.ordering.order.keys()},
+                  {"Values", buffers.ordering.order.values()},
                   {"Indices", drawn.indices}},
                  {{"nearest_key", group.nearest_key}});
 }
@@ -118,13 +119,13 @@ void project(gl::Dispatcher& dispatcher, const FramePlan& plan, std::uint32_t gr
          {"Harmonics", *page.harmonics},
          {"Arguments", drawn.arguments},
          {"Indices", drawn.indices},
-         {"Splats", buffers.splats},
-         {"Coverages", buffers.coverages},
+         {"Splats", buffers.projected.splats},
+         {"Coverages", buffers.projected.coverages},
          {"FrameCounters", buffers.counters},
-         {"Tall", buffers.tall},
-         {"Bounds", *buffers.bounds},
-         {"DepthTable", buffers.depth_table},
-         {"Measured", buffers.measured}},
+         {"Tall", buffers.projected.tall},
+         {"Bounds", *buffers.transmittance.bounds},
+         {"DepthTable", buffers.transmittance.depth_table},
+         {"Measured", buffers.transmittance.measured}},
         {{"page_first", page.first},
          {"page_count", page.count},
          {"view_begin", views.begin},
@@ -138,9 +139,9 @@ void project(gl::Dispatcher& dispatcher, const FramePlan& plan, std::uint32_t gr
                   {"Views", buffers.views},
                   {"RegionRows", buffers.region_rows},
                   {"FrameCounters", buffers.counters},
-                  {"Tall", buffers.tall},
-                  {"Splats", buffers.splats},
-                  {"Coverages", buffers.coverages}});
+                  {"Tall", buffers.projected.tall},
+                  {"Splats", buffers.projected.splats},
+                  {"Coverages", buffers.projected.coverages}});
 }
 
 }  // namespace binosplat::render

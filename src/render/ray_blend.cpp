@@ -23,9 +23,9 @@ double RayBlend::blend(std::uint32_t v, const gl::Buffer& rays, std::uint32_t co
   dispatcher_.begin_stage("blend");
   dispatcher_.run(context().program("blend_rays.comp", variant), gl::DispatchSize::threads(count, THREADS),
                   {{"Views", buffers.views},
-                   {"Ranges", buffers.ranges_of_tiles(plan)},
-                   {"Values", buffers.values_of_tiles(plan)},
-                   {"Splats", buffers.splats},
+                   {"Ranges", buffers.lists.ranges_of_tiles(plan)},
+                   {"Values", buffers.lists.values_of_tiles(plan)},
+                   {"Splats", buffers.projected.splats},
                    {"Rays", rays},
                    {"Colours", colours},
                    {"ZSums", z_sums},

@@ -44,14 +44,14 @@ void blend_debug_view(gl::Dispatcher& dispatcher, const FramePlan& plan, int wha
 void recolour(gl::Dispatcher& dispatcher, std::uint32_t slots, const gl::Buffer& colours,
               FrameBuffers& buffers);
 
-/// Adds to `sums`, for each splat, alpha * T times `scale` times the picture in buffers.colours over its
-/// pixels; the picture stays. `sums` has an ivec2 of 64 bits a channel, low first. No channel times `scale`
-/// may be larger than TRANSPOSED_SCALE.
+/// Adds to `sums`, for each splat, alpha * T times `scale` times the picture in buffers.pictures.colours over
+/// its pixels; the picture stays. `sums` has an ivec2 of 64 bits a channel, low first. No channel times
+/// `scale` may be larger than TRANSPOSED_SCALE.
 void blend_transposed(gl::Dispatcher& dispatcher, const FramePlan& plan, FrameBuffers& buffers, float scale,
                       const gl::Buffer& sums);
 
 /// Adds to `sums`, in channel 0 and in multiples of 1 / CHANGE_SCALE, how much each splat alone changes the
-/// picture: squared, over its pixels. The splats' picture lies in buffers.colours, and stays.
+/// picture: squared, over its pixels. The splats' picture lies in buffers.pictures.colours, and stays.
 void blend_changes(gl::Dispatcher& dispatcher, const FramePlan& plan, FrameBuffers& buffers,
                    const gl::Buffer& sums);
 

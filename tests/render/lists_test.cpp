@@ -23,9 +23,9 @@ Offers offers(const Model& model, const std::vector<shared::View>& views, std::u
   const auto counters = run.frame.counters.read<shared::Counters>(1).front();
   EXPECT_EQ(counters.overflow, 0u);
   const std::uint32_t pairs = supertile_side == 1 ? counters.pairs : counters.tile_pairs;
-  const auto values = run.frame.values_of_tiles(run.plan).read<std::uint32_t>(pairs);
+  const auto values = run.frame.lists.values_of_tiles(run.plan).read<std::uint32_t>(pairs);
   const auto ranges =
-      run.frame.ranges_of_tiles(run.plan).read<std::uint32_t>(2 * std::size_t{run.plan.tile_count()});
+      run.frame.lists.ranges_of_tiles(run.plan).read<std::uint32_t>(2 * std::size_t{run.plan.tile_count()});
   const shared::View& view = run.plan.views[v];
   const auto side = static_cast<std::uint32_t>(supertile_side);
   const std::uint32_t across = (view.tiles_x + side - 1) / side;

@@ -42,9 +42,9 @@ TEST(OrderKeys, WithABitLessTheOrderIsWrong) {
     plan.groups.front().key_bits -= bits_less;
     gl::Dispatcher dispatcher(test::gl_context());
     render::order(dispatcher, plan, 0, run.frame);
-    const auto splats = run.frame.splats.read<shared::Splat>(run.indices.front().size());
+    const auto splats = run.frame.projected.splats.read<shared::Splat>(run.indices.front().size());
     std::vector<float> depths;
-    for (const std::uint32_t slot : run.frame.order.values().read<std::uint32_t>(splats.size()))
+    for (const std::uint32_t slot : run.frame.ordering.order.values().read<std::uint32_t>(splats.size()))
       depths.push_back(splats[slot].depth);
     return depths;
   };

@@ -17,8 +17,8 @@ Lists gpu_lists(test::StageRun& run) {
   run.run_until(render::Stage::ranges);
   const auto counters = run.frame.counters.read<shared::Counters>(1).front();
   EXPECT_EQ(counters.overflow, 0u);
-  const auto values = run.frame.pairs.values().read<std::uint32_t>(counters.pairs);
-  const auto ranges = run.frame.ranges.read<std::uint32_t>(2 * std::size_t{run.plan.supertile_count});
+  const auto values = run.frame.lists.pairs.values().read<std::uint32_t>(counters.pairs);
+  const auto ranges = run.frame.lists.ranges.read<std::uint32_t>(2 * std::size_t{run.plan.supertile_count});
   Lists lists(run.plan.supertile_count);
   std::size_t total = 0;
   for (std::uint32_t t = 0; t < run.plan.supertile_count; ++t) {

@@ -27,7 +27,7 @@ struct ProbeRun {
   Picture picture(std::uint32_t v) const {
     const shared::View& view = run.plan.views.at(v);
     Picture out(static_cast<int>(view.width), static_cast<int>(view.height));
-    out.colour = run.frame.colours.read<glm::vec4>(out.colour.size(), view.pixel_offset);
+    out.colour = run.frame.pictures.colours.read<glm::vec4>(out.colour.size(), view.pixel_offset);
     return out;
   }
 
@@ -177,7 +177,8 @@ TEST(Probe, IsNoPictureAndChangesNoneNorWhatIsMeasured) {
       for (std::uint32_t eye = 0; eye < 2; ++eye)
         EXPECT_TRUE(test::same_bits(with.picture(eye), without.picture(eye))) << probe.step;
       const std::size_t all = 2 * model.count();
-      EXPECT_EQ(with.run.frame.bounds->read<float>(all), without.run.frame.bounds->read<float>(all));
+      EXPECT_EQ(with.run.frame.transmittance.bounds->read<float>(all),
+                without.run.frame.transmittance.bounds->read<float>(all));
     }
   }
 }

@@ -12,13 +12,13 @@ using Ranges = std::vector<std::uint32_t>;  // begin and end of each list
 
 Ranges on_gpu(test::StageRun& run) {
   run.run_until(render::Stage::ranges);
-  return run.frame.ranges.read<std::uint32_t>(2 * std::size_t{run.plan.supertile_count});
+  return run.frame.lists.ranges.read<std::uint32_t>(2 * std::size_t{run.plan.supertile_count});
 }
 
 // Of the keys as the GPU has sorted them; 0 to 0 for a list without pairs.
 Ranges expected(test::StageRun& run) {
   const std::uint32_t count = run.frame.counters.read<shared::Counters>(1).front().pairs;
-  const auto keys = run.frame.pairs.keys().read<std::uint32_t>(count);
+  const auto keys = run.frame.lists.pairs.keys().read<std::uint32_t>(count);
   Ranges ranges;
   for (std::uint32_t list = 0; list < run.plan.supertile_count; ++list) {
     const auto [begin, end] = std::equal_range(keys.begin(), keys.end(), list);

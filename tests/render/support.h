@@ -87,8 +87,8 @@ struct StageRun {
   };
   Projected projected(std::uint32_t view) const {
     const std::size_t all = std::size_t{frame.slots} * plan.view_count();
-    const auto splats = frame.splats.read<shared::Splat>(all);
-    const auto tiles = frame.coverages.read<std::uint32_t>(all);
+    const auto splats = frame.projected.splats.read<shared::Splat>(all);
+    const auto tiles = frame.projected.coverages.read<std::uint32_t>(all);
     Projected out{std::vector<shared::Splat>(plan.gaussian_count),
                   std::vector<std::uint32_t>(plan.gaussian_count)};
     const auto& of_group = indices[plan.views[view].order_group];
@@ -113,7 +113,7 @@ struct StageRun {
 inline std::vector<float> measured_on_gpu(const Model& model, const shared::View& view) {
   render::Frame frame(gl_context(), model);
   frame.draw(std::span(&view, 1), {.transmittance = TRANSMITTANCE_LAST});
-  return frame.buffers().bounds->read<float>(model.count());
+  return frame.buffers().transmittance.bounds->read<float>(model.count());
 }
 
 /// How many Gaussians have another measurement in the reference than these.

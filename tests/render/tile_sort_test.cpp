@@ -16,8 +16,8 @@ using SortedPairs = std::vector<std::pair<std::uint32_t, std::uint32_t>>;  // su
 
 SortedPairs read_pairs(test::StageRun& run) {
   const std::uint32_t count = run.frame.counters.read<shared::Counters>(1).front().pairs;
-  const auto lists = run.frame.pairs.keys().read<std::uint32_t>(count);
-  const auto splats = run.frame.pairs.values().read<std::uint32_t>(count);
+  const auto lists = run.frame.lists.pairs.keys().read<std::uint32_t>(count);
+  const auto splats = run.frame.lists.pairs.values().read<std::uint32_t>(count);
   SortedPairs pairs(count);
   std::transform(lists.begin(), lists.end(), splats.begin(), pairs.begin(),
                  [](std::uint32_t list, std::uint32_t splat) { return std::pair(list, splat); });

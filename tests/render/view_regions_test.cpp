@@ -149,7 +149,7 @@ std::vector<std::uint32_t> list_sizes(const Model& model, const FrameSettings& s
   const auto counters = run.frame.counters.read<shared::Counters>(1).front();
   EXPECT_EQ(counters.overflow, 0u);
   const auto ranges =
-      run.frame.ranges_of_tiles(run.plan).read<std::uint32_t>(2 * std::size_t{run.plan.tile_count()});
+      run.frame.lists.ranges_of_tiles(run.plan).read<std::uint32_t>(2 * std::size_t{run.plan.tile_count()});
   const shared::View& view = run.plan.views.front();
   const auto side = static_cast<std::uint32_t>(supertile_side);
   const std::uint32_t across = (view.tiles_x + side - 1) / side;
