@@ -62,8 +62,8 @@ std::optional<DisparityRange> disparity_range(const std::array<Camera, 2>& eyes,
   const Image depth = depth_map(left);
   std::vector<double> px, degrees;
   DisparityRange range;
-  // Of a large picture a quarter of a million pixels tell as much.
-  const int step = std::max(1, static_cast<int>(std::sqrt(left.width * (left.height / 250e3))));
+  // Of a large picture sixty thousand pixels tell as much.
+  const int step = std::max(1, static_cast<int>(std::sqrt(left.width * (left.height / 60e3))));
   for (int y = 0; y < left.height; y += step) {
     for (int x = 0; x < left.width; x += step) {
       const double z = depth.at(x, y, 0);

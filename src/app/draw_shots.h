@@ -26,7 +26,10 @@ struct Work {
   std::unique_ptr<Stream> stream;  // of a model whose levels follow the shots
 };
 
-/// Draws every shot as often as asked for, and leaves the files of its last frame.
+/// Draws every shot as often as asked for, and leaves the files of its last frame. All of OpenGL is called on
+/// the thread that calls this: while the GPU draws a shot, it waits for the copy of the one before
+/// (render/read_back.h) and hands that to the threads of files (app/shot_files.h). What has to be made of a
+/// frame with OpenGL, as with --show, --foveate and --vr180, is read at once.
 void draw_all(gl::Context& context, Work& work, RenderReport& report);
 
 }  // namespace binosplat::app

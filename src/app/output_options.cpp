@@ -61,8 +61,9 @@ void add_output_options(CLI::App& sub, OutputOptions& o) {
   choose<Depth>(sub, "--exr-depth", o.exr_depth,
                 "Z of OpenEXR: the mean of what is seen, or by which half of it is (mean)",
                 {{"mean", Depth::mean}, {"median", Depth::median}});
-  choose<bool>(sub, "--exr-compression", o.exr_compressed, "zip is smaller, none is faster (zip)",
-               {{"zip", true}, {"none", false}});
+  choose<ExrCompression>(
+      sub, "--exr-compression", o.exr_compression, "How OpenEXR is packed: zip is smallest and slowest (rle)",
+      {{"none", ExrCompression::none}, {"rle", ExrCompression::rle}, {"zip", ExrCompression::zip}});
   sub.add_option(
          "--photos", o.photos,
          "Print PSNR against DIR/NAME.jpg, .png or .exr, or the photos found\nbeside the cameras; with "

@@ -6,6 +6,7 @@
 
 #include "app/cli.h"
 #include "base/image.h"
+#include "formats/exr.h"
 #include "shared/axes.h"
 
 namespace binosplat::app {
@@ -24,7 +25,7 @@ struct OutputOptions {
   std::optional<bool> exr_half;     // OpenEXR, too, as half or float
   std::optional<bool> exr_display;  // display values instead of light
   Depth exr_depth = Depth::mean;
-  bool exr_compressed = true;
+  ExrCompression exr_compression = ExrCompression::rle;
   std::string photos;  // a folder, or photos_beside
   std::string json;
   bool detail_report = false;

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <future>
 #include <limits>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -161,7 +162,14 @@ ExitCode render(const RenderOptions& asked) {
          o.scene.name);
   if (!work.stream && o.scene.gpu_memory) budget = detail_budget(o, work.list);
   Model loaded;
-  if (!work.stream) loaded = load_scene(o.scene, budget, work.list.cameras);
+  if (!work.stream) {
+    // The model is read while the driver begins. Of what an earlier run has drawn maybe nothing is left to
+    // do.
+    auto loading =
+        std::async(std::launch::async, [&] { return load_scene(o.scene, budget, work.list.cameras); });
+    if (!o.resume) context = open_context(o.context);
+    loaded = loading.get();
+  }
   const Model& model = work.stream ? work.stream->model() : loaded;
   log_model(o.scene.name, o.drawing.decode, model, work.stream ? work.stream->gaussians() : model.count());
   if (!work.list.listed) work.list = made_up_cameras(o.scene, o.camera, work.list.known, model);
@@ -182,7 +190,7 @@ ExitCode render(const RenderOptions& asked) {
       views_of(work.shots[0]);  // whichever part of the views is drawn here
   const std::optional<ordered_json> run = take_what_is_left(o, near_plane, work);
   if (work.shots.empty()) return ExitCode::done;
-  context = open_context(o.context);
+  if (!context) context = open_context(o.context);
   if (work.stream) {
     work.stream->gpu_model(*context, settings.precision);
     work.stream->settle(first, settings);

@@ -68,7 +68,7 @@ int plan_layout(const OutputOptions& options, bool one_picture, bool picture_fil
 
 ExrOptions exr_options(const OutputOptions& options, const Notes& notes) {
   return {options.exr_half.value_or(true), options.exr_display.value_or(false), options.background, notes,
-          options.exr_compressed};
+          options.exr_compression};
 }
 
 void encode_picture(const OutputOptions& options, const OutputPlan& plan, const std::string& base,

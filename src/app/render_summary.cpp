@@ -120,10 +120,11 @@ void print_run(const RenderReport& report) {
       files);
   if (files > 50) {
     const OutputOptions& o = report.options.output;
-    const char* const faster = run.writing > run.encoding       ? "a faster disk would help"
-                               : o.exr_half && o.exr_compressed ? "--exr-compression none is faster"
-                               : o.png_level > 0                ? "--png-level 0 is faster"
-                                                                : "more cores would help";
+    const char* const faster = run.writing > run.encoding ? "a faster disk would help"
+                               : o.exr_half && o.exr_compression == ExrCompression::zip
+                                   ? "--exr-compression rle is faster"
+                               : o.png_level > 0 ? "--png-level 0 is faster"
+                                                 : "more cores would help";
     fmt::print("{} files on {} core{} bounds this run: {}\n",
                run.writing > run.encoding ? "writing" : "encoding", run.threads, run.threads == 1 ? "" : "s",
                faster);

@@ -24,14 +24,15 @@ struct ShotPictures {
 class ShotFiles {
  public:
   /// `photos`: a folder to compare with, or empty. `shots`: those to come. Pictures that are drawn and not
-  /// written yet take a quarter of the machine's memory at most, or what --max-memory allows; those of three
-  /// shots in any case.
+  /// written yet take a quarter of the machine's memory at most, or what --max-memory allows if that is less;
+  /// those of three shots in any case. There are as many threads as cores where memory allows that, and one
+  /// for a video, whose frames so keep their order; loops within a job run on all cores.
   ShotFiles(const RenderOptions& options, const OutputPlan& plan, std::string photos,
             const std::vector<Shot>& shots);
 
   /// Takes a shot, whose pictures `take` hands out on another thread; until finish() its files, comfort and
-  /// PSNR of `drawn` are to come. Waits while there is no memory for more. Throws Error for a file of this or
-  /// an earlier shot that could not be written; then no other is begun.
+  /// PSNR of `drawn` are to come, which must stay where it is. Waits while there is no memory for more.
+  /// Throws Error for a file of this or an earlier shot that could not be written; then no other is begun.
   void add(Drawn& drawn, std::function<ShotPictures()> take);
 
   /// Waits until all is written. Throws as add() does.

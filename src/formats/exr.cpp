@@ -39,6 +39,18 @@ void use_all_cores() {
   static_cast<void>(once);
 }
 
+Imf::Compression compression_of(ExrCompression compression) {
+  switch (compression) {
+    case ExrCompression::zip:
+      return Imf::ZIP_COMPRESSION;
+    case ExrCompression::rle:
+      return Imf::RLE_COMPRESSION;
+    case ExrCompression::none:
+      break;
+  }
+  return Imf::NO_COMPRESSION;
+}
+
 /// What OpenEXR writes, kept in memory: on a file of its own it would swallow a full disk in a destructor.
 class MemoryStream : public Imf::OStream {
  public:
@@ -68,26 +80,34 @@ struct Plane {
 /// The channels of a picture, their names after `prefix`.
 std::vector<Plane> planes_of(const Picture& picture, const std::string& prefix, const ExrOptions& options) {
   const Image image = composite(picture, options.background);
-  const std::size_t count = picture.colour.size();
+  const std::size_t count = picture.colour.size(), channels = static_cast<std::size_t>(image.channels);
   std::vector<Plane> planes{{"R", {}, {}}, {"G", {}, {}}, {"B", {}, {}}, {"A", {}, {}}};
   if (options.background) planes.push_back({coverage_name, {}, {}});
-  for (Plane& plane : planes) plane.values.resize(count);
-  parallel_for(count, [&](std::size_t k) {
-    const float coverage = 1.0f - picture.colour[k].a;
-    const float alpha = options.background ? 1.0f : coverage;
-    for (std::size_t c = 0; c < 3; ++c) {
-      const double v = image.data[k * static_cast<std::size_t>(image.channels) + c];
-      planes[c].values[k] = static_cast<float>(alpha * (options.display ? v : srgb_to_linear(v)));
-    }
-    planes[3].values[k] = alpha;
-    if (options.background) planes[4].values[k] = coverage;
-  });
-  if (options.half) {
-    for (Plane& plane : planes) {
-      plane.halves.assign(plane.values.begin(), plane.values.end());
-      plane.values.clear();
-    }
+  for (Plane& plane : planes) {
+    plane.halves.resize(options.half ? count : 0);
+    plane.values.resize(options.half ? 0 : count);
   }
+  const auto put = [&](std::size_t plane, std::size_t k, float value) {
+    if (options.half) {
+      planes[plane].halves[k] = value;
+    } else {
+      planes[plane].values[k] = value;
+    }
+  };
+  constexpr std::size_t pixels_worth_a_thread = 4096;
+  parallel_for(
+      count,
+      [&](std::size_t k) {
+        const float coverage = 1.0f - picture.colour[k].a;
+        const float alpha = options.background ? 1.0f : coverage;
+        for (std::size_t c = 0; c < 3; ++c) {
+          const double v = image.data[k * channels + c];
+          put(c, k, static_cast<float>(alpha * (options.display ? v : srgb_to_linear(v))));
+        }
+        put(3, k, alpha);
+        if (options.background) put(4, k, coverage);
+      },
+      pixels_worth_a_thread);
   planes.push_back({"Z", depth_map(picture).data, {}});
   for (Plane& plane : planes) plane.name = prefix + plane.name;
   return planes;
@@ -97,7 +117,7 @@ void write_planes(Imf::OStream& stream, int width, int height, std::vector<Plane
                   const Imf::StringVector& views, const ExrOptions& options) {
   Imf::Header header(width, height);
   if (!views.empty()) Imf::addMultiView(header, views);
-  header.compression() = options.compressed ? Imf::ZIP_COMPRESSION : Imf::NO_COMPRESSION;
+  header.compression() = compression_of(options.compression);
   for (const auto& [key, value] : options.notes) header.insert(key, Imf::StringAttribute(value));
   header.insert(encoding_name, Imf::StringAttribute(options.display ? "display" : "linear"));
   Imf::FrameBuffer frame;
@@ -330,9 +350,10 @@ glm::ivec2 exr_size(const std::filesystem::path& path, std::span<const std::byte
 }
 
 bool is_whole_exr(const std::filesystem::path& path, std::span<const std::byte> bytes) {
-  constexpr int lines = 16;  // of a block that ZIP packs, as in what is written here
   check_exr_header(path, bytes, {});
   return read_file(path, [](Imf::InputFile& file) {
+    // Of a block of what is written here.
+    const int lines = file.header().compression() == Imf::ZIP_COMPRESSION ? 16 : 1;
     const Imath::Box2i window = file.header().dataWindow();
     for (int y = window.min.y; y <= window.max.y; y += lines) {
       const char* block = nullptr;

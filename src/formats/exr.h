@@ -29,12 +29,15 @@ namespace binosplat {
 double srgb_to_linear(double v);
 double linear_to_srgb(double v);
 
+/// How pixels are packed, without loss: by ZIP a fifth smaller than by RLE, in six times as long.
+enum class ExrCompression { none, rle, zip };
+
 struct ExrOptions {
-  bool half = true;        // all channels but Z as 16-bit floats
-  bool display = false;    // leave the EOTF out
-  Background background;   // none: associated alpha
-  Notes notes;             // string attributes of the header
-  bool compressed = true;  // by ZIP, without loss
+  bool half = true;       // all channels but Z as 16-bit floats
+  bool display = false;   // leave the EOTF out
+  Background background;  // none: associated alpha
+  Notes notes;            // string attributes of the header
+  ExrCompression compression = ExrCompression::rle;
 };
 
 /// Writes a picture. Throws Error naming the file.

@@ -27,7 +27,7 @@ Buffer::~Buffer() { release(); }
 void Buffer::release() {
   if (id_ == 0) return;
   context_.gl().DeleteBuffers(1, &id_);
-  context_.count_allocation(-bytes_);
+  if (use_ != Use::read) context_.count_allocation(-bytes_);
   id_ = 0;
   mapped_ = nullptr;
   bytes_ = 0;
@@ -100,7 +100,7 @@ void Buffer::allocate(std::int64_t bytes) {
             context_.renderer(), bytes >> 20, label_, context_.allocated_bytes() >> 20));
   }
   bytes_ = bytes;
-  context_.count_allocation(bytes);
+  if (use_ != Use::read) context_.count_allocation(bytes);  // else it lies in the machine's memory
   gl.ObjectLabel(GL_BUFFER, id_, -1, label_.c_str());
 }
 

@@ -90,6 +90,9 @@ void Context::initialise(GetProcAddress get_proc_address, std::string backend, b
                 fmt::format("{} offers OpenGL {}.{}: binosplat needs 4.5 core", renderer_, major, minor));
   }
   set_program_cache(ProgramCache::default_folder());
+  if (own && has_extension(functions_, "GL_KHR_parallel_shader_compile"))
+    functions_.MaxShaderCompilerThreadsKHR(
+        UINT32_MAX);  // as many as the driver likes; NVIDIA waits to be asked
 
   read_limits();
   GLint bindings = 0;
@@ -147,7 +150,25 @@ const Program& Context::program(std::string_view name, std::span<const Number> v
     Program made(functions_, of_shader->first, defines_of(variant), shader_folder_, *program_cache_);
     found = of_shader->second.emplace(key, std::move(made)).first;
   }
+  if (is_preparing_) return found->second;
+  try {
+    found->second.complete(*program_cache_);
+  } catch (...) {
+    of_shader->second.erase(found);
+    throw;
+  }
   return found->second;
+}
+
+void Context::prepare(const std::function<void()>& record) {
+  is_preparing_ = true;
+  try {
+    record();
+  } catch (...) {
+    is_preparing_ = false;
+    throw;
+  }
+  is_preparing_ = false;
 }
 
 void Context::set_shader_folder(const std::filesystem::path& folder) {

@@ -86,6 +86,11 @@ class Context {
     const auto numbers = variant.numbers();
     return program(name, std::span<const Number>(numbers));
   }
+  /// Calls `record` for the programs that it asks for: drivers that can compile them all at once. Dispatchers
+  /// run nothing meanwhile (dispatch.h).
+  void prepare(const std::function<void()>& record);
+  bool is_preparing() const { return is_preparing_; }
+
   /// Shaders are read from this folder from now on; empty: the embedded ones.
   void set_shader_folder(const std::filesystem::path& folder);
   /// Compiled programs are kept in this folder from now on; empty: nowhere. At first it is
@@ -126,6 +131,7 @@ class Context {
   std::filesystem::path shader_folder_;
   std::unique_ptr<ProgramCache> program_cache_;
   std::map<std::string, std::map<std::uint64_t, Program>, std::less<>> programs_;  // by shader and key_of()
+  bool is_preparing_ = false;
   std::int64_t allocated_ = 0, peak_ = 0;
 };
 

@@ -24,6 +24,7 @@ void Dispatcher::mark(const std::string& stage) {
 }
 
 void Dispatcher::begin_stage(const char* name) {
+  if (context_.is_preparing()) return;
   if (!marks_.empty()) context_.gl().PopDebugGroup();
   mark(name);
   context_.gl().PushDebugGroup(GL_DEBUG_SOURCE_APPLICATION, 0, -1, name);
@@ -63,6 +64,7 @@ void Dispatcher::run(const Program& program, const DispatchSize& work,
 
 void Dispatcher::draw_whole(const Program& program, std::initializer_list<Binding> bindings,
                             std::initializer_list<Uniform> uniforms) {
+  if (context_.is_preparing()) return;
   bind(program, bindings, uniforms);
   context_.gl().UseProgram(program.id());
   context_.gl().DrawArrays(GL_TRIANGLES, 0, 3);
@@ -74,7 +76,7 @@ void Dispatcher::wait_for_writes() {
 
 void Dispatcher::start(const Program& program, const DispatchSize& work,
                        std::initializer_list<Binding> bindings, std::initializer_list<Uniform> uniforms) {
-  if (work.arguments == nullptr && work.groups == 0) return;
+  if ((work.arguments == nullptr && work.groups == 0) || context_.is_preparing()) return;
   const Functions& gl = context_.gl();
   bind(program, bindings, uniforms);
   gl.UseProgram(program.id());

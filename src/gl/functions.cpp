@@ -13,7 +13,19 @@ Functions load_functions(GetProcAddress get_proc_address) {
   }
   BINOSPLAT_GL_FUNCTIONS(BINOSPLAT_GL_LOAD)
 #undef BINOSPLAT_GL_LOAD
+  table.MaxShaderCompilerThreadsKHR = reinterpret_cast<PFNGLMAXSHADERCOMPILERTHREADSKHRPROC>(
+      get_proc_address("glMaxShaderCompilerThreadsKHR"));
   return table;
+}
+
+bool has_extension(const Functions& gl, std::string_view name) {
+  GLint count = 0;
+  gl.GetIntegerv(GL_NUM_EXTENSIONS, &count);
+  for (GLint i = 0; i < count; ++i) {
+    const auto* found = reinterpret_cast<const char*>(gl.GetStringi(GL_EXTENSIONS, static_cast<GLuint>(i)));
+    if (found != nullptr && name == found) return true;
+  }
+  return false;
 }
 
 }  // namespace binosplat::gl

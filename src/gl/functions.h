@@ -4,6 +4,8 @@
 
 #include <GL/glcorearb.h>
 
+#include <string_view>
+
 namespace binosplat::gl {
 
 // X(name without gl, the upper-case name that GL's function pointer types use)
@@ -109,9 +111,14 @@ struct Functions {
 #define BINOSPLAT_GL_MEMBER(name, upper) PFNGL##upper##PROC name = nullptr;
   BINOSPLAT_GL_FUNCTIONS(BINOSPLAT_GL_MEMBER)
 #undef BINOSPLAT_GL_MEMBER
+  /// Of GL_KHR_parallel_shader_compile, where there is that.
+  PFNGLMAXSHADERCOMPILERTHREADSKHRPROC MaxShaderCompilerThreadsKHR = nullptr;
 };
 
 /// The table of the context that is current. Throws Error(no_gl) that names the first entry point not found.
 Functions load_functions(GetProcAddress get_proc_address);
+
+/// Whether the context that is current has an extension.
+bool has_extension(const Functions& gl, std::string_view name);
 
 }  // namespace binosplat::gl

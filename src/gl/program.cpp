@@ -28,63 +28,77 @@ void for_each_resource(const Functions& gl, std::uint32_t program, GLenum kind, 
 Program::Program(const Functions& gl, const std::string& name, const Defines& defines,
                  const std::filesystem::path& folder, const ProgramCache& cache)
     : gl_(&gl), name_(name), id_(gl.CreateProgram()) {
-  std::vector<std::pair<GLenum, ShaderSource>> shaders;
+  std::vector<std::pair<GLenum, ShaderSource>> sources;
   const bool draws = name.ends_with(".frag");
-  if (draws) shaders.emplace_back(GL_VERTEX_SHADER, ShaderSource("whole.vert", {}, folder));
-  shaders.emplace_back(draws ? GL_FRAGMENT_SHADER : GL_COMPUTE_SHADER, ShaderSource(name, defines, folder));
-  std::string text;
-  for (const auto& [kind, source] : shaders) text += source.text();
-  if (!cache.load(gl, id_, text)) {
-    for (const auto& [kind, source] : shaders) compile(kind, source);
-    link(shaders.back().second);
-    cache.store(gl, id_, text);
+  if (draws) sources.emplace_back(GL_VERTEX_SHADER, ShaderSource("whole.vert", {}, folder));
+  sources.emplace_back(draws ? GL_FRAGMENT_SHADER : GL_COMPUTE_SHADER, ShaderSource(name, defines, folder));
+  for (const auto& [kind, source] : sources) text_ += source.text();
+  if (cache.load(gl, id_, text_)) return;
+  for (auto& [kind, source] : sources) {
+    const std::uint32_t shader = gl.CreateShader(kind);
+    const char* text = source.text().c_str();
+    gl.ShaderSource(shader, 1, &text, nullptr);
+    gl.CompileShader(shader);
+    gl.AttachShader(id_, shader);
+    shaders_.push_back({shader, std::move(source)});
   }
-  gl.ObjectLabel(GL_PROGRAM, id_, -1, name_.c_str());
-  if (!draws) read_local_size();
+  gl.ProgramParameteri(id_, GL_PROGRAM_BINARY_RETRIEVABLE_HINT, GL_TRUE);
+  gl.LinkProgram(id_);
+}
+
+void Program::complete(const ProgramCache& cache) {
+  if (is_complete_) return;
+  if (!shaders_.empty()) {
+    for (const Shader& shader : shaders_) check_compiled(shader);
+    check_linked();
+    for (const Shader& shader : shaders_) gl_->DeleteShader(shader.id);
+    shaders_.clear();
+    cache.store(*gl_, id_, text_);
+  }
+  text_.clear();
+  gl_->ObjectLabel(GL_PROGRAM, id_, -1, name_.c_str());
+  if (!name_.ends_with(".frag")) read_local_size();
   reflect();
+  is_complete_ = true;
 }
 
 Program::~Program() {
+  for (const Shader& shader : shaders_) gl_->DeleteShader(shader.id);
   if (id_ != 0) gl_->DeleteProgram(id_);
 }
 
 Program::Program(Program&& other) noexcept
     : gl_(other.gl_),
       name_(std::move(other.name_)),
+      text_(std::move(other.text_)),
       id_(std::exchange(other.id_, 0)),
+      shaders_(std::exchange(other.shaders_, {})),
+      is_complete_(other.is_complete_),
       local_size_(other.local_size_),
       blocks_(std::move(other.blocks_)),
       uniforms_(std::move(other.uniforms_)) {}
 
-void Program::compile(GLenum kind, const ShaderSource& source) {
-  const std::uint32_t shader = gl_->CreateShader(kind);
-  const char* text = source.text().c_str();
-  gl_->ShaderSource(shader, 1, &text, nullptr);
-  gl_->CompileShader(shader);
-  gl_->AttachShader(id_, shader);
+void Program::check_compiled(const Shader& shader) {
   std::int32_t compiled = 0;
-  gl_->GetShaderiv(shader, GL_COMPILE_STATUS, &compiled);
+  gl_->GetShaderiv(shader.id, GL_COMPILE_STATUS, &compiled);
+  if (compiled != 0) return;
   std::string log(1 << 16, '\0');
   std::int32_t length = 0;
-  if (compiled == 0) gl_->GetShaderInfoLog(shader, static_cast<int>(log.size()), &length, log.data());
-  gl_->DeleteShader(shader);
-  if (compiled == 0) refuse("compile", log.substr(0, static_cast<std::size_t>(length)), source);
+  gl_->GetShaderInfoLog(shader.id, static_cast<int>(log.size()), &length, log.data());
+  refuse("compile", log.substr(0, static_cast<std::size_t>(length)), shader.source);
 }
 
-void Program::link(const ShaderSource& source) {
-  gl_->ProgramParameteri(id_, GL_PROGRAM_BINARY_RETRIEVABLE_HINT, GL_TRUE);
-  gl_->LinkProgram(id_);
+void Program::check_linked() {
   std::int32_t linked = 0;
   gl_->GetProgramiv(id_, GL_LINK_STATUS, &linked);
   if (linked != 0) return;
   std::string log(1 << 16, '\0');
   std::int32_t length = 0;
   gl_->GetProgramInfoLog(id_, static_cast<int>(log.size()), &length, log.data());
-  refuse("link", log.substr(0, static_cast<std::size_t>(length)), source);
+  refuse("link", log.substr(0, static_cast<std::size_t>(length)), shaders_.back().source);
 }
 
 void Program::refuse(const char* what, const std::string& log, const ShaderSource& source) {
-  gl_->DeleteProgram(std::exchange(id_, 0));
   throw Error(ExitCode::no_gl,
               fmt::format("shader {} does not {}:\n{}", name_, what, source.with_file_names(log)));
 }

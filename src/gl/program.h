@@ -25,11 +25,16 @@ class Program {
   };
 
   /// A name that ends with .frag is a fragment shader's, which is linked with whole.vert. Takes the program
-  /// from the cache, or compiles and links it. Throws Error(no_gl) with the driver's log, places given as
-  /// file:line.
+  /// from the cache, or asks the driver to compile and link it, which does so for several at once where it
+  /// can.
   Program(const Functions& gl, const std::string& name, const Defines& defines,
           const std::filesystem::path& folder, const ProgramCache& cache);
   ~Program();
+
+  /// Waits for compiler and linker, keeps what they made in the cache, and learns the names in it; to be
+  /// called before the program is used. Throws Error(no_gl) with the driver's log, places given as file:line.
+  void complete(const ProgramCache& cache);
+
   Program(Program&& other) noexcept;
   Program(const Program&) = delete;
   Program& operator=(const Program&) = delete;
@@ -42,15 +47,24 @@ class Program {
   const std::vector<Uniform>& uniforms() const { return uniforms_; }  // likewise, outside blocks
 
  private:
-  void compile(GLenum kind, const ShaderSource& source);
-  void link(const ShaderSource& source);
+  /// What the driver is compiling.
+  struct Shader {
+    std::uint32_t id = 0;
+    ShaderSource source;
+  };
+
+  void check_compiled(const Shader& shader);
+  void check_linked();
   [[noreturn]] void refuse(const char* what, const std::string& log, const ShaderSource& source);
   void read_local_size();
   void reflect();
 
   const Functions* gl_;
   std::string name_;
+  std::string text_;  // of all shaders, until they are compiled
   std::uint32_t id_ = 0;
+  std::vector<Shader> shaders_;  // all that it is compiled from, until that is done
+  bool is_complete_ = false;
   std::uint32_t local_size_ = 1;
   std::vector<Block> blocks_;
   std::vector<Uniform> uniforms_;

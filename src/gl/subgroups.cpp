@@ -40,16 +40,6 @@ constexpr std::array subgroup_faults = {
     Fault{"SUBGROUPS_SHUFFLE_OTHERS", "shuffle with others than their 32 invocations"},
     Fault{"SUBGROUPS_ADD_OTHERS", "add up others than their 32 invocations"}};
 
-bool has_extension(const Functions& gl, std::string_view wanted) {
-  GLint extensions = 0;
-  gl.GetIntegerv(GL_NUM_EXTENSIONS, &extensions);
-  for (GLint i = 0; i < extensions; ++i) {
-    const auto* name = reinterpret_cast<const char*>(gl.GetStringi(GL_EXTENSIONS, static_cast<GLuint>(i)));
-    if (name != nullptr && name == wanted) return true;
-  }
-  return false;
-}
-
 std::vector<Number> numbers_of(const GroupShape& shape) {
   std::vector<Number> numbers = {{"COLUMNS", shape.columns, 1024}, {"ROWS", shape.rows, 1024}};
   for (std::size_t k = 0; k < subgroup_faults.size(); ++k)

@@ -161,7 +161,6 @@ FrameReport Frame::finish_attempt() {
   return report;
 }
 
-// The frame: its stages in order, without a read-back between them.
 void Frame::record() {
   const Workings& workings = submitted_.workings;
   buffers_.reserve(plan_, *model_buffers_, capacity_);
@@ -171,13 +170,24 @@ void Frame::record() {
   pictures_stood_in_.clear();
   if (workings.stand_in)
     pictures_stood_in_ = workings.stand_in->fill(model_->model(), plan_, *model_buffers_, buffers_);
+  if (!std::exchange(is_prepared_, true)) dispatcher_.context().prepare([this] { record_stages(); });
+  const auto start = Clock::now();
+  dispatcher_.begin_frame();
+  record_stages();
+  counters_read_.reserve(sizeof(shared::Counters));
+  counters_read_.copy(buffers_.counters, 0, sizeof(shared::Counters), 0);
+  dispatcher_.end_frame();
+  submit_ms_ = ms_since(start);
+}
+
+// The stages in order, without a read-back between them.
+void Frame::record_stages() {
+  const Workings& workings = submitted_.workings;
   const auto run = [&](Stage stage, const auto& dispatches) {
     if (stage > submitted_.last || (workings.stand_in && stage <= workings.stand_in->until)) return;
     dispatcher_.begin_stage(name_of(stage));
     dispatches();
   };
-  const auto start = Clock::now();
-  dispatcher_.begin_frame();
   if (plan_.offset_count > 0)
     run(Stage::decode, [&] { decode(dispatcher_, plan_, *model_buffers_, buffers_); });
   for (std::uint32_t group = 0; group < plan_.groups.size(); ++group) {
@@ -199,10 +209,6 @@ void Frame::record() {
     dispatcher_.begin_stage(workings.then_called);
     workings.then(dispatcher_);
   }
-  counters_read_.reserve(sizeof(shared::Counters));
-  counters_read_.copy(buffers_.counters, 0, sizeof(shared::Counters), 0);
-  dispatcher_.end_frame();
-  submit_ms_ = ms_since(start);
 }
 
 void Frame::fill(FrameReport& report) const {

@@ -146,6 +146,7 @@ class Frame {
   void start_search();
   void start_attempt();
   void record();
+  void record_stages();
   FrameReport finish_attempt();
   void fill(FrameReport& report) const;
 
@@ -154,6 +155,7 @@ class Frame {
   std::shared_ptr<ModelBuffers> model_buffers_;
   gl::Dispatcher dispatcher_;
   FrameBuffers buffers_;
+  bool is_prepared_ = false;  // its programs were compiled, all at once
   Submitted submitted_;
   FramePlan plan_;
   Measuring measuring_;

@@ -106,9 +106,9 @@ struct PlanRequest {
   std::optional<Bounds> box;  // world, around all Gaussians: their depths need fewer bits to be sorted by
 };
 
-/// Makes the plan for a model of this size, whatever model.count() says: another thread may be changing its
-/// Gaussians. Throws Error(bad_input) for no views, more than MAX_VIEWS, an empty or huge picture, and
-/// settings that contradict each other or the views.
+/// Makes the plan for a model of this size, whatever model.count() says: the model in memory may have changed
+/// since it was uploaded. Throws Error(bad_input) for no views, more than MAX_VIEWS, an empty or huge
+/// picture, and settings that contradict each other or the views.
 FramePlan make_plan(std::span<const shared::View> views, const FrameSettings& settings, const Model& model,
                     const ModelSize& size, const Workings& workings, const PlanRequest& request = {});
 inline FramePlan make_plan(std::span<const shared::View> views, const FrameSettings& settings,

@@ -30,7 +30,7 @@ class ReadBack {
   ReadBack(const ReadBack&) = delete;
   ReadBack& operator=(const ReadBack&) = delete;
 
-  /// The pictures of one frame. The ReadBack must outlive them.
+  /// The pictures of one frame. The ReadBack must outlive them; any thread may destroy them.
   class Pictures {
    public:
     explicit Pictures(ReadBack& of);
@@ -53,7 +53,8 @@ class ReadBack {
     std::vector<Picture> stood_in_;  // for the blend: they never were on the GPU
   };
 
-  /// Asks for the pictures of a frame that is drawn. It may draw the next ones at once.
+  /// Asks for the pictures of a frame that is drawn, on the context's thread. It may draw the next ones at
+  /// once.
   std::unique_ptr<Pictures> start(const Frame& frame);
 
  private:

@@ -140,5 +140,29 @@ TEST(Buffer, RefusesWhatNoShaderCouldReach) {
   }
 }
 
+TEST(Dispatcher, PreparesProgramsWithoutRunningThem) {
+  Context& context = test::gl_context();
+  const OwnShader shader("count_up.comp", count_up);
+  Buffer items(context, "items");
+  items.upload(std::vector<std::uint32_t>(10));
+  Dispatcher dispatcher(context);
+  const auto record = [&] {
+    dispatcher.run(context.program("count_up.comp"), DispatchSize::threads(10, 256), {{"Items", items}},
+                   {{"count", 10}});
+  };
+  context.prepare(record);
+  EXPECT_EQ(items.read<std::uint32_t>(10), std::vector<std::uint32_t>(10));
+  record();
+  EXPECT_EQ(items.read<std::uint32_t>(10), std::vector<std::uint32_t>(10, 1));
+}
+
+TEST(Dispatcher, WhatIsPreparedSaysWhereItDoesNotCompileOnceItIsUsed) {
+  Context& context = test::gl_context();
+  const OwnShader shader("wrong.comp", "layout(local_size_x = 1) in;\nvoid main() { missing = 1; }\n");
+  context.prepare([&] { context.program("wrong.comp"); });
+  EXPECT_THROW(context.program("wrong.comp"), Error);
+  EXPECT_THROW(context.program("wrong.comp"), Error);
+}
+
 }  // namespace
 }  // namespace binosplat::gl

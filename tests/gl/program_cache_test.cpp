@@ -16,6 +16,12 @@ std::filesystem::path only_file(const test::TempFolder& folder) {
   return folder / *folder.names().begin();
 }
 
+Program compiled(const ProgramCache& cache) {
+  Program program(test::gl_context().gl(), name, {}, {}, cache);
+  program.complete(cache);
+  return program;
+}
+
 // Whether the cache has the program, asked as Program does.
 bool has(const ProgramCache& cache) {
   const Functions& gl = test::gl_context().gl();
@@ -36,10 +42,10 @@ TEST(ProgramCache, KeepsWhatWasCompiledForOneDriver) {
   const test::TempFolder folder;
   const ProgramCache cache(folder.path(), "driver 1");
   EXPECT_FALSE(has(cache));
-  const Program program(test::gl_context().gl(), name, {}, {}, cache);
+  const Program program = compiled(cache);
   EXPECT_TRUE(has(cache));
   EXPECT_FALSE(has(ProgramCache(folder.path(), "driver 2")));
-  const Program again(test::gl_context().gl(), name, {}, {}, cache);  // this one from the cache
+  const Program again = compiled(cache);  // this one from the cache
   EXPECT_EQ(again.local_size(), program.local_size());
   ASSERT_EQ(again.blocks().size(), 1u);
   EXPECT_EQ(again.blocks()[0].name, program.blocks()[0].name);
@@ -50,7 +56,7 @@ TEST(ProgramCache, CompilesAgainWhatIsDamaged) {
   if (!driver_has_binaries()) GTEST_SKIP() << "this driver gives no program binaries";
   const test::TempFolder folder;
   const ProgramCache cache(folder.path(), "driver");
-  { const Program program(test::gl_context().gl(), name, {}, {}, cache); }
+  { const Program program = compiled(cache); }
   const std::string whole = test::read_text(only_file(folder));
   std::string broken = whole;
   for (std::size_t k = broken.size() / 2; k < broken.size(); ++k) broken[k] = static_cast<char>(~broken[k]);
@@ -58,7 +64,7 @@ TEST(ProgramCache, CompilesAgainWhatIsDamaged) {
                                             std::string()};
   for (const std::string& content : damaged) {
     test::write_text(only_file(folder), content);
-    const Program program(test::gl_context().gl(), name, {}, {}, cache);
+    const Program program = compiled(cache);
     EXPECT_EQ(program.uniforms().size(), 1u);
     EXPECT_TRUE(has(cache));  // mended
   }
@@ -87,10 +93,9 @@ TEST(ProgramCache, KeepsWhatWasFoundOfOneDriver) {
 TEST(ProgramCache, AFolderThatCannotBeWrittenOnlyCostsTime) {
   const test::TempFolder folder;
   test::write_text(folder / "file", "");
-  const Program program(test::gl_context().gl(), name, {}, {},
-                        ProgramCache(folder / "file" / "below", "driver"));
+  const Program program = compiled(ProgramCache(folder / "file" / "below", "driver"));
   EXPECT_EQ(program.uniforms().size(), 1u);
-  const Program uncached(test::gl_context().gl(), name, {}, {}, ProgramCache({}, "driver"));
+  const Program uncached = compiled(ProgramCache({}, "driver"));
   EXPECT_EQ(uncached.uniforms().size(), 1u);
 }
 

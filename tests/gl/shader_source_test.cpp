@@ -67,7 +67,8 @@ TEST(Program, SaysWhereAShaderDoesNotCompile) {
   test::write_text(folder / "wrong.comp",
                    "layout(local_size_x = 1) in;\nvoid main() {\n  int x = missing_name;\n}\n");
   try {
-    const Program program(test::gl_context().gl(), "wrong.comp", {}, folder.path(), ProgramCache({}, ""));
+    Program program(test::gl_context().gl(), "wrong.comp", {}, folder.path(), ProgramCache({}, ""));
+    program.complete(ProgramCache({}, ""));
     FAIL() << "it compiled";
   } catch (const Error& error) {
     EXPECT_NE(std::string(error.what()).find("wrong.comp:3"), std::string::npos) << error.what();
