@@ -121,7 +121,8 @@ void draw_all(gl::Context& context, Work& work, RenderReport& report) {
   // Others than a frame's own pictures are read at once.
   const bool reads_ahead = !panorama && !foveated && output.show == SHOW_PICTURE && !output.detail_report;
 
-  Progress progress("drawing", work.shots.size() * static_cast<std::size_t>(drawing.frames));
+  Progress progress("drawing", work.shots.size() * static_cast<std::size_t>(drawing.frames),
+                    drawing.frames == 1 ? "views" : "frames");
   std::size_t done = 0;
   report.drawn.reserve(work.shots.size());  // files refers to them
   for (Shot& shot : work.shots) {

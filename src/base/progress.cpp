@@ -36,8 +36,9 @@ std::string latest_progress() {
   return latest;
 }
 
-Progress::Progress(std::string label, std::uint64_t total)
+Progress::Progress(std::string label, std::uint64_t total, std::string counted)
     : label_(std::move(label)),
+      counted_(std::move(counted)),
       total_(total),
       terminal_(isatty(STDERR_FILENO) != 0),
       next_(Clock::now() + std::chrono::seconds(1)),
@@ -56,6 +57,8 @@ void Progress::update(std::uint64_t done) {
   std::string text = fmt::format("{} {} %", label_, percent);
   const double spent = std::chrono::duration<double>(now - start_).count();
   constexpr double seconds_to_judge = 5.0;
+  if (spent > seconds_to_judge && !counted_.empty())
+    text += fmt::format(", {:.3g} {} a second", static_cast<double>(done) / spent, counted_);
   if (spent > seconds_to_judge && done > 0 && done < total_)
     text += fmt::format(", {} left",
                         spoken_time(spent * static_cast<double>(total_ - done) / static_cast<double>(done)));

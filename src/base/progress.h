@@ -11,8 +11,9 @@ namespace binosplat {
 
 class Progress {
  public:
-  /// `label` says what is being done, in the form "reading garden.ply".
-  Progress(std::string label, std::uint64_t total);
+  /// `label` says what is being done, in the form "reading garden.ply". With `counted`, as in "views", it
+  /// also says how many of them are done a second.
+  Progress(std::string label, std::uint64_t total, std::string counted = {});
   ~Progress();
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
@@ -23,7 +24,7 @@ class Progress {
 
  private:
   using Clock = std::chrono::steady_clock;
-  std::string label_;
+  std::string label_, counted_;
   std::uint64_t total_;
   bool terminal_;
   bool shown_ = false;

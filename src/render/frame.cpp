@@ -168,9 +168,10 @@ void Frame::record() {
   model_buffers_->reserve(plan_);
   buffers_.counters.upload(std::vector{shared::Counters{}});
   pictures_stood_in_.clear();
+  // First, since a sort that is recorded takes its pairs to lie elsewhere then.
+  if (!std::exchange(is_prepared_, true)) dispatcher_.context().prepare([this] { record_stages(); });
   if (workings.stand_in)
     pictures_stood_in_ = workings.stand_in->fill(model_->model(), plan_, *model_buffers_, buffers_);
-  if (!std::exchange(is_prepared_, true)) dispatcher_.context().prepare([this] { record_stages(); });
   const auto start = Clock::now();
   dispatcher_.begin_frame();
   record_stages();

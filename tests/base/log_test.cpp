@@ -43,8 +43,10 @@ TEST(Progress, IsSilentForShortWorkAndALineInALogForLong) {
 
 TEST(Progress, TellsTheTimeThatIsLeftOnceItCanBeJudged) {
   testing::internal::CaptureStderr();
-  Progress progress("drawing", 100);
+  Progress progress("drawing", 100), counted("drawing", 100, "views");
   std::this_thread::sleep_for(std::chrono::milliseconds(5100));
+  counted.update(10);
+  EXPECT_NE(latest_progress().find(" views a second, 46 s left"), std::string::npos) << latest_progress();
   progress.update(10);
   EXPECT_EQ(latest_progress(), "drawing 10 %, 46 s left");
   testing::internal::GetCapturedStderr();

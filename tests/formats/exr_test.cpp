@@ -11,6 +11,7 @@
 
 #include <cmath>
 #include <limits>
+#include <map>
 
 #include "support/errors.h"
 #include "support/full_disk.h"
@@ -143,6 +144,22 @@ TEST(Exr, DepthIsAlwaysFloat) {
   }
 }
 
+TEST(Exr, HoweverItIsPackedTheNumbersAreTheSame) {
+  const test::TempFolder folder;
+  const Picture picture = random_picture();
+  std::map<ExrCompression, std::string> files;
+  for (const ExrCompression by : {ExrCompression::none, ExrCompression::rle, ExrCompression::zip}) {
+    save_exr(folder / "a.exr", picture, {.compression = by});
+    files[by] = test::read_text(folder / "a.exr");
+    const Image loaded = load_image(folder / "a.exr");
+    save_exr(folder / "none.exr", picture, {.compression = ExrCompression::none});
+    EXPECT_EQ(loaded.data, load_image(folder / "none.exr").data);
+    EXPECT_EQ(read_channel(folder / "a.exr", "Z").values, depth_map(picture).data);
+  }
+  EXPECT_NE(files[ExrCompression::rle], files[ExrCompression::none]);
+  EXPECT_NE(files[ExrCompression::zip], files[ExrCompression::rle]);
+}
+
 TEST(Exr, RoundTripGivesTheDisplayValues) {
   const test::TempFolder folder;
   const fs::path path = folder / "a.exr";
@@ -241,7 +258,7 @@ TEST(Exr, ForeignFilesAreSceneLinear) {
 
 TEST(Exr, BrokenFilesAreRefused) {
   const test::TempFolder folder;
-  save_exr(folder / "a.exr", random_picture(), {});
+  save_exr(folder / "a.exr", random_picture(), {.compression = ExrCompression::zip});
   const std::string good = test::read_text(folder / "a.exr");
   const auto refuses = [&](const std::string& bytes, const char* reason = "") {
     test::write_text(folder / "b.exr", bytes);

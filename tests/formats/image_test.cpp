@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
 
 #include "support/broken.h"
 #include "support/errors.h"
@@ -110,6 +111,26 @@ TEST(Png, RoundsAndClamps) {
   save_png(folder / "image.png", image, {.bits = 8});
   EXPECT_TRUE(equal_images(load_image(folder / "image.png"),
                            image_of(6, 1, 1, {0, 1, 127.0f / 255, 128.0f / 255, 0, 1})));
+}
+
+TEST(Png, HoweverHardItIsPackedThePictureIsTheSame) {
+  for (const int channels : {1, 3, 4}) {
+    const Image image = noise_beyond(61, 40, channels);
+    std::set<std::size_t> sizes;
+    for (const int level : {0, 1, 12}) {
+      const test::TempFolder folder;
+      save_png(folder / "image.png", image, {.level = level});
+      EXPECT_EQ(load_image(folder / "image.png").data, quantised(image).data) << channels << " at " << level;
+      sizes.insert(std::filesystem::file_size(folder / "image.png"));
+    }
+    EXPECT_GT(sizes.size(), 1);
+  }
+  // A row that is like the one above it, and one that is like nothing: by different filters.
+  Image rows(64, 3, 1);
+  for (int x = 0; x < 64; ++x) rows.at(x, 0, 0) = rows.at(x, 1, 0) = static_cast<float>(x * x % 97) / 97.0f;
+  const test::TempFolder folder;
+  save_png(folder / "rows.png", rows);
+  EXPECT_EQ(load_image(folder / "rows.png").data, quantised(rows).data);
 }
 
 TEST(Png, CarriesNotesAndSaysThatItIsSrgb) {

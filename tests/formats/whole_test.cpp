@@ -51,7 +51,10 @@ TEST_F(Whole, PicturesOfOurs) {
   save_exr(folder / "half.exr", picture, {.half = true});
   save_exr(folder / "float.exr", picture, {.half = false, .background = std::nullopt});
   save_exr(folder / "both.exr", picture, picture, {});
-  for (const char* name : {"8.png", "16.png", "half.exr", "float.exr", "both.exr"}) expect_whole(name);
+  save_exr(folder / "zip.exr", picture, {.compression = ExrCompression::zip});
+  save_exr(folder / "none.exr", picture, {.compression = ExrCompression::none});
+  for (const char* name : {"8.png", "16.png", "half.exr", "float.exr", "both.exr", "zip.exr", "none.exr"})
+    expect_whole(name);
 
   const std::string bytes = read_text(folder / "8.png");
   write_text(folder / "changed.png", test::patched(bytes, bytes.size() / 2, "flip"));
