@@ -62,7 +62,7 @@ bool Stream::are_last(std::span<const shared::View> views) const {
 DetailRequest Stream::request_for(std::span<const shared::View> views) const {
   DetailRequest request = settings_.detail;
   request.db = db_for(quality_);
-  request.calibration = as_far_as_known(calibration_.to_choose_by());
+  request.calibration = calibration_.to_choose_by();
   if (settings_.room) {
     const std::size_t fit = settings_.room(views, model_.degree);
     request.most = std::min(request.most, fit - std::min(fit, files_.spare()));
@@ -87,13 +87,7 @@ std::optional<double> Stream::reported_db() const {
 }
 
 double Stream::reported(double error) const {
-  return psnr_of_error(std::max(as_far_as_known(calibration_.factor()) * error, sample_error_));
-}
-
-// Where a head has moved on, levels may lose more than where they were calibrated: a place that needs less
-// than is predicted says nothing of the next one.
-double Stream::as_far_as_known(double factor) const {
-  return worker_ && !is_calibrated_ ? std::max(factor, 1.0) : factor;
+  return psnr_of_error(std::max(calibration_.factor() * error, sample_error_));
 }
 
 bool Stream::begin_frame(std::span<const shared::View> views, const render::FrameSettings& settings,

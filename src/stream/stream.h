@@ -107,7 +107,6 @@ class Stream {
   bool has_all() const;
   bool needs_another_pass() const;
   double reported(double error) const;
-  double as_far_as_known(double factor) const;
   // Used by settle():
   void start_over();
   void bring_to(const LevelChoice& choice);
