@@ -38,8 +38,8 @@ render::DepthTable depth_table(render::Frame& frame, const Lens& lens, const Cam
                                       {.order = settings.order, .projection = settings.projection});
 }
 
-// That distance, in metres: what suits the first view of the run, whichever part of it is drawn here; nothing
-// where that shows nothing.
+// How far the screen is, in metres, where no option says it: what suits the first view of the run, whichever
+// part of it is drawn here; nothing where that shows nothing.
 std::optional<double> find_screen(render::Frame& frame, const render::FrameSettings& settings,
                                   const Shot& first) {
   frame.draw(std::array{first.eyes[0].view},
@@ -70,6 +70,95 @@ std::optional<double> exact_frame_ms(render::Frame& frame, const Work& work, con
   return frame.draw(views, exact).total_ms;
 }
 
+/// What draws shots: the frame, or what the options want in its place.
+struct Drawer {
+  Drawer(gl::Context& of, const RenderReport& report, const std::shared_ptr<render::GpuModel>& model)
+      : context(of), options(report.options), frame(model), show(model) {}
+
+  gl::Context& context;
+  const RenderOptions& options;
+  render::Frame frame;
+  stereo::DebugView show;
+  std::optional<stereo::Panorama> panorama;
+  std::optional<stereo::FoveatedFrame> foveated;
+  std::optional<FinestLevels> finest;
+
+  /// Whether the frame's own pictures are all that is wanted, which are read while the next ones are drawn.
+  bool reads_behind() const {
+    return !panorama && !foveated && options.output.show == SHOW_PICTURE && !options.output.detail_report;
+  }
+
+  /// The pictures of a shot that was drawn, where they are read at once.
+  ShotPictures read(Drawn& drawn, const std::vector<shared::View>& views,
+                    const render::FrameSettings& settings) {
+    ShotPictures of{panorama   ? panorama->read_pictures()
+                    : foveated ? foveated->read_pictures()
+                               : frame.read_pictures(),
+                    {}};
+    const OutputOptions& output = options.output;
+    if (output.detail_report) {
+      if (!finest) finest.emplace(options.scene, context);
+      drawn.levels->finest_psnr = finest->psnr(views, of.pictures, settings, settings.background);
+    }
+    if (output.show != SHOW_PICTURE) {
+      of.shown = show.make(output.show, {frame, views, of.pictures, settings}, output.background);
+      drawn.most_shown = of.shown->most;
+    }
+    return of;
+  }
+};
+
+/// Shots on their way from the GPU to files, and what that takes of the time of the thread that draws.
+class ShotPipeline {
+ public:
+  ShotPipeline(gl::Context& context, const Work& work, const RenderReport& report)
+      : read_back_(context), files_(report.options, work.plan, work.photos, work.shots) {}
+
+  /// Asks for the pictures that the frame has of a shot.
+  void read(Drawn& drawn, const render::Frame& frame) {
+    pictures_ = read_back_.start(frame);
+    of_ = &drawn;
+  }
+
+  /// Hands over what was asked for, if anything was, once the GPU has copied it.
+  void hand_over() {
+    if (!pictures_) return;
+    const auto begin = Clock::now();
+    pictures_->wait();
+    times_.reading += ms_since(begin);
+    add(*of_, [taken = std::exchange(pictures_, nullptr)] { return ShotPictures{taken->take(), {}}; });
+  }
+
+  void add(Drawn& drawn, std::function<ShotPictures()> take) {
+    const auto begin = Clock::now();
+    files_.add(drawn, std::move(take));
+    times_.waiting += ms_since(begin);
+  }
+
+  /// Waits until all files are there.
+  RunTimes finish() {
+    hand_over();
+    const auto begin = Clock::now();
+    files_.finish();
+    times_.waiting += ms_since(begin);
+    times_.all = ms_since(start_);
+    times_.encoding = files_.encoding_seconds();
+    times_.writing = files_.writing_seconds();
+    times_.threads = files_.threads();
+    return times_;
+  }
+
+  bool all_empty() const { return files_.all_empty(); }
+
+ private:
+  render::ReadBack read_back_;
+  ShotFiles files_;
+  std::shared_ptr<render::ReadBack::Pictures> pictures_;  // after those two, so that it goes first
+  Drawn* of_ = nullptr;
+  RunTimes times_;
+  Clock::time_point start_ = Clock::now();
+};
+
 }  // namespace
 
 void draw_all(gl::Context& context, Work& work, RenderReport& report) {
@@ -82,105 +171,65 @@ void draw_all(gl::Context& context, Work& work, RenderReport& report) {
   const auto gpu_model = work.stream
                              ? work.stream->gpu_model(context, settings.precision)
                              : std::make_shared<render::GpuModel>(context, report.model, settings.precision);
-  render::Frame frame(gpu_model);
-  stereo::DebugView show(gpu_model);
+  Drawer drawer(context, report, gpu_model);
+  render::Frame& frame = drawer.frame;
   work.calibrated.check_model(report.model);
   if (settings.transmittance == TRANSMITTANCE_DEPTH && drawing.calibration.empty())
     settings.depth_table = depth_table(frame, report.options.camera.lens, work.list, report.near_plane,
                                        report.model.axes, settings);
-  std::optional<stereo::Panorama> panorama;
-  if (work.plan.vr180) panorama.emplace(gpu_model, work.shots[0].eyes[0].camera.width);
-  const std::optional<stereo::Foveation>& foveate = report.options.foveate;
-  std::optional<stereo::FoveatedFrame> foveated;
-  if (foveate) foveated.emplace(gpu_model);
+  if (work.plan.vr180) drawer.panorama.emplace(gpu_model, work.shots[0].eyes[0].camera.width);
+  if (report.options.foveate) drawer.foveated.emplace(gpu_model);
   if (work.screen) report.convergence = find_screen(frame, settings, *work.screen);
   if (work.screen && report.convergence) {
     for (Shot& shot : work.shots) converge(shot, *report.convergence);
   }
-  std::optional<FinestLevels> finest;
   std::optional<glm::vec3> of_switches;  // the background, where they are reported
   if (output.detail_report && work.heads_turn) of_switches = settings.background;
 
-  render::ReadBack read_back(context);
-  ShotFiles files(report.options, work.plan, work.photos, work.shots);
-  std::shared_ptr<render::ReadBack::Pictures> pictures;  // of the shot before, on their way
-  RunTimes times;
-  const auto start = Clock::now();
-  const auto add = [&](Drawn& drawn, std::function<ShotPictures()> take) {
-    const auto begin = Clock::now();
-    files.add(drawn, std::move(take));
-    times.waiting += ms_since(begin);
-  };
-  const auto hand_over = [&](Drawn& drawn) {
-    if (!pictures) return;
-    const auto begin = Clock::now();
-    pictures->wait();
-    times.reading += ms_since(begin);
-    add(drawn, [taken = std::exchange(pictures, nullptr)] { return ShotPictures{taken->take(), {}}; });
-  };
-  // Others than a frame's own pictures are read at once.
-  const bool reads_ahead = !panorama && !foveated && output.show == SHOW_PICTURE && !output.detail_report;
-
+  ShotPipeline pipeline(context, work, report);
   Progress progress("drawing", work.shots.size() * static_cast<std::size_t>(drawing.frames),
                     drawing.frames == 1 ? "views" : "frames");
   std::size_t done = 0;
-  report.drawn.reserve(work.shots.size());  // files refers to them
+  double gpu_ms = 0.0;
+  report.drawn.reserve(work.shots.size());  // the pipeline refers to them
   for (Shot& shot : work.shots) {
     // Single pictures do not depend on which were drawn before them.
-    if (!work.list.path) (foveated ? foveated->frame() : frame).start_over();
+    if (!work.list.path) (drawer.foveated ? drawer.foveated->frame() : frame).start_over();
     Drawn& drawn = report.drawn.emplace_back();
     drawn.shot = std::move(shot);
     const std::vector<shared::View> views = views_of(drawn.shot);
     render::FrameSettings of_shot = work.calibrated.of(drawn.shot, settings);
     of_shot.depth = output.exr_depth;
     if (work.stream) {
-      drawn.levels = settle_shot(*work.stream, frame, show, views, of_shot, of_switches);
+      drawn.levels = settle_shot(*work.stream, frame, drawer.show, views, of_shot, of_switches);
       of_shot.quality = static_cast<float>(drawn.levels->left);
     }
     for (int n = 0; n < drawing.frames; ++n) {
-      if (panorama) {
-        drawn.report = draw(*panorama, drawn.shot, report.model.axes, report.near_plane);
-      } else if (foveated) {
-        drawn.report = foveated->draw(views, *foveate, of_shot, workings);
+      if (drawer.panorama) {
+        drawn.report = draw(*drawer.panorama, drawn.shot, report.model.axes, report.near_plane);
+      } else if (drawer.foveated) {
+        drawn.report = drawer.foveated->draw(views, *report.options.foveate, of_shot, workings);
       } else {
         frame.submit(views, of_shot, workings);
-        if (report.drawn.size() > 1) hand_over(report.drawn[report.drawn.size() - 2]);
+        pipeline.hand_over();
         drawn.report = frame.finish();
       }
       report.times.add(drawn.report);
-      times.gpu += drawn.report.total_ms;
+      gpu_ms += drawn.report.total_ms;
       progress.update(++done);
     }
-    if (foveated) drawn.foveated = foveated->parts();
-    if (reads_ahead) {
-      pictures = read_back.start(frame);
-      continue;
+    if (drawer.foveated) drawn.foveated = drawer.foveated->parts();
+    if (drawer.reads_behind()) {
+      pipeline.read(drawn, frame);
+    } else {
+      const auto read = std::make_shared<ShotPictures>(drawer.read(drawn, views, of_shot));
+      pipeline.add(drawn, [read] { return std::move(*read); });
     }
-    ShotPictures of{panorama   ? panorama->read_pictures()
-                    : foveated ? foveated->read_pictures()
-                               : frame.read_pictures(),
-                    {}};
-    if (output.detail_report) {
-      if (!finest) finest.emplace(report.options.scene, context);
-      drawn.levels->finest_psnr = finest->psnr(views, of.pictures, of_shot, settings.background);
-    }
-    if (output.show != SHOW_PICTURE) {
-      of.shown = show.make(output.show, {frame, views, of.pictures, of_shot}, output.background);
-      drawn.most_shown = of.shown->most;
-    }
-    add(drawn, [taken = std::make_shared<ShotPictures>(std::move(of))] { return std::move(*taken); });
   }
-  if (!report.drawn.empty()) hand_over(report.drawn.back());
-  const auto end = Clock::now();
-  files.finish();
-  times.waiting += ms_since(end);
-  times.all = ms_since(start);
-  times.encoding = files.encoding_seconds();
-  times.writing = files.writing_seconds();
-  times.threads = files.threads();
-  report.run = times;
+  report.run = pipeline.finish();
+  report.run.gpu = gpu_ms;
   report.exact_ms = exact_frame_ms(frame, work, report);
-  if (files.all_empty() && !drawing.reference_until && !report.drawn.empty())
+  if (pipeline.all_empty() && !drawing.reference_until && !report.drawn.empty())
     log_warning("the pictures are empty: {}",
                 why_empty(report.model, report.drawn[0].shot, report.near_plane));
 }

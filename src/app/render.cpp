@@ -2,21 +2,17 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdio>
 #include <future>
-#include <limits>
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "app/calibrated.h"
 #include "app/command.h"
 #include "app/command_line.h"
 #include "app/demo_eyes.h"
 #include "app/detail.h"
 #include "app/draw_shots.h"
-#include "app/empty_view.h"
 #include "app/followed.h"
 #include "app/foveate_options.h"
 #include "app/load_scene.h"
@@ -29,15 +25,10 @@
 #include "app/tour.h"
 #include "app/vr180.h"
 #include "base/log.h"
-#include "base/progress.h"
 #include "formats/cameras_file.h"
-#include "measure/depth_table.h"
-#include "measure/metrics.h"
-#include "render/frame.h"
 #include "scene/axes.h"
 #include "scene/framing.h"
 #include "scene/scaffold.h"
-#include "stereo/comfort.h"
 
 namespace binosplat::app {
 

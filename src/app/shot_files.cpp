@@ -45,7 +45,7 @@ double bytes_of(const Shot& shot) {
 template <typename Run>
 auto timed(std::atomic<std::int64_t>& ns, const Run& run) {
   const auto start = Clock::now();
-  const auto result = run();
+  auto result = run();
   ns += static_cast<std::int64_t>(1e6 * ms_since(start));
   return result;
 }

@@ -67,7 +67,8 @@ Image depth_map(const Picture& picture);
 /// 0 for one that is not a number.
 inline int step_of(float value, float top) {
   const float scaled = (value > 0.0f ? std::min(value, 1.0f) : 0.0f) * top;
-  return static_cast<int>(double{scaled} + 0.5);  // as std::lround, and fast
+  const int whole = static_cast<int>(scaled);
+  return scaled - static_cast<float>(whole) >= 0.5f ? whole + 1 : whole;  // as std::lround, and fast
 }
 
 /// Every value as 8 bits (or, with a `top` of 65535, 16) would keep it.
