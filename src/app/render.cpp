@@ -154,8 +154,7 @@ ExitCode render(const RenderOptions& asked) {
   if (!work.stream && o.scene.gpu_memory) budget = detail_budget(o, work.list);
   Model loaded;
   if (!work.stream) {
-    // The model is read while the driver begins. Of what an earlier run has drawn maybe nothing is left to
-    // do.
+    // The model is read while the driver begins; with --resume there may be nothing left to draw.
     auto loading =
         std::async(std::launch::async, [&] { return load_scene(o.scene, budget, work.list.cameras); });
     if (!o.resume) context = open_context(o.context);

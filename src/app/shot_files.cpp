@@ -41,14 +41,18 @@ double bytes_of(const Shot& shot) {
   return bytes_a_pixel * pixels;
 }
 
-// Adds what it takes to run something.
-template <typename Run>
-auto timed(std::atomic<std::int64_t>& ns, const Run& run) {
-  const auto start = Clock::now();
-  auto result = run();
-  ns += static_cast<std::int64_t>(1e6 * ms_since(start));
-  return result;
-}
+// Adds the time for which it lives.
+class Timed {
+ public:
+  explicit Timed(std::atomic<std::int64_t>& ns) : ns_(ns) {}
+  ~Timed() { ns_ += static_cast<std::int64_t>(1e6 * ms_since(start_)); }
+  Timed(const Timed&) = delete;
+  Timed& operator=(const Timed&) = delete;
+
+ private:
+  std::atomic<std::int64_t>& ns_;
+  Clock::time_point start_ = Clock::now();
+};
 
 }  // namespace
 
@@ -60,9 +64,8 @@ ShotFiles::ShotFiles(const RenderOptions& options, const OutputPlan& plan, std::
   const double budget = std::min(0.25 * memory_bytes(), picture_memory_allowed.load());
   // Besides one that waits and one that is on its way from the GPU. A video takes its frames one by one.
   const double fit = budget / most - 2.0;
-  const int useful =
-      video_ ? 1 : std::min(core_count(), static_cast<int>(std::min<std::size_t>(shots.size(), 1024)));
-  threads_ = static_cast<int>(std::clamp(fit, 1.0, std::max(1.0, double{1} * useful)));
+  const double useful = video_ ? 1.0 : std::min<double>(core_count(), static_cast<double>(shots.size()));
+  threads_ = static_cast<int>(std::clamp(fit, 1.0, std::max(1.0, useful)));
   queue_ = std::make_unique<JobQueue>(threads_, 1);
 }
 
@@ -78,20 +81,26 @@ void ShotFiles::make(Drawn& drawn, ShotPictures of) {
   if (!of.shown) of.shown = {std::move(pictures), std::nullopt};
   const stereo::DebugPictures& shown = *of.shown;
   if (video_) {
-    const Image frame =
-        timed(encoding_ns_, [&] { return frame_of(plan_, options_.output.background, shown.pictures); });
-    timed(writing_ns_, [&] { return video_->add(frame), 0; });
+    Image frame;
+    {
+      const Timed timed(encoding_ns_);
+      frame = frame_of(plan_, options_.output.background, shown.pictures);
+    }
+    const Timed timed(writing_ns_);
+    video_->add(frame);
     drawn.files = {plan_.video.string()};
     return;
   }
-  const std::vector<EncodedFile> files = timed(encoding_ns_, [&] {
-    return encode_outputs(options_.scene.name, options_.output, plan_, drawn.shot, shown);
-  });
-  timed(writing_ns_, [&] {
-    for (const EncodedFile& file : files) write_file(file.name, file.bytes);
-    return 0;
-  });
-  for (const EncodedFile& file : files) drawn.files.push_back(file.name);
+  std::vector<EncodedFile> files;
+  {
+    const Timed timed(encoding_ns_);
+    files = encode_outputs(options_.scene.name, options_.output, plan_, drawn.shot, shown);
+  }
+  const Timed timed(writing_ns_);
+  for (const EncodedFile& file : files) {
+    write_file(file.name, file.bytes);
+    drawn.files.push_back(file.name);
+  }
 }
 
 void ShotFiles::finish() {

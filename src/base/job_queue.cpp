@@ -26,7 +26,6 @@ void JobQueue::work(const std::stop_token& stop) {
     job = nullptr;  // what it holds goes before it counts as done
     lock.lock();
     --running_;
-    ++done_;
     if (failure && !failure_) failure_ = failure;
     if (failure_) waiting_.clear();
     changed_.notify_all();
@@ -45,11 +44,6 @@ void JobQueue::finish() {
   std::unique_lock lock(mutex_);
   changed_.wait(lock, [&] { return waiting_.empty() && running_ == 0; });
   if (failure_) std::rethrow_exception(failure_);
-}
-
-std::size_t JobQueue::done() const {
-  const std::lock_guard lock(mutex_);
-  return done_;
 }
 
 }  // namespace binosplat

@@ -28,17 +28,14 @@ class JobQueue {
   /// Waits until all jobs are done. Throws as add() does.
   void finish();
 
-  /// How many are done.
-  std::size_t done() const;
-
  private:
   void work(const std::stop_token& stop);
 
   std::size_t waiting_max_;
-  mutable std::mutex mutex_;
+  std::mutex mutex_;
   std::condition_variable_any changed_;
   std::deque<std::function<void()>> waiting_;
-  std::size_t running_ = 0, done_ = 0;
+  std::size_t running_ = 0;
   std::exception_ptr failure_;         // of the job that failed first
   std::vector<std::jthread> threads_;  // last: they end first
 };

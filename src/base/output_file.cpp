@@ -88,7 +88,11 @@ OutputFile::OutputFile(const fs::path& path) : target_(path) {
 
   // Processes of one number may share a disk, in containers or on several machines.
   temporary_.emplace(target_.string() + fmt::format(".part-{}-{:08x}", getpid(), std::random_device()()));
-  file_ = std::fopen(temporary_->path().c_str(), "wb");
+  {
+    // Else it could appear after the unfinished files were removed.
+    const std::lock_guard lock(unfinished().mutex);
+    file_ = std::fopen(temporary_->path().c_str(), "wb");
+  }
   if (file_ == nullptr) fail_to_write();
 }
 

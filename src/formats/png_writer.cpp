@@ -2,10 +2,7 @@
 // NAME DATA SUM, of which IDAT holds the filtered rows as one zlib stream.
 #include <libdeflate.h>
 
-#include <algorithm>
-#include <array>
 #include <cstdlib>
-#include <cstring>
 #include <memory>
 #include <new>
 #include <string>
@@ -135,7 +132,13 @@ std::string png_bytes(const Image& image, const PngOptions& options) {
 }
 
 void save_png(const std::filesystem::path& path, const Image& image, const PngOptions& options) {
-  write_file(path, png_bytes(image, options));
+  std::string bytes;
+  try {
+    bytes = png_bytes(image, options);
+  } catch (const Error& error) {
+    fail("{}: {}", path.string(), error.what());
+  }
+  write_file(path, bytes);
 }
 
 }  // namespace binosplat

@@ -121,27 +121,15 @@ void Buffer::write(const void* data, std::int64_t bytes, std::int64_t offset) {
 
 void Buffer::read_bytes(void* out, std::int64_t offset, std::int64_t bytes) const {
   if (bytes == 0) return;
-  const Functions& gl = context_.gl();
-  gl.MemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
-  std::uint32_t staging = 0;
-  const std::int64_t staging_bytes = std::min(piece_bytes, bytes);
-  constexpr GLbitfield flags = GL_MAP_READ_BIT | GL_MAP_PERSISTENT_BIT | GL_MAP_COHERENT_BIT;
-  gl.CreateBuffers(1, &staging);
-  gl.NamedBufferStorage(staging, staging_bytes, nullptr, flags | GL_CLIENT_STORAGE_BIT);
-  const void* mapped = gl.MapNamedBufferRange(staging, 0, staging_bytes, flags);
-  if (mapped == nullptr) {
-    gl.DeleteBuffers(1, &staging);
-    context_.check("reading " + label_);
-    throw Error(ExitCode::out_of_memory, "no memory to read " + label_ + " back");
+  const std::int64_t piece_most = std::min(piece_bytes, bytes);
+  Buffer staging(context_, label_ + " for the CPU", Use::read);
+  staging.reserve(piece_most);
+  for (std::int64_t at = 0; at < bytes; at += piece_most) {
+    const std::int64_t piece = std::min(piece_most, bytes - at);
+    staging.copy(*this, offset + at, piece, 0);
+    context_.gl().Finish();
+    std::memcpy(static_cast<std::byte*>(out) + at, staging.mapped_, static_cast<std::size_t>(piece));
   }
-  for (std::int64_t at = 0; at < bytes; at += staging_bytes) {
-    const std::int64_t piece = std::min(staging_bytes, bytes - at);
-    gl.CopyNamedBufferSubData(id_, staging, offset + at, 0, piece);
-    gl.Finish();
-    std::memcpy(static_cast<std::byte*>(out) + at, mapped, static_cast<std::size_t>(piece));
-  }
-  gl.UnmapNamedBuffer(staging);
-  gl.DeleteBuffers(1, &staging);
   context_.check("reading " + label_);
 }
 
