@@ -7,7 +7,9 @@
 //   // Each frame, with the eyes from xrLocateViews and the textures from xrAcquireSwapchainImage:
 //   const std::array views = {binosplat::View{left_eye, size, {.texture = left_texture}},
 //                             binosplat::View{right_eye, size, {.texture = right_texture}}};
-//   renderer.draw(views, placement, {.background = glm::vec3(0.0f)});
+//   renderer.submit(views, placement, {.background = glm::vec3(0.0f)});
+//   // ... the program's own work of the CPU, while the GPU draws ...
+//   renderer.finish();
 //
 // examples/embed.cpp and examples/openxr.cpp are whole programs.
 
@@ -80,9 +82,10 @@ class Renderer {
   Renderer& operator=(Renderer&&) noexcept;
 
   /// Draws up to 8 views of one head in one frame, each into its target. With another layout than `separate`
-  /// it draws two views of one size, the left eye's first, into the first view's target. Waits until the GPU
-  /// has blended the frame, but not for what it then writes into targets; commands that the caller gives in
-  /// this context afterwards see the pictures, without a glMemoryBarrier.
+  /// it draws two views of one size, the left eye's first, into the first view's target. It hands the frame
+  /// to the driver and returns while the GPU draws; until finish() returns, targets are not to be read,
+  /// written or deleted, and no other frame of this renderer may be submitted. Nothing in it waits for the
+  /// GPU, but for the first frame of a combination of settings, whose shaders are compiled.
   ///
   /// Views that look the same way from the same depth share a depth order, which saves time, if they follow
   /// one another: put an eye's views side by side. Those of one orientation that lie before or behind the
@@ -94,10 +97,28 @@ class Renderer {
   /// of what was drawn, or has another size, frustum or set of tiles, and where there are more or fewer
   /// views.
   ///
-  /// Throws Error: bad_input for an orientation that is not finite or zero, a frustum that encloses no
-  /// picture, an empty picture, settings that contradict each other, a target that cannot be drawn into,
-  /// views that do not go into the layout; out_of_memory; no_gl for a GPU that was reset.
-  Report draw(std::span<const View> views, const Placement& placement, const Settings& settings = {});
+  /// Throws Error, and submits nothing: bad_input for an orientation that is not finite or zero, a frustum
+  /// that encloses no picture, an empty picture, settings that contradict each other, a target that cannot be
+  /// drawn into, views that do not go into the layout, a frame that was not finished; out_of_memory; no_gl
+  /// for a GPU that was reset.
+  void submit(std::span<const View> views, const Placement& placement, const Settings& settings = {});
+
+  /// Whether the GPU has blended the frame that was submitted. finish() then returns at once, unless the
+  /// frame must be drawn again. True where no frame is under way.
+  bool is_done();
+
+  /// Waits until the GPU has blended the frame that was submitted, draws it again where a buffer was too
+  /// small or its quality missed, and writes what submit() could not write in place. Does not wait for what
+  /// it then writes into targets; commands that the caller gives in this context afterwards see the pictures,
+  /// without a glMemoryBarrier. Throws Error: bad_input where no frame was submitted; otherwise as submit();
+  /// the frame is then over, and its targets may be half written.
+  Report finish();
+
+  /// submit() and finish() in one.
+  Report draw(std::span<const View> views, const Placement& placement, const Settings& settings = {}) {
+    submit(views, placement, settings);
+    return finish();
+  }
 
  private:
   struct Impl;

@@ -27,8 +27,19 @@ struct Renderer::Impl {
     return errors;
   }
 
+  /// What finish() needs of the frame that was submitted.
+  struct Submitted {
+    int layout = LAYOUT_SEPARATE;
+    std::optional<glm::vec3> background;
+    std::vector<Target> targets;
+    std::vector<DepthTarget> depths;
+    stereo::Canvases canvases;
+    std::vector<std::uint32_t> callers_errors;
+  };
+
   std::shared_ptr<const Model> model;
   std::unique_ptr<gl::Context> context;
+  std::optional<Submitted> submitted;
   std::unique_ptr<render::Frame> frame;
   std::unique_ptr<stereo::Presenter> presenter;
 };
@@ -39,40 +50,49 @@ Renderer::~Renderer() = default;
 Renderer::Renderer(Renderer&&) noexcept = default;
 Renderer& Renderer::operator=(Renderer&&) noexcept = default;
 
-Report Renderer::draw(std::span<const View> views, const Placement& placement, const Settings& settings) {
+void Renderer::submit(std::span<const View> views, const Placement& placement, const Settings& settings) {
+  if (impl_->submitted) fail("a frame is under way: call finish() before the next submit()");
+  Impl::Submitted to{.layout = library::layout_of(settings.layout), .background = settings.background};
   std::vector<Eye> eyes;
   std::vector<glm::ivec2> sizes;
-  std::vector<Target> targets;
-  std::vector<DepthTarget> depths;
   for (const View& view : views) {
     eyes.push_back(view.eye);
     sizes.push_back(view.size);
-    targets.push_back(view.target);
-    if (view.depth) depths.push_back(*view.depth);
+    to.targets.push_back(view.target);
+    if (view.depth) to.depths.push_back(*view.depth);
   }
-  const int layout = library::layout_of(settings.layout);
-  if (layout != LAYOUT_SEPARATE) {
+  if (to.layout != LAYOUT_SEPARATE) {
     if (views.size() != 2)
-      fail("{} views in layout {}: expected two", views.size(), layout_choices[layout].name);
-    targets.resize(1);
+      fail("{} views in layout {}: expected two", views.size(), layout_choices[to.layout].name);
+    to.targets.resize(1);
   }
-  if (!depths.empty() && depths.size() != views.size())
-    fail("{} of {} views have a depth target: expected all or none", depths.size(), views.size());
+  if (!to.depths.empty() && to.depths.size() != views.size())
+    fail("{} of {} views have a depth target: expected all or none", to.depths.size(), views.size());
   const render::FrameSettings over = library::frame_settings(settings, views);
   const auto head = stereo::views_from_xr(eyes, placement, sizes, settings.near_plane);
 
-  const std::vector<std::uint32_t> callers_errors = impl_->callers_errors();
-  const gl::Context& context = *impl_->context;
-  const gl::KeptState kept(context);
+  to.callers_errors = impl_->callers_errors();
+  const gl::KeptState kept(*impl_->context);
+  if (to.layout == LAYOUT_SEPARATE) to.canvases = impl_->presenter->canvases(to.targets, to.background);
+  impl_->frame->submit(head.views, over, {}, to.canvases.list,
+                       stereo::depth_rows(*impl_->context, head.views, to.depths));
+  impl_->submitted = std::move(to);
+}
+
+bool Renderer::is_done() { return !impl_->submitted || impl_->frame->is_done(); }
+
+Report Renderer::finish() {
+  if (!impl_->submitted) fail("no frame is under way: call submit() before finish()");
+  const Impl::Submitted frame = std::move(*impl_->submitted);
+  impl_->submitted.reset();
+  const gl::KeptState kept(*impl_->context);
   stereo::Presenter& presenter = *impl_->presenter;
-  stereo::Canvases canvases;
-  if (layout == LAYOUT_SEPARATE) canvases = presenter.canvases(targets, settings.background);
-  Report report = library::report_of(impl_->frame->draw(head.views, over, {}, canvases.list,
-                                                        stereo::depth_rows(context, head.views, depths)));
-  report.callers_errors = callers_errors;
-  for (std::size_t k = 0; k < targets.size() && !report.in_place; ++k)
-    presenter.draw(*impl_->frame, k, layout, targets[k], settings.background);
-  for (std::size_t k = 0; k < depths.size(); ++k) presenter.draw_depth(*impl_->frame, k, depths[k]);
+  Report report = library::report_of(impl_->frame->finish());
+  report.callers_errors = frame.callers_errors;
+  for (std::size_t k = 0; k < frame.targets.size() && !report.in_place; ++k)
+    presenter.draw(*impl_->frame, k, frame.layout, frame.targets[k], frame.background);
+  for (std::size_t k = 0; k < frame.depths.size(); ++k)
+    presenter.draw_depth(*impl_->frame, k, frame.depths[k]);
   return report;
 }
 
