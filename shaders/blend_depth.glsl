@@ -29,12 +29,14 @@ void add_depth(uint p, float weight, float depth) {
 // Of a pixel that leaves so much.
 void write_depth(uint to, uint p, float left) {
 #if DEPTH != DEPTH_NONE
+  precise float behind = mesh_behind(p);
 #if PROJECTION == PROJECTION_TANGENT && DEPTH != DEPTH_VISIBILITY
   precise float along = z_sum[p] * sqrt(nearness[p]);  // of distances
   z_sum[p] = along;
+  behind *= sqrt(nearness[p]);
 #endif
-#if CANVASES
-  if (left >= half_left) z_sum[p] = 0.0;
+#if CANVASES || MESH_DEPTH
+  if (left >= half_left) z_sum[p] = behind;
 #if DEPTH == DEPTH_MEAN
   else z_sum[p] /= 1.0 - left;
 #endif

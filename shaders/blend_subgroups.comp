@@ -83,6 +83,9 @@ void main() {
       reached[self] = bits;
     }
     barrier();
+#if MESH_DEPTH
+    if (is_rest_hidden()) break;
+#endif
     if (!ended) {
       uint own = list_own();
       for (uint i = 0u; i < own; i += AHEAD) {

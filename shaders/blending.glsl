@@ -8,6 +8,7 @@
 //   CANVASES    above 0: the pictures of so many views go into images, and z_sums are depths (blend_pictures.glsl)
 //   MEASURE     what is measured of each splat, MEASURE_ of shared/limits.h (blend_measure.glsl)
 //   DEBUG_VIEW  SHOW_ of shared/axes.h: what of each pixel is told in the place of its picture (blend_debug.glsl)
+//   MESH_DEPTH  1: splats behind the caller's meshes are not seen (blend_mesh.glsl)
 //   ANY         whether something holds in an invocation that goes with this one
 //   REACHES     whether a splat of the batch is blended in this invocation's block, if others are in the batch, too
 #include "lists.glsl"
@@ -18,6 +19,7 @@
 #include "projection.glsl"
 #include "supertiles.glsl"
 #include "tiles/places.glsl"
+#include "tiles/pixel_places.glsl"
 #include "splats.glsl"  // binding 12
 
 #ifndef ANY
@@ -75,6 +77,7 @@ float transmittance_left(uint p) { return is_done(p) ? -least[p] : transmittance
 #include "blend_pictures.glsl"
 #include "blend_debug.glsl"
 #include "blend_measure.glsl"
+#include "blend_mesh.glsl"
 #include "blend_depth.glsl"
 #include "blend_approximate.glsl"
 
@@ -82,7 +85,7 @@ float transmittance_left(uint p) { return is_done(p) ? -least[p] : transmittance
 #define FOLLOWS_TRANSMITTANCE (MEASURE != MEASURE_NONE || DEPTH == DEPTH_VISIBILITY || DEBUG_VIEW == SHOW_MEDIAN_DEPTH)
 
 // AHEAD splats of the batch at once: their alphas do not wait for one another, only what they leave of T does.
-void blend(uint at[AHEAD]) {
+void blend_these(uint at[AHEAD], const bool may_be_hidden) {
   float weights[COLUMN][AHEAD];  // alphas at first
   for (uint k = 0u; k < AHEAD; ++k) {
     vec4 across = batch_across[at[k]];
@@ -96,7 +99,9 @@ void blend(uint at[AHEAD]) {
       exponent = fma(nearness[p], exponent, down.z);
 #endif
       precise float a = exp2(-exponent);
-      weights[p][k] = a >= float(ALPHA_MIN) && REACHES(at[k]) ? min(float(ALPHA_MAX), a) : 0.0;  // not a number: 0
+      bool is_seen = a >= float(ALPHA_MIN) && REACHES(at[k]);  // not a number: no
+      if (may_be_hidden) is_seen = is_seen && !is_hidden(at[k], p);
+      weights[p][k] = is_seen ? min(float(ALPHA_MAX), a) : 0.0;
       MEET(p, k, a);
     }
   }
@@ -149,6 +154,17 @@ void blend(uint at[AHEAD]) {
     transmittance[p] = left[p];
     end_where_nothing_is_measured(p);
   }
+}
+
+// Where none of them can lie behind a mesh no pixel is asked.
+void blend(uint at[AHEAD]) {
+#if MESH_DEPTH
+  if (may_be_hidden(at)) {
+    blend_these(at, true);
+    return;
+  }
+#endif
+  blend_these(at, false);
 }
 
 // Those that follow one another.

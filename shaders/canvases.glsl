@@ -1,5 +1,6 @@
 // Images of the caller's, in which the blend writes views' pictures as they are shown.
 //   CANVASES    how many views there are
+//   MESH_DEPTH  1: over the colours that are there
 #include "shared/types.h"
 #include "shown.glsl"
 
@@ -15,10 +16,43 @@ layout(binding = 2) writeonly uniform image2D image_2;
 layout(binding = 3) writeonly uniform image2D image_3;
 #endif
 
+#if MESH_DEPTH
+// The same images, each read before it is written.
+layout(binding = 0) uniform sampler2D behind_0;
+#if CANVASES > 1
+layout(binding = 1) uniform sampler2D behind_1;
+#endif
+#if CANVASES > 2
+layout(binding = 2) uniform sampler2D behind_2;
+#endif
+#if CANVASES > 3
+layout(binding = 3) uniform sampler2D behind_3;
+#endif
+
+vec4 behind_at(uint nth, ivec2 at) {
+#if CANVASES > 1
+  if (nth == 1u) return texelFetch(behind_1, at, 0);
+#endif
+#if CANVASES > 2
+  if (nth == 2u) return texelFetch(behind_2, at, 0);
+#endif
+#if CANVASES > 3
+  if (nth == 3u) return texelFetch(behind_3, at, 0);
+#endif
+  return texelFetch(behind_0, at, 0);
+}
+#endif
+
 // A blended pixel `at` of a view that is so high, from its top left, in the image of unit `nth`.
 void write_on_canvas(uint nth, Canvas canvas, uint height, uvec2 at, vec4 pixel, vec3 background) {
   ivec2 to = ivec2(canvas.left + at.x, canvas.bottom + height - 1u - at.y);
-  vec4 shown = in_image(over(pixel, background, canvas.keeps_alpha != 0u), canvas.linear != 0u, canvas.steps);
+#if MESH_DEPTH
+  if (pixel == vec4(0.0, 0.0, 0.0, 1.0)) return;  // not even rounding changes what is there
+  vec4 over_it = over_image(pixel, behind_at(nth, to), canvas.linear != 0u);
+#else
+  vec4 over_it = over(pixel, background, canvas.keeps_alpha != 0u);
+#endif
+  vec4 shown = in_image(over_it, canvas.linear != 0u, canvas.steps);
   if (nth == 0u) imageStore(image_0, to, shown);
 #if CANVASES > 1
   if (nth == 1u) imageStore(image_1, to, shown);

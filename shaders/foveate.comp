@@ -2,6 +2,7 @@
 // which has fewer pixels, and in the seam one going over into the other. A work group shares what the context's rows are at
 // its columns.
 //   CANVASES    1: the picture goes into an image as it is shown, and its depths nowhere
+//   MESH_DEPTH  1: over the colours that are there
 #include "shared/limits.h"
 #include "shared/types.h"
 #include "shared/grid.glsl"

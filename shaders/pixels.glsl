@@ -27,17 +27,8 @@ bool find_tile() {
   return is_own;
 }
 
-// Where pixel p of this invocation is kept. A probe's tiles are kept side by side.
-uint place_of(View view, uint p) {
-  uvec2 at = first_pixel - first_drawn(view);
-  uint across = view.width;
-  if (is_probe(view)) {
-    uvec2 in_grid = tile_of(tile, view);
-    at += in_grid * uint(TILE_SIZE) - tile_corner(in_grid, view);
-    across = view.tiles_x * uint(TILE_SIZE);
-  }
-  return view.pixel_offset + (at.y + p) * across + at.x;
-}
+// Where pixel p of this invocation is kept.
+uint place_of(View view, uint p) { return pixel_place(view, tile, first_pixel + uvec2(0u, p)); }
 
 // The pixels of this invocation, of which the first lies `in_tile`.
 void begin_pixels(uvec2 in_tile) {
@@ -53,6 +44,7 @@ void begin_pixels(uvec2 in_tile) {
   farthest = 1.0 + dot(most, most);
 #endif
   begin_block(view, view_index < frame.asked);
+  begin_mesh(view, tile);
   for (uint p = 0u; p < COLUMN; ++p) {
     bool inside = first_pixel.x <= last_drawn(view).x && first_pixel.y + p <= last_drawn(view).y;
     row[p] = float(first_pixel.y + p) - middle.y;

@@ -1,5 +1,6 @@
 // Both eyes' pictures, or one, into an image of any format: shared/layout.h says which pixel goes where. Colours are
 // display-referred and written as they are.
+//   OVER   1: a single picture goes over the colours that are in the image
 #include "shared/layout.h"
 #include "shown.glsl"
 #include "shared/limits.h"
@@ -9,6 +10,9 @@ layout(local_size_x = PRESENT_COLUMNS, local_size_y = PRESENT_ROWS) in;
 
 layout(std430, binding = 0) readonly buffer Colours { vec4 colours[]; };  // C, and T left
 layout(binding = 0) writeonly uniform image2D shown;
+#if OVER
+layout(binding = 0) uniform sampler2D behind;  // the same image, read before it is written
+#endif
 uniform uint kind;            // LAYOUT_
 uniform uint first, second;   // the eyes' first pixels in `colours`; of a single picture both are its own
 uniform uint width, height;   // of an eye
@@ -41,6 +45,13 @@ void main() {
   uint group = group_index();
   uvec2 at = uvec2(group % across, group / across) * gl_WorkGroupSize.xy + gl_LocalInvocationID.xy;
   if (at.x >= columns || at.y >= rows) return;
+  ivec2 to = ivec2(left + at.x, bottom + rows - 1u - at.y);
+#if OVER
+  vec4 colour = colours[first + at.y * width + at.x];
+  if (colour == vec4(0.0, 0.0, 0.0, 1.0)) return;
+  vec4 pixel = over_image(colour, texelFetch(behind, to, 0), linear != 0u);
+#else
   vec4 pixel = pixel_at(at);
-  imageStore(shown, ivec2(left + at.x, bottom + rows - 1u - at.y), in_image(pixel, linear != 0u, steps));
+#endif
+  imageStore(shown, to, in_image(pixel, linear != 0u, steps));
 }

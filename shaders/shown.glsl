@@ -10,6 +10,17 @@ vec3 light_of(vec3 shown) {
   return mix(high, low, lessThanEqual(shown, vec3(0.04045)));
 }
 
+vec3 shown_of(vec3 light) {
+  vec3 low = light * 12.92, high = 1.055 * pow(max(light, vec3(0.0)), vec3(1.0 / 2.4)) - 0.055;
+  return mix(high, low, lessThanEqual(light, vec3(0.0031308)));
+}
+
+// Over an image's pixel, whose colours are premultiplied by its alpha.
+vec4 over_image(vec4 colour, vec4 there, bool is_light) {
+  if (is_light) there.rgb = shown_of(there.rgb);
+  return vec4(colour.rgb + colour.a * there.rgb, 1.0 - colour.a * (1.0 - there.a));
+}
+
 // In an image whose numbers mean light, or what a screen takes, and whose colours have `steps` above 0; 0: they are floats.
 // GPUs may round by themselves to within 0.6 of a step; files hold the nearest.
 vec4 in_image(vec4 pixel, bool is_light, uint steps) {

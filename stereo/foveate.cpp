@@ -1,6 +1,7 @@
 #include "stereo/foveate.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 
@@ -133,9 +134,12 @@ FoveatedViews foveated_views(std::span<const shared::View> eyes, const Foveation
 render::FrameReport FoveatedFrame::draw(std::span<const shared::View> eyes, const Foveation& foveation,
                                         const render::FrameSettings& settings,
                                         const render::Workings& workings,
-                                        std::span<const render::Canvas> canvases) {
+                                        const render::CallersTextures& textures) {
+  const std::span<const render::Canvas> canvases = textures.canvases;
   if (!canvases.empty() && canvases.size() != eyes.size())
     fail("{} canvases for {} eyes: expected one each", canvases.size(), eyes.size());
+  if (!textures.mesh_depths.empty() && (canvases.empty() || textures.mesh_depths.size() != eyes.size()))
+    fail("foveation with depths of meshes: expected one an eye, and canvases");
   FoveatedViews drawn = foveated_views(eyes, foveation, settings);
   eyes_.assign(eyes.begin(), eyes.end());
   std::int64_t pixels = 0;
@@ -156,29 +160,37 @@ render::FrameReport FoveatedFrame::draw(std::span<const shared::View> eyes, cons
   with_compose.then_called = "compose";
   with_compose.then = [&](gl::Dispatcher& dispatcher) {
     for (std::size_t k = 0; k < eyes_.size(); ++k)
-      compose(dispatcher, k, drawn.eyes[k], settings.background, canvases);
+      compose(dispatcher, k, drawn.eyes[k], settings.background, textures);
     dispatcher.wait_for_writes();
     // However canvases are read next.
     if (on_canvases_) dispatcher.context().gl().MemoryBarrier(GL_ALL_BARRIER_BITS);
   };
-  render::FrameReport report = frame_.draw(drawn.views, drawn.settings, with_compose);
+  std::vector<render::MeshDepth> of_views;
+  for (const render::MeshDepth& mesh : textures.mesh_depths) of_views.insert(of_views.end(), 2, mesh);
+  render::FrameReport report =
+      frame_.draw(drawn.views, drawn.settings, with_compose, {.mesh_depths = of_views});
   report.on_canvases = on_canvases_;
   parts_ = std::move(drawn.eyes);
   return report;
 }
 
 void FoveatedFrame::compose(gl::Dispatcher& dispatcher, std::size_t k, const FoveatedEye& parts,
-                            const glm::vec3& background, std::span<const render::Canvas> canvases) {
+                            const glm::vec3& background, const render::CallersTextures& textures) {
   const shared::View &eye = eyes_[k], &context = frame_.views()[2 * k], &window = frame_.views()[2 * k + 1];
   gl::Context& gl = dispatcher.context();
   if (on_canvases_) {
-    const render::Canvas& to = canvases[k];
+    const render::Canvas& to = textures.canvases[k];
     gl.gl().BindImageTexture(0, to.texture, to.level, GL_FALSE, to.layer, GL_WRITE_ONLY, to.format);
+  }
+  if (!textures.mesh_depths.empty()) {
+    gl.gl().BindTextureUnit(0, textures.canvases[k].texture);
+    gl.gl().BindSampler(0, frame_.buffers().nearest.id());
   }
   const std::uint64_t groups = std::uint64_t{(eye.width + COMPOSE_COLUMNS - 1) / COMPOSE_COLUMNS} *
                                ((eye.height + COMPOSE_ROWS - 1) / COMPOSE_ROWS);
-  dispatcher.start(gl.program("foveate.comp", gl::Number{"CANVASES", on_canvases_, 2}),
-                   gl::DispatchSize::of_groups(groups),
+  const std::array variant = {gl::Number{"CANVASES", on_canvases_, 2},
+                              gl::Number{"MESH_DEPTH", !textures.mesh_depths.empty(), 2}};
+  dispatcher.start(gl.program("foveate.comp", variant), gl::DispatchSize::of_groups(groups),
                    {{"Colours", frame_.colours()},
                     {"ZSums", frame_.z_sums()},
                     {"Composed", colours_},

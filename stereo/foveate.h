@@ -65,11 +65,12 @@ class FoveatedFrame {
         canvases_(frame_.model()->context(), "their canvases") {}
 
   /// Draws all eyes in one frame and composes their pictures, which is a stage of its own, "compose". With
-  /// canvases, one an eye, the pictures are there and nowhere else, over settings.background. Throws
-  /// as foveated_views() and render::Frame::draw() do.
+  /// canvases, one an eye, the pictures are there and nowhere else, over settings.background. With mesh
+  /// depths, too one an eye, what lies behind is not drawn, and there must be canvases. Throws as
+  /// foveated_views() and render::Frame::draw() do.
   render::FrameReport draw(std::span<const shared::View> eyes, const Foveation& foveation,
                            const render::FrameSettings& settings = {}, const render::Workings& workings = {},
-                           std::span<const render::Canvas> canvases = {});
+                           const render::CallersTextures& textures = {});
 
   /// The composed pictures of the last frame, one an eye; and on the GPU, as a frame's lie: vec4 (C, T) by
   /// pixel, a view's from its pixel_offset on; unless they went onto canvases.
@@ -84,7 +85,7 @@ class FoveatedFrame {
 
  private:
   void compose(gl::Dispatcher& dispatcher, std::size_t k, const FoveatedEye& parts,
-               const glm::vec3& background, std::span<const render::Canvas> canvases);
+               const glm::vec3& background, const render::CallersTextures& textures);
 
   render::Frame frame_;
   gl::Buffer colours_, z_sums_, canvases_;

@@ -4,6 +4,7 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <optional>
 
 #include "base/error.h"
 #include "gl/state.h"
@@ -17,7 +18,7 @@ namespace {
 /// How a compute shader writes a texture of the caller's in place; GL_NONE: not at all.
 struct InPlace {
   GLenum format = GL_NONE;
-  bool by_view = false;  // of another format than its own
+  bool by_view = false;  // of the format above
 };
 
 /// What a framebuffer shows if that is one texture and no more: written without a copy, which servers' GPUs
@@ -45,7 +46,7 @@ Target texture_behind(const gl::Functions& gl, const Target& target) {
           .in_place = target.in_place};
 }
 
-InPlace in_place(const gl::Functions& gl, const Target& target) {
+InPlace in_place(const gl::Functions& gl, const Target& target, bool over_target) {
   if (target.texture == 0 || !target.in_place) return {};
   GLint kind = 0, format = 0, immutable = 0;
   gl.GetTextureParameteriv(target.texture, GL_TEXTURE_TARGET, &kind);
@@ -56,7 +57,10 @@ InPlace in_place(const gl::Functions& gl, const Target& target) {
   if (format == GL_SRGB8_ALPHA8 && immutable != 0) return {GL_RGBA8, true};
   constexpr std::array formats = {GL_RGBA8, GL_RGB10_A2, GL_RGBA16, GL_RGBA16F, GL_RGBA32F};
   if (std::find(formats.begin(), formats.end(), format) == formats.end()) return {};
-  return {static_cast<GLenum>(format)};
+  // A texture that is read, too, is read by a view, to which what its owner has set of swizzles and levels
+  // does not apply.
+  if (over_target && immutable == 0) return {};
+  return {static_cast<GLenum>(format), over_target};
 }
 
 /// The format that holds a picture until it is copied into a framebuffer, with no fewer bits than are there.
@@ -128,6 +132,20 @@ void Presenter::copy(const glm::ivec2& size, std::uint32_t to, const glm::ivec2&
   }
 }
 
+// What is in a framebuffer, to the scratch texture.
+void Presenter::copy_back(const glm::ivec2& size, std::uint32_t from, const glm::ivec2& corner) {
+  const gl::Functions& gl = dispatcher_.context().gl();
+  gl.BlitNamedFramebuffer(from, scratch_framebuffer_, corner.x, corner.y, corner.x + size.x,
+                          corner.y + size.y, 0, 0, size.x, size.y, GL_COLOR_BUFFER_BIT, GL_NEAREST);
+  const GLenum error = gl.GetError();
+  if (error != GL_NO_ERROR) {
+    fail(
+        "framebuffer {} cannot be read (OpenGL error 0x{:04x}): expected a complete one of colours, without "
+        "samples",
+        from, error);
+  }
+}
+
 const gl::Texture& Presenter::scratch(const glm::ivec2& size, GLenum format) {
   const gl::Functions& gl = dispatcher_.context().gl();
   if (scratch_ != nullptr && scratch_->is(format, size.x, size.y)) return *scratch_;
@@ -139,7 +157,9 @@ const gl::Texture& Presenter::scratch(const glm::ivec2& size, GLenum format) {
 }
 
 void Presenter::draw(const gl::Buffer& colours, std::span<const shared::View> views, std::size_t first,
-                     int layout, const Target& target, const Background& background) {
+                     int layout, const Target& target, const Background& background, bool over_target) {
+  if (over_target && layout != LAYOUT_SEPARATE)
+    fail("layout {} over what is in the target: expected separate", layout_choices[layout].name);
   const std::size_t second = layout == LAYOUT_SEPARATE ? first : first + 1;
   if (second >= views.size()) fail("view {} of a frame of {} views", second, views.size());
   const shared::View &left = views[first], &right = views[second];
@@ -161,10 +181,16 @@ void Presenter::draw(const gl::Buffer& colours, std::span<const shared::View> vi
   gl::Context& context = dispatcher_.context();
   const gl::KeptState kept(context);
   kept.set_plain();
+  std::optional<gl::KeptTextures> textures;
+  if (over_target) textures.emplace(context);
   const auto write = [&](const Target& image, GLenum format) {
     context.gl().BindImageTexture(0, image.texture, image.level, GL_FALSE, std::max(image.layer, 0),
                                   GL_WRITE_ONLY, format);
-    dispatcher_.start(context.program("present.comp"),
+    if (over_target) {
+      context.gl().BindTextureUnit(0, image.texture);
+      context.gl().BindSampler(0, nearest_.id());
+    }
+    dispatcher_.start(context.program("present.comp", gl::Number{"OVER", over_target, 2}),
                       gl::DispatchSize::of_groups(std::uint64_t{groups.x} * groups.y), {{"Colours", colours}},
                       {{"kind", static_cast<std::uint32_t>(layout)},
                        {"first", left.pixel_offset},
@@ -185,9 +211,10 @@ void Presenter::draw(const gl::Buffer& colours, std::span<const shared::View> vi
   };
   const std::uint32_t framebuffer = framebuffer_of(target);
   const Target texture = texture_behind(context.gl(), target);
-  const auto [format, by_view] = in_place(context.gl(), texture);
+  const auto [format, by_view] = in_place(context.gl(), texture, over_target);
   if (format == GL_NONE) {
     const gl::Texture& picture = scratch(size, copied_from(context.gl(), framebuffer));
+    if (over_target) copy_back(size, framebuffer, {target.x, target.y});
     write({.texture = picture.id()}, picture.format());
     copy(size, framebuffer, {target.x, target.y});
   } else if (by_view) {
@@ -201,7 +228,8 @@ void Presenter::draw(const gl::Buffer& colours, std::span<const shared::View> vi
     context.gl().NamedFramebufferTexture(target_framebuffer_, GL_COLOR_ATTACHMENT0, 0, 0);
 }
 
-Canvases Presenter::canvases(std::span<const Target> targets, const Background& background) {
+Canvases Presenter::canvases(std::span<const Target> targets, const Background& background,
+                             bool over_target) {
   Canvases found;
   gl::Context& context = dispatcher_.context();
   if (targets.size() > MAX_CANVASES) return {};
@@ -210,7 +238,7 @@ Canvases Presenter::canvases(std::span<const Target> targets, const Background& 
     if (target.texture != 0)
       context.gl().NamedFramebufferTexture(target_framebuffer_, GL_COLOR_ATTACHMENT0, 0, 0);
     const Target texture = texture_behind(context.gl(), target);
-    const auto [format, by_view] = in_place(context.gl(), texture);
+    const auto [format, by_view] = in_place(context.gl(), texture, over_target);
     if (format == GL_NONE) return {};
     render::Canvas& canvas = found.list.emplace_back();
     canvas = {.texture = texture.texture,
@@ -261,7 +289,7 @@ void Presenter::draw_depth(const render::Frame& frame, std::size_t v, const Dept
   {
     const gl::KeptDrawing drawing(context, depth_framebuffer_, no_vertices_, size.x, size.y);
     dispatcher_.draw_whole(
-        context.program("present_depth.frag", gl::Number{"IS_DEPTH", !frame.plan().canvases.empty(), 2}),
+        context.program("present_depth.frag", gl::Number{"IS_DEPTH", frame.plan().tells_depths(), 2}),
         {{"Colours", frame.colours()}, {"ZSums", frame.z_sums()}},
         {{"first", view.pixel_offset},
          {"width", view.width},

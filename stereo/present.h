@@ -22,17 +22,16 @@ namespace binosplat::stereo {
 /// render::Canvas by view, and the texture views that they use.
 struct Canvases {
   std::vector<render::Canvas> list;
-  std::vector<std::unique_ptr<gl::Texture>> views;  // of the targets that are sRGB textures
+  std::vector<std::unique_ptr<gl::Texture>> views;  // of targets that are sRGB textures, or are read, too
 };
 
-/// The `depth_rows` of Frame::draw() with canvases, 1 or 2, with which it knows enough depths to fill these
-/// targets.
+/// The CallersTextures::depth_rows with which a frame on canvases knows enough depths to fill these targets.
 int depth_rows(const gl::Context& context, std::span<const shared::View> views,
                std::span<const DepthTarget> targets);
 
 class Presenter {
  public:
-  explicit Presenter(gl::Context& context) : dispatcher_(context) {}
+  explicit Presenter(gl::Context& context) : dispatcher_(context), nearest_(context) {}
   ~Presenter();
   Presenter(const Presenter&) = delete;
   Presenter& operator=(const Presenter&) = delete;
@@ -47,20 +46,25 @@ class Presenter {
   /// picture; blending, masks and tests do not touch it. All state is as before afterwards (gl/state.h), and
   /// whatever reads the target next sees the picture. Throws Error(bad_input) for views that are not there or
   /// differ in size, a target that cannot be drawn into, and what layout_size() and lay_out() refuse.
+  ///
+  /// A frame with mesh depths goes over the colours that are there, premultiplied by the alpha beside them,
+  /// whatever the background (LAYOUT_SEPARATE).
   void draw(const render::Frame& frame, std::size_t first, int layout, const Target& target,
             const Background& background = glm::vec3(0.0f)) {
-    draw(frame.colours(), frame.views(), first, layout, target, background);
+    draw(frame.colours(), frame.views(), first, layout, target, background,
+         !frame.plan().mesh_depths.empty());
   }
 
   /// The same of other pictures that lie in a buffer as a frame's do: vec4 (C, T) by pixel, a view's from its
   /// pixel_offset on.
   void draw(const gl::Buffer& colours, std::span<const shared::View> views, std::size_t first, int layout,
-            const Target& target, const Background& background);
+            const Target& target, const Background& background, bool over_target = false);
 
   /// The canvases through which a frame's own blend may draw into these targets, one a view
   /// (LAYOUT_SEPARATE): the same bits as draw() writes afterwards, in less time. None for more than
-  /// MAX_CANVASES targets, or where one of them takes a copy. Throws as draw() does.
-  Canvases canvases(std::span<const Target> targets, const Background& background);
+  /// MAX_CANVASES targets, or where one of them takes a copy. `over_target`: for a frame with mesh depths.
+  /// Throws as draw() does.
+  Canvases canvases(std::span<const Target> targets, const Background& background, bool over_target = false);
 
   /// Fills all of a target with the depths of view `v` of the last frame. State as for draw(). Throws
   /// Error(bad_input) for a view that is not there, a frame drawn without depth, a target that is no such
@@ -73,8 +77,10 @@ class Presenter {
   std::uint32_t framebuffer_of(const Target& target);
   const gl::Texture& scratch(const glm::ivec2& size, GLenum format);
   void copy(const glm::ivec2& size, std::uint32_t to, const glm::ivec2& corner);
+  void copy_back(const glm::ivec2& size, std::uint32_t from, const glm::ivec2& corner);
 
   gl::Dispatcher dispatcher_;
+  gl::Sampler nearest_;
   // Made at first use: of the caller's textures, and of what is copied into framebuffers.
   std::uint32_t target_framebuffer_ = 0, scratch_framebuffer_ = 0;
   std::unique_ptr<gl::Texture> scratch_;

@@ -55,8 +55,12 @@ struct View {
   Eye eye = {};
   glm::ivec2 size{0};  // px, above 0
   Target target = {};  // at least so large from its corner on
-  /// For all views of a frame, or for none, which is faster.
+  /// For all views of a frame, or for none, which is faster. With mesh depths the nearer of splats and
+  /// meshes.
   std::optional<DepthTarget> depth = {};
+  /// For all views of a frame, or for none. Not with a background, a layout other than `separate` or a
+  /// transmittance that is measured.
+  std::optional<MeshDepth> mesh_depth = {};
   ViewRegion region = {};
 };
 

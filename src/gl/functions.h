@@ -10,12 +10,16 @@ namespace binosplat::gl {
 
 // X(name without gl, the upper-case name that GL's function pointer types use)
 #define BINOSPLAT_GL_FUNCTIONS(X)                                                       \
+  X(ActiveTexture, ACTIVETEXTURE)                                                       \
   X(AttachShader, ATTACHSHADER)                                                         \
   X(BindBuffer, BINDBUFFER)                                                             \
   X(BindBufferBase, BINDBUFFERBASE)                                                     \
   X(BindBufferRange, BINDBUFFERRANGE)                                                   \
   X(BindFramebuffer, BINDFRAMEBUFFER)                                                   \
   X(BindImageTexture, BINDIMAGETEXTURE)                                                 \
+  X(BindSampler, BINDSAMPLER)                                                           \
+  X(BindTexture, BINDTEXTURE)                                                           \
+  X(BindTextureUnit, BINDTEXTUREUNIT)                                                   \
   X(BindVertexArray, BINDVERTEXARRAY)                                                   \
   X(BlitNamedFramebuffer, BLITNAMEDFRAMEBUFFER)                                         \
   X(CheckNamedFramebufferStatus, CHECKNAMEDFRAMEBUFFERSTATUS)                           \
@@ -30,6 +34,7 @@ namespace binosplat::gl {
   X(CreateFramebuffers, CREATEFRAMEBUFFERS)                                             \
   X(CreateProgram, CREATEPROGRAM)                                                       \
   X(CreateQueries, CREATEQUERIES)                                                       \
+  X(CreateSamplers, CREATESAMPLERS)                                                     \
   X(CreateShader, CREATESHADER)                                                         \
   X(CreateTextures, CREATETEXTURES)                                                     \
   X(CreateVertexArrays, CREATEVERTEXARRAYS)                                             \
@@ -38,6 +43,7 @@ namespace binosplat::gl {
   X(DeleteFramebuffers, DELETEFRAMEBUFFERS)                                             \
   X(DeleteProgram, DELETEPROGRAM)                                                       \
   X(DeleteQueries, DELETEQUERIES)                                                       \
+  X(DeleteSamplers, DELETESAMPLERS)                                                     \
   X(DeleteShader, DELETESHADER)                                                         \
   X(DeleteSync, DELETESYNC)                                                             \
   X(DeleteTextures, DELETETEXTURES)                                                     \
@@ -98,6 +104,7 @@ namespace binosplat::gl {
   X(ProgramUniform1ui, PROGRAMUNIFORM1UI)                                               \
   X(PushDebugGroup, PUSHDEBUGGROUP)                                                     \
   X(QueryCounter, QUERYCOUNTER)                                                         \
+  X(SamplerParameteri, SAMPLERPARAMETERI)                                               \
   X(ShaderSource, SHADERSOURCE)                                                         \
   X(TextureStorage2D, TEXTURESTORAGE2D)                                                 \
   X(TextureView, TEXTUREVIEW)                                                           \

@@ -120,7 +120,7 @@ void Program::reflect() {
   // Images are bound to units, not given values, and a block's members have no location.
   for_each_resource(*gl_, id_, GL_UNIFORM, GL_TYPE, [&](const char* name, std::int32_t type) {
     const std::int32_t location = gl_->GetUniformLocation(id_, name);
-    if (type != GL_IMAGE_2D && location >= 0) uniforms_.push_back({name, location});
+    if (type == GL_UNSIGNED_INT && location >= 0) uniforms_.push_back({name, location});
   });
 }
 

@@ -67,6 +67,27 @@ KeptState::~KeptState() {
   gl_.UseProgram(gl_.IsProgram(program) == GL_TRUE ? program : 0);
 }
 
+KeptTextures::KeptTextures(const Context& context) : gl_(context.gl()) {
+  gl_.GetIntegerv(GL_ACTIVE_TEXTURE, &active_);
+  for (GLuint unit = 0; unit < units_.size(); ++unit) {
+    gl_.ActiveTexture(GL_TEXTURE0 + unit);
+    gl_.GetIntegerv(GL_TEXTURE_BINDING_2D, &units_[unit].texture);
+    gl_.GetIntegerv(GL_TEXTURE_BINDING_2D_ARRAY, &units_[unit].array);
+    gl_.GetIntegerv(GL_SAMPLER_BINDING, &units_[unit].sampler);
+  }
+  gl_.ActiveTexture(static_cast<GLenum>(active_));
+}
+
+KeptTextures::~KeptTextures() {
+  for (GLuint unit = 0; unit < units_.size(); ++unit) {
+    gl_.ActiveTexture(GL_TEXTURE0 + unit);
+    gl_.BindTexture(GL_TEXTURE_2D, static_cast<GLuint>(units_[unit].texture));
+    gl_.BindTexture(GL_TEXTURE_2D_ARRAY, static_cast<GLuint>(units_[unit].array));
+    gl_.BindSampler(unit, static_cast<GLuint>(units_[unit].sampler));
+  }
+  gl_.ActiveTexture(static_cast<GLenum>(active_));
+}
+
 KeptDrawing::KeptDrawing(const Context& context, std::uint32_t framebuffer, std::uint32_t vertices, int width,
                          int height)
     : gl_(context.gl()) {

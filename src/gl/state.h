@@ -50,6 +50,25 @@ class KeptState {
   Range uniforms_;
 };
 
+/// Remembers the 2D textures, arrays and samplers of the first MAX_CANVASES + 1 units, which a frame with
+/// mesh depths reads the caller's textures through, and sets them again when it goes. Beside a KeptState.
+class KeptTextures {
+ public:
+  explicit KeptTextures(const Context& context);
+  ~KeptTextures();
+  KeptTextures(const KeptTextures&) = delete;
+  KeptTextures& operator=(const KeptTextures&) = delete;
+
+ private:
+  struct Unit {
+    GLint texture = 0, array = 0, sampler = 0;
+  };
+
+  const Functions& gl_;
+  GLint active_ = 0;
+  std::array<Unit, MAX_CANVASES + 1> units_;
+};
+
 /// Remembers the state that drawing a triangle into a texture of depths uses, sets it so that the triangle
 /// writes all of the texture, and restores it when destroyed: the framebuffer and vertex array to draw with,
 /// viewport 0, clip control, polygon mode, and the tests of depth, stencil, faces and clip distances. Beside

@@ -28,4 +28,12 @@ void Texture::check() {
   }
 }
 
+Sampler::Sampler(Context& context) : context_(context) {
+  context_.gl().CreateSamplers(1, &id_);
+  context_.gl().SamplerParameteri(id_, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+  context_.gl().SamplerParameteri(id_, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+}
+
+Sampler::~Sampler() { context_.gl().DeleteSamplers(1, &id_); }
+
 }  // namespace binosplat::gl

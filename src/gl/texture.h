@@ -32,4 +32,19 @@ class Texture {
   std::uint32_t id_ = 0;
 };
 
+/// Reads a texel as it is, whatever filters and comparisons its texture asks for.
+class Sampler {
+ public:
+  explicit Sampler(Context& context);
+  ~Sampler();
+  Sampler(const Sampler&) = delete;
+  Sampler& operator=(const Sampler&) = delete;
+
+  std::uint32_t id() const { return id_; }
+
+ private:
+  Context& context_;
+  std::uint32_t id_ = 0;
+};
+
 }  // namespace binosplat::gl

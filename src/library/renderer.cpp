@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "base/log.h"
 #include "gl/state.h"
+#include "library/mesh_depth.h"
 #include "library/settings.h"
 #include "stereo/eyes.h"
 #include "stereo/present.h"
@@ -33,7 +34,10 @@ struct Renderer::Impl {
     std::optional<glm::vec3> background;
     std::vector<Target> targets;
     std::vector<DepthTarget> depths;
+    std::vector<render::MeshDepth> mesh_depths;
     stereo::Canvases canvases;
+
+    bool has_meshes() const { return !mesh_depths.empty(); }
     std::vector<std::uint32_t> callers_errors;
   };
 
@@ -53,6 +57,7 @@ Renderer& Renderer::operator=(Renderer&&) noexcept = default;
 void Renderer::submit(std::span<const View> views, const Placement& placement, const Settings& settings) {
   if (impl_->submitted) fail("a frame is under way: call finish() before the next submit()");
   Impl::Submitted to{.layout = library::layout_of(settings.layout), .background = settings.background};
+  to.callers_errors = impl_->callers_errors();
   std::vector<Eye> eyes;
   std::vector<glm::ivec2> sizes;
   for (const View& view : views) {
@@ -60,6 +65,7 @@ void Renderer::submit(std::span<const View> views, const Placement& placement, c
     sizes.push_back(view.size);
     to.targets.push_back(view.target);
     if (view.depth) to.depths.push_back(*view.depth);
+    if (view.mesh_depth) to.mesh_depths.push_back(library::mesh_depth_of(*impl_->context, view));
   }
   if (to.layout != LAYOUT_SEPARATE) {
     if (views.size() != 2)
@@ -68,14 +74,24 @@ void Renderer::submit(std::span<const View> views, const Placement& placement, c
   }
   if (!to.depths.empty() && to.depths.size() != views.size())
     fail("{} of {} views have a depth target: expected all or none", to.depths.size(), views.size());
+  if (to.has_meshes() && to.mesh_depths.size() != views.size())
+    fail("{} of {} views have a mesh depth: expected all or none", to.mesh_depths.size(), views.size());
+  if (to.has_meshes() && (settings.background || to.layout != LAYOUT_SEPARATE)) {
+    fail("mesh depths with a {}: splats are blended over the colours that are in each view's target",
+         settings.background ? "background" : "layout other than separate");
+  }
   const render::FrameSettings over = library::frame_settings(settings, views);
   const auto head = stereo::views_from_xr(eyes, placement, sizes, settings.near_plane);
 
-  to.callers_errors = impl_->callers_errors();
   const gl::KeptState kept(*impl_->context);
-  if (to.layout == LAYOUT_SEPARATE) to.canvases = impl_->presenter->canvases(to.targets, to.background);
-  impl_->frame->submit(head.views, over, {}, to.canvases.list,
-                       stereo::depth_rows(*impl_->context, head.views, to.depths));
+  std::optional<gl::KeptTextures> textures;
+  if (to.has_meshes()) textures.emplace(*impl_->context);
+  if (to.layout == LAYOUT_SEPARATE)
+    to.canvases = impl_->presenter->canvases(to.targets, to.background, to.has_meshes());
+  impl_->frame->submit(head.views, over, {},
+                       {.canvases = to.canvases.list,
+                        .depth_rows = stereo::depth_rows(*impl_->context, head.views, to.depths),
+                        .mesh_depths = to.mesh_depths});
   impl_->submitted = std::move(to);
 }
 
@@ -86,6 +102,8 @@ Report Renderer::finish() {
   const Impl::Submitted frame = std::move(*impl_->submitted);
   impl_->submitted.reset();
   const gl::KeptState kept(*impl_->context);
+  std::optional<gl::KeptTextures> textures;
+  if (frame.has_meshes()) textures.emplace(*impl_->context);
   stereo::Presenter& presenter = *impl_->presenter;
   Report report = library::report_of(impl_->frame->finish());
   report.callers_errors = frame.callers_errors;

@@ -16,6 +16,11 @@ void put(const PixelSum& sum, int x, int y, Picture& picture) {
   picture.z_sum[pixel] = static_cast<float>(sum.z_sum);
 }
 
+double mesh_at(const TileLists& lists, int width, const glm::ivec2& pixel) {
+  if (lists.mesh_depths.empty()) return no_mesh;
+  return lists.mesh_depths[static_cast<std::size_t>(pixel.y) * width + pixel.x];
+}
+
 /// Blends a block of a tile, pixels `first` up to but not including `end`, approximately: once it is dark,
 /// what is behind is taken to look as what was seen.
 void blend_block(const std::vector<Splat>& splats, std::span<const std::uint32_t> list,
@@ -41,7 +46,8 @@ void blend_block(const std::vector<Splat>& splats, std::span<const std::uint32_t
     bool is_dark = true;
     for (Pixel& p : pixels) {
       const auto ignore = [](auto&&...) {};
-      p.ended = p.ended || blend_on(p.sum, splats, some, p.at, {}, ignore);
+      p.ended =
+          p.ended || blend_on(p.sum, splats, some, p.at, {}, ignore, mesh_at(lists, picture.width, p.at));
       is_dark = is_dark && (p.ended || p.sum.transmittance <= approximation.dark_transmittance);
     }
     if (!is_dark || !(approximation.dark_transmittance > 0.0) || from + step >= list.size()) continue;
@@ -85,7 +91,8 @@ BlendCounts blend_tile(const std::vector<Splat>& splats, const TileLists& lists,
         ++walked;
         if (verdict == Verdict::blended) ++counts.visible;
       };
-      put(blend_pixel(splats, list, {x, y}, faults, count), x, y, picture);
+      const double mesh = mesh_at(lists, picture.width, {x, y});
+      put(blend_pixel(splats, list, {x, y}, faults, count, mesh), x, y, picture);
       walked_by_tile = std::max(walked_by_tile, walked);
     }
   }

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -12,6 +13,8 @@
 #include "shared/limits.h"
 
 namespace binosplat::reference {
+
+inline constexpr double no_mesh = std::numeric_limits<double>::infinity();
 
 /// What a pixel has gathered so far.
 struct PixelSum {
@@ -44,15 +47,15 @@ inline void add(PixelSum& sum, const Splat& splat, double z, double alpha) {
   sum.transmittance *= 1 - alpha;
 }
 
-/// Blends the list at a pixel behind what there is; whether the pixel ended. For each Gaussian, before
-/// it is added, visit(index, alpha, sum so far, verdict) is called.
+/// Blends the list at a pixel behind what there is; whether the pixel ended. Nothing is seen beyond view z
+/// `farthest`. For each Gaussian, before it is added, visit(index, alpha, sum so far, verdict) is called.
 template <typename Visit>
 bool blend_on(PixelSum& sum, const std::vector<Splat>& splats, std::span<const std::uint32_t> list,
-              const glm::ivec2& pixel, Faults faults, const Visit& visit) {
+              const glm::ivec2& pixel, Faults faults, const Visit& visit, double farthest = no_mesh) {
   for (const std::uint32_t i : list) {
     const Splat& splat = splats[i];
     const double alpha = alpha_at(splat, pixel.x, pixel.y);
-    if (alpha < ALPHA_MIN) {
+    if (alpha < ALPHA_MIN || depth_at(splat, pixel.x, pixel.y) > farthest) {
       visit(i, alpha, sum, Verdict::skipped);
       continue;
     }
@@ -68,9 +71,9 @@ bool blend_on(PixelSum& sum, const std::vector<Splat>& splats, std::span<const s
 /// The whole of it.
 template <typename Visit>
 PixelSum blend_pixel(const std::vector<Splat>& splats, std::span<const std::uint32_t> list,
-                     const glm::ivec2& pixel, Faults faults, const Visit& visit) {
+                     const glm::ivec2& pixel, Faults faults, const Visit& visit, double farthest = no_mesh) {
   PixelSum sum;
-  blend_on(sum, splats, list, pixel, faults, visit);
+  blend_on(sum, splats, list, pixel, faults, visit, farthest);
   return sum;
 }
 

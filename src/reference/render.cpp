@@ -9,6 +9,7 @@ Picture render(const Model& model, const shared::View& view, const Settings& set
   const std::vector<std::uint32_t> order = depth_order(splats);
   TileLists lists = make_lists(splats, order, view, settings.tiles, settings.tile_size);
   lists.approximation = approximation_of(settings.tiles, settings.th, settings.tolerance);
+  lists.mesh_depths = settings.mesh_depths;
   return blend(splats, lists, view);
 }
 

@@ -23,6 +23,7 @@ struct Settings {
   std::vector<double> bounds;              // T_upper or W by Gaussian; empty: 1 for all
   Decoding decoding;                       // of a Scaffold-GS model
   std::optional<Perspective> perspective;  // none: what the model was trained with
+  std::vector<float> mesh_depths;          // of TileLists
 };
 
 /// The picture of a model in a view. The view's members for the frame (from tiles_x on) are not looked

@@ -31,6 +31,9 @@ struct TileLists {
       begin;  // tiles + 1: tile t owns gaussians[begin[t]] up to gaussians[begin[t + 1]]
   std::vector<std::uint32_t> gaussians;  // indices into the model
   Approximation approximation;           // with which they are blended
+  /// By pixel of the picture, row by row: nothing is seen beyond this view z, where a mesh stands. Empty:
+  /// there is none.
+  std::vector<float> mesh_depths = {};
 
   std::size_t pairs() const { return gaussians.size(); }
   std::span<const std::uint32_t> tile(std::uint32_t tx, std::uint32_t ty) const;

@@ -51,6 +51,7 @@ const gl::Program& program(gl::Context& context, const FramePlan& plan, const Bl
   if (v.draws()) {
     v.depth = plan.depth();
     v.canvases = static_cast<int>(plan.canvases.size());
+    v.mesh_depth = !plan.mesh_depths.empty();
   }
   v.program = program_for(context, plan, v);
   if (!v.is_legal()) v.large_splats = false;
@@ -67,6 +68,9 @@ void run(gl::Dispatcher& dispatcher, const FramePlan& plan, FrameBuffers& buffer
     const Canvas& to = plan.canvases[k];
     context.gl().BindImageTexture(static_cast<GLuint>(k), to.texture, to.level, GL_FALSE, to.layer,
                                   GL_WRITE_ONLY, to.format);
+    if (plan.mesh_depths.empty()) continue;
+    context.gl().BindTextureUnit(static_cast<GLuint>(k), to.texture);
+    context.gl().BindSampler(static_cast<GLuint>(k), buffers.nearest.id());
   }
   if (task.tiles_a_splat == 0.0) program(context, plan, task, false, true);  // soon, maybe
   const auto draw = [&](bool long_lists, const gl::DispatchSize& size) {
@@ -80,6 +84,7 @@ void run(gl::Dispatcher& dispatcher, const FramePlan& plan, FrameBuffers& buffer
                       {"Colours", buffers.pictures.colours},
                       {"Canvases", buffers.pictures.canvases},
                       {"ZSums", buffers.pictures.z_sums},
+                      {"MeshDepths", buffers.pictures.mesh_depths},
                       {"FrameCounters", buffers.counters},
                       {"LongLists", buffers.lists.long_lists},
                       {"Measured", measured},

@@ -31,7 +31,7 @@ shared::FrameParameters parameters_of(const FramePlan& plan, std::uint32_t slots
           .views_per_decoding = plan.views_per_decoding,
           .decoding_of_probe = plan.decoding_of_probe(),
           .anchor_cull = s.anchor_cull,
-          .unused = 0};
+          .depth_slack = plan.depth_slack()};
 }
 
 }  // namespace
@@ -63,8 +63,10 @@ FrameBuffers::FrameBuffers(gl::Context& context)
       pictures{.canvases = {context, "canvases"},
                .colours = {context, "pixels"},
                .z_sums = {context, "depth of pixels"},
+               .mesh_depths = {context, "depth of meshes"},
                .debug_values = {context, "debug view"},
                .debug_transmittance = {context, "transmittance of a debug view"}},
+      nearest(context),
       scan(context),
       sort(context),
       look_back(context),
@@ -126,6 +128,8 @@ void FrameBuffers::reserve(const FramePlan& plan, const ModelBuffers& model, con
   lists.long_lists.reserve(plan.tile_count() * 4LL);
   if (plan.canvases.empty()) pictures.colours.reserve(plan.pixel_count * 16);
   if (plan.depth() != DEPTH_NONE) pictures.z_sums.reserve(plan.pixel_count * 4);
+  if (!plan.mesh_depths.empty())
+    pictures.mesh_depths.reserve((2 * std::int64_t{plan.tile_count()} + plan.pixel_count) * 4);
   scan.reserve(std::max(blocks, capacity.slots));
   look_back.reserve(std::max(blocks, capacity.slots / SCAN_BLOCK) + 1);
   for (const OrderGroup& group : plan.groups) sort.reserve(ordering.order, group.key_bits);

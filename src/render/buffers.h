@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "gl/buffer.h"
+#include "gl/texture.h"
 #include "primitives/look_back.h"
 #include "primitives/radix_sort.h"
 #include "render/frame_plan.h"
@@ -110,14 +111,16 @@ struct FrameBuffers {
 
   /// What the blend makes of the lists.
   struct Pictures {
-    gl::Buffer canvases;  // Canvas by view, where pictures go into images, and not into the next two
-    gl::Buffer colours;   // vec4 by pixel: C, T
-    gl::Buffer z_sums;    // float by pixel
+    gl::Buffer canvases;     // Canvas by view, where pictures go into images, and not into the next two
+    gl::Buffer colours;      // vec4 by pixel: C, T
+    gl::Buffer z_sums;       // float by pixel
+    gl::Buffer mesh_depths;  // float, two by tile, then by pixel: shaders/mesh_depths.glsl
     // Filled by blend_debug_view().
     gl::Buffer debug_values;         // float by pixel
     gl::Buffer debug_transmittance;  // uint by splat, bits of the largest T
   } pictures;
 
+  gl::Sampler nearest;  // by which the caller's textures are read
   primitives::Scan scan;
   primitives::RadixSort sort;
   primitives::LookBack look_back;

@@ -23,6 +23,18 @@ int chosen_supertile_side(const FrameSettings& settings, const Workings& working
   return has_room && usual && !workings.stand_in ? 2 : 1;
 }
 
+void check(const CallersTextures& textures, std::size_t views, const FrameSettings& settings,
+           const Workings& workings) {
+  const std::size_t canvases = textures.canvases.size(), meshes = textures.mesh_depths.size();
+  if (canvases != 0 && (canvases != views || canvases > MAX_CANVASES))
+    fail("{} canvases for {} views: expected one each, at most {}", canvases, views, MAX_CANVASES);
+  if (meshes == 0) return;
+  if (meshes != views) fail("depths of meshes in {} views of {}: expected all or none", meshes, views);
+  if (measures(settings.transmittance))
+    fail("depths of meshes with a measured transmittance: what a mesh hides is not met");
+  if (workings.stand_in) fail("depths of meshes with a stand-in: it knows nothing of them");
+}
+
 // Another attempt at a frame: the last one is the frame, all took their time.
 void add(FrameReport attempt, FrameReport& report) {
   attempt.attempts += report.attempts;
@@ -47,17 +59,15 @@ Frame::Frame(std::shared_ptr<GpuModel> model)
       counters_read_(model_->context(), "counters for the CPU", gl::Buffer::Use::read) {}
 
 void Frame::submit(std::span<const shared::View> views, const FrameSettings& settings,
-                   const Workings& workings, std::span<const Canvas> canvases, int depth_rows) {
-  const bool fit = canvases.size() == views.size() && canvases.size() <= MAX_CANVASES;
-  if (!fit && !canvases.empty())
-    fail("{} canvases for {} views: expected one each, at most {}", canvases.size(), views.size(),
-         MAX_CANVASES);
+                   const Workings& workings, const CallersTextures& given) {
+  check(given, views.size(), settings, workings);
   submitted_ = {.views = {views.begin(), views.end()}, .settings = settings, .workings = workings};
   if (!workings.stand_in) {
-    submitted_.canvases.assign(canvases.begin(), canvases.end());
-    submitted_.depth_rows = depth_rows;
+    submitted_.canvases.assign(given.canvases.begin(), given.canvases.end());
+    submitted_.mesh_depths.assign(given.mesh_depths.begin(), given.mesh_depths.end());
+    submitted_.depth_rows = given.depth_rows;
   }
-  const PlanRequest request{.canvases = submitted_.canvases, .depth_rows = submitted_.depth_rows};
+  const PlanRequest request{.textures = textures(true)};
   begin(request);
   if (settings.quality > 0.0f) {
     if (!history_.goes_on(plan_)) tolerance_control_.forget();
@@ -120,11 +130,17 @@ void Frame::begin(PlanRequest request) {
     history_.follow_levels(plan_.gaussian_count);
 }
 
+CallersTextures Frame::textures(bool with_canvases) const {
+  CallersTextures all{.depth_rows = submitted_.depth_rows, .mesh_depths = submitted_.mesh_depths};
+  if (with_canvases) all.canvases = submitted_.canvases;
+  return all;
+}
+
 // An attempt whose probe tells the tolerance of the next one, or that this one is the frame.
 void Frame::start_search() {
   submitted_.searches = true;
   const Probe probe = tolerance_control_.next_probe(submitted_.views, submitted_.settings);
-  begin({.probe = probe, .tolerance = tolerance_control_.next_tolerance()});
+  begin({.probe = probe, .tolerance = tolerance_control_.next_tolerance(), .textures = textures(false)});
   start_attempt();
 }
 
@@ -200,6 +216,7 @@ void Frame::record_stages() {
   run(Stage::tile_sort, [&] { tile_sort(dispatcher_, plan_, buffers_); });
   run(Stage::ranges, [&] { ranges(dispatcher_, plan_, buffers_); });
   run(Stage::blend, [&] {
+    read_mesh_depths(dispatcher_, plan_, buffers_);
     find_long_lists(dispatcher_, plan_, buffers_);
     blend(dispatcher_, plan_, measuring_.measures, tiles_a_splat_, buffers_);
     keep_measured(dispatcher_, plan_, measuring_.measures, buffers_);

@@ -64,20 +64,22 @@ class Frame {
   /// with larger ones. After GpuModel::reload() a tolerance that was found stays, but no measured
   /// transmittance. Throws Error: bad views or settings (bad_input), no room (out_of_memory).
   ///
-  /// With canvases, one a view and at most MAX_CANVASES, the blend writes pictures there and not into
-  /// colours(), and depths into z_sums(): one row of every `depth_rows` (1 or 2), 0 where a pixel has none.
-  /// Where a probe needs the pictures, or something stands in for the blend, it writes into colours() as
-  /// usual; FrameReport::on_canvases tells which.
+  /// With canvases the blend writes pictures there and not into colours(), and depths into z_sums(): one row
+  /// of every `depth_rows` (1 or 2), 0 where a pixel has none. Where a probe needs the pictures, or something
+  /// stands in for the blend, it writes into colours() as usual; FrameReport::on_canvases tells which.
+  ///
+  /// With mesh depths nothing is drawn of what lies behind them, and z_sums() has depths in any case: where
+  /// half or less of a pixel is covered, the mesh's. Not with a measured transmittance, nor with a stand-in.
   FrameReport draw(std::span<const shared::View> views, const FrameSettings& settings = {},
-                   const Workings& workings = {}, std::span<const Canvas> canvases = {}, int depth_rows = 1) {
-    submit(views, settings, workings, canvases, depth_rows);
+                   const Workings& workings = {}, const CallersTextures& textures = {}) {
+    submit(views, settings, workings, textures);
     return finish();
   }
 
   /// Hands such a frame to the driver and returns while the GPU draws. finish() must be called before the
   /// next frame of this Frame, and before anything is read of this one.
   void submit(std::span<const shared::View> views, const FrameSettings& settings = {},
-              const Workings& workings = {}, std::span<const Canvas> canvases = {}, int depth_rows = 1);
+              const Workings& workings = {}, const CallersTextures& textures = {});
 
   /// Whether finish() would find the GPU done. Even then it may have to draw again.
   bool is_done() { return dispatcher_.is_done(); }
@@ -137,11 +139,13 @@ class Frame {
     FrameSettings settings;
     Workings workings;
     std::vector<Canvas> canvases;
+    std::vector<MeshDepth> mesh_depths;
     int depth_rows = 1;
     Stage last = Stage::probe;
     bool searches = false;  // for the tolerance of its quality: each attempt has a probe
   };
 
+  CallersTextures textures(bool with_canvases) const;
   void begin(PlanRequest request);
   void start_search();
   void start_attempt();

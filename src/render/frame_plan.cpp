@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstring>
 #include <functional>
+#include <limits>
 
 #include "base/error.h"
 #include "render/anchors.h"
@@ -50,6 +51,7 @@ void add_view(FramePlan& plan, shared::View view, const ViewRegion& region,
   if (view.width == 0 || view.height == 0)
     fail("a view of {} x {} px has no picture", view.width, view.height);
   view.left = view.top = 0;
+  plan.whole_sizes.emplace_back(view.width, view.height);
   take_window(region, view);
   view.tolerance_share = region.tolerance_share;
   view.low_pass_share = region.low_pass_share;
@@ -125,6 +127,17 @@ int FramePlan::depth() const {
   return !canvases.empty() && depth_rows == 2 ? DEPTH_MEDIAN_OF_TWO_ROWS : DEPTH_MEDIAN;
 }
 
+// Lists are sorted by z, or by the distance from a point that each eye is so far from.
+float FramePlan::depth_slack() const {
+  if (perspective.order == ORDER_DEPTH && perspective.projection == PROJECTION_AFFINE) return 0.0f;
+  if (perspective.order != ORDER_DISTANCE || perspective.projection != PROJECTION_TANGENT)
+    return std::numeric_limits<float>::infinity();
+  float farthest = 0.0f;
+  for (const shared::View& view : views)
+    farthest = std::max(farthest, glm::length(glm::vec3(view.eye) - glm::vec3(view.centre)));
+  return 2.001f * farthest;
+}
+
 std::uint32_t FramePlan::supertile_bits() const {
   const std::uint32_t keys = settings.tiles == TILES_ALL ? view_count() : supertile_count;
   return static_cast<std::uint32_t>(std::bit_width(keys - 1));
@@ -161,8 +174,10 @@ FramePlan make_plan(std::span<const shared::View> views, const FrameSettings& se
     plan.anchor_bytes = anchor_bytes(*model.scaffold);
   }
   plan.asked = static_cast<std::uint32_t>(views.size());
-  plan.canvases.assign(request.canvases.begin(), request.canvases.end());
-  plan.depth_rows = request.depth_rows;
+  const CallersTextures& textures = request.textures;
+  plan.canvases.assign(textures.canvases.begin(), textures.canvases.end());
+  plan.depth_rows = textures.depth_rows;
+  plan.mesh_depths.assign(textures.mesh_depths.begin(), textures.mesh_depths.end());
   const auto region_of = [&](std::size_t v) {
     return settings.regions.empty() ? ViewRegion{} : settings.regions[v];
   };

@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "render/canvas.h"
+#include "render/mesh_depth.h"
 #include "render/settings.h"
 #include "render/workings.h"
 #include "scene/model.h"
@@ -61,10 +61,12 @@ struct FramePlan {
   std::vector<OrderGroup> groups;
   std::vector<glm::uvec2>
       region_rows;  // by row of tiles of all views (tiles/regions.glsl), where any view is not drawn whole
-  std::vector<Canvas> canvases;       // where pictures go; empty: into the frame's own buffer
-  int depth_rows = 1;                 // with canvases: depths are wanted in every row, or every second one
-  std::uint32_t supertile_count = 0;  // over all views
-  std::int64_t pixel_count = 0;       // over all views
+  std::vector<Canvas> canvases;         // where pictures go; empty: into the frame's own buffer
+  int depth_rows = 1;                   // with canvases: depths are wanted in every row, or every second one
+  std::vector<MeshDepth> mesh_depths;   // by view that is asked for; empty: there are none
+  std::vector<glm::uvec2> whole_sizes;  // px, by view: of the picture that a window is a part of
+  std::uint32_t supertile_count = 0;    // over all views
+  std::int64_t pixel_count = 0;         // over all views
   // For Scaffold-GS; K is 0 for other models.
   std::uint32_t offset_count = 0;        // K
   std::uint32_t views_per_decoding = 1;  // views that share what the networks made
@@ -73,6 +75,10 @@ struct FramePlan {
   bool draws_regions() const { return !region_rows.empty(); }
   /// DEPTH_ of shared/limits.h, what the blend tells of a pixel's depth.
   int depth() const;
+  /// Whether `z_sums` are depths: where pictures are final.
+  bool tells_depths() const { return !canvases.empty() || !mesh_depths.empty(); }
+  /// How much nearer splats may be than those before them in a list, world units; infinite: any.
+  float depth_slack() const;
   /// Whether splats are blended by blocks, which end once they are dark (docs/method.md 5.2).
   bool is_approximate() const { return settings.th == TH_SQUARED && settings.tiles == TILES_ELLIPSE; }
   std::uint32_t view_count() const { return static_cast<std::uint32_t>(views.size()); }
@@ -101,8 +107,7 @@ inline ModelSize size_of(const Model& model) { return {model.count(), std::max(m
 struct PlanRequest {
   std::optional<Probe> probe;
   std::optional<float> tolerance;  // in the place of the settings'
-  std::span<const Canvas> canvases;
-  int depth_rows = 1;
+  CallersTextures textures;
   std::optional<Bounds> box;  // world, around all Gaussians: their depths need fewer bits to be sorted by
 };
 

@@ -75,6 +75,20 @@ std::array<gl::Number, 18> PairVariant::numbers() const {
           {"KERNEL_PX2", std::bit_cast<std::uint32_t>(kernel_px2), std::uint64_t{1} << 32, nullptr, true}};
 }
 
+MeshVariant::MeshVariant(const FramePlan& plan, bool from_array)
+    : tile_size(plan.settings.tile_size),
+      supertile_side(plan.supertile_side),
+      projection(plan.perspective.projection),
+      probed(plan.probe.has_value()),
+      regions(plan.draws_regions()),
+      array(from_array) {}
+
+std::array<gl::Number, 6> MeshVariant::numbers() const {
+  return {number("TILE_SIZE", tile_size, 33), number("SUPERTILE_SIDE", supertile_side, 3),
+          projection_number(projection),      number("PROBED", probed, flag),
+          number("REGIONS", regions, flag),   number("ARRAY", array, flag)};
+}
+
 bool BlendVariant::is_legal() const {
   // Who measures or tells what it comes by has the tile's splats before all its pixels, but for visibility,
   // for which frames wait. Other sizes of tiles are for comparing.
@@ -86,6 +100,7 @@ bool BlendVariant::is_legal() const {
     return false;
   if (canvases > 0 && (probed || depth == DEPTH_VISIBILITY)) return false;
   if (depth == DEPTH_MEDIAN_OF_TWO_ROWS && canvases == 0) return false;
+  if (mesh_depth && (!draws() || measure != MEASURE_NONE || depth == DEPTH_VISIBILITY)) return false;
   const bool may_be_larger = program == BlendProgram::subgroups && !long_lists && depth == DEPTH_NONE &&
                              !approximate && projection == PROJECTION_AFFINE;
   return !large_splats || may_be_larger;
@@ -96,7 +111,7 @@ std::string_view BlendVariant::shader() const {
   return program == BlendProgram::software ? "blend_blocks.comp" : "blend.comp";
 }
 
-std::array<gl::Number, 14> BlendVariant::numbers() const {
+std::array<gl::Number, 15> BlendVariant::numbers() const {
   const BlendColumns columns = columns_of(*this);
   return {number("TILE_SIZE", tile_size, 33),
           number("SUPERTILE_SIDE", supertile_side, 3),
@@ -111,6 +126,7 @@ std::array<gl::Number, 14> BlendVariant::numbers() const {
           number("DEPTH", depth, DEPTH_MEDIAN_OF_TWO_ROWS + 1),
           number("APPROXIMATE", approximate, flag),
           number("CANVASES", canvases, MAX_CANVASES + 1),
+          number("MESH_DEPTH", mesh_depth, flag),
           projection_number(projection)};
 }
 
@@ -139,8 +155,9 @@ std::vector<BlendVariant> blend_variants() {
        std::array{DEPTH_NONE, DEPTH_MEAN, DEPTH_VISIBILITY, DEPTH_MEDIAN, DEPTH_MEDIAN_OF_TWO_ROWS});
   vary(&BlendVariant::canvases, std::array{0, 1, 2, 3, 4});
   vary(&BlendVariant::projection, std::array{PROJECTION_AFFINE, PROJECTION_TANGENT});
-  for (const auto member : {&BlendVariant::probed, &BlendVariant::regions, &BlendVariant::long_lists,
-                            &BlendVariant::half, &BlendVariant::approximate, &BlendVariant::large_splats}) {
+  for (const auto member :
+       {&BlendVariant::probed, &BlendVariant::regions, &BlendVariant::long_lists, &BlendVariant::half,
+        &BlendVariant::approximate, &BlendVariant::mesh_depth, &BlendVariant::large_splats}) {
     vary(member, either);
     std::erase_if(all, [](const BlendVariant& v) { return !v.is_legal(); });
   }

@@ -39,6 +39,16 @@ struct PairVariant {
   std::array<gl::Number, 18> numbers() const;
 };
 
+/// The variant of mesh_depth.comp.
+struct MeshVariant {
+  MeshVariant(const FramePlan& plan, bool from_array);
+
+  int tile_size, supertile_side, projection;
+  bool probed, regions, array;
+
+  std::array<gl::Number, 6> numbers() const;
+};
+
 /// The programs of the blend, which draw the same bits: for any GPU, for software renderers, and for
 /// subgroups of 32 invocations.
 enum class BlendProgram { general, software, subgroups };
@@ -57,13 +67,14 @@ struct BlendVariant {
   bool approximate = false;
   int canvases = 0;
   int projection = PROJECTION_AFFINE;
+  bool mesh_depth = false;    // some splats lie behind meshes of the caller's
   bool large_splats = false;  // that touch many tiles: invocations draw more pixels
 
   bool draws() const { return measure <= MEASURE_TRANSMITTANCE && debug_view == SHOW_PICTURE; }
   /// Which combinations frames may ask for.
   bool is_legal() const;
   std::string_view shader() const;
-  std::array<gl::Number, 14> numbers() const;
+  std::array<gl::Number, 15> numbers() const;
 };
 
 /// All variants that are legal.

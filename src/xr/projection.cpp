@@ -229,10 +229,10 @@ render::FrameReport Projection::draw(stereo::FoveatedFrame& frame, std::span<con
   if (foveates()) {
     stereo::Foveation foveation = *settings_.foveation;
     if (draw.gaze) foveation.gaze = gaze_of(*draw.gaze, located);
-    report = frame.draw(head.views, foveation, settings, {}, canvases.list);
+    report = frame.draw(head.views, foveation, settings, {}, {.canvases = canvases.list});
   } else {
     settings.regions = parts_of(settings, located, sizes);
-    report = frame.frame().draw(head.views, settings, {}, canvases.list, 2);
+    report = frame.frame().draw(head.views, settings, {}, {.canvases = canvases.list, .depth_rows = 2});
   }
   const gl::Buffer& colours = foveates() ? frame.colours() : frame.frame().colours();
   const std::vector<shared::View>& views = foveates() ? frame.views() : frame.frame().views();

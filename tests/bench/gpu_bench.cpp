@@ -201,9 +201,10 @@ Json time_foveated(stereo::FoveatedFrame& foveated, render::Frame& frame, const 
   }
   const stereo::Canvases canvases = presenter.canvases(targets, glm::vec3(0.0f));
   if (canvases.list.empty()) fail("this driver writes no texture of sRGB in place");
-  Json json =
-      time([&] { return foveated.draw(shot.eyes, *how.foveate, how.settings, {}, canvases.list); }, how);
-  json["exact"] = time([&] { return frame.draw(shot.eyes, exact, {}, canvases.list); }, how);
+  Json json = time(
+      [&] { return foveated.draw(shot.eyes, *how.foveate, how.settings, {}, {.canvases = canvases.list}); },
+      how);
+  json["exact"] = time([&] { return frame.draw(shot.eyes, exact, {}, {.canvases = canvases.list}); }, how);
   for (const Target& target : targets) context.gl().DeleteTextures(1, &target.texture);
   json["windows"] = insets;
   json["contexts"] = contexts;

@@ -95,8 +95,10 @@ struct Bench {
         const stereo::Canvases canvases = presenter.canvases(colours, glm::vec3(0.0f));
         const std::span<const render::Canvas> list =
             kind == 0 ? std::span<const render::Canvas>() : std::span<const render::Canvas>(canvases.list);
-        const double ms =
-            frame.draw(views, {.depth = kind == 2 ? Depth::median : Depth::mean}, {}, list, 2).total_ms;
+        const double ms = frame
+                              .draw(views, {.depth = kind == 2 ? Depth::median : Depth::mean}, {},
+                                    {.canvases = list, .depth_rows = 2})
+                              .total_ms;
         if (n >= 0) times[kind].push_back(ms);
       }
     }

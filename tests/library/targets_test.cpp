@@ -112,7 +112,9 @@ TEST_F(Library, WhatTheBlendWritesInPlaceIsWhatThePresenterWrites) {
         EXPECT_EQ(written(1), written(2)) << format << linear;
         EXPECT_NE(written(1), written(0)) << "light for display values goes unnoticed";
         const std::array twice = {drawn[0], drawn[0]};
-        EXPECT_THROW(frame.draw(twice, {}, {}, presenter.canvases(std::span(&to, 1), background).list), Error)
+        EXPECT_THROW(
+            frame.draw(twice, {}, {}, {.canvases = presenter.canvases(std::span(&to, 1), background).list}),
+            Error)
             << "one for two views";
         caller.gl.DeleteTextures(1, &texture);
       }

@@ -268,12 +268,15 @@ TEST(Foveate, ComposesOntoCanvases) {
   const std::array presented = {written(0), written(1)};
   for (Target& target : targets) target.texture = caller.texture(GL_SRGB8_ALPHA8, size.x, size.y);
   const stereo::Canvases canvases = presenter.canvases(targets, background);
-  EXPECT_TRUE(frame.draw(eyes_of_rig(rigs[0]), {.gaze = {{5, 5}}}, settings, {}, canvases.list).on_canvases);
+  EXPECT_TRUE(frame.draw(eyes_of_rig(rigs[0]), {.gaze = {{5, 5}}}, settings, {}, {.canvases = canvases.list})
+                  .on_canvases);
   EXPECT_EQ(written(0), presented[0]);
   EXPECT_EQ(written(1), presented[1]);
   EXPECT_NE(presented[0], presented[1]) << "one eye twice goes unnoticed";
   EXPECT_THROW(frame.read_pictures(), Error);
-  EXPECT_THROW(frame.draw(eyes_of_rig(rigs[0]), {}, settings, {}, std::span(canvases.list).first(1)), Error);
+  EXPECT_THROW(
+      frame.draw(eyes_of_rig(rigs[0]), {}, settings, {}, {.canvases = std::span(canvases.list).first(1)}),
+      Error);
 }
 
 TEST(Foveate, ComposedPicturesGoIntoEveryLayout) {

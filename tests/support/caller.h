@@ -35,6 +35,8 @@ namespace binosplat::test {
   X(ScissorIndexed, SCISSORINDEXED)         \
   X(TexImage2D, TEXIMAGE2D)                 \
   X(TextureStorage3D, TEXTURESTORAGE3D)     \
+  X(TextureSubImage2D, TEXTURESUBIMAGE2D)   \
+  X(TextureSubImage3D, TEXTURESUBIMAGE3D)   \
   X(ViewportIndexedf, VIEWPORTINDEXEDF)
 
 /// Makes EGL's context that is current when this is made, if any, current again when this ends: what other
