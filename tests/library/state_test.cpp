@@ -180,7 +180,34 @@ struct State : testing::Test {
     }
   }
 
+  /// What a frame with mesh depths uses of a unit.
+  void add_unit(GLuint unit) {
+    const auto of_unit = [this, unit](GLenum name) {
+      const GLint active = static_cast<GLint>(integers(GL_ACTIVE_TEXTURE)[0]);
+      caller.ActiveTexture(GL_TEXTURE0 + unit);
+      const Values values = integers(name);
+      caller.ActiveTexture(static_cast<GLenum>(active));
+      return values;
+    };
+    const auto bind = [this, unit](GLenum target, GLuint id) {
+      caller.ActiveTexture(GL_TEXTURE0 + unit);
+      caller.BindTexture(target, id);
+    };
+    const std::string of = " of unit " + std::to_string(unit);
+    add(
+        "texture" + of, [this, bind] { bind(GL_TEXTURE_2D, texture); },
+        [of_unit] { return of_unit(GL_TEXTURE_BINDING_2D); });
+    add(
+        "array" + of, [this, bind] { bind(GL_TEXTURE_2D_ARRAY, array); },
+        [of_unit] { return of_unit(GL_TEXTURE_BINDING_2D_ARRAY); });
+    add(
+        "sampler" + of, [this, unit] { caller.BindSampler(unit, sampler); },
+        [of_unit] { return of_unit(GL_SAMPLER_BINDING); });
+  }
+
   void add_untouched() {
+    add_unit(0);
+    add_unit(MAX_CANVASES);
     add(
         "vertex array", [this] { caller.BindVertexArray(vertices); },
         [this] { return integers(GL_VERTEX_ARRAY_BINDING); });
@@ -307,6 +334,11 @@ TEST_F(State, IsTheSameAfterAFrame) {
   auto in_place = odd.views_with_depths();
   in_place[1].target = {.texture = caller.texture(GL_SRGB8_ALPHA8, 40, 32)};
   EXPECT_EQ(changed_by([&] { EXPECT_TRUE(renderer->draw(in_place, {}).in_place); }), std::set<std::string>());
+  const std::uint32_t meshes = caller.texture(GL_DEPTH24_STENCIL8, 40, 32);
+  for (auto with_meshes : {odd.views_with_depths(), in_place}) {
+    for (View& view : with_meshes) view.mesh_depth = {.texture = meshes};
+    EXPECT_EQ(changed_by([&] { renderer->draw(with_meshes, {}); }), std::set<std::string>());
+  }
   const auto refused = changed_by([&] {
     auto deleted = odd.views();
     deleted[1].target = {.texture = 4711};
@@ -356,6 +388,15 @@ TEST_F(State, DrawingWithoutCareIsNoticedInEveryPiece) {
   std::set<std::string> expected;
   for (std::size_t k = 0; k < changed_count; ++k) expected.insert(pieces[k].name);
   EXPECT_EQ(careless, expected);
+  const auto among_meshes = changed_by([&] {
+    const render::MeshDepth mesh{
+        .texture = caller.texture(GL_DEPTH_COMPONENT24, 40, 32, 1), .layer = 0, .size = {40, 32}};
+    const render::Canvas canvas{.texture = caller.texture(GL_RGBA8, 40, 32)};
+    frame.draw(stereo::make_rig(test::front_camera(40, 32, 40.0), {.ipd = 0.1}).views, {}, {},
+               {.canvases = std::array{canvas, canvas}, .mesh_depths = std::array{mesh, mesh}});
+  });
+  for (const char* name : {"texture of unit 0", "sampler of unit 0", "array of unit 4", "sampler of unit 4"})
+    EXPECT_TRUE(among_meshes.contains(name)) << name;
 }
 
 }  // namespace
