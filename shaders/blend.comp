@@ -92,12 +92,6 @@ void main() {
     }
     load(batch + gl_LocalInvocationIndex);
     barrier();
-#if MESH_DEPTH
-    if (is_rest_hidden()) {
-      batch = end;
-      break;
-    }
-#endif
     size = min(end - batch, uint(BATCH));
     uint next = 0u;
     for (; next < size && !are_done() && !TAKES_NO_MORE; next += BLEND_UNROLL) {

@@ -63,12 +63,6 @@ void main() {
       clear_measured(i);
     }
     barrier();
-#if MESH_DEPTH
-    if (is_rest_hidden()) {
-      batch = end;
-      break;
-    }
-#endif
     if (self < BLOCKS) list_own(self);
     barrier();
     uint count = TAKES_NO_MORE ? 0u : own_counts[own_block], next = 0u;

@@ -1,51 +1,82 @@
-// The caller's meshes among the splats, MESH_DEPTH. Part of blending.glsl.
+// The caller's meshes among the splats, MESH_DEPTH: what lies behind one is not seen. Part of blending.glsl.
+//   MESH_ASKED   1: a block asks first whether it may have anything behind a mesh (blend_subgroups.comp)
 #ifndef MESH_DEPTH
 #define MESH_DEPTH 0
 #endif
+#ifndef MESH_ASKED
+#define MESH_ASKED 0
+#endif
+#define NO_MESH 3e38  // as far as anything is seen
 #if MESH_DEPTH
-#include "mesh_depths.glsl"
-layout(std430, binding = 10) readonly buffer MeshDepths { float mesh_depths[]; };
+layout(std430, binding = 10) readonly buffer MeshSources { MeshSource mesh_sources[]; };  // by view
+// The caller's textures, by view; the images of the pictures have the units before.
+layout(binding = MAX_CANVASES) uniform sampler2D meshes_0;
+layout(binding = MAX_CANVASES + 1) uniform sampler2D meshes_1;
+layout(binding = MAX_CANVASES + 2) uniform sampler2D meshes_2;
+layout(binding = MAX_CANVASES + 3) uniform sampler2D meshes_3;
 
-float nearest_mesh, farthest_mesh;  // of the tile
-uint mesh_place, mesh_row;          // of this invocation's first pixel; from a row of pixels to the next
-uint place_of(View view, uint p);
-
-float mesh_at(uint p) { return mesh_depths[mesh_place + p * mesh_row]; }
-
-bool may_be_hidden(uint at[AHEAD]) {
-  float deepest = batch_colour[at[0]].a;
-  for (uint k = 1u; k < AHEAD; ++k) deepest = max(deepest, batch_colour[at[k]].a);
-  return deepest > nearest_mesh;
+float number_at(uint nth, ivec2 texel, int level) {
+  if (nth == 1u) return texelFetch(meshes_1, texel, level).r;
+  if (nth == 2u) return texelFetch(meshes_2, texel, level).r;
+  if (nth == 3u) return texelFetch(meshes_3, texel, level).r;
+  return texelFetch(meshes_0, texel, level).r;
 }
 
-// Whether all of the list from the batch's first splat on lies behind the meshes of the tile.
-bool is_rest_hidden() { return batch_colour[0].a - frame.depth_slack > farthest_mesh; }
+uint view_at_hand();
+
+// z of the mesh in a pixel of this invocation; with the tangent projection the distance of what is seen there. NO_MESH: none.
+float mesh_at(uint p) {
+  uint nth = view_at_hand();
+  MeshSource from = mesh_sources[nth];
+  uvec2 at = uvec2((vec2(first_pixel + uvec2(0u, p)) + 0.5) * from.step);
+  float d = number_at(nth, ivec2(from.left + at.x, from.top - at.y), int(from.level));
+  precise float z = from.scale * d;
+  if (from.is_inverse != 0u) {
+    precise float inverse = z + from.offset;
+    z = inverse > 0.0 ? 1.0 / inverse : NO_MESH;
+  }
+#if PROJECTION == PROJECTION_TANGENT
+  z *= inversesqrt(nearness[p]);
+#endif
+  return d != from.nothing && z > 0.0 && z < NO_MESH ? z : NO_MESH;  // not a number: none
+}
 #endif
 
-// Whether a splat lies behind the mesh in a pixel.
-bool is_hidden(uint at, uint p) {
-#if MESH_DEPTH
-  return batch_colour[at].a > mesh_at(p);
+#if MESH_DEPTH && MESH_ASKED
+float nearest_mesh;  // of the block
+#define MESH(p) mesh_at(p)
+#elif MESH_DEPTH
+float mesh[COLUMN];
+#define MESH(p) mesh[p]
 #else
-  return false;
+#define MESH(p) NO_MESH
+#endif
+
+void begin_meshes(uint p, bool inside) {
+#if MESH_DEPTH
+  float depth = inside ? mesh_at(p) : NO_MESH;
+#if MESH_ASKED
+  nearest_mesh = p == 0u ? depth : min(nearest_mesh, depth);
+  if (p + 1u == COLUMN) nearest_mesh = subgroupMin(nearest_mesh);
+#else
+  mesh[p] = depth;
+#endif
 #endif
 }
 
 // The depth of the mesh in a pixel; 0: there is none.
 float mesh_behind(uint p) {
-#if MESH_DEPTH
-  float depth = nearest_mesh < NO_MESH ? mesh_at(p) : NO_MESH;
-  return depth < NO_MESH ? depth : 0.0;
-#else
-  return 0.0;
+#if MESH_DEPTH && MESH_ASKED
+  if (nearest_mesh == NO_MESH) return 0.0;
 #endif
+  float depth = MESH(p);
+  return depth < NO_MESH ? depth : 0.0;
 }
 
-void begin_mesh(View view, uint tile) {
-#if MESH_DEPTH
-  nearest_mesh = mesh_depths[2u * tile];
-  farthest_mesh = mesh_depths[2u * tile + 1u];
-  mesh_row = pixel_row(view);
-  mesh_place = 2u * frame.tile_count + place_of(view, 0u);
-#endif
+// Ends a pixel before a splat from which on all of the list lies behind its mesh.
+void end_behind_mesh(uint at, uint p, float farthest) {
+  if (batch_colour[at].a - frame.depth_slack > farthest && !is_done(p)) {
+    least[p] = -transmittance[p];
+    transmittance[p] = 0.0;
+  }
 }

@@ -1,6 +1,9 @@
 #extension GL_KHR_shader_subgroup_basic : require
 #extension GL_KHR_shader_subgroup_ballot : require
 #extension GL_KHR_shader_subgroup_vote : require
+#if MESH_DEPTH
+#extension GL_KHR_shader_subgroup_arithmetic : require
+#endif
 // Stage 6 where subgroups have 32 invocations: one work group a tile, a subgroup a block of it. Together they take the list's
 // next splats to shared memory and ask which blocks each reaches; then each subgroup blends those that reach its own. The bits
 // are those of blend.comp.
@@ -15,6 +18,7 @@
 #define WORDS (ROUND / 32)
 #define BATCH (ROUND + 1)  // and one that leaves no mark
 #define ANY(condition) subgroupAny(condition)
+#define MESH_ASKED MESH_DEPTH
 #include "blending.glsl"
 #include "blocks.glsl"
 
@@ -27,22 +31,41 @@ OF_TILE vec2 corner;                           // the tile's first pixel
 
 uint value_at(uint at) { return at < end ? values[at] : 0u; }
 
+#if MESH_DEPTH
+uint sure;  // how many of those that come first no mesh hides
+#endif
+
 // The batch's splats that reach this subgroup's block, in order, and AHEAD that leave no mark: how many.
 uint list_own() {
   uint lane = gl_SubgroupInvocationID, bit = bit_of(gl_SubgroupID);
   uint count = 0u;
+#if MESH_DEPTH
+  sure = ROUND + AHEAD;
+#endif
   uint mine[WORDS];  // all are read before the first is waited for
   for (uint word = 0u; word < WORDS; ++word) mine[word] = reached[word * 32u + lane];
   for (uint word = 0u; word < WORDS; ++word) {
     bool reaches = (mine[word] >> bit & 1u) != 0u;
     uint all = subgroupBallot(reaches).x;
     if (reaches) own_lists[gl_SubgroupID][count + bitCount(all & gl_SubgroupLtMask.x)] = word * 32u + lane;
+#if MESH_DEPTH
+    if (nearest_mesh < NO_MESH) {
+      uint hidden = subgroupBallot(reaches && batch_colour[word * 32u + lane].a > nearest_mesh).x;
+      if (hidden != 0u) sure = min(sure, count + bitCount(all & (hidden & -hidden) - 1u));
+    }
+#endif
     count += bitCount(all);
   }
   if (lane < AHEAD) own_lists[gl_SubgroupID][count + lane] = ROUND;
   subgroupMemoryBarrierShared();
   subgroupBarrier();
   return count;
+}
+
+void blend_own(uint from, const bool may_be_hidden) {
+  uint at[AHEAD];
+  for (uint k = 0u; k < AHEAD; ++k) at[k] = own_lists[gl_SubgroupID][from + k];
+  blend(at, may_be_hidden);
 }
 
 void main() {
@@ -83,16 +106,15 @@ void main() {
       reached[self] = bits;
     }
     barrier();
-#if MESH_DEPTH
-    if (is_rest_hidden()) break;
-#endif
     if (!ended) {
       uint own = list_own();
-      for (uint i = 0u; i < own; i += AHEAD) {
-        uint at[AHEAD];
-        for (uint k = 0u; k < AHEAD; ++k) at[k] = own_lists[gl_SubgroupID][i + k];
-        blend(at);
-      }
+#if MESH_DEPTH
+      uint i = 0u;
+      for (; i < own && i + AHEAD <= sure; i += AHEAD) blend_own(i, false);
+      for (; i < own; i += AHEAD) blend_own(i, true);
+#else
+      for (uint i = 0u; i < own; i += AHEAD) blend_own(i, false);
+#endif
       ended = subgroupAll(are_dark());
       if (ended && batch + ROUND < end) end_dark();
       if (ended && lane == 0u) atomicAdd(blocks_done, 1u);

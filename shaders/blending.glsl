@@ -19,7 +19,6 @@
 #include "projection.glsl"
 #include "supertiles.glsl"
 #include "tiles/places.glsl"
-#include "tiles/pixel_places.glsl"
 #include "splats.glsl"  // binding 12
 
 #ifndef ANY
@@ -85,7 +84,15 @@ float transmittance_left(uint p) { return is_done(p) ? -least[p] : transmittance
 #define FOLLOWS_TRANSMITTANCE (MEASURE != MEASURE_NONE || DEPTH == DEPTH_VISIBILITY || DEBUG_VIEW == SHOW_MEDIAN_DEPTH)
 
 // AHEAD splats of the batch at once: their alphas do not wait for one another, only what they leave of T does.
-void blend_these(uint at[AHEAD], const bool may_be_hidden) {
+// Where some may lie behind meshes each pixel is asked.
+void blend(uint at[AHEAD], const bool may_be_hidden) {
+  float farthest[COLUMN];
+  if (may_be_hidden) {
+    for (uint p = 0u; p < COLUMN; ++p) {
+      farthest[p] = MESH(p);
+      end_behind_mesh(at[0], p, farthest[p]);
+    }
+  }
   float weights[COLUMN][AHEAD];  // alphas at first
   for (uint k = 0u; k < AHEAD; ++k) {
     vec4 across = batch_across[at[k]];
@@ -100,7 +107,7 @@ void blend_these(uint at[AHEAD], const bool may_be_hidden) {
 #endif
       precise float a = exp2(-exponent);
       bool is_seen = a >= float(ALPHA_MIN) && REACHES(at[k]);  // not a number: no
-      if (may_be_hidden) is_seen = is_seen && !is_hidden(at[k], p);
+      if (may_be_hidden) is_seen = is_seen && batch_colour[at[k]].a <= farthest[p];
       weights[p][k] = is_seen ? min(float(ALPHA_MAX), a) : 0.0;
       MEET(p, k, a);
     }
@@ -156,16 +163,7 @@ void blend_these(uint at[AHEAD], const bool may_be_hidden) {
   }
 }
 
-// Where none of them can lie behind a mesh no pixel is asked.
-void blend(uint at[AHEAD]) {
-#if MESH_DEPTH
-  if (may_be_hidden(at)) {
-    blend_these(at, true);
-    return;
-  }
-#endif
-  blend_these(at, false);
-}
+void blend(uint at[AHEAD]) { blend(at, MESH_DEPTH != 0); }
 
 // Those that follow one another.
 void blend_from(uint first) {

@@ -27,8 +27,20 @@ bool find_tile() {
   return is_own;
 }
 
-// Where pixel p of this invocation is kept.
-uint place_of(View view, uint p) { return pixel_place(view, tile, first_pixel + uvec2(0u, p)); }
+// Where pixel p of this invocation is kept. A probe's tiles are kept side by side.
+uint place_of(View view, uint p) {
+  uvec2 at = first_pixel - first_drawn(view);
+  uint across = view.width;
+  if (is_probe(view)) {
+    uvec2 in_grid = tile_of(tile, view);
+    at += in_grid * uint(TILE_SIZE) - tile_corner(in_grid, view);
+    across = view.tiles_x * uint(TILE_SIZE);
+  }
+  return view.pixel_offset + (at.y + p) * across + at.x;
+}
+
+// The view that is drawn, or that its probe is of.
+uint view_at_hand() { return view_index < frame.asked ? view_index : frame.probed; }
 
 // The pixels of this invocation, of which the first lies `in_tile`.
 void begin_pixels(uvec2 in_tile) {
@@ -44,7 +56,6 @@ void begin_pixels(uvec2 in_tile) {
   farthest = 1.0 + dot(most, most);
 #endif
   begin_block(view, view_index < frame.asked);
-  begin_mesh(view, tile);
   for (uint p = 0u; p < COLUMN; ++p) {
     bool inside = first_pixel.x <= last_drawn(view).x && first_pixel.y + p <= last_drawn(view).y;
     row[p] = float(first_pixel.y + p) - middle.y;
@@ -58,6 +69,7 @@ void begin_pixels(uvec2 in_tile) {
 #endif
     least[p] = inside ? float(TRANSMITTANCE_MIN) : -1.0;
     begin_measuring(view, p, inside);
+    begin_meshes(p, inside);
     begin_debug_view(p);
   }
 }

@@ -58,8 +58,8 @@ struct View {
   /// For all views of a frame, or for none, which is faster. With mesh depths the nearer of splats and
   /// meshes.
   std::optional<DepthTarget> depth = {};
-  /// For all views of a frame, or for none. Not with a background, a layout other than `separate` or a
-  /// transmittance that is measured.
+  /// For all views of a frame, at most 4, or for none. Not with a background, a layout other than `separate`
+  /// or a transmittance that is measured.
   std::optional<MeshDepth> mesh_depth = {};
   ViewRegion region = {};
 };

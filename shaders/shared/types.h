@@ -103,6 +103,17 @@ struct Canvas {
   uint unused_1, unused_2, unused_3;
 };
 
+// Where a view's depths of meshes are in the texture of the view's number, and how they are read.
+struct MeshSource {
+  vec2 step;        // texels to a pixel of the view
+  uint left, top;   // the texel of the picture's upper left pixel
+  uint level;       // of the texture
+  uint is_inverse;  // 1: z = 1 / (scale d + offset), d being the texture's number; 0: z = scale d
+  float scale, offset;
+  float nothing;  // d of pixels without a mesh
+  float unused_1, unused_2, unused_3;
+};
+
 // A ray for a pixel of another picture (a panorama), by where it meets a view's picture.
 struct PlacedRay {
   vec2 pixel;  // in the view's picture; (0, 0) is the centre of the first pixel
@@ -160,6 +171,7 @@ static_assert(sizeof(Gaussian) == 48 && offsetof(Gaussian, scale) == 32);
 static_assert(sizeof(Anchor) == 64 && offsetof(Anchor, scale) == 48);
 static_assert(sizeof(Splat) == 48 && offsetof(Splat, conic) == 16 && offsetof(Splat, colour) == 32);
 static_assert(sizeof(Canvas) == 32 && offsetof(Canvas, linear) == 16);
+static_assert(sizeof(MeshSource) == 48 && offsetof(MeshSource, scale) == 24);
 static_assert(sizeof(PlacedRay) == 16 && offsetof(PlacedRay, place) == 8);
 static_assert(sizeof(Counters) == 76 && offsetof(Counters, long_x) == 44 && offsetof(Counters, tall_x) == 60);
 static_assert(sizeof(DispatchArguments) == 48 && offsetof(DispatchArguments, threads_x) == 8 &&

@@ -72,7 +72,6 @@ KeptTextures::KeptTextures(const Context& context) : gl_(context.gl()) {
   for (GLuint unit = 0; unit < units_.size(); ++unit) {
     gl_.ActiveTexture(GL_TEXTURE0 + unit);
     gl_.GetIntegerv(GL_TEXTURE_BINDING_2D, &units_[unit].texture);
-    gl_.GetIntegerv(GL_TEXTURE_BINDING_2D_ARRAY, &units_[unit].array);
     gl_.GetIntegerv(GL_SAMPLER_BINDING, &units_[unit].sampler);
   }
   gl_.ActiveTexture(static_cast<GLenum>(active_));
@@ -82,7 +81,6 @@ KeptTextures::~KeptTextures() {
   for (GLuint unit = 0; unit < units_.size(); ++unit) {
     gl_.ActiveTexture(GL_TEXTURE0 + unit);
     gl_.BindTexture(GL_TEXTURE_2D, static_cast<GLuint>(units_[unit].texture));
-    gl_.BindTexture(GL_TEXTURE_2D_ARRAY, static_cast<GLuint>(units_[unit].array));
     gl_.BindSampler(unit, static_cast<GLuint>(units_[unit].sampler));
   }
   gl_.ActiveTexture(static_cast<GLenum>(active_));

@@ -50,7 +50,7 @@ class KeptState {
   Range uniforms_;
 };
 
-/// Remembers the 2D textures, arrays and samplers of the first MAX_CANVASES + 1 units, which a frame with
+/// Remembers the 2D textures and samplers of the first 2 MAX_CANVASES units, which a frame with
 /// mesh depths reads the caller's textures through, and sets them again when it goes. Beside a KeptState.
 class KeptTextures {
  public:
@@ -61,12 +61,12 @@ class KeptTextures {
 
  private:
   struct Unit {
-    GLint texture = 0, array = 0, sampler = 0;
+    GLint texture = 0, sampler = 0;
   };
 
   const Functions& gl_;
   GLint active_ = 0;
-  std::array<Unit, MAX_CANVASES + 1> units_;
+  std::array<Unit, std::size_t{2} * MAX_CANVASES> units_;
 };
 
 /// Remembers the state that drawing a triangle into a texture of depths uses, sets it so that the triangle

@@ -13,7 +13,9 @@ namespace {
 constexpr std::array formats = {GL_DEPTH_COMPONENT32F, GL_DEPTH_COMPONENT24, GL_DEPTH_COMPONENT16,
                                 GL_DEPTH24_STENCIL8,   GL_DEPTH32F_STENCIL8, GL_R32F};
 
-void check_texture(const gl::Context& context, const MeshDepth& mesh, const glm::ivec2& size) {
+/// The texture, or a view of its layer.
+std::uint32_t texture_of(gl::Context& context, const MeshDepth& mesh, const glm::ivec2& size,
+                         std::vector<std::unique_ptr<gl::Texture>>& layers_seen) {
   const gl::Functions& gl = context.gl();
   GLint kind = 0;
   gl.GetTextureParameteriv(mesh.texture, GL_TEXTURE_TARGET, &kind);
@@ -31,7 +33,7 @@ void check_texture(const gl::Context& context, const MeshDepth& mesh, const glm:
   if (gl.GetError() != GL_NO_ERROR || has.x == 0)
     fail("mesh depth: texture {} has no level {}", mesh.texture, mesh.level);
   const int layers = number(GL_TEXTURE_DEPTH);
-  if (is_array ? mesh.layer < 0 || mesh.layer >= layers : mesh.layer > 0) {
+  if (is_array ? mesh.layer < 0 || mesh.layer >= layers : mesh.layer >= 0) {
     fail("mesh depth: texture {} has no layer {}: it {}", mesh.texture, mesh.layer,
          is_array ? fmt::format("is an array of {}", layers) : "is no array");
   }
@@ -53,39 +55,42 @@ void check_texture(const gl::Context& context, const MeshDepth& mesh, const glm:
     fail("mesh depth: a view of {} x {} px at {}, {} does not lie within texture {} of {} x {}", size.x,
          size.y, mesh.x, mesh.y, mesh.texture, has.x, has.y);
   }
+  if (!is_array) return mesh.texture;
+  GLint immutable = 0;
+  gl.GetTextureParameteriv(mesh.texture, GL_TEXTURE_IMMUTABLE_FORMAT, &immutable);
+  if (immutable == 0)
+    fail("mesh depth: array {} has no immutable storage: make it by glTextureStorage3D", mesh.texture);
+  layers_seen.push_back(std::make_unique<gl::Texture>(context, static_cast<GLenum>(format), mesh.texture,
+                                                      mesh.level, mesh.layer));
+  return layers_seen.back()->id();
 }
 
 }  // namespace
 
-render::MeshDepth mesh_depth_of(const gl::Context& context, const View& view) {
+void add_mesh_depth(gl::Context& context, const View& view, MeshDepths& depths) {
   const MeshDepth& mesh = *view.mesh_depth;
-  check_texture(context, mesh, view.size);
-  render::MeshDepth read{.texture = mesh.texture,
-                         .level = mesh.level,
-                         .layer = mesh.layer,
+  render::MeshDepth read{.texture = texture_of(context, mesh, view.size, depths.layers),
+                         .level = mesh.layer < 0 ? mesh.level : 0,
                          .x = mesh.x,
                          .y = mesh.y,
                          .size = view.size};
-  GLint kind = 0;
-  context.gl().GetTextureParameteriv(mesh.texture, GL_TEXTURE_TARGET, &kind);
-  if (kind == GL_TEXTURE_2D) read.layer = -1;
+  const double near = mesh.near_plane, far = mesh.far_plane;
   if (mesh.coding == DepthCoding::axis) {
     if (!(mesh.units_per_number > 0.0) || !std::isfinite(mesh.units_per_number))
       fail("mesh depth: {} units per number: expected a number above zero", mesh.units_per_number);
     read.is_inverse = false;
     read.scale = static_cast<float>(mesh.units_per_number);
     read.nothing = 0.0f;
-    return read;
-  }
-  const double near = mesh.near_plane, far = mesh.far_plane;
-  if (!(near > 0.0 && far > 0.0 && near != far))
+  } else if (near > 0.0 && far > 0.0 && near != far) {
+    // 1 / z is 1 / near where d is 0, and 1 / far where d is 1, and linear between.
+    read.offset = static_cast<float>(1.0 / near);
+    read.scale = static_cast<float>(1.0 / far - 1.0 / near);
+    read.nothing = near < far ? 1.0f : 0.0f;
+  } else {
     fail("mesh depth: planes at {} and {}: expected two distances above zero, one of which may be infinite",
          near, far);
-  // 1 / z is 1 / near where d is 0, and 1 / far where d is 1, and linear between.
-  read.offset = static_cast<float>(1.0 / near);
-  read.scale = static_cast<float>(1.0 / far - 1.0 / near);
-  read.nothing = near < far ? 1.0f : 0.0f;
-  return read;
+  }
+  depths.list.push_back(read);
 }
 
 }  // namespace binosplat::library

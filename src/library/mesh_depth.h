@@ -3,13 +3,22 @@
 
 #include <binosplat/renderer.h>
 
-#include "gl/context.h"
+#include <memory>
+#include <vector>
+
+#include "gl/texture.h"
 #include "render/mesh_depth.h"
 
 namespace binosplat::library {
 
-/// Throws Error(bad_input) for a texture that cannot be read as MeshDepth says, or is smaller than the view,
-/// and for planes that bound nothing.
-render::MeshDepth mesh_depth_of(const gl::Context& context, const View& view);
+/// By view, and the layers of arrays, each as a texture.
+struct MeshDepths {
+  std::vector<render::MeshDepth> list;
+  std::vector<std::unique_ptr<gl::Texture>> layers;
+};
+
+/// Appends a view's. Throws Error(bad_input) for a texture that cannot be read as MeshDepth says, or is
+/// smaller than the view, and for planes that bound nothing.
+void add_mesh_depth(gl::Context& context, const View& view, MeshDepths& depths);
 
 }  // namespace binosplat::library

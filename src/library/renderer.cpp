@@ -34,10 +34,10 @@ struct Renderer::Impl {
     std::optional<glm::vec3> background;
     std::vector<Target> targets;
     std::vector<DepthTarget> depths;
-    std::vector<render::MeshDepth> mesh_depths;
+    library::MeshDepths mesh_depths;
     stereo::Canvases canvases;
 
-    bool has_meshes() const { return !mesh_depths.empty(); }
+    bool has_meshes() const { return !mesh_depths.list.empty(); }
     std::vector<std::uint32_t> callers_errors;
   };
 
@@ -65,7 +65,7 @@ void Renderer::submit(std::span<const View> views, const Placement& placement, c
     sizes.push_back(view.size);
     to.targets.push_back(view.target);
     if (view.depth) to.depths.push_back(*view.depth);
-    if (view.mesh_depth) to.mesh_depths.push_back(library::mesh_depth_of(*impl_->context, view));
+    if (view.mesh_depth) library::add_mesh_depth(*impl_->context, view, to.mesh_depths);
   }
   if (to.layout != LAYOUT_SEPARATE) {
     if (views.size() != 2)
@@ -74,8 +74,11 @@ void Renderer::submit(std::span<const View> views, const Placement& placement, c
   }
   if (!to.depths.empty() && to.depths.size() != views.size())
     fail("{} of {} views have a depth target: expected all or none", to.depths.size(), views.size());
-  if (to.has_meshes() && to.mesh_depths.size() != views.size())
-    fail("{} of {} views have a mesh depth: expected all or none", to.mesh_depths.size(), views.size());
+  const std::size_t with_meshes = to.mesh_depths.list.size();
+  if (to.has_meshes() && (with_meshes != views.size() || with_meshes > MAX_CANVASES)) {
+    fail("{} of {} views have a mesh depth: expected all or none, at most {}", with_meshes, views.size(),
+         MAX_CANVASES);
+  }
   if (to.has_meshes() && (settings.background || to.layout != LAYOUT_SEPARATE)) {
     fail("mesh depths with a {}: splats are blended over the colours that are in each view's target",
          settings.background ? "background" : "layout other than separate");
@@ -91,7 +94,7 @@ void Renderer::submit(std::span<const View> views, const Placement& placement, c
   impl_->frame->submit(head.views, over, {},
                        {.canvases = to.canvases.list,
                         .depth_rows = stereo::depth_rows(*impl_->context, head.views, to.depths),
-                        .mesh_depths = to.mesh_depths});
+                        .mesh_depths = to.mesh_depths.list});
   impl_->submitted = std::move(to);
 }
 

@@ -59,6 +59,13 @@ const gl::Program& program(gl::Context& context, const FramePlan& plan, const Bl
   return context.program(v.shader(), v);
 }
 
+// A texture of the caller's, to be read as it is.
+void bind_texture(gl::Context& context, std::size_t unit, std::uint32_t texture,
+                  const FrameBuffers& buffers) {
+  context.gl().BindTextureUnit(static_cast<GLuint>(unit), texture);
+  context.gl().BindSampler(static_cast<GLuint>(unit), buffers.nearest.id());
+}
+
 void run(gl::Dispatcher& dispatcher, const FramePlan& plan, FrameBuffers& buffers, const BlendTask& task,
          const gl::Buffer& measured) {
   gl::Context& context = dispatcher.context();
@@ -68,10 +75,10 @@ void run(gl::Dispatcher& dispatcher, const FramePlan& plan, FrameBuffers& buffer
     const Canvas& to = plan.canvases[k];
     context.gl().BindImageTexture(static_cast<GLuint>(k), to.texture, to.level, GL_FALSE, to.layer,
                                   GL_WRITE_ONLY, to.format);
-    if (plan.mesh_depths.empty()) continue;
-    context.gl().BindTextureUnit(static_cast<GLuint>(k), to.texture);
-    context.gl().BindSampler(static_cast<GLuint>(k), buffers.nearest.id());
+    if (!plan.mesh_depths.empty()) bind_texture(context, k, to.texture, buffers);
   }
+  for (std::size_t k = 0; k < plan.mesh_depths.size(); ++k)
+    bind_texture(context, MAX_CANVASES + k, plan.mesh_depths[k].texture, buffers);
   if (task.tiles_a_splat == 0.0) program(context, plan, task, false, true);  // soon, maybe
   const auto draw = [&](bool long_lists, const gl::DispatchSize& size) {
     dispatcher.start(program(context, plan, task, long_lists, task.tiles_a_splat > large_tiles), size,
@@ -84,7 +91,7 @@ void run(gl::Dispatcher& dispatcher, const FramePlan& plan, FrameBuffers& buffer
                       {"Colours", buffers.pictures.colours},
                       {"Canvases", buffers.pictures.canvases},
                       {"ZSums", buffers.pictures.z_sums},
-                      {"MeshDepths", buffers.pictures.mesh_depths},
+                      {"MeshSources", buffers.pictures.mesh_sources},
                       {"FrameCounters", buffers.counters},
                       {"LongLists", buffers.lists.long_lists},
                       {"Measured", measured},

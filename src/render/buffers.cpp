@@ -63,7 +63,7 @@ FrameBuffers::FrameBuffers(gl::Context& context)
       pictures{.canvases = {context, "canvases"},
                .colours = {context, "pixels"},
                .z_sums = {context, "depth of pixels"},
-               .mesh_depths = {context, "depth of meshes"},
+               .mesh_sources = {context, "sources of mesh depths"},
                .debug_values = {context, "debug view"},
                .debug_transmittance = {context, "transmittance of a debug view"}},
       nearest(context),
@@ -78,6 +78,10 @@ void FrameBuffers::upload(const FramePlan& plan, bool uses_measured) {
   std::vector<shared::Canvas> of_views;
   for (const Canvas& canvas : plan.canvases) of_views.push_back(on_gpu(canvas));
   if (!of_views.empty()) pictures.canvases.upload(of_views);
+  std::vector<shared::MeshSource> meshes;
+  for (std::size_t v = 0; v < plan.mesh_depths.size(); ++v)
+    meshes.push_back(on_gpu(plan.mesh_depths[v], plan.whole_sizes[v]));
+  if (!meshes.empty()) pictures.mesh_sources.upload(meshes);
   if (plan.draws_regions()) region_rows.upload(plan.region_rows);
   if (plan.settings.transmittance != TRANSMITTANCE_DEPTH) return;
   std::vector<float> table = plan.settings.depth_table.bounds;
@@ -128,8 +132,6 @@ void FrameBuffers::reserve(const FramePlan& plan, const ModelBuffers& model, con
   lists.long_lists.reserve(plan.tile_count() * 4LL);
   if (plan.canvases.empty()) pictures.colours.reserve(plan.pixel_count * 16);
   if (plan.depth() != DEPTH_NONE) pictures.z_sums.reserve(plan.pixel_count * 4);
-  if (!plan.mesh_depths.empty())
-    pictures.mesh_depths.reserve((2 * std::int64_t{plan.tile_count()} + plan.pixel_count) * 4);
   scan.reserve(std::max(blocks, capacity.slots));
   look_back.reserve(std::max(blocks, capacity.slots / SCAN_BLOCK) + 1);
   for (const OrderGroup& group : plan.groups) sort.reserve(ordering.order, group.key_bits);

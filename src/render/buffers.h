@@ -111,10 +111,10 @@ struct FrameBuffers {
 
   /// What the blend makes of the lists.
   struct Pictures {
-    gl::Buffer canvases;     // Canvas by view, where pictures go into images, and not into the next two
-    gl::Buffer colours;      // vec4 by pixel: C, T
-    gl::Buffer z_sums;       // float by pixel
-    gl::Buffer mesh_depths;  // float, two by tile, then by pixel: shaders/mesh_depths.glsl
+    gl::Buffer canvases;      // Canvas by view, where pictures go into images, and not into the next two
+    gl::Buffer colours;       // vec4 by pixel: C, T
+    gl::Buffer z_sums;        // float by pixel
+    gl::Buffer mesh_sources;  // MeshSource by view
     // Filled by blend_debug_view().
     gl::Buffer debug_values;         // float by pixel
     gl::Buffer debug_transmittance;  // uint by splat, bits of the largest T

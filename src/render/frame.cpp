@@ -29,7 +29,8 @@ void check(const CallersTextures& textures, std::size_t views, const FrameSettin
   if (canvases != 0 && (canvases != views || canvases > MAX_CANVASES))
     fail("{} canvases for {} views: expected one each, at most {}", canvases, views, MAX_CANVASES);
   if (meshes == 0) return;
-  if (meshes != views) fail("depths of meshes in {} views of {}: expected all or none", meshes, views);
+  if (meshes != views || meshes > MAX_CANVASES)
+    fail("depths of meshes in {} views of {}: expected all or none, at most {}", meshes, views, MAX_CANVASES);
   if (measures(settings.transmittance))
     fail("depths of meshes with a measured transmittance: what a mesh hides is not met");
   if (workings.stand_in) fail("depths of meshes with a stand-in: it knows nothing of them");
@@ -216,7 +217,6 @@ void Frame::record_stages() {
   run(Stage::tile_sort, [&] { tile_sort(dispatcher_, plan_, buffers_); });
   run(Stage::ranges, [&] { ranges(dispatcher_, plan_, buffers_); });
   run(Stage::blend, [&] {
-    read_mesh_depths(dispatcher_, plan_, buffers_);
     find_long_lists(dispatcher_, plan_, buffers_);
     blend(dispatcher_, plan_, measuring_.measures, tiles_a_splat_, buffers_);
     keep_measured(dispatcher_, plan_, measuring_.measures, buffers_);

@@ -27,10 +27,6 @@ void tile_sort(gl::Dispatcher& dispatcher, const FramePlan& plan, FrameBuffers& 
 /// Finds where each tile's list lies among the pairs.
 void ranges(gl::Dispatcher& dispatcher, const FramePlan& plan, FrameBuffers& buffers);
 
-/// Reads how far each pixel is seen where the caller's meshes stand. Does nothing where there are none. To be
-/// called before the blend.
-void read_mesh_depths(gl::Dispatcher& dispatcher, const FramePlan& plan, FrameBuffers& buffers);
-
 /// Finds the tiles whose lists are long, which are blended by a launch of their own. To be called once a
 /// frame, before its first blend.
 void find_long_lists(gl::Dispatcher& dispatcher, const FramePlan& plan, FrameBuffers& buffers);

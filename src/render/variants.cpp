@@ -75,20 +75,6 @@ std::array<gl::Number, 18> PairVariant::numbers() const {
           {"KERNEL_PX2", std::bit_cast<std::uint32_t>(kernel_px2), std::uint64_t{1} << 32, nullptr, true}};
 }
 
-MeshVariant::MeshVariant(const FramePlan& plan, bool from_array)
-    : tile_size(plan.settings.tile_size),
-      supertile_side(plan.supertile_side),
-      projection(plan.perspective.projection),
-      probed(plan.probe.has_value()),
-      regions(plan.draws_regions()),
-      array(from_array) {}
-
-std::array<gl::Number, 6> MeshVariant::numbers() const {
-  return {number("TILE_SIZE", tile_size, 33), number("SUPERTILE_SIDE", supertile_side, 3),
-          projection_number(projection),      number("PROBED", probed, flag),
-          number("REGIONS", regions, flag),   number("ARRAY", array, flag)};
-}
-
 bool BlendVariant::is_legal() const {
   // Who measures or tells what it comes by has the tile's splats before all its pixels, but for visibility,
   // for which frames wait. Other sizes of tiles are for comparing.

@@ -39,16 +39,6 @@ struct PairVariant {
   std::array<gl::Number, 18> numbers() const;
 };
 
-/// The variant of mesh_depth.comp.
-struct MeshVariant {
-  MeshVariant(const FramePlan& plan, bool from_array);
-
-  int tile_size, supertile_side, projection;
-  bool probed, regions, array;
-
-  std::array<gl::Number, 6> numbers() const;
-};
-
 /// The programs of the blend, which draw the same bits: for any GPU, for software renderers, and for
 /// subgroups of 32 invocations.
 enum class BlendProgram { general, software, subgroups };

@@ -198,9 +198,6 @@ struct State : testing::Test {
         "texture" + of, [this, bind] { bind(GL_TEXTURE_2D, texture); },
         [of_unit] { return of_unit(GL_TEXTURE_BINDING_2D); });
     add(
-        "array" + of, [this, bind] { bind(GL_TEXTURE_2D_ARRAY, array); },
-        [of_unit] { return of_unit(GL_TEXTURE_BINDING_2D_ARRAY); });
-    add(
         "sampler" + of, [this, unit] { caller.BindSampler(unit, sampler); },
         [of_unit] { return of_unit(GL_SAMPLER_BINDING); });
   }
@@ -389,13 +386,13 @@ TEST_F(State, DrawingWithoutCareIsNoticedInEveryPiece) {
   for (std::size_t k = 0; k < changed_count; ++k) expected.insert(pieces[k].name);
   EXPECT_EQ(careless, expected);
   const auto among_meshes = changed_by([&] {
-    const render::MeshDepth mesh{
-        .texture = caller.texture(GL_DEPTH_COMPONENT24, 40, 32, 1), .layer = 0, .size = {40, 32}};
+    const render::MeshDepth mesh{.texture = caller.texture(GL_DEPTH_COMPONENT24, 40, 32), .size = {40, 32}};
     const render::Canvas canvas{.texture = caller.texture(GL_RGBA8, 40, 32)};
     frame.draw(stereo::make_rig(test::front_camera(40, 32, 40.0), {.ipd = 0.1}).views, {}, {},
                {.canvases = std::array{canvas, canvas}, .mesh_depths = std::array{mesh, mesh}});
   });
-  for (const char* name : {"texture of unit 0", "sampler of unit 0", "array of unit 4", "sampler of unit 4"})
+  for (const char* name :
+       {"texture of unit 0", "sampler of unit 0", "texture of unit 4", "sampler of unit 4"})
     EXPECT_TRUE(among_meshes.contains(name)) << name;
 }
 
