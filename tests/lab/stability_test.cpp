@@ -224,13 +224,16 @@ const std::map<std::string, float> fox_tolerances = {{"tau", 0.0f},
                                                      {"peripheral, one", 0.2535f},
                                                      {"peripheral, depth", 0.2535f},
                                                      {"peripheral, last", 0.2259f},
-                                                     {"squared, one", 0.01213f},
-                                                     {"squared, depth", 0.01213f},
-                                                     {"squared, last", 0.009286f}};
+                                                     {"squared, one", 0.00985f},
+                                                     {"squared, depth", 0.00985f},
+                                                     {"squared, last", 0.00754f}};
 
-/// What thousands of faint Gaussians that lie one behind the other break; nothing else is broken.
-const std::map<std::string, std::string> mist_verdicts = {
-    {"squared, one", "dark"}, {"squared, depth", "dip, wrong, dark"}, {"squared, last", "dip, wrong, dark"}};
+/// What is broken, by case and rule: by thousands of faint Gaussians that lie one behind the other, and by a
+/// wall of small ones, whose tails are left out of tiles and blocks. All else holds.
+const std::map<std::pair<std::string, std::string>, std::string> broken_verdicts = {
+    {{"far-wall", "squared, one"}, "dark"},           {{"far-wall", "squared, depth"}, "dark"},
+    {{"far-wall", "squared, last"}, "dark"},          {{"mist", "squared, one"}, "dark"},
+    {{"mist", "squared, depth"}, "dip, wrong, dark"}, {{"mist", "squared, last"}, "dip, wrong, dark"}};
 
 TEST(Stability, EveryRuleOnEveryCaseIsAsTheTableSays) {
   if (!test::switched_on("BINOSPLAT_LONG")) GTEST_SKIP() << "minutes on llvmpipe: set BINOSPLAT_LONG=1";
@@ -248,9 +251,9 @@ TEST(Stability, EveryRuleOnEveryCaseIsAsTheTableSays) {
       const std::string name = rule.name();
       rule.tolerance = fox_tolerances.at(name);
       const StabilityResult r = run_rule(frame, one, exact, rule, {});
-      const auto broken = mist_verdicts.find(name);
-      const bool breaks = one.name == "mist" && broken != mist_verdicts.end();
-      EXPECT_EQ(r.verdict, breaks ? broken->second : "holds") << one.name << ": " << name;
+      const auto broken = broken_verdicts.find({one.name, name});
+      EXPECT_EQ(r.verdict, broken != broken_verdicts.end() ? broken->second : "holds")
+          << one.name << ": " << name << ", signed " << r.signed_mean;
       rows[name] += fmt::format(" {:.1f} / {:.1f}{} |", r.worst_db, r.settled_db,
                                 r.verdict == "holds" ? "" : " **" + r.verdict + "**");
     }
