@@ -116,6 +116,7 @@ class Program {
                            const Surroundings& surroundings) const {
     dup2(open(out().c_str(), O_CREAT | O_WRONLY, 0600), STDOUT_FILENO);
     dup2(open(err().c_str(), O_CREAT | O_WRONLY, 0600), STDERR_FILENO);
+    signal(SIGINT, SIG_DFL);  // a shell has what it starts in the background ignore it
     bool good = surroundings.folder.empty() || chdir(surroundings.folder.c_str()) == 0;
     for (const auto& [name, value] : surroundings.variables) setenv(name.c_str(), value.c_str(), 1);
     for (const auto& [what, most] : surroundings.limits) {
