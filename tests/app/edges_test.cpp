@@ -128,10 +128,12 @@ TEST_F(Edges, AFullStandardOutputIsAnError) {
 
 // Programs are kept in a folder of caches, by this program and by the driver, which has one of its own.
 TEST_F(Edges, FoldersOfCaches) {
-  const test::TempFolder here, home;
+  const test::TempFolder here, home, mesa;  // Mesa keeps what it compiled: ours are what this is about
   const auto draw = [&](const std::string& caches) {
-    const test::Outcome outcome = render(
-        one, {.folder = here.path(), .variables = {{"HOME", home.path()}, {"XDG_CACHE_HOME", caches}}});
+    const test::Outcome outcome = render(one, {.folder = here.path(),
+                                               .variables = {{"HOME", home.path()},
+                                                             {"XDG_CACHE_HOME", caches},
+                                                             {"MESA_SHADER_CACHE_DIR", mesa.path()}}});
     EXPECT_TRUE(good(outcome));
     return outcome.err;
   };

@@ -77,7 +77,7 @@ TEST_F(LevelsTest, AreReadAndDrawn) {
 }
 
 TEST_F(LevelsTest, GoOnAfterAnInterruption) {
-  test::save_ply(model, test::random_model(4, 4000, 2));
+  test::save_ply(model, test::random_model(4, 1200, 2));
   const std::string whole = folder / "whole";
   ASSERT_TRUE(good(levels(whole)));
   test::Program run(line(out));

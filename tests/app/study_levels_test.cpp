@@ -40,12 +40,12 @@ struct StudyLevels : test::SceneTest {
 };
 
 TEST_F(StudyLevels, TellWhatRenderTells) {
-  test::save_ply(model, test::random_model(4, 3000, 0));
+  test::save_ply(model, test::random_model(4, 1500, 0));
   const std::string made = make_levels("made");
   const Outcome outcome = study({made}, {"--detail", "25dB,35dB", "-o", out});
   ASSERT_TRUE(good(outcome));
   const auto scene = test::load_json(out + "/study.json").at("scenes").at(0);
-  EXPECT_EQ(scene["finest_gaussians"], 3000);
+  EXPECT_EQ(scene["finest_gaussians"], 1500);
   EXPECT_EQ(scene["eyes"], 2);
   ASSERT_EQ(scene["rows"].size(), 3u);
   EXPECT_EQ(scene["rows"][1]["detail"], 35.0);
@@ -74,7 +74,7 @@ TEST_F(StudyLevels, TellWhatRenderTells) {
 
 TEST_F(StudyLevels, OfSeveralScenesTellHowTimesGrow) {
   const std::string small = make_levels("small");
-  test::save_ply(model, test::random_model(2, 2000, 1));
+  test::save_ply(model, test::random_model(2, 900, 1));
   const std::string large = make_levels("large", false);
   const Outcome outcome =
       study({small, large}, {"--detail", "30dB", "--cameras", small + "/cameras.json", "--view", "view2",
@@ -82,11 +82,11 @@ TEST_F(StudyLevels, OfSeveralScenesTellHowTimesGrow) {
   ASSERT_TRUE(good(outcome));
   const auto scenes = test::load_json(folder / "s.json").at("scenes");
   ASSERT_EQ(scenes.size(), 2u);
-  EXPECT_EQ(scenes[1]["finest_gaussians"], 2000);
+  EXPECT_EQ(scenes[1]["finest_gaussians"], 900);
   EXPECT_EQ(scenes[1]["rows"][0]["views"][0]["name"], "view2");
   EXPECT_EQ(scenes[1]["width"], 36);
   EXPECT_FALSE(scenes[1]["rows"][0]["mean"].contains("disagreement_db")) << "one eye";
-  EXPECT_NE(outcome.out.find("\n| " + large + " | 2.000 | 6.667 | "), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.out.find("\n| " + large + " | 0.900 | 3.000 | "), std::string::npos) << outcome.out;
 }
 
 TEST_F(StudyLevels, ByPixelsPredictNothing) {
