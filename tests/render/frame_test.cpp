@@ -5,6 +5,7 @@
 #include "render/support.h"
 #include "stereo/rig.h"
 #include "support/errors.h"
+#include "support/scenes.h"
 
 namespace binosplat {
 namespace {
@@ -183,7 +184,8 @@ TEST(Frame, ALossLeavesOutBlocksAndWhatIsBehindDarkOnes) {
       EXPECT_GT(off({false, approximation.dark_transmittance}), 0.02) << width << " " << tile_size;
     }
     EXPECT_GT(off({true, 2.0 * approximation.dark_transmittance}), 0.02) << width << " " << tile_size;
-    settings.transmittance = TRANSMITTANCE_LAST;  // of which nothing is known yet
+    if (tile_size != 16 && !test::switched_on("BINOSPLAT_LONG")) continue;  // shaders of their own
+    settings.transmittance = TRANSMITTANCE_LAST;                            // of which nothing is known yet
     EXPECT_TRUE(same_bits(std::vector{draw(model, view, settings)}, std::vector{drawn}));
     EXPECT_TRUE(
         same_bits(std::vector{draw(model, view, {.th = TH_SQUARED})}, std::vector{draw(model, view)}));

@@ -33,15 +33,15 @@ TEST(Half, IsOf60DbAndNotFull) {
 TEST(Half, IsTheSameInEveryTileTestAndSize) {
   const Model model = test::random_model(42, 2000, 2);
   const std::vector<Picture> expected = test::draw(model, eyes_for_half(), in_half);
-  for (const int tiles : {TILES_ALL, TILES_SNUG, TILES_ELLIPSE}) {
-    for (const int size : {8, 16, 32}) {
-      render::FrameSettings settings = in_half;
-      settings.tiles = tiles;
-      settings.tile_size = size;
-      const std::vector<Picture> drawn = test::draw(model, eyes_for_half(), settings);
-      for (std::size_t eye = 0; eye < 2; ++eye)
-        EXPECT_TRUE(test::same_bits(drawn[eye], expected[eye])) << tiles << ", " << size;
-    }
+  // Each test and each size at least once: all of them together hold in full precision (frame_test.cpp).
+  for (const auto& [tiles, size] :
+       {std::pair{TILES_ELLIPSE, 8}, {TILES_SNUG, 16}, {TILES_ELLIPSE, 32}, {TILES_ALL, 32}}) {
+    render::FrameSettings settings = in_half;
+    settings.tiles = tiles;
+    settings.tile_size = size;
+    const std::vector<Picture> drawn = test::draw(model, eyes_for_half(), settings);
+    for (std::size_t eye = 0; eye < 2; ++eye)
+      EXPECT_TRUE(test::same_bits(drawn[eye], expected[eye])) << tiles << ", " << size;
   }
 }
 
