@@ -11,27 +11,31 @@ using nlohmann::json;
 using test::Words;
 
 struct Threshold : test::SceneTest {
-  json room(const Words& words) const {
+  json drawn(const std::string& scene, const Words& words) const {
     const test::Outcome outcome =
-        test::run_program(joined({"render", "demo:room", "--json", folder / "r.json"}, words));
+        test::run_program(joined({"render", scene, "--json", folder / "r.json"}, words));
     EXPECT_TRUE(test::good(outcome));
     return test::load_json(folder / "r.json");
   }
-  json drawn(const Words& words) const { return room(joined(words, {"--size", "64x36", "-o", out})); }
+  json room(const Words& words) const { return drawn("demo:room", words); }
+  /// The smallest there is.
+  json city(const Words& words) const {
+    return drawn("demo:city", joined(words, {"--count", "10000", "--size", "64x36", "-o", out}));
+  }
 };
 
 double pairs_of(const json& run, std::size_t view = 0) { return run["views"][view]["pairs"]; }
 
 TEST_F(Threshold, AToleranceMakesFewerPairs) {
-  const json exact = drawn({}), lossy = drawn({"--tolerance", "0.1"});
+  const json exact = city({}), lossy = city({"--tolerance", "0.1"});
   EXPECT_EQ(exact["settings"]["th"], "tau");
   EXPECT_EQ(lossy["settings"]["th"], "squared");
   EXPECT_LT(pairs_of(lossy), pairs_of(exact));
-  EXPECT_LT(pairs_of(drawn({"--th", "peripheral", "--tolerance", "2"})), pairs_of(exact));
-  EXPECT_EQ(drawn({"--loss", "0.1"})["settings"], lossy["settings"]) << "its former name";
+  EXPECT_LT(pairs_of(city({"--th", "peripheral", "--tolerance", "2"})), pairs_of(exact));
+  EXPECT_EQ(city({"--loss", "0.1"})["settings"], lossy["settings"]) << "its former name";
   const Words last = {"--tolerance", "0.1", "--transmittance", "last", "--frames", "3"};
-  EXPECT_LT(pairs_of(drawn(last)), pairs_of(lossy));
-  EXPECT_LE(pairs_of(drawn({"--tolerance", "0.1", "--transmittance", "depth"})), pairs_of(lossy));
+  EXPECT_LT(pairs_of(city(last)), pairs_of(lossy));
+  EXPECT_LE(pairs_of(city({"--tolerance", "0.1", "--transmittance", "depth"})), pairs_of(lossy));
 }
 
 TEST_F(Threshold, AQualityIsComeToWithoutATolerance) {
