@@ -111,7 +111,7 @@ void main() {
 #if MESH_DEPTH
       uint i = 0u;
       for (; i < own && i + AHEAD <= sure; i += AHEAD) blend_own(i, false);
-      for (; i < own; i += AHEAD) blend_own(i, true);
+      for (; i < own && subgroupAny(!are_done()); i += AHEAD) blend_own(i, true);
 #else
       for (uint i = 0u; i < own; i += AHEAD) blend_own(i, false);
 #endif
