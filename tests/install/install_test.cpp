@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <regex>
 
@@ -12,6 +13,7 @@
 #include "measure/metrics.h"
 #include "render/frame.h"
 #include "stereo/eyes.h"
+#include "support/ply.h"
 
 namespace binosplat {
 namespace {
@@ -47,6 +49,86 @@ std::vector<Image> expected_eyes(const fs::path& file, bool swapped = false) {
   return images;
 }
 
+/// Two walls of small opaque Gaussians across the view's axis, which is z: a green one that ends at x = 0 and
+/// a blue one far behind it.
+void write_walls(const fs::path& path) {
+  const auto count = [](double high, double low, double step) {
+    return std::lround((high - low) / step) + 1;
+  };
+  struct Wall {
+    double left, right, half_height, z, step;
+    glm::dvec3 colour;
+  };
+  test::PlyFile file = test::inria_file(0, 1);
+  const std::vector<double> empty(file.columns.size(), 0.0);
+  file.rows.clear();
+  for (const Wall& wall :
+       {Wall{-0.8, 0.0, 0.8, 2.5, 0.04, {0, 1, 0}}, Wall{-2.0, 2.0, 2.0, 6.0, 0.1, {0, 0, 1}}}) {
+    const auto columns = count(wall.right, wall.left, wall.step),
+               rows = count(wall.half_height, -wall.half_height, wall.step);
+    for (std::int64_t at = 0; at < columns * rows; ++at) {
+      const std::size_t row = file.rows.size();
+      file.rows.push_back(empty);
+      file.at(row, "x") = wall.left + wall.step * static_cast<double>(at % columns);
+      file.at(row, "y") = -wall.half_height + wall.step * static_cast<double>(at / columns);
+      file.at(row, "z") = wall.z;
+      for (int c = 0; c < 3; ++c) {
+        file.at(row, fmt::format("f_dc_{}", c)) = (wall.colour[c] - 0.5) / test::sh_c0;
+        file.at(row, fmt::format("scale_{}", c)) = std::log(0.7 * wall.step);
+      }
+      file.at(row, "opacity") = 10.0;
+      file.at(row, "rot_0") = 1.0;
+    }
+  }
+  test::write_text(path, to_bytes(file));
+}
+
+/// What an sRGB texture holds of linear light.
+float encoded(double light) { return static_cast<float>(1.055 * std::pow(light, 1.0 / 2.4) - 0.055); }
+
+/// What is wrong with a picture of examples/mesh.cpp whose cube, 4 units ahead, stands between the walls. The
+/// axis goes through it at column `axis`.
+std::vector<std::string> faults_of_mesh(const fs::path& picture, int axis) {
+  const Image image = load_image(picture);
+  std::vector<std::string> faults;
+  const auto expect = [&](const char* what, int column, int row, const glm::vec3& colour) {
+    const auto at = static_cast<std::size_t>(3 * (row * image.width + column));
+    const glm::vec3 seen(image.data[at], image.data[at + 1], image.data[at + 2]);
+    for (int c = 0; c < 3; ++c) {
+      if (!(std::abs(seen[c] - colour[c]) < 0.02f)) {
+        faults.push_back(fmt::format("{}: {} {} {}", what, seen.x, seen.y, seen.z));
+        return;
+      }
+    }
+  };
+  expect("the wall before the cube", axis - 20, 225, {0, 1, 0});
+  expect("the cube", axis + 20, 225, {encoded(0.3 * 0.9), encoded(0.3 * 0.25), encoded(0.3 * 0.03)});
+  expect("the wall behind the cube", axis + 20, 150, {0, 0, 1});
+  expect("what was cleared", axis - 200, 10, glm::vec3(encoded(0.2)));
+  return faults;
+}
+
+/// Builds and runs examples/mesh.cpp, as it is installed and with a fault.
+void check_mesh_example(const test::TempFolder& folder, const std::string& source, const std::string& build) {
+  write_walls(folder / "walls.ply");
+  const std::string run = "ASAN_OPTIONS=detect_leaks=0 " + build + "/mesh ";
+  const std::string drawing = run + (folder / "walls.ply").string() + " " + (folder / "out").string();
+  ASSERT_TRUE(succeeds(folder, drawing + " 1 0 0 0 0 0 4"));
+  EXPECT_EQ(faults_of_mesh(folder / "out/left.png", 286), std::vector<std::string>());
+  EXPECT_EQ(faults_of_mesh(folder / "out/right.png", 194), std::vector<std::string>());
+  ASSERT_TRUE(succeeds(folder, drawing)) << "a place of its own choice";
+  EXPECT_FALSE(succeeds(folder, drawing + " 1 2 3"));
+  EXPECT_FALSE(succeeds(folder, run + "/no/such.ply " + (folder / "out").string()));
+
+  const std::string call = "renderer.submit(", forgets = "for (auto& view : views) view.mesh_depth.reset();";
+  std::string text = test::read_text(source + "/mesh.cpp");
+  ASSERT_NE(text.find(call), std::string::npos);
+  test::write_text(source + "/mesh.cpp", text.insert(text.find(call), forgets));
+  ASSERT_TRUE(succeeds(folder, "cmake --build " + build + " --target mesh"));
+  ASSERT_TRUE(succeeds(folder, drawing + " 1 0 0 0 0 0 4"));
+  EXPECT_EQ(faults_of_mesh(folder / "out/left.png", 286).size(), 2u) << "forgotten depths go unnoticed";
+}
+
 TEST(Install, AnotherProgramDrawsWithIt) {
   const test::TempFolder folder;
   const std::string first = (folder / "first").string(), prefix = (folder / "prefix").string();
@@ -75,6 +157,7 @@ TEST(Install, AnotherProgramDrawsWithIt) {
         << "swapped lenses go unnoticed";
   }
   EXPECT_FALSE(succeeds(folder, "ASAN_OPTIONS=detect_leaks=0 " + build + "/embed /no/such.ply /tmp"));
+  check_mesh_example(folder, prefix + "/share/doc/binosplat/examples", build);
 }
 
 /// What files of Markdown below a folder link to and is not there.
