@@ -1,5 +1,5 @@
-// A program with an OpenXR session of its own that has binosplat draw both eyes: openxr MODEL.ply shows the
-// model in the headset until the runtime says that it is over.
+// A program with an OpenXR session of its own that draws the controllers as boxes and has binosplat draw a
+// model's splats among them: openxr MODEL.ply shows both until the runtime says that it is over.
 #define GL_GLEXT_PROTOTYPES
 #define XR_USE_GRAPHICS_API_OPENGL
 #define XR_USE_PLATFORM_EGL
@@ -14,6 +14,8 @@
 #include <array>
 #include <chrono>
 #include <cstdio>
+#include <glm/gtc/matrix_transform.hpp>
+#include <glm/gtc/quaternion.hpp>
 #include <stdexcept>
 #include <string>
 #include <thread>
@@ -30,12 +32,18 @@ XrResult check(const char* call, XrResult result) {
 }
 #define XR(call, ...) check(#call, call(__VA_ARGS__))
 
-// The images of one eye, which take turns.
+// The images of one eye, which take turns, and what OpenGL draws its boxes with.
 struct Swapchain {
   XrSwapchain handle = XR_NULL_HANDLE;
   glm::ivec2 size{0};
   std::vector<XrSwapchainImageOpenGLKHR> images;
   bool in_place = true;
+  GLuint depths = 0, framebuffer = 0;
+};
+// Where the controllers are asked for.
+struct Hands {
+  XrActionSet set = XR_NULL_HANDLE;
+  std::array<XrSpace, 2> grips = {};
 };
 constexpr XrViewConfigurationType stereo_views = XR_VIEW_CONFIGURATION_TYPE_PRIMARY_STEREO;
 void make_instance() {
@@ -90,7 +98,123 @@ Swapchain make_swapchain(XrSession session, const XrViewConfigurationView& view)
   swapchain.images.resize(count, {XR_TYPE_SWAPCHAIN_IMAGE_OPENGL_KHR});
   XR(xrEnumerateSwapchainImages, swapchain.handle, count, &count,
      reinterpret_cast<XrSwapchainImageBaseHeader*>(swapchain.images.data()));
+  glCreateTextures(GL_TEXTURE_2D, 1, &swapchain.depths);
+  glTextureStorage2D(swapchain.depths, 1, GL_DEPTH_COMPONENT32F, swapchain.size.x, swapchain.size.y);
+  glCreateFramebuffers(1, &swapchain.framebuffer);
+  glNamedFramebufferTexture(swapchain.framebuffer, GL_DEPTH_ATTACHMENT, swapchain.depths, 0);
   return swapchain;
+}
+
+XrPath path(const std::string& text) {
+  XrPath out = XR_NULL_PATH;
+  XR(xrStringToPath, instance, text.c_str(), &out);
+  return out;
+}
+
+// One action for the grips of both hands. Runtimes give the simple controller's to other controllers, too.
+Hands make_hands(XrSession session) {
+  const std::array<std::string, 2> names = {"/user/hand/left", "/user/hand/right"};
+  const std::array<XrPath, 2> paths = {path(names[0]), path(names[1])};
+  Hands hands;
+  const XrActionSetCreateInfo set = {XR_TYPE_ACTION_SET_CREATE_INFO, nullptr, "hands", "Hands", 0};
+  XR(xrCreateActionSet, instance, &set, &hands.set);
+  const XrActionCreateInfo info = {
+      XR_TYPE_ACTION_CREATE_INFO, nullptr, "grip", XR_ACTION_TYPE_POSE_INPUT, 2, paths.data(), "Grip"};
+  XrAction grip = XR_NULL_HANDLE;
+  XR(xrCreateAction, hands.set, &info, &grip);
+  const std::array<XrActionSuggestedBinding, 2> bindings = {
+      {{grip, path(names[0] + "/input/grip/pose")}, {grip, path(names[1] + "/input/grip/pose")}}};
+  const XrInteractionProfileSuggestedBinding suggested = {
+      XR_TYPE_INTERACTION_PROFILE_SUGGESTED_BINDING, nullptr,
+      path("/interaction_profiles/khr/simple_controller"), 2, bindings.data()};
+  XR(xrSuggestInteractionProfileBindings, instance, &suggested);
+  const XrSessionActionSetsAttachInfo attach = {XR_TYPE_SESSION_ACTION_SETS_ATTACH_INFO, nullptr, 1,
+                                                &hands.set};
+  XR(xrAttachSessionActionSets, session, &attach);
+  for (std::size_t k = 0; k < 2; ++k) {
+    const XrActionSpaceCreateInfo at = {
+        XR_TYPE_ACTION_SPACE_CREATE_INFO, nullptr, grip, paths[k], {{0, 0, 0, 1}, {0, 0, 0}}};
+    XR(xrCreateActionSpace, session, &at, &hands.grips[k]);
+  }
+  return hands;
+}
+
+glm::dmat4 matrix(const glm::dvec3& position, const glm::dvec4& q) {
+  return glm::translate(glm::dmat4(1), position) * glm::mat4_cast(glm::dquat(q.w, q.x, q.y, q.z));
+}
+
+// The boxes in the hands that the runtime knows, 4 x 4 x 12 cm each, in `space`.
+std::vector<glm::dmat4> locate_boxes(XrSession session, const Hands& hands, XrSpace space, XrTime time) {
+  const XrActiveActionSet active = {hands.set, XR_NULL_PATH};
+  const XrActionsSyncInfo info = {XR_TYPE_ACTIONS_SYNC_INFO, nullptr, 1, &active};
+  XR(xrSyncActions, session, &info);  // without the focus it finds no controllers
+  constexpr XrSpaceLocationFlags valid =
+      XR_SPACE_LOCATION_ORIENTATION_VALID_BIT | XR_SPACE_LOCATION_POSITION_VALID_BIT;
+  std::vector<glm::dmat4> boxes;
+  for (const XrSpace grip : hands.grips) {
+    XrSpaceLocation at = {XR_TYPE_SPACE_LOCATION};
+    XR(xrLocateSpace, grip, space, time, &at);
+    const auto& [q, p] = at.pose;
+    if ((at.locationFlags & valid) == valid)
+      boxes.push_back(glm::scale(matrix({p.x, p.y, p.z}, {q.x, q.y, q.z, q.w}), {0.04, 0.04, 0.12}));
+  }
+  return boxes;
+}
+
+// Boxes of size 1 that are scaled. Their light is linear; with GL_FRAMEBUFFER_SRGB OpenGL turns it into the
+// numbers of an sRGB texture, which are those that binosplat blends with.
+void set_up_drawing() {
+  const char* const sources[] = {R"(#version 450 core
+layout(location = 0) uniform mat4 clip_from_box;
+const vec2 corners[] = {{-1, -1}, {1, -1}, {1, 1}, {-1, -1}, {1, 1}, {-1, 1}};
+out vec3 light;
+void main() {
+  int axis = gl_VertexID / 12;
+  vec3 corner = vec3(gl_VertexID % 12 < 6 ? 0.5 : -0.5);
+  corner[(axis + 1) % 3] = 0.5 * corners[gl_VertexID % 6].x;
+  corner[(axis + 2) % 3] = 0.5 * corners[gl_VertexID % 6].y;
+  light = vec3(0.9, 0.25, 0.03) * vec3(0.7, 1.0, 0.3)[axis];
+  gl_Position = clip_from_box * vec4(corner, 1);
+})",
+                                 R"(#version 450 core
+in vec3 light; out vec4 fragment;
+void main() { fragment = vec4(light, 1); })"};
+  const GLuint program = glCreateProgram();
+  for (int k = 0; k < 2; ++k) {
+    const GLuint shader = glCreateShader(k == 0 ? GL_VERTEX_SHADER : GL_FRAGMENT_SHADER);
+    glShaderSource(shader, 1, &sources[k], nullptr);
+    glCompileShader(shader);
+    glAttachShader(program, shader);
+  }
+  glLinkProgram(program);
+  GLuint vertices = 0;
+  glCreateVertexArrays(1, &vertices);
+  glUseProgram(program);  // once, as all state: binosplat leaves it as it was
+  glBindVertexArray(vertices);
+  glEnable(GL_DEPTH_TEST);
+  glEnable(GL_FRAMEBUFFER_SRGB);
+  glClearColor(0, 0, 0, 1);
+}
+
+// Clears an eye's image and draws the boxes into it. Returns their depths, as binosplat is to read them.
+binosplat::MeshDepth draw_boxes(const Swapchain& swapchain, GLuint image, const binosplat::Eye& eye,
+                                double units_per_metre, const std::vector<glm::dmat4>& boxes) {
+  glNamedFramebufferTexture(swapchain.framebuffer, GL_COLOR_ATTACHMENT0, image, 0);
+  glBindFramebuffer(GL_FRAMEBUFFER, swapchain.framebuffer);
+  glViewport(0, 0, swapchain.size.x, swapchain.size.y);
+  glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+  constexpr double near = 0.05, far = 100.0;  // m
+  const auto [left, right, up, down] = eye.fov;
+  const glm::dvec4 side = near * glm::tan(glm::dvec4(left, right, down, up));
+  const glm::dmat4 clip = glm::frustum(side.x, side.y, side.z, side.w, near, far) *
+                          glm::inverse(matrix(eye.position, eye.orientation));
+  for (const glm::dmat4& box : boxes) {
+    const glm::mat4 clip_from_box = clip * box;
+    glUniformMatrix4fv(0, 1, GL_FALSE, &clip_from_box[0].x);
+    glDrawArrays(GL_TRIANGLES, 0, 36);
+  }
+  return {
+      .texture = swapchain.depths, .near_plane = near * units_per_metre, .far_plane = far * units_per_metre};
 }
 
 // What the runtime has to say since the last frame. False: it is over.
@@ -116,37 +240,50 @@ bool handle_events(XrSession session, bool& running) {
   return true;
 }
 
+// All that a frame takes.
+struct Stage {
+  XrSession session = XR_NULL_HANDLE;
+  XrSpace space = XR_NULL_HANDLE;
+  std::array<Swapchain, 2> swapchains;
+  Hands hands;
+  binosplat::Placement placement;
+  binosplat::Renderer renderer;
+};
+
 // Draws what the eyes will see at `time`; `submitted` is what was drawn, pose and fov as they were given.
 // False where the runtime does not know the eyes' poses.
-bool draw(XrSession session, XrSpace space, XrTime time, binosplat::Renderer& renderer,
-          const binosplat::Placement& placement, const std::array<Swapchain, 2>& swapchains,
-          std::array<XrCompositionLayerProjectionView, 2>& submitted) {
-  const XrViewLocateInfo info = {XR_TYPE_VIEW_LOCATE_INFO, nullptr, stereo_views, time, space};
+bool draw(Stage& stage, XrTime time, std::array<XrCompositionLayerProjectionView, 2>& submitted) {
+  const XrViewLocateInfo info = {XR_TYPE_VIEW_LOCATE_INFO, nullptr, stereo_views, time, stage.space};
   XrViewState state = {XR_TYPE_VIEW_STATE};
   std::array<XrView, 2> views;
   views.fill({XR_TYPE_VIEW});
   std::uint32_t count = 0;
-  XR(xrLocateViews, session, &info, &state, 2, &count, views.data());
+  XR(xrLocateViews, stage.session, &info, &state, 2, &count, views.data());
   constexpr XrViewStateFlags valid = XR_VIEW_STATE_ORIENTATION_VALID_BIT | XR_VIEW_STATE_POSITION_VALID_BIT;
   if ((state.viewStateFlags & valid) != valid) return false;
+  const std::vector<glm::dmat4> boxes = locate_boxes(stage.session, stage.hands, stage.space, time);
   std::array<binosplat::View, 2> pictures;
   for (std::size_t k = 0; k < 2; ++k) {
     const XrVector3f& p = views[k].pose.position;
     const XrQuaternionf& q = views[k].pose.orientation;
     const XrFovf& fov = views[k].fov;
-    const auto& [swapchain, size, images, in_place] = swapchains[k];
+    const Swapchain& swapchain = stage.swapchains[k];
     std::uint32_t image = 0;
-    XR(xrAcquireSwapchainImage, swapchain, nullptr, &image);
+    XR(xrAcquireSwapchainImage, swapchain.handle, nullptr, &image);
     const XrSwapchainImageWaitInfo wait = {XR_TYPE_SWAPCHAIN_IMAGE_WAIT_INFO, nullptr, XR_INFINITE_DURATION};
-    XR(xrWaitSwapchainImage, swapchain, &wait);
+    XR(xrWaitSwapchainImage, swapchain.handle, &wait);
     const binosplat::Eye eye = {
         {p.x, p.y, p.z}, {q.x, q.y, q.z, q.w}, {fov.angleLeft, fov.angleRight, fov.angleUp, fov.angleDown}};
-    pictures[k] = {eye, size, {.texture = images[image].image, .in_place = in_place}};
-    const XrSwapchainSubImage whole = {swapchain, {{0, 0}, {size.x, size.y}}, 0};
+    const GLuint texture = swapchain.images[image].image;
+    pictures[k] = {eye, swapchain.size, {.texture = texture, .in_place = swapchain.in_place}};
+    pictures[k].mesh_depth = draw_boxes(swapchain, texture, eye, stage.placement.units_per_metre, boxes);
+    const XrSwapchainSubImage whole = {swapchain.handle, {{0, 0}, {swapchain.size.x, swapchain.size.y}}, 0};
     submitted[k] = {XR_TYPE_COMPOSITION_LAYER_PROJECTION_VIEW, nullptr, views[k].pose, fov, whole};
   }
-  renderer.draw(pictures, placement, {.background = glm::vec3(0.0f)});
-  for (const Swapchain& swapchain : swapchains) XR(xrReleaseSwapchainImage, swapchain.handle, nullptr);
+  stage.renderer.submit(pictures, stage.placement);
+  // Here the GPU draws, and the CPU is the program's own: physics, sound, the next frame's meshes.
+  stage.renderer.finish();  // before it the images are binosplat's
+  for (const Swapchain& swapchain : stage.swapchains) XR(xrReleaseSwapchainImage, swapchain.handle, nullptr);
   return true;
 }
 
@@ -162,15 +299,19 @@ int main(int argc, char** argv) try {
   std::uint32_t count = 0;
   XR(xrEnumerateViewConfigurationViews, instance, system, stereo_views, 2, &count, sizes.data());
   const XrSession session = make_session(system);
-  const std::array swapchains = {make_swapchain(session, sizes[0]), make_swapchain(session, sizes[1])};
   // LOCAL begins where the head is at the start, which here is the origin of the model's world.
   XrReferenceSpaceCreateInfo where = {XR_TYPE_REFERENCE_SPACE_CREATE_INFO};
   where.referenceSpaceType = XR_REFERENCE_SPACE_TYPE_LOCAL;
   where.poseInReferenceSpace.orientation.w = 1.0f;
   XrSpace space = XR_NULL_HANDLE;
   XR(xrCreateReferenceSpace, session, &where, &space);
-  const binosplat::Placement placement = model.placement();
-  binosplat::Renderer renderer(eglGetProcAddress, model);
+  Stage stage = {session,
+                 space,
+                 {make_swapchain(session, sizes[0]), make_swapchain(session, sizes[1])},
+                 make_hands(session),
+                 model.placement(),
+                 binosplat::Renderer(eglGetProcAddress, model)};
+  set_up_drawing();
   bool running = false;
   while (handle_events(session, running)) {
     if (!running) {
@@ -181,8 +322,7 @@ int main(int argc, char** argv) try {
     XR(xrWaitFrame, session, nullptr, &frame);
     XR(xrBeginFrame, session, nullptr);
     std::array<XrCompositionLayerProjectionView, 2> views{};
-    const bool drawn = frame.shouldRender == XR_TRUE && draw(session, space, frame.predictedDisplayTime,
-                                                             renderer, placement, swapchains, views);
+    const bool drawn = frame.shouldRender == XR_TRUE && draw(stage, frame.predictedDisplayTime, views);
     const XrCompositionLayerProjection layer = {
         XR_TYPE_COMPOSITION_LAYER_PROJECTION, nullptr, 0, space, 2, views.data()};
     const auto* layers = reinterpret_cast<const XrCompositionLayerBaseHeader*>(&layer);
@@ -190,8 +330,9 @@ int main(int argc, char** argv) try {
                                 XR_ENVIRONMENT_BLEND_MODE_OPAQUE, drawn ? 1u : 0u, &layers};
     XR(xrEndFrame, session, &end);
   }
-  XR(xrDestroySpace, space);
-  for (const Swapchain& swapchain : swapchains) XR(xrDestroySwapchain, swapchain.handle);
+  for (const XrSpace each : {stage.hands.grips[0], stage.hands.grips[1], space}) XR(xrDestroySpace, each);
+  for (const Swapchain& swapchain : stage.swapchains) XR(xrDestroySwapchain, swapchain.handle);
+  XR(xrDestroyActionSet, stage.hands.set);
   XR(xrDestroySession, session);
   XR(xrDestroyInstance, instance);
 } catch (const std::exception& error) {
