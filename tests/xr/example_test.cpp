@@ -4,6 +4,8 @@
 #include <binosplat/renderer.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "support/caller.h"
 #include "support/ply.h"
 #include "xr/xr_script.h"
@@ -110,6 +112,59 @@ TEST(XrExample, TakesTexturesThatOnlyRenderingGoesInto) {
   EXPECT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_EQ(stage.log().faults(), Strings());
   EXPECT_TRUE(stage.log().colours(stage.log().frames().at(0), 0) == written);
+}
+
+/// Pixels of a picture that differ from another, and those that have the colours of a controller's box.
+struct BoxSeen {
+  int changed = 0, bare = 0;
+};
+
+BoxSeen box_seen(const std::string& picture, const std::string& without) {
+  BoxSeen seen;
+  for (std::size_t at = 0; at < picture.size(); at += 4) {
+    if (picture.compare(at, 4, without, at, 4) == 0) continue;
+    ++seen.changed;
+    for (const double brightness : {0.7, 1.0, 0.3}) {
+      bool same = true;
+      for (int c = 0; c < 3; ++c) {
+        const double light = brightness * std::array{0.9, 0.25, 0.03}[static_cast<std::size_t>(c)];
+        const double number = 255.0 * (1.055 * std::pow(light, 1.0 / 2.4) - 0.055);
+        same = same &&
+               std::abs(static_cast<unsigned char>(picture[at + static_cast<std::size_t>(c)]) - number) < 2.0;
+      }
+      seen.bare += same ? 1 : 0;
+    }
+  }
+  return seen;
+}
+
+TEST(XrExample, DrawsControllersAmongTheSplats) {
+  XrStage stage;
+  stage.script = {{"frames", 5}};
+  const auto hold = [&](int frame, const std::array<double, 3>& left) {
+    stage.add_event({{"frame", frame}, {"input", {{"/user/hand/left/input/grip/pose", xr_pose(left)}}}});
+  };
+  hold(1, {0, 1.6, -0.3});
+  hold(2, {0.1, 1.6, -0.5});
+  hold(3, {0, 1.6, -2.0});
+  stage.add_event({{"frame", 4}, {"hands", {"right"}}});
+  const Outcome outcome = run_example(stage);
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  const XrLog log = stage.log();
+  EXPECT_EQ(log.faults(), Strings()) << log.text();
+  EXPECT_TRUE(log.clean()) << log.text();
+  ASSERT_EQ(log.frames().size(), 5u);
+  for (std::size_t k = 0; k < 2; ++k) {
+    std::vector<std::string> pictures;
+    for (const Json& frame : log.frames()) pictures.push_back(log.colours(frame, k));
+    const BoxSeen near = box_seen(pictures[1], pictures[0]), among = box_seen(pictures[2], pictures[0]);
+    EXPECT_GT(near.changed, 50);
+    EXPECT_EQ(near.bare, near.changed) << "nothing is as near as that hand";
+    EXPECT_GT(among.bare, 0);
+    EXPECT_GT(among.changed, among.bare) << "no splat before that hand is seen";
+    EXPECT_EQ(box_seen(pictures[3], pictures[0]).changed, 0) << "a hand is seen through all splats";
+    EXPECT_TRUE(pictures[4] == pictures[0]) << "a hand that is gone is drawn";
+  }
 }
 
 TEST(XrExample, FollowsTheSession) {
