@@ -6,6 +6,8 @@
 #include <cmath>
 #include <cstdlib>
 #include <regex>
+#include <set>
+#include <sstream>
 
 #include "app/scene.h"
 #include "formats/image_file.h"
@@ -174,6 +176,40 @@ std::vector<std::string> dangling(const fs::path& folder) {
     }
   }
   return out;
+}
+
+/// Lines of C++ in docs/embedding.md that stand in none of the examples.
+std::vector<std::string> lines_of_no_example(const fs::path& documents) {
+  const auto trimmed = [](const std::string& line) {
+    const auto begin = line.find_first_not_of(' ');
+    return begin == std::string::npos ? "" : line.substr(begin);
+  };
+  std::set<std::string> known;
+  for (const auto& entry : fs::directory_iterator(documents / "examples")) {
+    std::istringstream lines(test::read_text(entry.path()));
+    for (std::string line; std::getline(lines, line);) known.insert(trimmed(line));
+  }
+  std::vector<std::string> out;
+  bool is_code = false;
+  std::istringstream lines(test::read_text(documents / "docs/embedding.md"));
+  for (std::string line; std::getline(lines, line);) {
+    if (line.starts_with("```")) {
+      is_code = line == "```cpp";
+    } else if (is_code && !known.contains(trimmed(line))) {
+      out.push_back(line);
+    }
+  }
+  return out;
+}
+
+TEST(Install, DocumentsShowTheExamplesOwnLines) {
+  const test::TempFolder folder;
+  ASSERT_TRUE(succeeds(folder, std::string("cmake --install ") + BINOSPLAT_BUILD_DIR + " --prefix " +
+                                   (folder / "prefix").string()));
+  const fs::path documents = folder / "prefix/share/doc/binosplat";
+  EXPECT_EQ(lines_of_no_example(documents), std::vector<std::string>());
+  fs::remove(documents / "examples/mesh.cpp");
+  EXPECT_GT(lines_of_no_example(documents).size(), 10u) << "lines of no example go unnoticed";
 }
 
 TEST(Install, DocumentsLinksHoldAndShellsAndManFindTheirFiles) {
