@@ -131,14 +131,13 @@ FoveatedViews foveated_views(std::span<const shared::View> eyes, const Foveation
   return out;
 }
 
-render::FrameReport FoveatedFrame::draw(std::span<const shared::View> eyes, const Foveation& foveation,
-                                        const render::FrameSettings& settings,
-                                        const render::Workings& workings,
-                                        const render::CallersTextures& textures) {
-  const std::span<const render::Canvas> canvases = textures.canvases;
-  if (!canvases.empty() && canvases.size() != eyes.size())
-    fail("{} canvases for {} eyes: expected one each", canvases.size(), eyes.size());
-  if (!textures.mesh_depths.empty() && (canvases.empty() || textures.mesh_depths.size() != eyes.size()))
+void FoveatedFrame::submit(std::span<const shared::View> eyes, const Foveation& foveation,
+                           const render::FrameSettings& settings, const render::Workings& workings,
+                           const render::CallersTextures& textures) {
+  const std::size_t canvases = textures.canvases.size(), meshes = textures.mesh_depths.size();
+  if (canvases != 0 && canvases != eyes.size())
+    fail("{} canvases for {} eyes: expected one each", canvases, eyes.size());
+  if (meshes != 0 && (canvases == 0 || meshes != eyes.size()))
     fail("foveation with depths of meshes: expected one an eye, and canvases");
   FoveatedViews drawn = foveated_views(eyes, foveation, settings);
   eyes_.assign(eyes.begin(), eyes.end());
@@ -147,49 +146,55 @@ render::FrameReport FoveatedFrame::draw(std::span<const shared::View> eyes, cons
     eye.pixel_offset = static_cast<std::uint32_t>(pixels);
     pixels += std::int64_t{eye.width} * eye.height;
   }
-  on_canvases_ = !canvases.empty();
-  drawn.settings.depth = on_canvases_ ? Depth::none : Depth::mean;
-  if (!on_canvases_) {
+  to_.assign(textures.canvases.begin(), textures.canvases.end());
+  among_meshes_ = meshes != 0;
+  background_ = settings.background;
+  parts_ = std::move(drawn.eyes);
+  drawn.settings.depth = to_.empty() ? Depth::mean : Depth::none;
+  if (to_.empty()) {
     colours_.reserve(pixels * 16);
     z_sums_.reserve(pixels * 4);
   }
   std::vector<shared::Canvas> of_eyes;
-  for (const render::Canvas& canvas : canvases) of_eyes.push_back(render::on_gpu(canvas));
-  if (on_canvases_) canvases_.upload(of_eyes);
+  for (const render::Canvas& canvas : to_) of_eyes.push_back(render::on_gpu(canvas));
+  if (!of_eyes.empty()) canvases_.upload(of_eyes);
   render::Workings with_compose = workings;
   with_compose.then_called = "compose";
-  with_compose.then = [&](gl::Dispatcher& dispatcher) {
-    for (std::size_t k = 0; k < eyes_.size(); ++k)
-      compose(dispatcher, k, drawn.eyes[k], settings.background, textures);
-    dispatcher.wait_for_writes();
-    // However canvases are read next.
-    if (on_canvases_) dispatcher.context().gl().MemoryBarrier(GL_ALL_BARRIER_BITS);
-  };
+  with_compose.then = [this](gl::Dispatcher& dispatcher) { compose(dispatcher); };
   std::vector<render::MeshDepth> of_views;
   for (const render::MeshDepth& mesh : textures.mesh_depths) of_views.insert(of_views.end(), 2, mesh);
-  render::FrameReport report =
-      frame_.draw(drawn.views, drawn.settings, with_compose, {.mesh_depths = of_views});
-  report.on_canvases = on_canvases_;
-  parts_ = std::move(drawn.eyes);
+  frame_.submit(drawn.views, drawn.settings, with_compose, {.mesh_depths = of_views});
+}
+
+render::FrameReport FoveatedFrame::finish() {
+  render::FrameReport report = frame_.finish();
+  report.on_canvases = !to_.empty();
   return report;
 }
 
-void FoveatedFrame::compose(gl::Dispatcher& dispatcher, std::size_t k, const FoveatedEye& parts,
-                            const glm::vec3& background, const render::CallersTextures& textures) {
+void FoveatedFrame::compose(gl::Dispatcher& dispatcher) {
+  for (std::size_t k = 0; k < eyes_.size(); ++k) compose_eye(dispatcher, k);
+  dispatcher.wait_for_writes();
+  // However canvases are read next.
+  if (!to_.empty()) dispatcher.context().gl().MemoryBarrier(GL_ALL_BARRIER_BITS);
+}
+
+void FoveatedFrame::compose_eye(gl::Dispatcher& dispatcher, std::size_t k) {
   const shared::View &eye = eyes_[k], &context = frame_.views()[2 * k], &window = frame_.views()[2 * k + 1];
+  const FoveatedEye& parts = parts_[k];
   gl::Context& gl = dispatcher.context();
-  if (on_canvases_) {
-    const render::Canvas& to = textures.canvases[k];
+  if (!to_.empty()) {
+    const render::Canvas& to = to_[k];
     gl.gl().BindImageTexture(0, to.texture, to.level, GL_FALSE, to.layer, GL_WRITE_ONLY, to.format);
   }
-  if (!textures.mesh_depths.empty()) {
-    gl.gl().BindTextureUnit(0, textures.canvases[k].texture);
+  if (among_meshes_) {
+    gl.gl().BindTextureUnit(0, to_[k].texture);
     gl.gl().BindSampler(0, frame_.buffers().nearest.id());
   }
   const std::uint64_t groups = std::uint64_t{(eye.width + COMPOSE_COLUMNS - 1) / COMPOSE_COLUMNS} *
                                ((eye.height + COMPOSE_ROWS - 1) / COMPOSE_ROWS);
-  const std::array variant = {gl::Number{"CANVASES", on_canvases_, 2},
-                              gl::Number{"MESH_DEPTH", !textures.mesh_depths.empty(), 2}};
+  const std::array variant = {gl::Number{"CANVASES", !to_.empty(), 2},
+                              gl::Number{"MESH_DEPTH", among_meshes_, 2}};
   dispatcher.start(gl.program("foveate.comp", variant), gl::DispatchSize::of_groups(groups),
                    {{"Colours", frame_.colours()},
                     {"ZSums", frame_.z_sums()},
@@ -197,9 +202,9 @@ void FoveatedFrame::compose(gl::Dispatcher& dispatcher, std::size_t k, const Fov
                     {"ComposedZ", z_sums_},
                     {"Canvases", canvases_}},
                    {{"nth", static_cast<std::uint32_t>(k)},
-                    {"background_r", bits(background.r)},
-                    {"background_g", bits(background.g)},
-                    {"background_b", bits(background.b)},
+                    {"background_r", bits(background_.r)},
+                    {"background_g", bits(background_.g)},
+                    {"background_b", bits(background_.b)},
                     {"first", eye.pixel_offset},
                     {"width", eye.width},
                     {"height", eye.height},
@@ -220,7 +225,7 @@ void FoveatedFrame::compose(gl::Dispatcher& dispatcher, std::size_t k, const Fov
 }
 
 std::vector<Picture> FoveatedFrame::read_pictures() const {
-  if (on_canvases_) fail("the pictures went onto canvases, and are whose those are");
+  if (!to_.empty()) fail("the pictures went onto canvases, and are whose those are");
   std::vector<Picture> pictures;
   for (const shared::View& eye : eyes_) {
     Picture& picture = pictures.emplace_back(static_cast<int>(eye.width), static_cast<int>(eye.height));

@@ -2,6 +2,8 @@
 // Foveated pictures: for each eye a window about its gaze, exact to the bit, and around it the same picture
 // in fewer pixels, brought to one size on the GPU. Both are views of one frame and share its depth order.
 
+#include <binosplat/settings.h>
+
 #include <array>
 #include <glm/glm.hpp>
 #include <memory>
@@ -15,17 +17,7 @@
 
 namespace binosplat::stereo {
 
-/// What is seen sharply. Degrees are those of the eye: its picture's middle is where its axis meets it,
-/// wherever that lies in an asymmetric frustum.
-struct Foveation {
-  double inset_degrees = 20.0;  // across what is exact, all around the gaze
-  double context_scale = 0.4;   // the context's pixels along each axis over the picture's, above 0, up to 1
-  /// Degrees to the right of the eye's axis and above it, by eye or one for all; empty: along the axis.
-  std::vector<glm::dvec2> gaze;
-  /// The width of the border around the inset in which the window fades into the context, over the inset's.
-  /// 0: no border.
-  double seam = 0.1;
-};
+using Foveation = binosplat::Foveation;
 
 /// Throws Error for numbers that no eye has; `prefix` goes before their names.
 void check(const Foveation& foveation, std::string_view prefix = "");
@@ -70,7 +62,16 @@ class FoveatedFrame {
   /// foveated_views() and render::Frame::draw() do.
   render::FrameReport draw(std::span<const shared::View> eyes, const Foveation& foveation,
                            const render::FrameSettings& settings = {}, const render::Workings& workings = {},
-                           const render::CallersTextures& textures = {});
+                           const render::CallersTextures& textures = {}) {
+    submit(eyes, foveation, settings, workings, textures);
+    return finish();
+  }
+
+  /// The same in two calls, as those of frame().
+  void submit(std::span<const shared::View> eyes, const Foveation& foveation,
+              const render::FrameSettings& settings = {}, const render::Workings& workings = {},
+              const render::CallersTextures& textures = {});
+  render::FrameReport finish();
 
   /// The composed pictures of the last frame, one an eye; and on the GPU, as a frame's lie: vec4 (C, T) by
   /// pixel, a view's from its pixel_offset on; unless they went onto canvases.
@@ -84,12 +85,15 @@ class FoveatedFrame {
   render::Frame& frame() { return frame_; }
 
  private:
-  void compose(gl::Dispatcher& dispatcher, std::size_t k, const FoveatedEye& parts,
-               const glm::vec3& background, const render::CallersTextures& textures);
+  void compose(gl::Dispatcher& dispatcher);
+  void compose_eye(gl::Dispatcher& dispatcher, std::size_t k);
 
   render::Frame frame_;
   gl::Buffer colours_, z_sums_, canvases_;
-  bool on_canvases_ = false;
+  // Of the frame that was submitted last:
+  std::vector<render::Canvas> to_;  // empty: into the buffers above
+  bool among_meshes_ = false;
+  glm::vec3 background_{0.0f};
   std::vector<shared::View> eyes_;
   std::vector<FoveatedEye> parts_;
 };

@@ -157,7 +157,9 @@ const gl::Texture& Presenter::scratch(const glm::ivec2& size, GLenum format) {
 }
 
 void Presenter::draw(const gl::Buffer& colours, std::span<const shared::View> views, std::size_t first,
-                     int layout, const Target& target, const Background& background, bool over_target) {
+                     int layout, const Target& target, const Backdrop& backdrop) {
+  const Background& background = backdrop.background;
+  const bool over_target = backdrop.is_in_target;
   if (over_target && layout != LAYOUT_SEPARATE)
     fail("layout {} over what is in the target: expected separate", layout_choices[layout].name);
   const std::size_t second = layout == LAYOUT_SEPARATE ? first : first + 1;

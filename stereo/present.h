@@ -29,6 +29,14 @@ struct Canvases {
 int depth_rows(const gl::Context& context, std::span<const shared::View> views,
                std::span<const DepthTarget> targets);
 
+/// What a picture is shown over: a colour, nothing, or, with mesh depths, what is in the target already.
+struct Backdrop {
+  Backdrop(const Background& colour, bool is_there = false) : background(colour), is_in_target(is_there) {}
+
+  Background background;
+  bool is_in_target;
+};
+
 class Presenter {
  public:
   explicit Presenter(gl::Context& context) : dispatcher_(context), nearest_(context) {}
@@ -51,19 +59,18 @@ class Presenter {
   /// whatever the background (LAYOUT_SEPARATE).
   void draw(const render::Frame& frame, std::size_t first, int layout, const Target& target,
             const Background& background = glm::vec3(0.0f)) {
-    draw(frame.colours(), frame.views(), first, layout, target, background,
-         !frame.plan().mesh_depths.empty());
+    draw(frame.colours(), frame.views(), first, layout, target,
+         {background, !frame.plan().meshes.depths.empty()});
   }
 
   /// The same of other pictures that lie in a buffer as a frame's do: vec4 (C, T) by pixel, a view's from its
   /// pixel_offset on.
   void draw(const gl::Buffer& colours, std::span<const shared::View> views, std::size_t first, int layout,
-            const Target& target, const Background& background, bool over_target = false);
+            const Target& target, const Backdrop& backdrop);
 
   /// The canvases through which a frame's own blend may draw into these targets, one a view
   /// (LAYOUT_SEPARATE): the same bits as draw() writes afterwards, in less time. None for more than
-  /// MAX_CANVASES targets, or where one of them takes a copy. `over_target`: for a frame with mesh depths.
-  /// Throws as draw() does.
+  /// MAX_CANVASES targets, or where one of them takes a copy. Throws as draw() does.
   Canvases canvases(std::span<const Target> targets, const Background& background, bool over_target = false);
 
   /// Fills all of a target with the depths of view `v` of the last frame. State as for draw(). Throws

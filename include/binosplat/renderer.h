@@ -28,6 +28,8 @@
 
 namespace binosplat {
 
+class SplatStream;
+
 /// How OpenGL's functions are found by name: eglGetProcAddress, glfwGetProcAddress and their like.
 using GetProcAddress = void (*(*)(const char* name))();
 
@@ -81,6 +83,8 @@ class Renderer {
   /// Uploads the model into the context that is current, of OpenGL 4.5 core or later. Context, textures and
   /// framebuffers stay the caller's. Throws Error: no_gl for what the context lacks, out_of_memory.
   Renderer(GetProcAddress get_proc_address, const SplatModel& model);
+  /// Draws the levels that a stream has read (binosplat/stream.h), which has one renderer at a time.
+  Renderer(GetProcAddress get_proc_address, SplatStream& stream);
   ~Renderer();
   Renderer(Renderer&&) noexcept;
   Renderer& operator=(Renderer&&) noexcept;

@@ -3,6 +3,7 @@
 
 #include <glm/glm.hpp>
 #include <optional>
+#include <vector>
 
 #include <binosplat/eyes.h>
 #include <binosplat/targets.h>
@@ -42,6 +43,20 @@ enum class DepthKind {
   median,  // where half of the light is gone: on the one or on the other. What a compositor needs
 };
 
+/// What is seen sharply: for each eye an inset about its gaze, exact to the bit, and around it the same
+/// picture in fewer pixels, brought to one size. Degrees are those of the eye: its picture's middle is where
+/// its axis meets it, wherever that lies in an asymmetric frustum.
+struct Foveation {
+  double inset_degrees = 20.0;  // across what is exact, all around the gaze, from 1 to 120
+  double context_scale = 0.4;   // the context's pixels along each axis over the picture's, from 0.05 to 1
+  /// Degrees to the right of the eye's axis and above it, at most 80, by eye or one for all; empty: along the
+  /// axis.
+  std::vector<glm::dvec2> gaze = {};
+  /// The width of the border around the inset in which the window fades into the context, over the inset's.
+  /// 0: no border.
+  double seam = 0.1;
+};
+
 struct Settings {
   /// RGB behind the scene, from 0 to 1, display-referred; the target's alpha is then 1. None: colours are
   /// premultiplied by the alpha beside them.
@@ -63,6 +78,9 @@ struct Settings {
   std::optional<Projection> projection = {};  // likewise
   DepthKind depth = DepthKind::mean;          // what is written into depth targets
   Layout layout = Layout::separate;
+  /// Both eyes' pictures are foveated; a tolerance or a quality is then the contexts'. Without depth targets
+  /// and regions; with mesh depths only into targets that are written in place.
+  std::optional<Foveation> foveation = {};
   /// World units, above 0. Gaussians whose middle has no larger depth along the view's axis are not drawn; by
   /// Order::distance with Projection::tangent, no larger distance from the eye. DepthTarget::near_plane
   /// leaves nothing out: it says which depth is written as 0.

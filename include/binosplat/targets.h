@@ -72,18 +72,18 @@ struct DepthTarget {
 
 /// How a number d of a depth texture tells how far something is.
 enum class DepthCoding {
-  /// As OpenGL's depth buffer keeps it: d = far (1 - near / z) / (far - near), from 0 at
-  /// MeshDepth::near_plane
-  /// to 1 at far_plane. Pixels that have the number of the farther plane have no mesh: what a cleared buffer
-  /// holds.
+  /// As OpenGL's depth buffer keeps it, d = far (1 - near / z) / (far - near): 0 at MeshDepth::near_plane, 1
+  /// at
+  /// far_plane. Pixels that have the number of the farther plane have no mesh: what a cleared buffer holds.
   planes,
   axis,  // d times units_per_number is z; pixels whose d is 0, less, infinite or not a number have no mesh
 };
 
 /// The depths of the meshes that the caller has drawn in a view, by which splats and meshes hide each other:
 /// what lies behind a mesh is not drawn, and splats in front of it are blended over the colours that are in
-/// the view's target, premultiplied by the alpha beside them. A Gaussian lies where its centre does: it is
-/// hidden in the pixels where the mesh is nearer than that.
+/// the view's target, premultiplied by the alpha beside them, which the caller has cleared or drawn. A
+/// Gaussian lies where its centre does: it is hidden in the pixels where the mesh is nearer than that, so
+/// that a mesh within a surface of splats shows some of them in stripes.
 ///
 /// A 2D texture or a layer of an array, without samples, of GL_DEPTH_COMPONENT32F, DEPTH_COMPONENT24,
 /// DEPTH_COMPONENT16, DEPTH24_STENCIL8, DEPTH32F_STENCIL8 or R32F. It is only read. It must be as large as
@@ -94,10 +94,10 @@ struct MeshDepth {
   int layer = -1;    // of an array texture; -1: not one
   int x = 0, y = 0;  // px, lower left corner of the view's picture in it
   DepthCoding coding = DepthCoding::planes;
-  /// World units, above 0; either may be infinite, and `near_plane` may be the larger one, where depths are
-  /// reversed.
-  double near_plane = near_default;
-  double far_plane = std::numeric_limits<double>::infinity();
+  /// World units, above 0: those of the projection that the meshes were drawn with, which must be given.
+  /// Either may be infinite, and `near_plane` may be the larger one, where depths are reversed.
+  double near_plane = 0.0;
+  double far_plane = 0.0;
   double units_per_number = 1.0;  // world units, above 0, with DepthCoding::axis
 };
 

@@ -5,7 +5,9 @@
 #include "gl/state.h"
 #include "library/mesh_depth.h"
 #include "library/settings.h"
-#include "stereo/eyes.h"
+#include "library/stream.h"
+#include "library/views.h"
+#include "stereo/foveate.h"
 #include "stereo/present.h"
 
 namespace binosplat {
@@ -14,8 +16,23 @@ struct Renderer::Impl {
   Impl(GetProcAddress get_proc_address, std::shared_ptr<const Model> drawn)
       : model(std::move(drawn)), context(gl::Context::adopt(get_proc_address)) {
     const gl::KeptState kept(*context);
-    frame = std::make_unique<render::Frame>(*context, *model);
+    frame = std::make_unique<stereo::FoveatedFrame>(std::make_shared<render::GpuModel>(*context, *model));
     presenter = std::make_unique<stereo::Presenter>(*context);
+  }
+  Impl(GetProcAddress get_proc_address, std::shared_ptr<SplatStream::Impl> drawn)
+      : stream(std::move(drawn)), context(gl::Context::adopt(get_proc_address)) {
+    if (stream->context != nullptr) fail("a stream has one renderer at a time: destroy the other one first");
+    const gl::KeptState kept(*context);
+    frame = std::make_unique<stereo::FoveatedFrame>(stream->stream.gpu_model(*context, PRECISION_FULL));
+    presenter = std::make_unique<stereo::Presenter>(*context);
+    stream->context = context.get();
+  }
+  ~Impl() {
+    if (!stream || stream->context != context.get()) return;
+    frame.reset();
+    stream->stream.release_gpu_model();
+    stream->context = nullptr;
+    stream->is_drawn = false;
   }
 
   /// Logs the errors that OpenGL has recorded since the last call: the caller's.
@@ -36,20 +53,24 @@ struct Renderer::Impl {
     std::vector<DepthTarget> depths;
     library::MeshDepths mesh_depths;
     stereo::Canvases canvases;
+    bool is_foveated = false;
+    std::vector<std::uint32_t> callers_errors;
 
     bool has_meshes() const { return !mesh_depths.list.empty(); }
-    std::vector<std::uint32_t> callers_errors;
   };
 
-  std::shared_ptr<const Model> model;
+  std::shared_ptr<const Model> model;  // or
+  std::shared_ptr<SplatStream::Impl> stream;
   std::unique_ptr<gl::Context> context;
   std::optional<Submitted> submitted;
-  std::unique_ptr<render::Frame> frame;
+  std::unique_ptr<stereo::FoveatedFrame> frame;
   std::unique_ptr<stereo::Presenter> presenter;
 };
 
 Renderer::Renderer(GetProcAddress get_proc_address, const SplatModel& model)
     : impl_(std::make_unique<Impl>(get_proc_address, model.model_)) {}
+Renderer::Renderer(GetProcAddress get_proc_address, SplatStream& stream)
+    : impl_(std::make_unique<Impl>(get_proc_address, stream.impl_)) {}
 Renderer::~Renderer() = default;
 Renderer::Renderer(Renderer&&) noexcept = default;
 Renderer& Renderer::operator=(Renderer&&) noexcept = default;
@@ -58,11 +79,7 @@ void Renderer::submit(std::span<const View> views, const Placement& placement, c
   if (impl_->submitted) fail("a frame is under way: call finish() before the next submit()");
   Impl::Submitted to{.layout = library::layout_of(settings.layout), .background = settings.background};
   to.callers_errors = impl_->callers_errors();
-  std::vector<Eye> eyes;
-  std::vector<glm::ivec2> sizes;
   for (const View& view : views) {
-    eyes.push_back(view.eye);
-    sizes.push_back(view.size);
     to.targets.push_back(view.target);
     if (view.depth) to.depths.push_back(*view.depth);
     if (view.mesh_depth) library::add_mesh_depth(*impl_->context, view, to.mesh_depths);
@@ -84,36 +101,52 @@ void Renderer::submit(std::span<const View> views, const Placement& placement, c
          settings.background ? "background" : "layout other than separate");
   }
   const render::FrameSettings over = library::frame_settings(settings, views);
-  const auto head = stereo::views_from_xr(eyes, placement, sizes, settings.near_plane);
+  to.is_foveated = settings.foveation.has_value();
+  if (to.is_foveated && !to.depths.empty())
+    fail("foveation with depth targets: composed pictures have no depths");
+  const auto head = library::views_of(views, placement, settings);
 
   const gl::KeptState kept(*impl_->context);
   std::optional<gl::KeptTextures> textures;
   if (to.has_meshes()) textures.emplace(*impl_->context);
   if (to.layout == LAYOUT_SEPARATE)
     to.canvases = impl_->presenter->canvases(to.targets, to.background, to.has_meshes());
-  impl_->frame->submit(head.views, over, {},
-                       {.canvases = to.canvases.list,
-                        .depth_rows = stereo::depth_rows(*impl_->context, head.views, to.depths),
-                        .mesh_depths = to.mesh_depths.list});
+  const render::CallersTextures of_caller{
+      .canvases = to.canvases.list,
+      .depth_rows = stereo::depth_rows(*impl_->context, head.views, to.depths),
+      .mesh_depths = to.mesh_depths.list};
+  if (to.is_foveated) {
+    impl_->frame->submit(head.views, *settings.foveation, over, {}, of_caller);
+  } else {
+    impl_->frame->frame().submit(head.views, over, {}, of_caller);
+  }
   impl_->submitted = std::move(to);
+  if (impl_->stream) impl_->stream->is_drawn = true;
 }
 
-bool Renderer::is_done() { return !impl_->submitted || impl_->frame->is_done(); }
+bool Renderer::is_done() { return !impl_->submitted || impl_->frame->frame().is_done(); }
 
 Report Renderer::finish() {
   if (!impl_->submitted) fail("no frame is under way: call submit() before finish()");
   const Impl::Submitted frame = std::move(*impl_->submitted);
   impl_->submitted.reset();
+  if (impl_->stream) impl_->stream->is_drawn = false;
   const gl::KeptState kept(*impl_->context);
   std::optional<gl::KeptTextures> textures;
   if (frame.has_meshes()) textures.emplace(*impl_->context);
   stereo::Presenter& presenter = *impl_->presenter;
-  Report report = library::report_of(impl_->frame->finish());
+  stereo::FoveatedFrame& drawn = *impl_->frame;
+  Report report = library::report_of(frame.is_foveated ? drawn.finish() : drawn.frame().finish());
   report.callers_errors = frame.callers_errors;
-  for (std::size_t k = 0; k < frame.targets.size() && !report.in_place; ++k)
-    presenter.draw(*impl_->frame, k, frame.layout, frame.targets[k], frame.background);
+  for (std::size_t k = 0; k < frame.targets.size() && !report.in_place; ++k) {
+    if (frame.is_foveated) {
+      presenter.draw(drawn.colours(), drawn.views(), k, frame.layout, frame.targets[k], frame.background);
+    } else {
+      presenter.draw(drawn.frame(), k, frame.layout, frame.targets[k], frame.background);
+    }
+  }
   for (std::size_t k = 0; k < frame.depths.size(); ++k)
-    presenter.draw_depth(*impl_->frame, k, frame.depths[k]);
+    presenter.draw_depth(drawn.frame(), k, frame.depths[k]);
   return report;
 }
 

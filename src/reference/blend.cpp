@@ -17,7 +17,7 @@ void put(const PixelSum& sum, int x, int y, Picture& picture) {
 }
 
 double mesh_at(const TileLists& lists, int width, const glm::ivec2& pixel) {
-  if (lists.mesh_depths.empty()) return no_mesh;
+  if (lists.mesh_depths.empty()) return PixelSum{}.farthest;
   return lists.mesh_depths[static_cast<std::size_t>(pixel.y) * width + pixel.x];
 }
 
@@ -34,7 +34,8 @@ void blend_block(const std::vector<Splat>& splats, std::span<const std::uint32_t
   };
   std::vector<Pixel> pixels;
   for (int y = first.y; y < end.y; ++y) {
-    for (int x = first.x; x < end.x; ++x) pixels.push_back({{x, y}, {}, false});
+    for (int x = first.x; x < end.x; ++x)
+      pixels.push_back({{x, y}, {.farthest = mesh_at(lists, picture.width, {x, y})}, false});
   }
   for (std::size_t from = 0; from < list.size(); from += step) {
     std::vector<std::uint32_t> some;
@@ -46,8 +47,7 @@ void blend_block(const std::vector<Splat>& splats, std::span<const std::uint32_t
     bool is_dark = true;
     for (Pixel& p : pixels) {
       const auto ignore = [](auto&&...) {};
-      p.ended =
-          p.ended || blend_on(p.sum, splats, some, p.at, {}, ignore, mesh_at(lists, picture.width, p.at));
+      p.ended = p.ended || blend_on(p.sum, splats, some, p.at, {}, ignore);
       is_dark = is_dark && (p.ended || p.sum.transmittance <= approximation.dark_transmittance);
     }
     if (!is_dark || !(approximation.dark_transmittance > 0.0) || from + step >= list.size()) continue;
@@ -91,8 +91,9 @@ BlendCounts blend_tile(const std::vector<Splat>& splats, const TileLists& lists,
         ++walked;
         if (verdict == Verdict::blended) ++counts.visible;
       };
-      const double mesh = mesh_at(lists, picture.width, {x, y});
-      put(blend_pixel(splats, list, {x, y}, faults, count, mesh), x, y, picture);
+      PixelSum sum{.farthest = mesh_at(lists, picture.width, {x, y})};
+      blend_on(sum, splats, list, {x, y}, faults, count);
+      put(sum, x, y, picture);
       walked_by_tile = std::max(walked_by_tile, walked);
     }
   }

@@ -14,13 +14,12 @@
 
 namespace binosplat::reference {
 
-inline constexpr double no_mesh = std::numeric_limits<double>::infinity();
-
 /// What a pixel has gathered so far.
 struct PixelSum {
-  glm::dvec3 colour{0.0};      // C
-  double z_sum = 0.0;          // Z
-  double transmittance = 1.0;  // T
+  glm::dvec3 colour{0.0};                                     // C
+  double z_sum = 0.0;                                         // Z
+  double transmittance = 1.0;                                 // T
+  double farthest = std::numeric_limits<double>::infinity();  // nothing is seen beyond this view z
 };
 
 enum class Verdict { skipped, blended, stopped };
@@ -47,15 +46,15 @@ inline void add(PixelSum& sum, const Splat& splat, double z, double alpha) {
   sum.transmittance *= 1 - alpha;
 }
 
-/// Blends the list at a pixel behind what there is; whether the pixel ended. Nothing is seen beyond view z
-/// `farthest`. For each Gaussian, before it is added, visit(index, alpha, sum so far, verdict) is called.
+/// Blends the list at a pixel behind what there is; whether the pixel ended. For each Gaussian, before
+/// it is added, visit(index, alpha, sum so far, verdict) is called.
 template <typename Visit>
 bool blend_on(PixelSum& sum, const std::vector<Splat>& splats, std::span<const std::uint32_t> list,
-              const glm::ivec2& pixel, Faults faults, const Visit& visit, double farthest = no_mesh) {
+              const glm::ivec2& pixel, Faults faults, const Visit& visit) {
   for (const std::uint32_t i : list) {
     const Splat& splat = splats[i];
     const double alpha = alpha_at(splat, pixel.x, pixel.y);
-    if (alpha < ALPHA_MIN || depth_at(splat, pixel.x, pixel.y) > farthest) {
+    if (alpha < ALPHA_MIN || depth_at(splat, pixel.x, pixel.y) > sum.farthest) {
       visit(i, alpha, sum, Verdict::skipped);
       continue;
     }
@@ -71,9 +70,9 @@ bool blend_on(PixelSum& sum, const std::vector<Splat>& splats, std::span<const s
 /// The whole of it.
 template <typename Visit>
 PixelSum blend_pixel(const std::vector<Splat>& splats, std::span<const std::uint32_t> list,
-                     const glm::ivec2& pixel, Faults faults, const Visit& visit, double farthest = no_mesh) {
+                     const glm::ivec2& pixel, Faults faults, const Visit& visit) {
   PixelSum sum;
-  blend_on(sum, splats, list, pixel, faults, visit, farthest);
+  blend_on(sum, splats, list, pixel, faults, visit);
   return sum;
 }
 

@@ -51,7 +51,7 @@ const gl::Program& program(gl::Context& context, const FramePlan& plan, const Bl
   if (v.draws()) {
     v.depth = plan.depth();
     v.canvases = static_cast<int>(plan.canvases.size());
-    v.mesh_depth = !plan.mesh_depths.empty();
+    v.mesh_depth = !plan.meshes.depths.empty();
   }
   v.program = program_for(context, plan, v);
   if (!v.is_legal()) v.large_splats = false;
@@ -75,10 +75,10 @@ void run(gl::Dispatcher& dispatcher, const FramePlan& plan, FrameBuffers& buffer
     const Canvas& to = plan.canvases[k];
     context.gl().BindImageTexture(static_cast<GLuint>(k), to.texture, to.level, GL_FALSE, to.layer,
                                   GL_WRITE_ONLY, to.format);
-    if (!plan.mesh_depths.empty()) bind_texture(context, k, to.texture, buffers);
+    if (!plan.meshes.depths.empty()) bind_texture(context, k, to.texture, buffers);
   }
-  for (std::size_t k = 0; k < plan.mesh_depths.size(); ++k)
-    bind_texture(context, MAX_CANVASES + k, plan.mesh_depths[k].texture, buffers);
+  for (std::size_t k = 0; k < plan.meshes.depths.size(); ++k)
+    bind_texture(context, MAX_CANVASES + k, plan.meshes.depths[k].texture, buffers);
   if (task.tiles_a_splat == 0.0) program(context, plan, task, false, true);  // soon, maybe
   const auto draw = [&](bool long_lists, const gl::DispatchSize& size) {
     dispatcher.start(program(context, plan, task, long_lists, task.tiles_a_splat > large_tiles), size,

@@ -79,8 +79,8 @@ void FrameBuffers::upload(const FramePlan& plan, bool uses_measured) {
   for (const Canvas& canvas : plan.canvases) of_views.push_back(on_gpu(canvas));
   if (!of_views.empty()) pictures.canvases.upload(of_views);
   std::vector<shared::MeshSource> meshes;
-  for (std::size_t v = 0; v < plan.mesh_depths.size(); ++v)
-    meshes.push_back(on_gpu(plan.mesh_depths[v], plan.whole_sizes[v]));
+  for (std::size_t v = 0; v < plan.meshes.depths.size(); ++v)
+    meshes.push_back(on_gpu(plan.meshes.depths[v], plan.meshes.whole_sizes[v]));
   if (!meshes.empty()) pictures.mesh_sources.upload(meshes);
   if (plan.draws_regions()) region_rows.upload(plan.region_rows);
   if (plan.settings.transmittance != TRANSMITTANCE_DEPTH) return;

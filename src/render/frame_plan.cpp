@@ -51,7 +51,7 @@ void add_view(FramePlan& plan, shared::View view, const ViewRegion& region,
   if (view.width == 0 || view.height == 0)
     fail("a view of {} x {} px has no picture", view.width, view.height);
   view.left = view.top = 0;
-  plan.whole_sizes.emplace_back(view.width, view.height);
+  plan.meshes.whole_sizes.emplace_back(view.width, view.height);
   take_window(region, view);
   view.tolerance_share = region.tolerance_share;
   view.low_pass_share = region.low_pass_share;
@@ -177,7 +177,7 @@ FramePlan make_plan(std::span<const shared::View> views, const FrameSettings& se
   const CallersTextures& textures = request.textures;
   plan.canvases.assign(textures.canvases.begin(), textures.canvases.end());
   plan.depth_rows = textures.depth_rows;
-  plan.mesh_depths.assign(textures.mesh_depths.begin(), textures.mesh_depths.end());
+  plan.meshes.depths.assign(textures.mesh_depths.begin(), textures.mesh_depths.end());
   const auto region_of = [&](std::size_t v) {
     return settings.regions.empty() ? ViewRegion{} : settings.regions[v];
   };

@@ -40,6 +40,12 @@ struct Probed {
   double unevenness = 0.0;     // variance of its tiles' errors, in squares of their mean
 };
 
+/// Meshes of the caller's among the splats.
+struct Meshes {
+  std::vector<MeshDepth> depths;        // by view that is asked for; empty: there are none
+  std::vector<glm::uvec2> whole_sizes;  // px, by view: of the picture that a window is a part of
+};
+
 /// What a frame derives from its settings, its views and its model before anything is drawn. It is made once,
 /// by make_plan(); what frames remember of one another is history.h's.
 struct FramePlan {
@@ -61,12 +67,11 @@ struct FramePlan {
   std::vector<OrderGroup> groups;
   std::vector<glm::uvec2>
       region_rows;  // by row of tiles of all views (tiles/regions.glsl), where any view is not drawn whole
-  std::vector<Canvas> canvases;         // where pictures go; empty: into the frame's own buffer
-  int depth_rows = 1;                   // with canvases: depths are wanted in every row, or every second one
-  std::vector<MeshDepth> mesh_depths;   // by view that is asked for; empty: there are none
-  std::vector<glm::uvec2> whole_sizes;  // px, by view: of the picture that a window is a part of
-  std::uint32_t supertile_count = 0;    // over all views
-  std::int64_t pixel_count = 0;         // over all views
+  std::vector<Canvas> canvases;  // where pictures go; empty: into the frame's own buffer
+  int depth_rows = 1;            // with canvases: depths are wanted in every row, or every second one
+  Meshes meshes;
+  std::uint32_t supertile_count = 0;  // over all views
+  std::int64_t pixel_count = 0;       // over all views
   // For Scaffold-GS; K is 0 for other models.
   std::uint32_t offset_count = 0;        // K
   std::uint32_t views_per_decoding = 1;  // views that share what the networks made
@@ -76,7 +81,7 @@ struct FramePlan {
   /// DEPTH_ of shared/limits.h, what the blend tells of a pixel's depth.
   int depth() const;
   /// Whether `z_sums` are depths: where pictures are final.
-  bool tells_depths() const { return !canvases.empty() || !mesh_depths.empty(); }
+  bool tells_depths() const { return !canvases.empty() || !meshes.depths.empty(); }
   /// How much nearer splats may be than those before them in a list, world units; infinite: any.
   float depth_slack() const;
   /// Whether splats are blended by blocks, which end once they are dark (docs/method.md 5.2).

@@ -58,6 +58,12 @@ class Stream {
   /// context must be current in every call. Frames that draw it must be destroyed before the stream.
   std::shared_ptr<render::GpuModel> gpu_model(gl::Context& context, int precision);
 
+  /// Frees what gpu_model() uploaded: no frame draws it any more. Another context may follow.
+  void release_gpu_model() {
+    visibility_.reset();
+    gpu_model_.reset();
+  }
+
   /// To be called before each frame that must not wait. Within about `ms` it puts what the worker thread has
   /// read into the model and onto the GPU, or draws one view of a visibility pass (where levels are chosen by
   /// dB). The worker chooses and reads what the views need. While the views move, the second half of them is

@@ -1,5 +1,7 @@
 #include "xr/headset.h"
 
+#include <binosplat/budget.h>
+
 #include <chrono>
 #include <glm/gtc/quaternion.hpp>
 #include <thread>
@@ -7,7 +9,6 @@
 #include "base/error.h"
 #include "base/log.h"
 #include "base/statistics.h"
-#include "xr/budget.h"
 #include "xr/hands.h"
 
 namespace binosplat::xr {
@@ -99,8 +100,8 @@ class Viewer {
     }
     const Effort effort = budget_ ? budget_->effort() : Effort{left, 1.0};
     render::FrameSettings settings = settings_.frame;
-    settings.quality = effort.quality;
-    if (budget_ && effort.quality > 0.0f) settings.th = TH_SQUARED;
+    settings.quality = effort.quality.value_or(0.0f);
+    if (budget_ && effort.quality) settings.th = TH_SQUARED;
     const std::optional<XrPosef> gaze =
         settings_.projection.foveation ? hands.gaze(time.display) : std::nullopt;
     const render::FrameReport report =
@@ -146,7 +147,7 @@ class Viewer {
   const Beside& beside_;
   stereo::FoveatedFrame frame_;
   std::optional<Walk> walk_;  // goes on where a session is lost
-  std::optional<Budget> budget_;
+  std::optional<FrameBudget> budget_;
   std::optional<XrTime> last_;  // when the last frame was seen
   XrTime looked_ = 0;           // when it was asked which sizes the runtime recommends
   std::vector<double> times_;   // ms

@@ -34,7 +34,7 @@ const std::map<std::string, std::set<std::string>> may_see = {
     {"measure", {"render", "primitives", "gl", "reference", "scene", "base", "shared"}},
     {"stereo", {"measure", "render", "primitives", "gl", "reference", "scene", "base", "shared"}},
     {"stream", {"render", "primitives", "gl", "formats", "scene", "base", "shared"}},
-    {"library", {"stereo", "formats", "render", "primitives", "gl", "scene", "base", "shared"}},
+    {"library", {"stream", "stereo", "formats", "render", "primitives", "gl", "scene", "base", "shared"}},
     {"lab",
      {"stream", "stereo", "measure", "render", "primitives", "gl", "reference", "formats", "scene", "base",
       "shared"}},

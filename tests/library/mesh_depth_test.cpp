@@ -295,6 +295,9 @@ TEST_F(Meshes, ThatCannotBeReadAreRefused) {
     return test::fails_saying([&] { renderer.draw(pair, placement, settings); }, {saying});
   };
   const std::uint32_t good = caller.texture(GL_DEPTH_COMPONENT32F, size.x, size.y);
+  MeshDepth sound = planes(0.1, inf);
+  sound.texture = good;
+  EXPECT_TRUE(refused({.texture = good}, "planes at 0 and 0"));
   EXPECT_TRUE(refused({.texture = 9999}, "9999"));
   EXPECT_TRUE(refused({.texture = good, .level = 3}, "level 3"));
   EXPECT_TRUE(refused({.texture = good, .layer = 1}, "layer 1"));
@@ -306,12 +309,11 @@ TEST_F(Meshes, ThatCannotBeReadAreRefused) {
   EXPECT_TRUE(refused({.texture = good, .near_plane = 1.0, .far_plane = 1.0}, "planes"));
   EXPECT_TRUE(
       refused({.texture = good, .coding = DepthCoding::axis, .units_per_number = 0.0}, "units per number"));
-  EXPECT_TRUE(refused({.texture = good}, "background", over_black));
-  EXPECT_TRUE(refused({.texture = good}, "layout", {.layout = Layout::parallel}));
-  EXPECT_TRUE(
-      refused({.texture = good}, "measured", {.tolerance = 1.0f, .transmittance = Transmittance::measured}));
+  EXPECT_TRUE(refused(sound, "background", over_black));
+  EXPECT_TRUE(refused(sound, "layout", {.layout = Layout::parallel}));
+  EXPECT_TRUE(refused(sound, "measured", {.tolerance = 1.0f, .transmittance = Transmittance::measured}));
   std::vector<View> pair = views();
-  pair[0].mesh_depth = {.texture = good};
+  pair[0].mesh_depth = sound;
   EXPECT_TRUE(test::fails_saying([&] { renderer.draw(pair, placement); }, {"1 of 2 views"}));
   pair[1].mesh_depth = pair[0].mesh_depth;
   EXPECT_GT(renderer.draw(pair, placement).pairs, 0u) << "the good one is refused, too";

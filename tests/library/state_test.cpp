@@ -333,7 +333,8 @@ TEST_F(State, IsTheSameAfterAFrame) {
   EXPECT_EQ(changed_by([&] { EXPECT_TRUE(renderer->draw(in_place, {}).in_place); }), std::set<std::string>());
   const std::uint32_t meshes = caller.texture(GL_DEPTH24_STENCIL8, 40, 32);
   for (auto with_meshes : {odd.views_with_depths(), in_place}) {
-    for (View& view : with_meshes) view.mesh_depth = {.texture = meshes};
+    for (View& view : with_meshes)
+      view.mesh_depth = {.texture = meshes, .near_plane = 0.1, .far_plane = 100.0};
     EXPECT_EQ(changed_by([&] { renderer->draw(with_meshes, {}); }), std::set<std::string>());
   }
   const auto refused = changed_by([&] {

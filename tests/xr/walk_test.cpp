@@ -1,4 +1,4 @@
-// What needs no runtime: how hands move a head, what lenses show, and how much a frame's time allows.
+// What needs no runtime: how hands move a head, and what lenses show.
 
 #include "xr/walk.h"
 
@@ -7,7 +7,6 @@
 #include <cmath>
 #include <glm/gtc/quaternion.hpp>
 
-#include "xr/budget.h"
 #include "xr/headset.h"
 #include "xr/visibility.h"
 
@@ -150,42 +149,6 @@ TEST(Visible, ColumnsHoldWhatTheTrianglesHold) {
   EXPECT_TRUE(visible_columns({}, fov, size, tile).empty()) << "no mask: all";
   disk.vertices[3] = {NAN, 0.0f};
   EXPECT_EQ(visible_columns(disk, fov, size, tile).size(), 16u) << "numbers that are none";
-}
-
-TEST(Budget, FollowsTheTime) {
-  constexpr double period = 11.1;
-  Budget budget(10.0);
-  EXPECT_EQ(budget.effort().quality, 0.0f) << "exact while that is in time";
-  for (int n = 0; n < 100; ++n) budget.took(9.0, period);
-  EXPECT_EQ(budget.effort().quality, 0.0f);
-  budget.took(10.5, period);
-  EXPECT_EQ(budget.effort().quality, 0.0f) << "one frame may be late";
-  budget.took(10.5, period);
-  EXPECT_GT(budget.effort().quality, 40.0f);
-  for (int n = 0; n < 10; ++n) budget.took(20.0, period);
-  EXPECT_EQ(budget.effort().quality, 37.0f);
-  EXPECT_LT(budget.effort().scale, 1.0);
-  for (int n = 0; n < 50; ++n) budget.took(20.0, period);
-  EXPECT_EQ(budget.effort().scale, 0.5) << "no less";
-  const double before = budget.effort().scale;
-  for (int n = 0; n < 100; ++n) budget.took(9.0, period);
-  EXPECT_EQ(budget.effort().scale, before) << "more might be too much";
-  for (int n = 0; n < 60000; ++n) budget.took(3.0, period);
-  EXPECT_EQ(budget.effort().quality, 0.0f);
-}
-
-// A scene that is just too much at one effort is not tried again and again.
-TEST(Budget, DoesNotSwingToAndFro) {
-  Budget budget(10.0);
-  int changes = 0;
-  double last = budget.effort().quality;
-  for (int n = 0; n < 9000; ++n) {  // 100 s
-    budget.took(budget.effort().quality == 0.0f ? 12.0 : 7.0, 11.1);
-    changes += budget.effort().quality != last ? 1 : 0;
-    last = budget.effort().quality;
-  }
-  EXPECT_LE(changes, 15);
-  EXPECT_GE(changes, 3) << "it is tried again";
 }
 
 }  // namespace

@@ -1,14 +1,14 @@
-#include "xr/budget.h"
+#include <binosplat/budget.h>
 
 #include <algorithm>
 #include <iterator>
 #include <utility>
 
-namespace binosplat::xr {
+namespace binosplat {
 
 namespace {
 
-constexpr Effort efforts[] = {{0.0f, 1.0},  {46.0f, 1.0}, {43.0f, 1.0}, {40.0f, 1.0}, {37.0f, 1.0},
+constexpr Effort efforts[] = {{{}, 1.0},    {46.0f, 1.0}, {43.0f, 1.0}, {40.0f, 1.0}, {37.0f, 1.0},
                               {37.0f, 0.9}, {37.0f, 0.8}, {37.0f, 0.7}, {37.0f, 0.6}, {37.0f, 0.5}};
 constexpr int least = static_cast<int>(std::size(efforts)) - 1;
 constexpr double ample = 0.75, much_too_late = 1.33;
@@ -16,9 +16,9 @@ constexpr double wait_most_ms = 32000.0;
 
 }  // namespace
 
-Effort Budget::effort() const { return efforts[step_]; }
+Effort FrameBudget::effort() const { return efforts[step_]; }
 
-void Budget::took(double ms, double period_ms) {
+void FrameBudget::took(double ms, double period_ms) {
   // The first of an effort may have programs compiled.
   if (std::exchange(fresh_, false)) return;
   late_ = ms > ms_ ? late_ + 1 : 0;
@@ -40,11 +40,11 @@ void Budget::took(double ms, double period_ms) {
   since_raised_ms_ = 0.0;
 }
 
-void Budget::set(int step) {
+void FrameBudget::set(int step) {
   step_ = step;
   late_ = 0;
   early_ms_ = 0.0;
   fresh_ = true;
 }
 
-}  // namespace binosplat::xr
+}  // namespace binosplat

@@ -1,0 +1,52 @@
+#include "library/stream.h"
+
+#include <algorithm>
+
+#include "base/error.h"
+#include "gl/state.h"
+#include "library/settings.h"
+#include "library/views.h"
+#include "scene/axes.h"
+
+namespace binosplat {
+
+namespace {
+
+StreamSettings settings_of(const StreamOptions& options) {
+  if (!(options.quality >= render::quality_least && options.quality <= render::quality_most))
+    fail("quality {} of levels: expected {} to {} dB", options.quality, render::quality_least,
+         render::quality_most);
+  StreamSettings settings{.all_up_to = few_gaussians};
+  settings.detail.db = options.quality;
+  settings.detail.most = options.most.value_or(any_number);
+  settings.reserve = std::min(options.reserve, settings.detail.most);
+  return settings;
+}
+
+}  // namespace
+
+SplatStream::SplatStream(const std::filesystem::path& path, const StreamOptions& options)
+    : impl_(std::make_shared<Impl>(path, settings_of(options))) {}
+SplatStream::~SplatStream() = default;
+SplatStream::SplatStream(SplatStream&&) noexcept = default;
+SplatStream& SplatStream::operator=(SplatStream&&) noexcept = default;
+
+Placement SplatStream::placement(const glm::dvec3& origin, double units_per_metre) const {
+  const glm::dmat3 into_model = glm::transpose(world_from_axes(impl_->stream.model().axes));
+  return {into_model * origin, into_model * Placement{}.axes, units_per_metre};
+}
+
+bool SplatStream::begin_frame(std::span<const View> views, const Placement& placement,
+                              const Settings& settings, double ms) {
+  if (impl_->context == nullptr) fail("a stream without a renderer: make a Renderer of it first");
+  if (impl_->is_drawn) fail("a frame of the stream is under way: call finish() before begin_frame()");
+  const gl::KeptState kept(*impl_->context);
+  return impl_->stream.begin_frame(library::views_of(views, placement, settings).views,
+                                   library::frame_settings(settings, views), ms);
+}
+
+bool SplatStream::settled() const { return impl_->stream.settled(); }
+std::size_t SplatStream::count() const { return impl_->stream.gaussians(); }
+std::optional<double> SplatStream::quality() const { return impl_->stream.reported_db(); }
+
+}  // namespace binosplat

@@ -1,0 +1,22 @@
+#pragma once
+// The caller's views, as a frame draws them.
+
+#include <binosplat/renderer.h>
+
+#include "stereo/eyes.h"
+
+namespace binosplat::library {
+
+/// Throws as stereo::views_from_xr() does.
+inline stereo::HeadViews views_of(std::span<const View> views, const Placement& placement,
+                                  const Settings& settings) {
+  std::vector<Eye> eyes;
+  std::vector<glm::ivec2> sizes;
+  for (const View& view : views) {
+    eyes.push_back(view.eye);
+    sizes.push_back(view.size);
+  }
+  return stereo::views_from_xr(eyes, placement, sizes, settings.near_plane);
+}
+
+}  // namespace binosplat::library

@@ -1,0 +1,48 @@
+// How much a frame's time allows.
+
+#include <binosplat/budget.h>
+#include <gtest/gtest.h>
+
+#include <optional>
+
+namespace binosplat {
+namespace {
+
+TEST(FrameBudgets, FollowsTheTime) {
+  constexpr double period = 11.1;
+  FrameBudget budget(10.0);
+  EXPECT_FALSE(budget.effort().quality) << "exact while that is in time";
+  for (int n = 0; n < 100; ++n) budget.took(9.0, period);
+  EXPECT_FALSE(budget.effort().quality);
+  budget.took(10.5, period);
+  EXPECT_FALSE(budget.effort().quality) << "one frame may be late";
+  budget.took(10.5, period);
+  EXPECT_GT(budget.effort().quality, 40.0f);
+  for (int n = 0; n < 10; ++n) budget.took(20.0, period);
+  EXPECT_EQ(budget.effort().quality, 37.0f);
+  EXPECT_LT(budget.effort().scale, 1.0);
+  for (int n = 0; n < 50; ++n) budget.took(20.0, period);
+  EXPECT_EQ(budget.effort().scale, 0.5) << "no less";
+  const double before = budget.effort().scale;
+  for (int n = 0; n < 100; ++n) budget.took(9.0, period);
+  EXPECT_EQ(budget.effort().scale, before) << "more might be too much";
+  for (int n = 0; n < 60000; ++n) budget.took(3.0, period);
+  EXPECT_FALSE(budget.effort().quality);
+}
+
+// A scene that is just too much at one effort is not tried again and again.
+TEST(FrameBudgets, DoesNotSwingToAndFro) {
+  FrameBudget budget(10.0);
+  int changes = 0;
+  std::optional<float> last = budget.effort().quality;
+  for (int n = 0; n < 9000; ++n) {  // 100 s
+    budget.took(!budget.effort().quality ? 12.0 : 7.0, 11.1);
+    changes += budget.effort().quality != last ? 1 : 0;
+    last = budget.effort().quality;
+  }
+  EXPECT_LE(changes, 15);
+  EXPECT_GE(changes, 3) << "it is tried again";
+}
+
+}  // namespace
+}  // namespace binosplat

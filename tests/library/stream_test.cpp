@@ -1,0 +1,148 @@
+// Levels of detail, an inset and meshes in another program.
+
+#include <binosplat/stream.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <optional>
+
+#include "formats/model_file.h"
+#include "library/renderer_fixture.h"
+#include "support/errors.h"
+#include "support/fixtures.h"
+#include "support/models.h"
+#include "support/program.h"
+
+namespace binosplat {
+namespace {
+
+struct Levels : Library {
+  static void SetUpTestSuite() {
+    folder = std::make_unique<test::TempFolder>();
+    const std::string city = (*folder / "city").string();
+    ASSERT_EQ(test::run_program({"levels", "demo:city", "--count", "20000", "-o", city}).code, 0);
+  }
+  static void TearDownTestSuite() { folder.reset(); }
+  static std::filesystem::path city() { return *folder / "city"; }
+
+  inline static std::unique_ptr<test::TempFolder> folder;
+};
+
+TEST_F(Levels, ComeAsFramesAreDrawn) {
+  SplatStream stream(city(), {.quality = 45.0});
+  const Placement there = stream.placement({0.0, 1.6, 0.0});
+  EXPECT_TRUE(test::fails_saying([&] { stream.begin_frame(views(), there, over_black, 2.5); }, {"Renderer"}));
+  Renderer renderer(caller.get_proc_address(), stream);
+  const std::size_t at_first = stream.count();
+  std::vector<float> coarse;
+  for (int n = 0; n < 2000 && (n < 2 || !stream.settled()); ++n) {
+    stream.begin_frame(views(), there, over_black, 2.5);
+    renderer.draw(views(), there, over_black);
+    if (n == 0) coarse = read(0);
+  }
+  ASSERT_TRUE(stream.settled());
+  EXPECT_GT(stream.count(), at_first);
+  EXPECT_NE(read(0), coarse);
+  // The same as all of the model, but for what was asked to be lost.
+  Renderer whole(caller.get_proc_address(), SplatModel(city(), {.lod = 0}));
+  const std::vector<float> drawn = read(0);
+  whole.draw(views(), there, over_black);
+  const std::vector<float> finest = read(0);
+  double squared = 0.0, from_coarse = 0.0;
+  for (std::size_t k = 0; k < finest.size(); ++k) {
+    squared += std::pow(drawn[k] - finest[k], 2.0);
+    from_coarse += std::pow(coarse[k] - finest[k], 2.0);
+  }
+  EXPECT_GT(10.0 * std::log10(static_cast<double>(finest.size()) / squared), 43.0);
+  EXPECT_LT(squared, from_coarse);
+}
+
+TEST_F(Levels, HaveOneRendererAtATimeAndItsContext) {
+  std::optional<SplatStream> stream(std::in_place, city());
+  std::optional<Renderer> renderer(std::in_place, caller.get_proc_address(), *stream);
+  EXPECT_TRUE(test::fails_saying([&] { Renderer(caller.get_proc_address(), *stream); }, {"one renderer"}));
+  renderer->submit(views(), placement, over_black);
+  EXPECT_TRUE(
+      test::fails_saying([&] { stream->begin_frame(views(), placement, over_black, 2.5); }, {"finish()"}));
+  renderer->finish();
+  renderer.reset();
+  EXPECT_TRUE(
+      test::fails_saying([&] { stream->begin_frame(views(), placement, over_black, 2.5); }, {"Renderer"}));
+  renderer.emplace(caller.get_proc_address(), *stream);
+  stream->begin_frame(views(), placement, over_black, 2.5);
+  stream.reset();  // the renderer goes on with what was read
+  EXPECT_GT(renderer->draw(views(), placement, over_black).pairs, 0u);
+}
+
+TEST_F(Levels, ThatCannotBeHadAreRefused) {
+  EXPECT_TRUE(test::fails_saying([] { SplatStream("/no/such/city"); }, {"/no/such/city"}));
+  EXPECT_TRUE(test::fails_saying([&] { SplatStream(city(), {.quality = 300.0}); }, {"quality 300", "dB"}));
+}
+
+TEST_F(Levels, WithAnInsetAmongMeshes) {
+  SplatStream stream(city());
+  Renderer renderer(caller.get_proc_address(), stream);
+  const Settings foveated{.foveation = Foveation{.inset_degrees = 15.0, .gaze = {{5.0, 0.0}}}};
+  const std::vector<float> white(4 * static_cast<std::size_t>(size.x * size.y), 1.0f);
+  std::vector<View> pair = views();
+  const auto draw = [&](float z) {
+    for (View& view : pair) {
+      caller.TextureSubImage2D(view.target.texture, 0, 0, 0, size.x, size.y, GL_RGBA, GL_FLOAT, white.data());
+      view.mesh_depth = {.texture = caller.texture(GL_R32F, size.x, size.y), .coding = DepthCoding::axis};
+      const std::vector<float> wall(static_cast<std::size_t>(size.x * size.y), z);
+      caller.TextureSubImage2D(view.mesh_depth->texture, 0, 0, 0, size.x, size.y, GL_RED, GL_FLOAT,
+                               wall.data());
+    }
+    stream.begin_frame(pair, placement, foveated, 2.5);
+    renderer.draw(pair, placement, foveated);
+    return read(0);
+  };
+  EXPECT_EQ(draw(0.15f), white) << "behind a wall";
+  EXPECT_NE(draw(0.0f), white) << "without one";
+}
+
+TEST_F(Library, AnInsetIsExactAndTheContextIsNot) {
+  Renderer renderer(caller.get_proc_address(), in_memory(test::random_model(3, 400, 2)));
+  renderer.draw(views(), placement, over_black);
+  const std::vector<float> whole = read(0);
+  Settings foveated = over_black;
+  foveated.foveation = Foveation{.inset_degrees = 20.0, .context_scale = 0.4};
+  for (const bool in_place : {true, false}) {
+    std::vector<View> pair = views();
+    for (View& view : pair) view.target.in_place = in_place;
+    const Report report = renderer.draw(pair, placement, foveated);
+    EXPECT_EQ(report.in_place, in_place);
+    const std::vector<float> drawn = read(0);
+    // The eye's axis meets the picture 45 of 93 degrees up and 49 of 86 from the left, by tangents.
+    const auto differs = [&](int x, int y) {
+      const std::size_t at = 4 * static_cast<std::size_t>(y * size.x + x);
+      return std::memcmp(&drawn[at], &whole[at], 16) != 0;
+    };
+    const int axis_x =
+        static_cast<int>(std::tan(glm::radians(49.0)) /
+                         (std::tan(glm::radians(49.0)) + std::tan(glm::radians(37.0))) * size.x);
+    const int axis_y =
+        static_cast<int>(std::tan(glm::radians(48.0)) /
+                         (std::tan(glm::radians(48.0)) + std::tan(glm::radians(45.0))) * size.y);
+    int inside = 0, outside = 0;
+    for (int y = 0; y < size.y; ++y) {
+      for (int x = 0; x < size.x; ++x) {
+        const bool near = std::abs(x - axis_x) < 4 && std::abs(y - axis_y) < 4;
+        (near ? inside : outside) += differs(x, y) ? 1 : 0;
+      }
+    }
+    EXPECT_EQ(inside, 0);
+    EXPECT_GT(outside, 500);
+  }
+  std::vector<View> with_depths = views();
+  for (View& view : with_depths)
+    view.depth = {.texture = caller.texture(GL_DEPTH_COMPONENT24, size.x, size.y)};
+  EXPECT_TRUE(
+      test::fails_saying([&] { renderer.draw(with_depths, placement, foveated); }, {"depth targets"}));
+  foveated.foveation->inset_degrees = 500.0;
+  EXPECT_TRUE(test::fails_saying([&] { renderer.draw(views(), placement, foveated); }, {"inset 500"}));
+}
+
+}  // namespace
+}  // namespace binosplat
