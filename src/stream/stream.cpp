@@ -10,8 +10,8 @@ namespace {
 
 constexpr double between_passes_ms = 100.0;  // in which the worker reads what was chosen by the last one
 constexpr int passes_most = 3;               // at the same views: after them a choice hardly changes any more
-constexpr std::chrono::milliseconds lead{500};  // of a head that moves: until what is requested is drawn
-constexpr std::size_t put_least = 1 << 14;      // Gaussians: fewer do not tell how long more would take
+constexpr double lead_s = 0.5;               // ahead of a head that moves: until what is requested is drawn
+constexpr std::size_t put_least = 1 << 14;   // Gaussians: fewer do not tell how long more would take
 constexpr double put_share = 0.75;  // of a frame's ms that uploading is expected to take: it may take longer
 // A request goes on while the next one is made, which takes as long as from one to the next; and it has so
 // many Gaussians, however few frames there were.
@@ -79,16 +79,11 @@ std::optional<double> Stream::reported_db() const {
   const StreamWorker::Chosen chosen = worker_ ? worker_->chosen() : chosen_;
   if (!chosen.error) return std::nullopt;
   chosen.error->follow(drawn_);
-  const auto error = [&](auto from, auto to) {
-    return chosen.error->error(static_cast<std::size_t>(from - chosen.at.begin()),
-                               static_cast<std::size_t>(to - chosen.at.begin()));
-  };
-  const auto now = Clock::now();
-  const auto next = std::upper_bound(chosen.at.begin(), chosen.at.end(), now);
-  const auto last = std::lower_bound(chosen.at.begin(), next, *std::prev(next));
-  if (next == chosen.at.end()) return reported(error(last, next));
-  const double share = std::chrono::duration<double>(now - *last) / (*next - *last);
-  return reported(std::lerp(error(last, next), error(next, std::next(next)), share));
+  const double here = chosen.error->error(0, chosen.here);
+  if (chosen.here == chosen.error->views()) return reported(here);
+  // What comes nearer loses the more the nearer it is.
+  const double share = std::min(1e-3 * ms_since(chosen.at) / lead_s, 1.0);
+  return reported(std::lerp(here, chosen.error->error(chosen.here, chosen.error->views()), share * share));
 }
 
 double Stream::reported(double error) const {
@@ -151,7 +146,7 @@ bool Stream::pass_is_due() const {
 // At one more of the views, each as it is by then.
 void Stream::make_pass(const render::FrameSettings& settings) {
   if (!visibility_) visibility_.emplace(gpu_model_);
-  const std::vector<shared::View> ahead = motion_.ahead(std::chrono::duration<double>(lead).count());
+  const std::vector<shared::View> ahead = motion_.ahead(lead_s);
   if (pass_.views.empty()) {
     const bool moves = !are_last(ahead);
     pass_ = {.all = std::max<std::size_t>(views_.size(), moves ? 2 : 1), .began = Clock::now()};
@@ -160,7 +155,6 @@ void Stream::make_pass(const render::FrameSettings& settings) {
   const std::size_t k = pass_.views.size();
   const shared::View view = k < pass_.here ? views_[k] : ahead[k % ahead.size()];
   pass_.views.push_back(view);
-  pass_.at.push_back(k < pass_.here ? pass_.began : Clock::now() + lead);
   pass_.visible.by_view.push_back(std::move(visibility_->measure({&view, 1}, settings, chunks_).front()));
   made_pass_ = true;
   if (pass_.views.size() < pass_.all) return;
@@ -168,7 +162,8 @@ void Stream::make_pass(const render::FrameSettings& settings) {
   pass_.visible.drawn = drawn_;
   request({.views = std::exchange(pass_.views, {}),
            .visible = std::move(pass_.visible),
-           .at = std::move(pass_.at)});
+           .here = pass_.here,
+           .at = pass_.began});
   ++passes_;
 }
 

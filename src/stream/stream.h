@@ -87,9 +87,8 @@ class Stream {
   /// Gaussians of the model.
   std::size_t gaussians() const { return chunks_.gaussians(); }
   /// The calibrated prediction of the views' PSNR against the finest levels, in dB, with the levels that the
-  /// model has now. It is of the views that were measured where the eyes are now, or between two where they
-  /// are on the way from one to the other. None where levels are not chosen by dB, or nothing was measured
-  /// yet.
+  /// model has now. It is of the views that were measured last, and changes from those where the eyes were to
+  /// those ahead as time goes by. None where levels are not chosen by dB, or nothing was measured yet.
   std::optional<double> reported_db() const;
   /// The dB that a frame itself must keep, so that frame and levels together keep `together_db`.
   double quality_left(double together_db) const;
@@ -134,10 +133,9 @@ class Stream {
 
   // Used by begin_frame():
   struct Pass {
-    std::vector<shared::View> views;    // measured so far: first those where the eyes are, then those ahead
-    std::size_t here = 0, all = 0;      // how many views of the first kind, and in all, the pass measures
-    VisibleChunks visible;              // what `views` show
-    std::vector<Clock::time_point> at;  // when the eyes are at `views`
+    std::vector<shared::View> views;  // measured so far: first those where the eyes are, then those ahead
+    std::size_t here = 0, all = 0;    // how many views of the first kind, and in all, the pass measures
+    VisibleChunks visible;            // what `views` show
     Clock::time_point began = {};
     bool is_outdated = false;  // the model has changed since
   };

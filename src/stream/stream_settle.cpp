@@ -74,8 +74,7 @@ bool Stream::settle(std::span<const shared::View> views, const render::FrameSett
     if (choice.levels == drawn_) break;
     change(choice);
   }
-  chosen_ = {};
-  chosen_.at.resize(views.size());
+  chosen_ = {.here = views.size()};
   if (request.db)
     chosen_.error =
         std::make_shared<RunningError>(std::make_shared<const LevelChoice>(std::move(choice)), drawn_);

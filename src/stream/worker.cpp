@@ -13,19 +13,6 @@ namespace {
 constexpr std::size_t waiting_most = 1 << 20;
 constexpr double cores_share = 0.5;  // the rest is for frames
 
-/// Adds the views of `before` at which the eyes have not been yet, unless they rest.
-void add_ahead(StreamWorker::Request& request, const StreamWorker::Request& before) {
-  if (request.at.empty() || request.at.front() == request.at.back()) return;
-  const auto to = std::ranges::upper_bound(request.at, request.at.front()) - request.at.begin();
-  const auto from = std::ranges::upper_bound(before.at, request.at.front()) - before.at.begin();
-  const auto add = [&](auto& list, const auto& list_before) {
-    list.insert(list.begin() + to, list_before.begin() + from, list_before.end());
-  };
-  add(request.views, before.views);
-  add(request.visible.by_view, before.visible.by_view);
-  add(request.at, before.at);
-}
-
 }  // namespace
 
 StreamWorker::StreamWorker(const LodFiles& files, std::vector<std::size_t> there)
@@ -76,12 +63,12 @@ void StreamWorker::check() const {
 void StreamWorker::run(const std::stop_token& stop) {
   std::unique_lock lock(mutex_);
   while (changed_.wait(lock, stop, [&] { return request_.has_value(); })) {
-    Request request = *std::exchange(request_, std::nullopt);
+    const Request request = *std::exchange(request_, std::nullopt);
     is_at_work_ = is_choosing_ = true;
     lock.unlock();
     std::exception_ptr trouble;
     try {
-      on_some_cores(cores_share, [&] { work(std::move(request), stop); });
+      on_some_cores(cores_share, [&] { work(request, stop); });
     } catch (...) {
       trouble = std::current_exception();
     }
@@ -92,13 +79,11 @@ void StreamWorker::run(const std::stop_token& stop) {
   }
 }
 
-void StreamWorker::work(Request request, const std::stop_token& stop) {
-  add_ahead(request, before_);
+void StreamWorker::work(const Request& request, const std::stop_token& stop) {
   const auto choice =
       std::make_shared<const LevelChoice>(chooser_.choose(request.views, request.detail, request.visible));
-  Chosen chosen{.is_limited = choice->is_limited, .at = request.at};
+  Chosen chosen{.is_limited = choice->is_limited, .here = request.here, .at = request.at};
   if (choice->knows_errors()) chosen.error = std::make_shared<RunningError>(choice, request.visible.drawn);
-  before_ = std::move(request);
   chosen.made_at = Clock::now();
   {
     const std::lock_guard lock(mutex_);

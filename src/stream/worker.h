@@ -27,15 +27,15 @@ class StreamWorker {
     std::vector<shared::View> views;
     DetailRequest detail;
     VisibleChunks visible;
-    /// When the eyes are at each view, in order: first those where they were, then those ahead. None where
-    /// nothing was measured.
-    std::vector<Clock::time_point> at = {};
+    std::size_t here = 0;       // views where the eyes were; they come first, and others lie ahead
+    Clock::time_point at = {};  // when the eyes were there
   };
   /// The last choice.
   struct Chosen {
     std::shared_ptr<RunningError> error;  // what its views lose; none where levels are not chosen by dB
     bool is_limited = false;              // more is needed than the request allowed to read
-    std::vector<Clock::time_point> at;    // when the eyes are at each of these views, in order
+    std::size_t here = 0;                 // as in the request, like `at`
+    Clock::time_point at = {};
     Clock::time_point made_at = {};
   };
 
@@ -44,9 +44,7 @@ class StreamWorker {
   StreamWorker(const StreamWorker&) = delete;
   StreamWorker& operator=(const StreamWorker&) = delete;
 
-  /// Replaces the request before. While eyes move, views that lay ahead in earlier requests count, too, until
-  /// the eyes are there: on the way they see what is seen neither from here nor from where the way ends. Does
-  /// nothing once choosing or reading has thrown.
+  /// Replaces the request before. Does nothing once choosing or reading has thrown.
   void request(Request request);
   /// Takes pieces that were read, until they have `gaussians` Gaussians; none where none were read.
   std::vector<LodFiles::Piece> take(std::size_t gaussians);
@@ -60,13 +58,12 @@ class StreamWorker {
 
  private:
   void run(const std::stop_token& stop);
-  void work(Request request, const std::stop_token& stop);
+  void work(const Request& request, const std::stop_token& stop);
   std::vector<std::size_t> keep_wanted(const LevelChoice& choice);
   void add(LodFiles::Piece piece, const std::stop_token& stop);
 
   const LodFiles& files_;
   Chooser chooser_;
-  Request before_;  // the last that was chosen for, with what was added to it
 
   mutable std::mutex mutex_;  // guards what follows
   std::condition_variable_any changed_;

@@ -132,42 +132,6 @@ TEST(StreamWorker, ReportsWhatViewsLose) {
   EXPECT_EQ(levels, Levels(chunks, 0));
 }
 
-// Chunk 0 is seen on the way only, which one request measured as its end.
-TEST(StreamWorker, CountsWhatIsSeenOnTheWay) {
-  const test::TempFolder folder;
-  test::write_levels(folder, 3000);
-  const LodFiles files(folder.path());
-  const std::size_t chunks = files.chunks().size();
-  StreamWorker worker(files, Levels(chunks, 2));
-  Levels levels(chunks, 2);
-  const auto start = Clock::now();
-  const auto views_after = [&](std::vector<int> seconds, int sees_first) {
-    StreamWorker::Request request{.detail = {.db = 60.0, .heads_turn = false}};
-    for (const int s : seconds) {
-      request.views.push_back(view_at({0, 0, -30}));
-      request.views.back().width = request.views.back().height = 100;
-      std::vector<ChunkVisibility> seen(chunks, {1e-9, 30.0});
-      if (s == sees_first) seen[0] = {50.0, 30.0};
-      request.visible.by_view.push_back(seen);
-      request.at.push_back(start + std::chrono::seconds(s));
-    }
-    request.visible.drawn = levels;
-    worker.request(request);
-    note_levels(all_of(worker), levels);
-    return worker.chosen().at.size();
-  };
-  const int nobody = -1;
-  EXPECT_EQ(views_after({0, 20}, 20), 2u);
-  EXPECT_EQ(levels[0], 0u);
-  EXPECT_EQ(views_after({10, 30}, nobody), 3u);
-  EXPECT_EQ(levels[0], 0u) << "the eyes will be there";
-  EXPECT_EQ(worker.chosen().at[1], start + std::chrono::seconds(20)) << "in the order of time";
-  EXPECT_EQ(worker.chosen().error->views(), 3u);
-  EXPECT_EQ(views_after({20, 40}, nobody), 3u) << "and that after 30 s";
-  EXPECT_GT(levels[0], 0u) << "they have been there";
-  EXPECT_EQ(views_after({21, 21}, nobody), 2u) << "they rest";
-}
-
 TEST(StreamWorker, EndsInTheMidstOfIt) {
   REQUIRE_FIXTURES(folder);
   const LodFiles files(folder / "sog/st-lod");
