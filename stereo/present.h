@@ -32,9 +32,10 @@ int depth_rows(const gl::Context& context, std::span<const shared::View> views,
 /// What a picture is shown over: a colour, nothing, or, with mesh depths, what is in the target already.
 struct Backdrop {
   Backdrop(const Background& colour, bool is_there = false) : background(colour), is_in_target(is_there) {}
+  Backdrop(const glm::vec3& colour) : background(colour) {}
 
   Background background;
-  bool is_in_target;
+  bool is_in_target = false;
 };
 
 class Presenter {

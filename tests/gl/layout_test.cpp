@@ -105,7 +105,7 @@ TEST(Layout, FrameParametersAreWhereTheDriverPutsThem) {
                             AT(FrameParameters, views_per_decoding),
                             AT(FrameParameters, decoding_of_probe),
                             AT(FrameParameters, anchor_cull),
-                            AT(FrameParameters, unused),
+                            AT(FrameParameters, depth_slack),
                             STRIDE(FrameParameters)};
   EXPECT_EQ(driver_offsets("FrameParameters"), expected);
   Offsets in_block = expected;  // of a frame there is one
@@ -125,6 +125,14 @@ TEST(Layout, GaussianAndSplatAreWhereTheDriverPutsThem) {
 TEST(Layout, PlacedRayIsWhereTheDriverPutsIt) {
   const Offsets ray = {AT(PlacedRay, pixel), AT(PlacedRay, place), AT(PlacedRay, unused), STRIDE(PlacedRay)};
   EXPECT_EQ(driver_offsets("PlacedRay"), ray);
+}
+
+TEST(Layout, MeshSourceIsWhereTheDriverPutsIt) {
+  const Offsets source = {AT(MeshSource, step),     AT(MeshSource, left),       AT(MeshSource, top),
+                          AT(MeshSource, level),    AT(MeshSource, is_inverse), AT(MeshSource, scale),
+                          AT(MeshSource, offset),   AT(MeshSource, nothing),    AT(MeshSource, unused_1),
+                          AT(MeshSource, unused_2), AT(MeshSource, unused_3),   STRIDE(MeshSource)};
+  EXPECT_EQ(driver_offsets("MeshSource"), source);
 }
 
 TEST(Layout, AnchorIsWhereTheDriverPutsIt) {
