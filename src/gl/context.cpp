@@ -81,14 +81,6 @@ void Context::initialise(GetProcAddress get_proc_address, std::string backend, b
   vendor_ = text(functions_, GL_VENDOR);
   renderer_ = text(functions_, GL_RENDERER);
   version_ = text(functions_, GL_VERSION);
-  int major = 0;
-  int minor = 0;
-  functions_.GetIntegerv(GL_MAJOR_VERSION, &major);
-  functions_.GetIntegerv(GL_MINOR_VERSION, &minor);
-  if (10 * major + minor < 45) {
-    throw Error(ExitCode::no_gl,
-                fmt::format("{} offers OpenGL {}.{}: binosplat needs 4.5 core", renderer_, major, minor));
-  }
   set_program_cache(ProgramCache::default_folder());
   if (own && has_extension(functions_, "GL_KHR_parallel_shader_compile"))
     functions_.MaxShaderCompilerThreadsKHR(
@@ -138,7 +130,32 @@ bool Context::software() const { return renderer_.find("llvmpipe") != std::strin
 std::unique_ptr<Context> Context::adopt(GetProcAddress get_proc_address) {
   std::unique_ptr<Context> context(new Context());
   context->initialise(get_proc_address, "caller's", false);
+  // Asked for glX's last: EGL's loaders make something up for each name that begins with "gl".
+  for (const char* name : {"eglGetCurrentContext", "OSMesaGetCurrentContext", "glXGetCurrentContext"}) {
+    const auto found = reinterpret_cast<void* (*)()>(get_proc_address(name));
+    if (found == nullptr) continue;
+    context->handle_ = found();
+    if (context->handle_ != nullptr) context->current_handle_ = found;
+    break;
+  }
   return context;
+}
+
+void Context::check_current() const {
+  if (another_is_current()) {
+    throw Error(
+        ExitCode::no_gl,
+        "another OpenGL context is current on this thread than the one that the renderer was made in: "
+        "make that one current first");
+  }
+  const bool is_any =
+      current_handle_ != nullptr ? current_handle_() != nullptr : functions_.GetString(GL_VERSION) != nullptr;
+  if (!is_any) throw Error(ExitCode::no_gl, no_context);
+}
+
+bool Context::another_is_current() const {
+  const void* const handle = current_handle_ == nullptr ? nullptr : current_handle_();
+  return handle != nullptr && handle != handle_;
 }
 
 const Program& Context::program(std::string_view name, std::span<const Number> variant) {

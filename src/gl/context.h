@@ -58,6 +58,11 @@ class Context {
   /// that it has recorded are told as warnings, and taken. Throws Error(no_gl) that says what it lacks.
   static std::unique_ptr<Context> adopt(GetProcAddress get_proc_address);
 
+  /// Throws Error(no_gl) unless the context that was adopted is current on this thread. Where the caller's
+  /// loader does not tell which one is, any will do.
+  void check_current() const;
+  bool another_is_current() const;
+
   virtual ~Context() = default;
   Context(const Context&) = delete;
   Context& operator=(const Context&) = delete;
@@ -126,6 +131,8 @@ class Context {
   void read_limits();
 
   Functions functions_;
+  void* (*current_handle_)() = nullptr;  // EGL's, OSMesa's or glX's; null: not known
+  void* handle_ = nullptr;               // what that gives of an adopted context
   Limits limits_;
   std::string backend_, vendor_, renderer_, version_;
   std::filesystem::path shader_folder_;

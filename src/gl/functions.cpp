@@ -4,7 +4,40 @@
 
 namespace binosplat::gl {
 
+namespace {
+
+// Before anything else is loaded: older contexts lack functions, and the first that is missing says little.
+void check_version(GetProcAddress get_proc_address) {
+  if (get_proc_address == nullptr)
+    fail(
+        "get_proc_address is null: expected what finds OpenGL's functions by name, as eglGetProcAddress "
+        "does");
+  const auto get_string = reinterpret_cast<PFNGLGETSTRINGPROC>(get_proc_address("glGetString"));
+  if (get_string == nullptr) {
+    throw Error(
+        ExitCode::no_gl,
+        "get_proc_address finds no glGetString: expected what finds OpenGL's functions by name in the "
+        "context that is current, as eglGetProcAddress does");
+  }
+  const auto text = [&](GLenum name) {
+    const auto* const found = reinterpret_cast<const char*>(get_string(name));
+    return std::string_view(found == nullptr ? "" : found);
+  };
+  const std::string_view version = text(GL_VERSION);
+  if (version.empty()) throw Error(ExitCode::no_gl, no_context);
+  // "4.6.0 of such a driver", or "OpenGL ES 3.2 of such a driver".
+  const bool is_es = version.starts_with("OpenGL ES");
+  if (!is_es && version >= "4.5") return;
+  throw Error(
+      ExitCode::no_gl,
+      fmt::format("the context that is current is of {}{}, by {}: binosplat needs OpenGL 4.5 core or later{}",
+                  is_es ? "" : "OpenGL ", version, text(GL_RENDERER), is_es ? ", not OpenGL ES" : ""));
+}
+
+}  // namespace
+
 Functions load_functions(GetProcAddress get_proc_address) {
+  check_version(get_proc_address);
   Functions table;
 #define BINOSPLAT_GL_LOAD(name, upper)                                                               \
   table.name = reinterpret_cast<PFNGL##upper##PROC>(get_proc_address("gl" #name));                   \

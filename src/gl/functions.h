@@ -70,6 +70,7 @@ namespace binosplat::gl {
   X(GetIntegerv, GETINTEGERV)                                                           \
   X(GetNamedFramebufferAttachmentParameteriv, GETNAMEDFRAMEBUFFERATTACHMENTPARAMETERIV) \
   X(GetNamedFramebufferParameteriv, GETNAMEDFRAMEBUFFERPARAMETERIV)                     \
+  X(GetNamedRenderbufferParameteriv, GETNAMEDRENDERBUFFERPARAMETERIV)                   \
   X(GetProgramBinary, GETPROGRAMBINARY)                                                 \
   X(GetProgramInfoLog, GETPROGRAMINFOLOG)                                               \
   X(GetProgramInterfaceiv, GETPROGRAMINTERFACEIV)                                       \
@@ -122,7 +123,11 @@ struct Functions {
   PFNGLMAXSHADERCOMPILERTHREADSKHRPROC MaxShaderCompilerThreadsKHR = nullptr;
 };
 
-/// The table of the context that is current. Throws Error(no_gl) that names the first entry point not found.
+constexpr const char* no_context =
+    "no OpenGL context is current on this thread: make the one that binosplat draws in current first";
+
+/// The table of the context that is current. Throws Error(no_gl) where none is, or one older than 4.5 or of
+/// OpenGL ES, and names the first entry point not found; Error(bad_input) for no function.
 Functions load_functions(GetProcAddress get_proc_address);
 
 /// Whether the context that is current has an extension.

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "gl/texture.h"
+#include "library/texture_level.h"
 #include "render/mesh_depth.h"
 
 namespace binosplat::library {
@@ -19,6 +20,6 @@ struct MeshDepths {
 
 /// Appends a view's. Throws Error(bad_input) for a texture that cannot be read as MeshDepth says, or is
 /// smaller than the view, and for planes that bound nothing.
-void add_mesh_depth(gl::Context& context, const View& view, MeshDepths& depths);
+void add_mesh_depth(gl::Context& context, const View& view, const Argument& argument, MeshDepths& depths);
 
 }  // namespace binosplat::library

@@ -4,20 +4,36 @@
 #include "base/log.h"
 #include "gl/state.h"
 #include "library/mesh_depth.h"
+#include "library/numbers.h"
 #include "library/settings.h"
 #include "library/stream.h"
+#include "library/targets.h"
 #include "library/views.h"
 #include "stereo/foveate.h"
 #include "stereo/present.h"
 
 namespace binosplat {
 
+namespace {
+
+/// What a call is for: none was moved from, and its context is current.
+template <typename Impl>
+Impl& usable(const std::unique_ptr<Impl>& impl) {
+  if (impl == nullptr) fail("this Renderer was moved from: expected one that holds a model");
+  impl->context->check_current();
+  return *impl;
+}
+
+}  // namespace
+
 struct Renderer::Impl {
-  Impl(GetProcAddress get_proc_address, std::shared_ptr<const Model> drawn)
-      : model(std::move(drawn)), context(gl::Context::adopt(get_proc_address)) {
+  Impl(GetProcAddress get_proc_address, std::shared_ptr<const Model> drawn) : model(std::move(drawn)) {
+    if (model == nullptr) fail("model: it was moved from: expected a SplatModel that holds one");
+    context = gl::Context::adopt(get_proc_address);
     const gl::KeptState kept(*context);
     frame = std::make_unique<stereo::FoveatedFrame>(std::make_shared<render::GpuModel>(*context, *model));
     presenter = std::make_unique<stereo::Presenter>(*context);
+    checked = std::make_unique<library::Targets>(*context);
   }
   Impl(GetProcAddress get_proc_address, std::shared_ptr<SplatStream::Impl> drawn)
       : stream(std::move(drawn)), context(gl::Context::adopt(get_proc_address)) {
@@ -65,24 +81,38 @@ struct Renderer::Impl {
   std::optional<Submitted> submitted;
   std::unique_ptr<stereo::FoveatedFrame> frame;
   std::unique_ptr<stereo::Presenter> presenter;
+  std::unique_ptr<library::Targets> checked;
 };
 
 Renderer::Renderer(GetProcAddress get_proc_address, const SplatModel& model)
     : impl_(std::make_unique<Impl>(get_proc_address, model.model_)) {}
 Renderer::Renderer(GetProcAddress get_proc_address, SplatStream& stream)
     : impl_(std::make_unique<Impl>(get_proc_address, stream.impl_)) {}
-Renderer::~Renderer() = default;
+Renderer::~Renderer() {
+  // What has the same names in another context is not the renderer's to delete.
+  if (impl_ == nullptr || !impl_->context->another_is_current()) return;
+  log_warning(
+      "a renderer ends where another OpenGL context than its own is current: its memory is not freed");
+  static_cast<void>(impl_.release());
+}
 Renderer::Renderer(Renderer&&) noexcept = default;
-Renderer& Renderer::operator=(Renderer&&) noexcept = default;
+Renderer& Renderer::operator=(Renderer&& other) noexcept {
+  if (this == &other) return *this;
+  const Renderer old(std::move(*this));
+  impl_ = std::move(other.impl_);
+  return *this;
+}
 
 void Renderer::submit(std::span<const View> views, const Placement& placement, const Settings& settings) {
-  if (impl_->submitted) fail("a frame is under way: call finish() before the next submit()");
+  if (usable(impl_).submitted) fail("a frame is under way: call finish() before the next submit()");
   Impl::Submitted to{.layout = library::layout_of(settings.layout), .background = settings.background};
   to.callers_errors = impl_->callers_errors();
-  for (const View& view : views) {
+  library::check_numbers(views, placement);
+  for (std::size_t k = 0; k < views.size(); ++k) {
+    const View& view = views[k];
     to.targets.push_back(view.target);
     if (view.depth) to.depths.push_back(*view.depth);
-    if (view.mesh_depth) library::add_mesh_depth(*impl_->context, view, to.mesh_depths);
+    if (view.mesh_depth) library::add_mesh_depth(*impl_->context, view, {k, "mesh_depth"}, to.mesh_depths);
   }
   if (to.layout != LAYOUT_SEPARATE) {
     if (views.size() != 2)
@@ -100,6 +130,7 @@ void Renderer::submit(std::span<const View> views, const Placement& placement, c
     fail("mesh depths with a {}: splats are blended over the colours that are in each view's target",
          settings.background ? "background" : "layout other than separate");
   }
+  impl_->checked->check(views, settings);
   const render::FrameSettings over = library::frame_settings(settings, views);
   to.is_foveated = settings.foveation.has_value();
   if (to.is_foveated && !to.depths.empty())
@@ -124,10 +155,10 @@ void Renderer::submit(std::span<const View> views, const Placement& placement, c
   if (impl_->stream) impl_->stream->is_drawn = true;
 }
 
-bool Renderer::is_done() { return !impl_->submitted || impl_->frame->frame().is_done(); }
+bool Renderer::is_done() { return !usable(impl_).submitted || impl_->frame->frame().is_done(); }
 
 Report Renderer::finish() {
-  if (!impl_->submitted) fail("no frame is under way: call submit() before finish()");
+  if (!usable(impl_).submitted) fail("no frame is under way: call submit() before finish()");
   const Impl::Submitted frame = std::move(*impl_->submitted);
   impl_->submitted.reset();
   if (impl_->stream) impl_->stream->is_drawn = false;

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/error.h"
+#include "library/numbers.h"
 
 namespace binosplat::library {
 
@@ -18,6 +19,21 @@ int rule_of(const Settings& settings) {
   return *settings.threshold == Threshold::peripheral ? TH_PERIPHERAL : TH_TAU;
 }
 
+/// In the names of this library; render::check_choice has the program's.
+void check_choices(const Settings& s) {
+  if (s.quality && s.tolerance)
+    fail("settings.tolerance with settings.quality, which finds one itself: leave one of them out");
+  if (s.threshold == Threshold::exact && (s.quality || s.tolerance)) {
+    fail("settings.{0} has no effect with settings.threshold exact: leave one of them out",
+         s.quality ? "quality" : "tolerance");
+  }
+  if (s.transmittance == Transmittance::measured && render::is_exact(rule_of(s))) {
+    fail(
+        "settings.transmittance measured has no effect on an exact picture: give a quality or a tolerance, "
+        "too");
+  }
+}
+
 render::ViewRegion region_of(const ViewRegion& region) {
   render::ViewRegion result;
   result.columns = region.columns;
@@ -31,6 +47,8 @@ render::ViewRegion region_of(const ViewRegion& region) {
 }  // namespace
 
 render::FrameSettings frame_settings(const Settings& from, std::span<const View> views) {
+  check_numbers(from);
+  check_choices(from);
   render::FrameSettings to;
   to.th = rule_of(from);
   to.transmittance = from.transmittance == Transmittance::measured ? TRANSMITTANCE_LAST : TRANSMITTANCE_ONE;

@@ -10,15 +10,15 @@
 
 namespace binosplat::test {
 
-/// Whether `action` throws Error(bad_input) whose text holds all of `parts`.
+/// Whether `action` throws an Error of that code whose text holds all of `parts`.
 template <typename Action>
-testing::AssertionResult fails_saying(Action action, std::initializer_list<std::string> parts) {
+testing::AssertionResult fails_saying(Action action, std::initializer_list<std::string> parts,
+                                      ExitCode code = ExitCode::bad_input) {
   try {
     action();
   } catch (const Error& error) {
     const std::string text = error.what();
-    if (error.code() != ExitCode::bad_input)
-      return testing::AssertionFailure() << "another exit code: " << text;
+    if (error.code() != code) return testing::AssertionFailure() << "another exit code: " << text;
     for (const std::string& part : parts) {
       if (text.find(part) == std::string::npos) {
         return testing::AssertionFailure() << "no '" << part << "' in: " << text;

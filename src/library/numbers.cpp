@@ -1,0 +1,82 @@
+#include "library/numbers.h"
+
+#include <cmath>
+
+#include "base/error.h"
+
+namespace binosplat::library {
+
+namespace {
+
+template <typename Vector>
+bool is_finite(const Vector& v) {
+  for (int k = 0; k < v.length(); ++k) {
+    if (!std::isfinite(v[k])) return false;
+  }
+  return true;
+}
+
+/// Whether the columns are of length 1 and at right angles, but for rounding; not where one is not finite.
+bool are_directions(const glm::dmat3& axes) {
+  constexpr double rounding = 1e-3;
+  const glm::dmat3 products = glm::transpose(axes) * axes;
+  for (int i = 0; i < 3; ++i) {
+    for (int k = 0; k < 3; ++k) {
+      if (!(std::abs(products[i][k] - (i == k ? 1.0 : 0.0)) < rounding)) return false;
+    }
+  }
+  return true;
+}
+
+/// An enumeration's number, of which 0 to `last` have names.
+template <typename Enum>
+void check_named(Enum value, Enum last, const char* argument) {
+  const int number = static_cast<int>(value);
+  if (number < 0 || number > static_cast<int>(last))
+    fail("{} {}: there is none of this number", argument, number);
+}
+
+}  // namespace
+
+void check_numbers(std::span<const View> views, const Placement& placement) {
+  const glm::dvec3& origin = placement.origin;
+  if (!is_finite(origin)) {
+    fail("placement.origin ({}, {}, {}): expected finite world units", origin.x, origin.y, origin.z);
+  }
+  if (!are_directions(placement.axes))
+    fail("placement.axes: expected three directions of length 1 at right angles to each other, as columns");
+  if (!(placement.units_per_metre > 0.0) || !std::isfinite(placement.units_per_metre))
+    fail("placement.units_per_metre {}: expected a number above zero", placement.units_per_metre);
+  for (std::size_t k = 0; k < views.size(); ++k) {
+    const Eye& eye = views[k].eye;
+    const glm::dvec3& p = eye.position;
+    // As floats, which the GPU has.
+    if (!is_finite(p) || !is_finite(glm::vec3(origin + placement.units_per_metre * (placement.axes * p))))
+      fail("views[{}].eye.position ({}, {}, {}): expected finite metres", k, p.x, p.y, p.z);
+    const glm::dvec4& q = eye.orientation;
+    if (!is_finite(q) || q == glm::dvec4(0.0)) {
+      fail(
+          "views[{}].eye.orientation ({}, {}, {}, {}): expected a quaternion x, y, z, w that is finite and "
+          "not "
+          "zero",
+          k, q.x, q.y, q.z, q.w);
+    }
+  }
+}
+
+void check_numbers(const Settings& settings) {
+  const glm::vec3 behind = settings.background.value_or(glm::vec3(0.0f));
+  if (!is_finite(behind)) {
+    fail("settings.background ({}, {}, {}): expected finite numbers, from 0 to 1", behind.r, behind.g,
+         behind.b);
+  }
+  if (!(settings.near_plane > 0.0) || !std::isfinite(static_cast<float>(settings.near_plane)))
+    fail("settings.near_plane {}: expected world units above zero", settings.near_plane);
+  check_named(settings.threshold.value_or(Threshold::exact), Threshold::peripheral, "settings.threshold");
+  check_named(settings.transmittance, Transmittance::measured, "settings.transmittance");
+  check_named(settings.order.value_or(Order::depth), Order::distance, "settings.order");
+  check_named(settings.projection.value_or(Projection::affine), Projection::tangent, "settings.projection");
+  check_named(settings.depth, DepthKind::median, "settings.depth");
+}
+
+}  // namespace binosplat::library

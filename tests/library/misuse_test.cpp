@@ -1,0 +1,280 @@
+// Errors of use: each is told before anything is drawn, by a text that names the argument.
+
+#include <functional>
+#include <limits>
+#include <optional>
+#include <thread>
+
+#include "library/renderer_fixture.h"
+#include "support/errors.h"
+#include "support/models.h"
+
+namespace binosplat {
+namespace {
+
+constexpr double infinite = std::numeric_limits<double>::infinity(),
+                 no_number = std::numeric_limits<double>::quiet_NaN();
+
+struct Misuse : Library {
+  const SplatModel model = in_memory(test::random_model(3, 200, 0));
+  Renderer renderer{caller.get_proc_address(), model};
+
+  /// Whether a frame is refused whose second view is made wrong so, and leaves no error in the context and no
+  /// frame under way; and whether the frame is drawn without that.
+  testing::AssertionResult refused(const std::function<void(View&)>& spoil,
+                                   std::initializer_list<std::string> parts) {
+    std::vector<View> pair = views();
+    spoil(pair[1]);
+    return refused(pair, placement, over_black, parts);
+  }
+  testing::AssertionResult refused(const std::vector<View>& bad, const Placement& where,
+                                   const Settings& settings, std::initializer_list<std::string> parts) {
+    const auto said = test::fails_saying([&] { renderer.submit(bad, where, settings); }, parts);
+    if (!said) return said;
+    if (caller.gl.GetError() != GL_NO_ERROR)
+      return testing::AssertionFailure() << "an error of OpenGL's is left";
+    const Report report = renderer.draw(views(), placement, over_black);
+    if (report.pairs == 0 || !report.callers_errors.empty())
+      return testing::AssertionFailure() << "the next frame is not drawn as ever";
+    return said;
+  }
+  testing::AssertionResult target_refused(const Target& target, std::initializer_list<std::string> parts) {
+    return refused([&](View& view) { view.target = target; }, parts);
+  }
+  /// Both views have depths, of which the second is this.
+  testing::AssertionResult depth_refused(const DepthTarget& depth, std::initializer_list<std::string> parts) {
+    std::vector<View> pair = views();
+    pair[0].depth = {.texture = caller.texture(GL_DEPTH_COMPONENT32F, size.x, size.y)};
+    pair[1].depth = depth;
+    return refused(pair, placement, over_black, parts);
+  }
+
+  std::uint32_t made(GLenum kind, const std::function<void(std::uint32_t)>& fill) const {
+    std::uint32_t id = 0;
+    caller.gl.CreateTextures(kind, 1, &id);
+    fill(id);
+    return id;
+  }
+  std::uint32_t framebuffer(const std::vector<std::uint32_t>& colours) const {
+    std::uint32_t id = 0;
+    caller.gl.CreateFramebuffers(1, &id);
+    for (GLenum k = 0; k < colours.size(); ++k)
+      caller.gl.NamedFramebufferTexture(id, GL_COLOR_ATTACHMENT0 + k, colours[k], 0);
+    return id;
+  }
+  template <typename F>
+  F* function(const char* name) const {
+    return reinterpret_cast<F*>(caller.get_proc_address()(name));
+  }
+};
+
+TEST_F(Misuse, TexturesThatCannotTakeAPicture) {
+  std::uint32_t deleted = caller.texture(GL_RGBA8, size.x, size.y);
+  caller.gl.DeleteTextures(1, &deleted);
+  EXPECT_TRUE(target_refused({.texture = deleted}, {"views[1].target", "there is no texture"}));
+  std::uint32_t unbound = 0;
+  caller.gl.GenTextures(1, &unbound);
+  EXPECT_TRUE(target_refused({.texture = unbound}, {"views[1].target", "there is no texture"}));
+  const std::uint32_t empty = made(GL_TEXTURE_2D, [](std::uint32_t) {});
+  EXPECT_TRUE(target_refused({.texture = empty}, {"has no level 0"}));
+  const std::uint32_t solid = made(
+      GL_TEXTURE_3D, [&](std::uint32_t id) { caller.TextureStorage3D(id, 1, GL_RGBA8, size.x, size.y, 4); });
+  EXPECT_TRUE(target_refused({.texture = solid, .layer = 1}, {"of kind 0x806f", "GL_TEXTURE_2D_ARRAY"}));
+  const std::uint32_t cube = made(GL_TEXTURE_CUBE_MAP, [&](std::uint32_t id) {
+    caller.gl.TextureStorage2D(id, 1, GL_RGBA8, size.x, size.x);
+  });
+  EXPECT_TRUE(target_refused({.texture = cube, .layer = 1}, {"of kind 0x8513"}));
+  const std::uint32_t samples = made(GL_TEXTURE_2D_MULTISAMPLE, [&](std::uint32_t id) {
+    function<void(GLuint, GLsizei, GLenum, GLsizei, GLsizei, GLboolean)>("glTextureStorage2DMultisample")(
+        id, 4, GL_RGBA8, size.x, size.y, GL_TRUE);
+  });
+  EXPECT_TRUE(target_refused({.texture = samples}, {"of kind 0x9100", "without samples"}));
+  EXPECT_TRUE(target_refused({.framebuffer = framebuffer({samples})}, {"samples a pixel"}));
+
+  const std::uint32_t good = caller.texture(GL_RGBA8, size.x, size.y),
+                      array = caller.texture(GL_RGBA8, size.x, size.y, 2);
+  EXPECT_TRUE(target_refused({.texture = good, .level = 1}, {"has no level 1"}));
+  EXPECT_TRUE(target_refused({.texture = good, .level = -1}, {"has no level -1"}));
+  EXPECT_TRUE(target_refused({.texture = good, .layer = 0}, {"has no layer 0", "no array"}));
+  EXPECT_TRUE(target_refused({.texture = array, .layer = 2}, {"has no layer 2", "an array of 2"}));
+  EXPECT_TRUE(target_refused({.texture = array}, {"has no layer -1"}));
+  EXPECT_TRUE(target_refused({.texture = good, .x = 1}, {"views[1].target", "72 x 64 px at 1, 0"}));
+  EXPECT_TRUE(target_refused({.texture = good, .y = -1}, {"does not lie within"}));
+  EXPECT_TRUE(
+      target_refused({.texture = good, .x = std::numeric_limits<int>::max()}, {"does not lie within"}));
+  EXPECT_TRUE(
+      target_refused({.texture = caller.texture(GL_RGBA8, size.x / 2, size.y)}, {"within 36 x 64 px"}));
+  for (const GLenum format :
+       {GL_RGBA8UI, GL_R32I, GL_RGB9_E5, GL_COMPRESSED_RGBA_BPTC_UNORM, GL_DEPTH_COMPONENT24}) {
+    const std::uint32_t texture = caller.texture(format, size.x, size.y);
+    EXPECT_TRUE(target_refused({.texture = texture}, {"views[1].target", "colour-renderable"})) << format;
+  }
+  // The same in the middle of many views, of which the first takes a copy.
+  std::vector<View> many(6, views()[0]);
+  many[0].target.texture = caller.texture(GL_RGB8, size.x, size.y);
+  many[4].target.texture = deleted;
+  EXPECT_TRUE(refused(many, placement, over_black, {"views[4].target"}));
+}
+
+TEST_F(Misuse, FramebuffersThatCannotTakeAPicture) {
+  EXPECT_TRUE(target_refused({.framebuffer = 4711}, {"views[1].target", "no framebuffer 4711"}));
+  EXPECT_TRUE(target_refused({.framebuffer = framebuffer({})}, {"is not complete"}));
+  EXPECT_TRUE(target_refused({}, {"views[1].target", "no default framebuffer"}));
+  const std::uint32_t good = caller.texture(GL_RGBA8, size.x, size.y);
+  EXPECT_TRUE(target_refused({.framebuffer = framebuffer({good}), .x = 1}, {"does not lie within"}));
+  const std::uint32_t small = caller.texture(GL_RGBA8, size.x, size.y / 2);
+  EXPECT_TRUE(target_refused({.framebuffer = framebuffer({good, small})}, {"within 72 x 32 px"}));
+  const std::uint32_t integers = caller.texture(GL_RGBA8UI, size.x, size.y);
+  EXPECT_TRUE(target_refused({.framebuffer = framebuffer({integers})}, {"is of integers"}));
+  std::uint32_t deleted = caller.texture(GL_RGBA8, size.x, size.y);
+  const std::uint32_t of_deleted = framebuffer({deleted});
+  caller.gl.DeleteTextures(1, &deleted);
+  EXPECT_TRUE(target_refused({.framebuffer = of_deleted}, {"views[1].target"}));
+  const std::uint32_t of_depths = framebuffer({});
+  caller.gl.NamedFramebufferTexture(of_depths, GL_DEPTH_ATTACHMENT,
+                                    caller.texture(GL_DEPTH_COMPONENT24, size.x, size.y), 0);
+  EXPECT_TRUE(target_refused({.framebuffer = of_depths}, {"has no colours"}));
+  std::uint32_t buffer = 0;
+  function<void(GLsizei, GLuint*)>("glCreateRenderbuffers")(1, &buffer);
+  function<void(GLuint, GLenum, GLsizei, GLsizei)>("glNamedRenderbufferStorage")(buffer, GL_RGBA8, size.x,
+                                                                                 size.y);
+  const std::uint32_t of_buffer = framebuffer({});
+  function<void(GLuint, GLenum, GLenum, GLuint)>("glNamedFramebufferRenderbuffer")(
+      of_buffer, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, buffer);
+  EXPECT_TRUE(target_refused({.framebuffer = of_buffer, .y = 1}, {"within 72 x 64 px"}));
+  std::vector<View> pair = views();
+  pair[1].target = {.framebuffer = of_buffer};
+  EXPECT_GT(renderer.draw(pair, placement, over_black).pairs, 0u) << "a good one is refused, too";
+}
+
+TEST_F(Misuse, PicturesOfBothEyes) {
+  std::vector<View> pair = views();
+  Settings wide = over_black;
+  wide.layout = Layout::parallel;
+  EXPECT_TRUE(refused(pair, placement, wide, {"views[0].target", "144 x 64 px", "within 72 x 64 px"}));
+  pair[1].size.x -= 1;
+  EXPECT_TRUE(refused(pair, placement, wide, {"views[1].size: 71 x 64", "parallel"}));
+  pair[0].size.x -= 1;
+  EXPECT_TRUE(
+      refused(pair, placement, {.background = glm::vec3(0.0f), .layout = Layout::half_width}, {"71"}));
+  EXPECT_TRUE(refused(pair, placement, {.layout = Layout::anaglyph}, {"settings.background"}));
+  EXPECT_TRUE(refused(pair, placement, {.layout = static_cast<Layout>(77)}, {"layout 77"}));
+}
+
+TEST_F(Misuse, DepthsThatCannotBeKept) {
+  const std::uint32_t good = caller.texture(GL_DEPTH_COMPONENT32F, size.x, size.y);
+  for (const GLenum format :
+       {GL_DEPTH24_STENCIL8, GL_DEPTH32F_STENCIL8, GL_R32F, GL_RGBA8, GL_STENCIL_INDEX8}) {
+    EXPECT_TRUE(depth_refused({.texture = caller.texture(format, size.x, size.y)},
+                              {"views[1].depth", "without stencil"}))
+        << format;
+  }
+  std::uint32_t deleted = caller.texture(GL_DEPTH_COMPONENT24, size.x, size.y);
+  caller.gl.DeleteTextures(1, &deleted);
+  EXPECT_TRUE(depth_refused({.texture = deleted}, {"views[1].depth", "there is no texture"}));
+  EXPECT_TRUE(depth_refused({}, {"views[1].depth", "there is no texture 0"}));
+  EXPECT_TRUE(depth_refused({.texture = good, .level = 1}, {"has no level 1"}));
+  EXPECT_TRUE(depth_refused({.texture = good, .layer = 1}, {"has no layer 1"}));
+  for (const auto& [near, far] : {std::pair(0.0, 1.0), std::pair(-1.0, 1.0), std::pair(no_number, 1.0),
+                                  std::pair(1.0, 1.0), std::pair(infinite, infinite), std::pair(1.0, 0.0)}) {
+    const std::string text = fmt::format("planes at {} and {}", near, far);
+    EXPECT_TRUE(
+        depth_refused({.texture = good, .near_plane = near, .far_plane = far}, {"views[1].depth", text}));
+  }
+  // Of meshes, too.
+  std::vector<View> pair = views();
+  for (View& view : pair) {
+    view.depth = {.texture = caller.texture(GL_DEPTH_COMPONENT32F, size.x, size.y)};
+    view.mesh_depth = {.texture = caller.texture(GL_DEPTH_COMPONENT32F, size.x, size.y)};
+  }
+  EXPECT_GT(renderer.draw(pair, placement).pairs, 0u);
+  pair[0].depth->texture = pair[1].mesh_depth->texture;
+  EXPECT_TRUE(refused(pair, placement, {}, {"views[0].depth", "is a mesh_depth, too"}));
+  pair = views();
+  for (View& view : pair) view.mesh_depth = {.texture = good, .coding = static_cast<DepthCoding>(77)};
+  EXPECT_TRUE(refused(pair, placement, {}, {"views[0].mesh_depth", "coding 77"}));
+}
+
+TEST_F(Misuse, NumbersThatAreNone) {
+  for (const double bad : {no_number, infinite, -infinite}) {
+    EXPECT_TRUE(refused([&](View& v) { v.eye.position.y = bad; }, {"views[1].eye.position"}));
+    EXPECT_TRUE(
+        refused([&](View& v) { v.eye.orientation.z = bad; }, {"views[1].eye.orientation", "quaternion"}));
+    EXPECT_TRUE(refused([&](View& v) { v.eye.fov.up = bad; }, {"field of view of right"}));
+    const auto badly_placed = [&](Placement where, const char* part) {
+      return refused(views(), where, over_black, {part});
+    };
+    EXPECT_TRUE(badly_placed({.origin = {0.0, 0.0, bad}}, "placement.origin"));
+    EXPECT_TRUE(badly_placed({.axes = glm::dmat3(bad)}, "placement.axes"));
+    EXPECT_TRUE(badly_placed({.units_per_metre = bad}, "placement.units_per_metre"));
+    Settings settings = over_black;
+    settings.near_plane = bad;
+    EXPECT_TRUE(refused(views(), placement, settings, {"settings.near_plane"}));
+    settings = {.background = glm::vec3(0.0f, static_cast<float>(bad), 0.0f)};
+    EXPECT_TRUE(refused(views(), placement, settings, {"settings.background"}));
+    const auto share = static_cast<float>(bad);
+    EXPECT_TRUE(refused([&](View& v) { v.region.tolerance_share = share; }, {"tolerance"}));
+    EXPECT_TRUE(refused([&](View& v) { v.region.low_pass_share = share; }, {"low-pass"}));
+  }
+  EXPECT_TRUE(refused([](View& v) { v.eye.position.x = 1e200; }, {"views[1].eye.position"}));
+  EXPECT_TRUE(refused([](View& v) { v.eye.orientation = glm::dvec4(0.0); }, {"views[1].eye.orientation"}));
+  for (const double units : {0.0, -1.0})
+    EXPECT_TRUE(refused(views(), {.units_per_metre = units}, over_black, {"placement.units_per_metre"}));
+  EXPECT_TRUE(refused(views(), {.axes = glm::dmat3(2.0)}, over_black, {"placement.axes", "length 1"}));
+  EXPECT_TRUE(refused([](View& v) { v.region.columns.resize(3); }, {"columns for 3 rows"}));
+  EXPECT_TRUE(refused([](View& v) { v.region.hole_end = {1000, 8}; }, {"a hole"}));
+  for (const glm::ivec2 none :
+       {glm::ivec2(0), glm::ivec2(72, -1), glm::ivec2(std::numeric_limits<int>::max(), 1)}) {
+    const std::string text = fmt::format("views[1].size: {} x {} px", none.x, none.y);
+    EXPECT_TRUE(refused([&](View& v) { v.size = none; }, {text}));
+  }
+  EXPECT_TRUE(refused(std::vector<View>(9, views()[0]), placement, over_black, {"1 to 8 views"}));
+}
+
+TEST_F(Misuse, SettingsThatContradictEachOther) {
+  const auto badly_set = [&](Settings settings, std::initializer_list<std::string> parts) {
+    return refused(views(), placement, settings, parts);
+  };
+  EXPECT_TRUE(badly_set({.quality = 40.0f, .tolerance = 0.0f}, {"settings.tolerance", "settings.quality"}));
+  EXPECT_TRUE(
+      badly_set({.quality = 40.0f, .threshold = Threshold::exact}, {"settings.quality", "threshold exact"}));
+  EXPECT_TRUE(badly_set({.tolerance = 1.0f, .threshold = Threshold::exact}, {"settings.tolerance"}));
+  EXPECT_TRUE(badly_set({.transmittance = Transmittance::measured}, {"settings.transmittance", "no effect"}));
+  EXPECT_TRUE(badly_set({.threshold = static_cast<Threshold>(77)}, {"settings.threshold 77"}));
+  EXPECT_TRUE(badly_set({.transmittance = static_cast<Transmittance>(77)}, {"settings.transmittance 77"}));
+  EXPECT_TRUE(badly_set({.order = static_cast<Order>(-1)}, {"settings.order -1"}));
+  EXPECT_TRUE(badly_set({.projection = static_cast<Projection>(2)}, {"settings.projection 2"}));
+  EXPECT_TRUE(badly_set({.depth = static_cast<DepthKind>(77)}, {"settings.depth 77"}));
+  // One number is enough: the rule follows from it.
+  EXPECT_GE(renderer.draw(views(), placement, {.quality = 40.0f}).quality, 39.0);
+}
+
+TEST_F(Misuse, ObjectsThatAreGone) {
+  std::optional<SplatModel> short_lived(in_memory(test::random_model(3, 200, 0)));
+  Renderer outliving(caller.get_proc_address(), *short_lived);
+  renderer.draw(views(), placement, over_black);
+  const auto expected = read(0);
+  short_lived.reset();
+  outliving.draw(views(), placement, over_black);
+  EXPECT_EQ(read(0), expected);
+
+  Renderer to(std::move(outliving));
+  // NOLINTBEGIN(bugprone-use-after-move)
+  for (const auto& use : std::vector<std::function<void()>>{
+           [&] { outliving.submit(views(), placement); }, [&] { outliving.finish(); },
+           [&] { outliving.is_done(); }, [&] { outliving.draw(views(), placement); }})
+    EXPECT_TRUE(test::fails_saying(use, {"Renderer was moved from"}));
+  EXPECT_GT(to.draw(views(), placement, over_black).pairs, 0u);
+  outliving = std::move(to);
+  EXPECT_GT(outliving.draw(views(), placement, over_black).pairs, 0u);
+
+  SplatModel from = model;
+  const SplatModel there = std::move(from);
+  EXPECT_TRUE(
+      test::fails_saying([&] { Renderer(caller.get_proc_address(), from); }, {"model", "moved from"}));
+  EXPECT_TRUE(test::fails_saying([&] { from.count(); }, {"moved from"}));
+  // NOLINTEND(bugprone-use-after-move)
+}
+
+}  // namespace
+}  // namespace binosplat
