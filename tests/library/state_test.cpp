@@ -338,9 +338,8 @@ TEST_F(State, IsTheSameAfterAFrame) {
     EXPECT_EQ(changed_by([&] { renderer->draw(with_meshes, {}); }), std::set<std::string>());
   }
   const auto refused = changed_by([&] {
-    auto deleted = odd.views();
-    deleted[1].target = {.texture = 4711};
-    EXPECT_THROW(renderer->draw(deleted, {}), Error);
+    for (const std::uint32_t bad : {4711u, caller.texture(GL_RGBA8UI, 40, 32)})
+      EXPECT_THROW(renderer->draw(views_into({{odd.targets[0], {.texture = bad}}}), {}), Error);
   });
   EXPECT_EQ(refused, std::set<std::string>()) << "by a frame that failed";
 

@@ -1,0 +1,159 @@
+// Calls where another context than the renderer's is current, or none, or one that binosplat cannot draw in.
+
+#include <cstring>
+#include <functional>
+#include <optional>
+#include <string>
+#include <thread>
+
+#include "library/renderer_fixture.h"
+#include "support/errors.h"
+#include "support/models.h"
+
+namespace binosplat {
+namespace {
+
+constexpr const char* none_is_current = "no OpenGL context is current on this thread";
+
+/// A driver's loader with other answers for some names.
+struct Loader {
+  using Function = void (*)();
+  static inline gl::GetProcAddress driver = nullptr;
+  static inline std::string version, hidden;
+  static inline void* glx_context = nullptr;
+
+  static const GLubyte* get_string(GLenum name) {
+    const auto of_driver = reinterpret_cast<const GLubyte* (*)(GLenum)>(driver("glGetString"));
+    if (name != GL_VERSION || version.empty()) return of_driver(name);
+    return reinterpret_cast<const GLubyte*>(version.c_str());
+  }
+  static void* current() { return glx_context; }
+  static Function get_proc_address(const char* name) {
+    if (!hidden.empty() && std::string(name).ends_with(hidden)) {
+      if (std::strcmp(name, "glXGetCurrentContext") != 0 || glx_context == nullptr) return nullptr;
+      return reinterpret_cast<Function>(current);
+    }
+    return std::strcmp(name, "glGetString") == 0 ? reinterpret_cast<Function>(get_string) : driver(name);
+  }
+  static Function nothing(const char*) { return nullptr; }
+};
+
+struct Contexts : Library {
+  const SplatModel model = in_memory(test::random_model(3, 200, 0));
+
+  Contexts() {
+    Loader::driver = caller.get_proc_address();
+    Loader::version = Loader::hidden = "";
+    Loader::glx_context = nullptr;
+  }
+
+  testing::AssertionResult none_drawn_by(gl::GetProcAddress loader, std::initializer_list<std::string> parts,
+                                         ExitCode code = ExitCode::no_gl) const {
+    return test::fails_saying([&] { Renderer(loader, model); }, parts, code);
+  }
+  /// Whether each call on a renderer with a frame under way is refused, on another thread or on this one.
+  testing::AssertionResult all_refused(Renderer& renderer, const std::string& saying, bool elsewhere) const {
+    testing::AssertionResult result = testing::AssertionSuccess();
+    const auto call_all = [&] {
+      for (const auto& call : std::vector<std::function<void()>>{
+               [&] { renderer.submit(views(), placement); }, [&] { renderer.finish(); },
+               [&] { renderer.is_done(); }, [&] { renderer.draw(views(), placement); }}) {
+        if (result) result = test::fails_saying(call, {saying}, ExitCode::no_gl);
+      }
+    };
+    if (elsewhere) {
+      std::thread(call_all).join();
+    } else {
+      call_all();
+    }
+    return result;
+  }
+};
+
+TEST_F(Contexts, NoneIsCurrent) {
+  std::thread([&] { EXPECT_TRUE(none_drawn_by(caller.get_proc_address(), {none_is_current})); }).join();
+  Loader::hidden = "GetCurrentContext";
+  for (const gl::GetProcAddress loader :
+       {caller.get_proc_address(), gl::GetProcAddress(Loader::get_proc_address)}) {
+    Renderer renderer(loader, model);
+    renderer.submit(views(), placement, over_black);
+    EXPECT_TRUE(all_refused(renderer, none_is_current, true));
+    EXPECT_GT(renderer.finish().pairs, 0u) << "the frame is lost where it was asked for elsewhere";
+  }
+}
+
+TEST_F(Contexts, AnotherIsCurrent) {
+  Renderer renderer(caller.get_proc_address(), model);
+  renderer.submit(views(), placement, over_black);
+  {
+    const test::Caller other;
+    EXPECT_TRUE(all_refused(renderer, "another OpenGL context is current", false));
+  }
+  EXPECT_GT(renderer.finish().pairs, 0u);
+}
+
+// By glX's handle, where the loader knows no other.
+TEST_F(Contexts, OfGlxAreToldApart) {
+  int one = 0, other = 0;
+  Loader::hidden = "GetCurrentContext";
+  Loader::glx_context = &one;
+  Renderer renderer(Loader::get_proc_address, model);
+  renderer.submit(views(), placement, over_black);
+  Loader::glx_context = &other;
+  EXPECT_TRUE(all_refused(renderer, "another OpenGL context is current", false));
+  Loader::glx_context = &one;
+  EXPECT_GT(renderer.finish().pairs, 0u);
+}
+
+TEST_F(Contexts, ARendererEndsWhereAnotherIsCurrent) {
+  int one = 0, other = 0;
+  Loader::hidden = "GetCurrentContext";
+  Loader::glx_context = &one;
+  std::optional<Renderer> ends(std::in_place, Loader::get_proc_address, model);
+  Renderer stays(caller.get_proc_address(), model);
+  Loader::glx_context = &other;
+  testing::internal::CaptureStderr();
+  ends.reset();
+  EXPECT_NE(testing::internal::GetCapturedStderr().find("its memory is not freed"), std::string::npos);
+  EXPECT_GT(stays.draw(views(), placement, over_black).pairs, 0u);
+}
+
+TEST_F(Contexts, ThatAreTooOldOrNoneOfOpenGL) {
+  EXPECT_TRUE(none_drawn_by(nullptr, {"get_proc_address is null", "eglGetProcAddress"}, ExitCode::bad_input));
+  EXPECT_TRUE(none_drawn_by(Loader::nothing, {"get_proc_address finds no glGetString"}));
+  for (const char* version : {"4.4 (Core Profile) Mesa 22.3.6", "2.1 Mesa 22.3.6", "4.3.0 NVIDIA 535.54"}) {
+    Loader::version = version;
+    EXPECT_TRUE(none_drawn_by(Loader::get_proc_address,
+                              {std::string("is of OpenGL ") + version, "needs OpenGL 4.5 core or later"}));
+  }
+  Loader::version = "OpenGL ES 3.2 Mesa 22.3.6";
+  EXPECT_TRUE(none_drawn_by(Loader::get_proc_address, {"is of OpenGL ES 3.2", "not OpenGL ES"}));
+  Loader::version = "4.6.0 NVIDIA 535.54";
+  EXPECT_NO_THROW(Renderer(Loader::get_proc_address, model));
+  Loader::hidden = "glDispatchCompute";
+  EXPECT_TRUE(none_drawn_by(Loader::get_proc_address, {"has no glDispatchCompute"}));
+}
+
+// A real one.
+TEST_F(Contexts, OfOpenGLES) {
+  const auto egl = [&](const char* name) { return caller.get_proc_address()(name); };
+  using MakeContext = void*(void*, void*, void*, const int*);
+  using MakeCurrent = unsigned(void*, void*, void*, void*);
+  const auto get_display = reinterpret_cast<void* (*)()>(egl("eglGetCurrentDisplay"));
+  if (get_display == nullptr || get_display() == nullptr) GTEST_SKIP() << "no EGL here";
+  constexpr int version_name = 0x3098, end = 0x3038;
+  constexpr unsigned opengl_es = 0x30a0, opengl = 0x30a2;
+  const test::CurrentAgain again;
+  void* const display = get_display();
+  const auto bind = reinterpret_cast<unsigned (*)(unsigned)>(egl("eglBindAPI"));
+  bind(opengl_es);
+  void* const context = reinterpret_cast<MakeContext*>(egl("eglCreateContext"))(
+      display, nullptr, nullptr, std::array{version_name, 3, end}.data());
+  bind(opengl);
+  if (context == nullptr) GTEST_SKIP() << "no OpenGL ES here";
+  ASSERT_NE(reinterpret_cast<MakeCurrent*>(egl("eglMakeCurrent"))(display, nullptr, nullptr, context), 0u);
+  EXPECT_TRUE(none_drawn_by(caller.get_proc_address(), {"is of OpenGL ES 3", "binosplat needs OpenGL 4.5"}));
+}
+
+}  // namespace
+}  // namespace binosplat
