@@ -37,8 +37,8 @@ struct Eye {
 /// origin + units_per_metre * axes * p. SplatModel::placement() makes one that stands upright.
 struct Placement {
   glm::dvec3 origin{0.0};  // world units
-  /// The directions right, up and backward in the world, as columns. By default they are those of most
-  /// trained models, whose y axis points down and z forward.
+  /// The directions right, up and backward in the world, as columns of length 1 at right angles. By default
+  /// they are those of most trained models, whose y axis points down and z forward.
   glm::dmat3 axes{1.0, 0.0, 0.0, 0.0, -1.0, 0.0, 0.0, 0.0, -1.0};
   /// World units that make a metre, above 0. Trained models have any scale: where this number is too small
   /// the world looks too large. The library never changes it by itself.

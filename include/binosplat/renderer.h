@@ -69,7 +69,8 @@ struct View {
 /// A model on the GPU, and what drawing it needs there.
 ///
 /// Threads: call all of it, the destructor included, on the thread where the caller's context is current.
-/// Renderers of different contexts do not know of each other.
+/// Elsewhere calls throw Error(no_gl), and the destructor, where another context is current, frees nothing
+/// and says so on standard error. Renderers of different contexts do not know of each other.
 ///
 /// Time: the renderer compiles its shaders at the first frame of each combination of settings, which may take
 /// seconds, and keeps them in $XDG_CACHE_HOME/binosplat, or ~/.cache/binosplat, for later runs.
@@ -81,7 +82,8 @@ struct View {
 class Renderer {
  public:
   /// Uploads the model into the context that is current, of OpenGL 4.5 core or later. Context, textures and
-  /// framebuffers stay the caller's. Throws Error: no_gl for what the context lacks, out_of_memory.
+  /// framebuffers stay the caller's. Throws Error: no_gl where none is current and for what it lacks,
+  /// out_of_memory.
   Renderer(GetProcAddress get_proc_address, const SplatModel& model);
   /// Draws the levels that a stream has read (binosplat/stream.h), which has one renderer at a time.
   Renderer(GetProcAddress get_proc_address, SplatStream& stream);
@@ -105,10 +107,10 @@ class Renderer {
   /// of what was drawn, or has another size, frustum or set of tiles, and where there are more or fewer
   /// views.
   ///
-  /// Throws Error, and submits nothing: bad_input for an orientation that is not finite or zero, a frustum
-  /// that encloses no picture, an empty picture, settings that contradict each other, a target that cannot be
-  /// drawn into, views that do not go into the layout, a frame that was not finished; out_of_memory; no_gl
-  /// for a GPU that was reset.
+  /// Throws Error, and submits nothing: bad_input for numbers that are not finite, an orientation of zero,
+  /// a frustum that encloses no picture, an empty picture, settings that contradict each other, a target that
+  /// cannot be drawn into or is too small, views that do not go into the layout, a frame that was not
+  /// finished; out_of_memory; no_gl for a GPU that was reset, and where the context is not current.
   void submit(std::span<const View> views, const Placement& placement, const Settings& settings = {});
 
   /// Whether the GPU has blended the frame that was submitted. finish() then returns at once, unless the

@@ -30,12 +30,12 @@ enum class Layout {
   grey = 12,         // grey in both eyes
 };
 
-/// Where a picture goes: a texture of any colour-renderable format, or a framebuffer; Target{} is the default
-/// framebuffer. A 2D texture, or a layer of an array, is written without a copy where its format is GL_RGBA8,
-/// RGBA16, RGBA16F, RGBA32F or RGB10_A2, or GL_SRGB8_ALPHA8 with immutable storage (glTextureStorage2D and
-/// its like), and so is a framebuffer that has one such texture and no other colours; all else takes a
-/// picture of the renderer's own, of 4 bytes a pixel, or of 16 where the target keeps more than 8 bits of a
-/// colour.
+/// Where a picture goes: a texture of any colour-renderable format, or a framebuffer, both without samples
+/// and with room for the picture from its corner on; Target{} is the default framebuffer. A 2D texture, or a
+/// layer of an array, is written without a copy where its format is GL_RGBA8, RGBA16, RGBA16F, RGBA32F or
+/// RGB10_A2, or GL_SRGB8_ALPHA8 with immutable storage (glTextureStorage2D and its like), and so is a
+/// framebuffer that has one such texture and no other colours; all else takes a picture of the renderer's
+/// own, of 4 bytes a pixel, or of 16 where the target keeps more than 8 bits of a colour.
 ///
 /// Colours are display-referred, as models are trained: numbers as a screen takes them, which is what a
 /// texture of GL_SRGB8_ALPHA8 holds. GL_FRAMEBUFFER_SRGB, blending, masks and tests of the caller's do not

@@ -142,15 +142,13 @@ std::unique_ptr<Context> Context::adopt(GetProcAddress get_proc_address) {
 }
 
 void Context::check_current() const {
-  if (another_is_current()) {
-    throw Error(
-        ExitCode::no_gl,
-        "another OpenGL context is current on this thread than the one that the renderer was made in: "
-        "make that one current first");
-  }
-  const bool is_any =
-      current_handle_ != nullptr ? current_handle_() != nullptr : functions_.GetString(GL_VERSION) != nullptr;
-  if (!is_any) throw Error(ExitCode::no_gl, no_context);
+  if (current_handle_ == nullptr ? functions_.GetString(GL_VERSION) != nullptr : current_handle_() == handle_)
+    return;
+  if (!another_is_current()) throw Error(ExitCode::no_gl, no_context);
+  throw Error(
+      ExitCode::no_gl,
+      "another OpenGL context is current on this thread than the one that the renderer was made in: make "
+      "that one current first");
 }
 
 bool Context::another_is_current() const {

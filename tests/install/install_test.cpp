@@ -225,8 +225,21 @@ TEST(Install, DocumentsLinksHoldAndShellsAndManFindTheirFiles) {
   EXPECT_TRUE(fs::exists(share / "fish/vendor_completions.d/binosplat.fish"));
 }
 
-/// What is wrong with installed headers: how many there are, what they include, and whether each compiles by
-/// itself, with none of this tree's beside it.
+/// The compiler of this tree, and clang where it is another and installed, each with both standards.
+const std::vector<std::string>& compilers() {
+  static const std::vector<std::string> found = [] {
+    std::vector<std::string> commands;
+    for (const std::string compiler : {BINOSPLAT_CXX, "clang++"}) {
+      if (std::system((compiler + " --version > /dev/null 2>&1").c_str()) != 0) continue;
+      for (const char* standard : {" -std=c++20", " -std=c++2b"}) commands.push_back(compiler + standard);
+    }
+    return commands;
+  }();
+  return found;
+}
+
+/// What is wrong with installed headers: how many there are, what they include, the macros that they define,
+/// and whether each compiles by itself, with none of this tree's beside it.
 std::vector<std::string> faults_of_headers(const test::TempFolder& folder, const fs::path& include) {
   std::vector<std::string> faults;
   int headers = 0;
@@ -243,11 +256,15 @@ std::vector<std::string> faults_of_headers(const test::TempFolder& folder, const
     for (std::sregex_iterator at(text.begin(), text.end(), included), end; at != end; ++at) {
       if (!std::regex_match((*at)[1].str(), allowed)) faults.push_back(name + " includes " + (*at)[1].str());
     }
+    static const std::regex macro(R"(# *define +(?!BINOSPLAT_)(\w+))");
+    for (std::sregex_iterator at(text.begin(), text.end(), macro), end; at != end; ++at)
+      faults.push_back(name + " defines " + (*at)[1].str());
     test::write_text(folder / "alone.cpp", "#include <" + name + ">\n");
-    const auto compiles = succeeds(
-        folder, std::string(BINOSPLAT_CXX) + " -std=c++20 -fsyntax-only -Wall -Wextra -Wpedantic -Werror -I" +
-                    include.string() + " " + (folder / "alone.cpp").string());
-    if (!compiles) faults.push_back(name + " does not compile: " + compiles.message());
+    for (const std::string& compiler : compilers()) {
+      const auto compiles = succeeds(folder, compiler + " -fsyntax-only -Wall -Wextra -Wpedantic -Werror -I" +
+                                                 include.string() + " " + (folder / "alone.cpp").string());
+      if (!compiles) faults.push_back(name + " does not compile: " + compiles.message());
+    }
   }
   if (headers > 8) faults.push_back(std::to_string(headers) + " headers: at most 8 are to be read");
   if (lines > 1500) faults.push_back(std::to_string(lines) + " lines: at most 1,500 are to be read");
@@ -270,10 +287,53 @@ TEST(Install, HeadersAreFewAndStandByThemselves) {
   };
   EXPECT_EQ(noticed("#pragma once\n#include <vector>\n", 8), 0u);
   EXPECT_EQ(noticed("#pragma once\n", 9), 1u) << "a ninth header goes unnoticed";
-  EXPECT_EQ(noticed("#pragma once\nstruct Planted { std::vector<int> numbers; };\n"), 1u)
+  EXPECT_EQ(noticed("#pragma once\nstruct Planted { std::vector<int> numbers; };\n"), compilers().size())
       << "a header that misses an include goes unnoticed";
   EXPECT_EQ(noticed("#pragma once\n#include <fmt/core.h>\n"), 1u) << "another library's goes unnoticed";
+  EXPECT_EQ(noticed("#pragma once\n#define PLANTED 1\n#define BINOSPLAT_PLANTED 1\n"), 1u)
+      << "a macro of any name goes unnoticed";
   EXPECT_EQ(noticed(std::string(1501, '\n')), 1u) << "many lines go unnoticed";
+}
+
+/// The lines of docs/embedding.md that a program's CMakeLists.txt needs.
+std::string lines_for_cmake() {
+  const std::string text = test::read_text(std::string(BINOSPLAT_SOURCE_DIR) + "/docs/embedding.md");
+  const std::size_t begin = text.find("find_package(binosplat");
+  return text.substr(begin, text.find("```", begin) - begin);
+}
+
+TEST(Install, TwoLinesOfCMakeAreEnough) {
+  const test::TempFolder folder;
+  ASSERT_TRUE(succeeds(folder, std::string("cmake --install ") + BINOSPLAT_BUILD_DIR + " --prefix " +
+                                   (folder / "prefix").string()));
+  const std::string lines = lines_for_cmake();
+  EXPECT_EQ(std::count(lines.begin(), lines.end(), '\n'), 2) << lines;
+  fs::create_directory(folder / "program");
+  test::write_text(folder / "program/CMakeLists.txt",
+                   "cmake_minimum_required(VERSION 3.25)\nproject(other LANGUAGES CXX)\n"
+                   "add_executable(your_program main.cpp)\n" +
+                       lines);
+  test::write_text(folder / "program/main.cpp",
+                   "#include <binosplat/renderer.h>\n"
+                   "int main(int count, char** arguments) {\n"
+                   "  try {\n"
+                   "    binosplat::Renderer(nullptr, binosplat::SplatModel(arguments[count - 1]));\n"
+                   "  } catch (const binosplat::Error& error) {\n"
+                   "    return static_cast<int>(error.code());\n"
+                   "  }\n"
+                   "}\n");
+  test::write_text(folder / "model.ply", test::to_bytes(test::small_model()));
+  const std::string build = (folder / "build").string();
+  // No standard of C++ is set: the compiler's own is C++17.
+  ASSERT_TRUE(succeeds(folder, "cmake -G Ninja -S " + (folder / "program").string() + " -B " + build +
+                                   " -DCMAKE_PREFIX_PATH=" + (folder / "prefix").string() +
+                                   " -DCMAKE_CXX_COMPILER=" + BINOSPLAT_CXX + " -DCMAKE_CXX_FLAGS='" +
+                                   BINOSPLAT_CXX_FLAGS + " " + sanitize + "'"));
+  ASSERT_TRUE(succeeds(folder, "cmake --build " + build));
+  // It is linked, and refuses to draw without a loader.
+  const std::string run =
+      "ASAN_OPTIONS=detect_leaks=0 " + build + "/your_program " + (folder / "model.ply").string();
+  EXPECT_TRUE(succeeds(folder, run + "; test $? -eq 2"));
 }
 
 TEST(Install, PackagesHoldAProgramThatRuns) {
