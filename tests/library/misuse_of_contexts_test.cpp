@@ -167,5 +167,40 @@ TEST_F(Contexts, OfOpenGLES) {
                                                                          context);  // once it is not current
 }
 
+// A context that has a default framebuffer: its own is taken, where it begins.
+TEST_F(Contexts, WithADefaultFramebuffer) {
+  const auto egl = [&](const char* name) { return caller.get_proc_address()(name); };
+  const auto get = [&](const char* name) {
+    const auto found = reinterpret_cast<void* (*)()>(egl(name));
+    return found == nullptr ? nullptr : found();
+  };
+  void *const display = get("eglGetCurrentDisplay"), *const context = get("eglGetCurrentContext");
+  if (display == nullptr) GTEST_SKIP() << "no EGL here";
+  constexpr int config_id = 0x3028, end = 0x3038, width = 0x3057, height = 0x3056;
+  using Query = unsigned(void*, void*, int, int*);
+  using Choose = unsigned(void*, const int*, void**, int, int*);
+  using Make = void*(void*, void*, const int*);
+  int number = 0, count = 0;
+  void* config = nullptr;
+  reinterpret_cast<Query*>(egl("eglQueryContext"))(display, context, config_id, &number);
+  reinterpret_cast<Choose*>(egl("eglChooseConfig"))(display, std::array{config_id, number, end}.data(),
+                                                    &config, 1, &count);
+  void* const surface = reinterpret_cast<Make*>(egl("eglCreatePbufferSurface"))(
+      display, config, std::array{width, size.x, height, size.y, end}.data());
+  using MakeCurrent = unsigned(void*, void*, void*, void*);
+  const auto make_current = reinterpret_cast<MakeCurrent*>(egl("eglMakeCurrent"));
+  if (surface == nullptr || make_current(display, surface, surface, context) == 0u)
+    GTEST_SKIP() << "no surface here";
+  Renderer renderer(caller.get_proc_address(), model);
+  std::vector<View> one = {views()[0]};
+  one[0].target = {};
+  EXPECT_GT(renderer.draw(one, placement, over_black).pairs, 0u);
+  EXPECT_TRUE(renderer.draw(one, placement, over_black).callers_errors.empty());
+  one[0].target.x = -1;
+  EXPECT_TRUE(test::fails_saying([&] { renderer.draw(one, placement); }, {"views[0].target", "-1, 0"}));
+  make_current(display, nullptr, nullptr, context);
+  reinterpret_cast<unsigned (*)(void*, void*)>(egl("eglDestroySurface"))(display, surface);
+}
+
 }  // namespace
 }  // namespace binosplat
