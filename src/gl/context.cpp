@@ -48,6 +48,24 @@ std::string asked_of_mesa() {
   return lines;
 }
 
+/// What tells which context is current, of the library that the one which is current now comes from; null:
+/// not known. Not found by the caller's loader: glX's and EGL's make up a function for names that they do not
+/// know.
+void* (*find_current_handle())() {
+  struct Source {
+    const char *library, *function;
+  };
+  for (const Source& source :
+       {Source{"libEGL.so.1", "eglGetCurrentContext"}, Source{"libGLX.so.0", "glXGetCurrentContext"},
+        Source{"libGL.so.1", "glXGetCurrentContext"}, Source{"libOSMesa.so.8", "OSMesaGetCurrentContext"}}) {
+    void* const library = dlopen(source.library, RTLD_LAZY | RTLD_NOLOAD);  // only where the program has it
+    if (library == nullptr) continue;
+    const auto found = reinterpret_cast<void* (*)()>(dlsym(library, source.function));
+    if (found != nullptr && found() != nullptr) return found;
+  }
+  return nullptr;
+}
+
 }  // namespace
 
 void fail_to_load(const char* library, const char* what_to_install) {
@@ -130,14 +148,8 @@ bool Context::software() const { return renderer_.find("llvmpipe") != std::strin
 std::unique_ptr<Context> Context::adopt(GetProcAddress get_proc_address) {
   std::unique_ptr<Context> context(new Context());
   context->initialise(get_proc_address, "caller's", false);
-  // Asked for glX's last: EGL's loaders make something up for each name that begins with "gl".
-  for (const char* name : {"eglGetCurrentContext", "OSMesaGetCurrentContext", "glXGetCurrentContext"}) {
-    const auto found = reinterpret_cast<void* (*)()>(get_proc_address(name));
-    if (found == nullptr) continue;
-    context->handle_ = found();
-    if (context->handle_ != nullptr) context->current_handle_ = found;
-    break;
-  }
+  context->current_handle_ = find_current_handle();
+  if (context->current_handle_ != nullptr) context->handle_ = context->current_handle_();
   return context;
 }
 

@@ -58,8 +58,8 @@ class Context {
   /// that it has recorded are told as warnings, and taken. Throws Error(no_gl) that says what it lacks.
   static std::unique_ptr<Context> adopt(GetProcAddress get_proc_address);
 
-  /// Throws Error(no_gl) unless the context that was adopted is current on this thread. Where the caller's
-  /// loader does not tell which one is, any will do.
+  /// Throws Error(no_gl) unless the context that was adopted is current on this thread. Where no library
+  /// tells which one is, any will do.
   void check_current() const;
   bool another_is_current() const;
 
