@@ -8,7 +8,7 @@
 namespace binosplat::library {
 
 /// Throws Error(bad_input) for values and settings that no frame has; render::Frame checks the rest.
-render::FrameSettings frame_settings(const Settings& settings, std::span<const View> views);
+render::FrameSettings frame_settings(const Settings& from, std::span<const View> views);
 
 /// One of shared/axes.h. Throws Error(bad_input) for a number that names none.
 int layout_of(Layout layout);
