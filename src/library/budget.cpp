@@ -1,4 +1,4 @@
-#include <binosplat/budget.h>
+#include <binosplat/report.h>
 
 #include <algorithm>
 #include <iterator>

@@ -31,17 +31,20 @@ struct Renderer::Impl {
     if (model == nullptr) fail("model: it was moved from: expected a SplatModel that holds one");
     context = gl::Context::adopt(get_proc_address);
     const gl::KeptState kept(*context);
-    frame = std::make_unique<stereo::FoveatedFrame>(std::make_shared<render::GpuModel>(*context, *model));
+    draw_with(std::make_shared<render::GpuModel>(*context, *model));
+  }
+  Impl(GetProcAddress get_proc_address, std::shared_ptr<SplatStream::Impl> drawn) : stream(std::move(drawn)) {
+    if (stream == nullptr) fail("stream: it was moved from: expected a SplatStream that holds one");
+    if (stream->context != nullptr) fail("a stream has one renderer at a time: destroy the other one first");
+    context = gl::Context::adopt(get_proc_address);
+    const gl::KeptState kept(*context);
+    draw_with(stream->stream.gpu_model(*context, PRECISION_FULL));
+    stream->context = context.get();
+  }
+  void draw_with(std::shared_ptr<render::GpuModel> drawn) {
+    frame = std::make_unique<stereo::FoveatedFrame>(std::move(drawn));
     presenter = std::make_unique<stereo::Presenter>(*context);
     checked = std::make_unique<library::Targets>(*context);
-  }
-  Impl(GetProcAddress get_proc_address, std::shared_ptr<SplatStream::Impl> drawn)
-      : stream(std::move(drawn)), context(gl::Context::adopt(get_proc_address)) {
-    if (stream->context != nullptr) fail("a stream has one renderer at a time: destroy the other one first");
-    const gl::KeptState kept(*context);
-    frame = std::make_unique<stereo::FoveatedFrame>(stream->stream.gpu_model(*context, PRECISION_FULL));
-    presenter = std::make_unique<stereo::Presenter>(*context);
-    stream->context = context.get();
   }
   ~Impl() {
     if (!stream || stream->context != context.get()) return;

@@ -4,6 +4,7 @@
 
 #include "base/error.h"
 #include "gl/state.h"
+#include "library/numbers.h"
 #include "library/settings.h"
 #include "library/views.h"
 #include "scene/axes.h"
@@ -38,8 +39,13 @@ Placement SplatStream::placement(const glm::dvec3& origin, double units_per_metr
 
 bool SplatStream::begin_frame(std::span<const View> views, const Placement& placement,
                               const Settings& settings, double ms) {
+  if (impl_ == nullptr) fail("this SplatStream was moved from: expected one that holds a model");
   if (impl_->context == nullptr) fail("a stream without a renderer: make a Renderer of it first");
+  impl_->context->check_current();
   if (impl_->is_drawn) fail("a frame of the stream is under way: call finish() before begin_frame()");
+  if (!(ms >= 0.0)) fail("begin_frame of {} ms: expected none or more", ms);
+  library::check_numbers(views, placement);
+  library::check_numbers(settings);
   const gl::KeptState kept(*impl_->context);
   return impl_->stream.begin_frame(library::views_of(views, placement, settings).views,
                                    library::frame_settings(settings, views), ms);

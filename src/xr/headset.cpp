@@ -1,6 +1,6 @@
 #include "xr/headset.h"
 
-#include <binosplat/budget.h>
+#include <binosplat/report.h>
 
 #include <chrono>
 #include <glm/gtc/quaternion.hpp>

@@ -6,7 +6,6 @@
 #include <EGL/eglext.h>
 #include <GL/glcorearb.h>
 
-#include <binosplat/budget.h>
 #include <binosplat/stream.h>
 
 #include <array>

@@ -38,14 +38,12 @@ TEST(Install, AnotherProgramDrawsLevelsWithAnInsetAmongMeshes) {
                   BINOSPLAT_CXX_FLAGS + " " + sanitizers + "' && cmake --build " + build),
             "");
   ASSERT_EQ(test::run_program({"levels", "demo:city", "--count", "20000", "-o", city}).code, 0);
-  ASSERT_EQ(shell("ASAN_OPTIONS=detect_leaks=0 " + build + "/levels " + city + " 2>/dev/null >" +
-                  (folder / "numbers").string()),
-            "");
+  const test::Outcome drawn = test::run_program(
+      {city}, {.variables = {{"ASAN_OPTIONS", "detect_leaks=0"}}, .program = build + "/levels"});
+  ASSERT_EQ(drawn.code, 0) << drawn.err;
   std::size_t first = 0, last = 0;
   int open = 0, covered = 0;
-  ASSERT_EQ(std::sscanf(test::read_text(folder / "numbers").c_str(), "%zu %zu %d %d", &first, &last, &open,
-                        &covered),
-            4);
+  ASSERT_EQ(std::sscanf(drawn.out.c_str(), "%zu %zu %d %d", &first, &last, &open, &covered), 4) << drawn.out;
   EXPECT_GT(last, first);
   EXPECT_GT(open, 500);
   EXPECT_EQ(covered, 0);

@@ -1,6 +1,6 @@
 // How much a frame's time allows.
 
-#include <binosplat/budget.h>
+#include <binosplat/report.h>
 #include <gtest/gtest.h>
 
 #include <optional>

@@ -185,7 +185,9 @@ TEST_F(Misuse, DepthsThatCannotBeKept) {
   std::vector<View> pair = views();
   for (View& view : pair) {
     view.depth = {.texture = caller.texture(GL_DEPTH_COMPONENT32F, size.x, size.y)};
-    view.mesh_depth = {.texture = caller.texture(GL_DEPTH_COMPONENT32F, size.x, size.y)};
+    view.mesh_depth = {.texture = caller.texture(GL_DEPTH_COMPONENT32F, size.x, size.y),
+                       .near_plane = 0.1,
+                       .far_plane = 100.0};
   }
   EXPECT_GT(renderer.draw(pair, placement).pairs, 0u);
   pair[0].depth->texture = pair[1].mesh_depth->texture;

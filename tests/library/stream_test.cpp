@@ -78,6 +78,15 @@ TEST_F(Levels, HaveOneRendererAtATimeAndItsContext) {
 TEST_F(Levels, ThatCannotBeHadAreRefused) {
   EXPECT_TRUE(test::fails_saying([] { SplatStream("/no/such/city"); }, {"/no/such/city"}));
   EXPECT_TRUE(test::fails_saying([&] { SplatStream(city(), {.quality = 300.0}); }, {"quality 300", "dB"}));
+  SplatStream stream(city());
+  Renderer renderer(caller.get_proc_address(), stream);
+  EXPECT_TRUE(test::fails_saying([&] { stream.begin_frame(views(), placement, {}, NAN); }, {"ms"}));
+  std::vector<View> bad = views();
+  bad[1].eye.position.x = NAN;
+  EXPECT_TRUE(test::fails_saying([&] { stream.begin_frame(bad, placement, {}, 2.5); }, {"views[1]"}));
+  const SplatStream taken(std::move(stream));
+  EXPECT_TRUE(test::fails_saying([&] { stream.begin_frame(views(), placement, {}, 2.5); }, {"moved from"}));
+  EXPECT_TRUE(test::fails_saying([&] { Renderer(caller.get_proc_address(), stream); }, {"moved from"}));
 }
 
 TEST_F(Levels, WithAnInsetAmongMeshes) {
