@@ -79,7 +79,8 @@ struct Settings {
   DepthKind depth = DepthKind::mean;          // what is written into depth targets
   Layout layout = Layout::separate;
   /// Both eyes' pictures are foveated; a tolerance or a quality is then the contexts'. Without depth targets
-  /// and regions; with mesh depths only into targets that are written in place.
+  /// and regions; with mesh depths only into targets that are written in place, and around the inset splats
+  /// then end at meshes as coarsely as the context is.
   std::optional<Foveation> foveation = {};
   /// World units, above 0. Gaussians whose middle has no larger depth along the view's axis are not drawn; by
   /// Order::distance with Projection::tangent, no larger distance from the eye. DepthTarget::near_plane
