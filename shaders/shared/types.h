@@ -65,7 +65,7 @@ struct FrameParameters {
   uint views_per_decoding;  // views that share what the networks made
   uint decoding_of_probe;   // number of the decoding that the probe shares with its view
   uint anchor_cull;         // 1: anchors that touch no tile of 3D-GS are not decoded
-  float depth_slack;  // how much nearer splats may be than those before them in a list, world units
+  float depth_slack;        // how much nearer splats may be than those before them in a list, world units
 };
 
 // A Gaussian of the model as the GPU keeps it. Its SH coefficients lie in a buffer of their own.
