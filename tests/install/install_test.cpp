@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <regex>
 #include <set>
+#include <span>
 #include <sstream>
 
 #include "app/scene.h"
@@ -239,8 +240,9 @@ const std::vector<std::string>& compilers() {
 }
 
 /// What is wrong with installed headers: how many there are, what they include, the macros that they define,
-/// and whether each compiles by itself, with none of this tree's beside it.
-std::vector<std::string> faults_of_headers(const test::TempFolder& folder, const fs::path& include) {
+/// and whether each compiles by itself, with none of this tree's beside it, by so many of the compilers.
+std::vector<std::string> faults_of_headers(const test::TempFolder& folder, const fs::path& include,
+                                           std::size_t by = compilers().size()) {
   std::vector<std::string> faults;
   int headers = 0;
   std::ptrdiff_t lines = 0;
@@ -260,7 +262,7 @@ std::vector<std::string> faults_of_headers(const test::TempFolder& folder, const
     for (std::sregex_iterator at(text.begin(), text.end(), macro), end; at != end; ++at)
       faults.push_back(name + " defines " + (*at)[1].str());
     test::write_text(folder / "alone.cpp", "#include <" + name + ">\n");
-    for (const std::string& compiler : compilers()) {
+    for (const std::string& compiler : std::span(compilers()).first(by)) {
       const auto compiles = succeeds(folder, compiler + " -fsyntax-only -Wall -Wextra -Wpedantic -Werror -I" +
                                                  include.string() + " " + (folder / "alone.cpp").string());
       if (!compiles) faults.push_back(name + " does not compile: " + compiles.message());
@@ -278,16 +280,16 @@ TEST(Install, HeadersAreFewAndStandByThemselves) {
   ASSERT_TRUE(succeeds(
       folder, std::string("cmake --install ") + BINOSPLAT_BUILD_DIR + " --prefix " + folder.path().string()));
   EXPECT_EQ(faults_of_headers(folder, include), std::vector<std::string>());
-  const auto noticed = [&](const std::string& text, int headers = 1) {
+  const auto noticed = [&](const std::string& text, int headers = 1, std::size_t by = 0) {
     const test::TempFolder planted;
     fs::create_directory(planted / "binosplat");
     for (int k = 0; k < headers; ++k)
       test::write_text(planted / ("binosplat/" + std::to_string(k) + ".h"), text);
-    return faults_of_headers(folder, planted.path()).size();
+    return faults_of_headers(folder, planted.path(), by).size();
   };
   EXPECT_EQ(noticed("#pragma once\n#include <vector>\n", 8), 0u);
   EXPECT_EQ(noticed("#pragma once\n", 9), 1u) << "a ninth header goes unnoticed";
-  EXPECT_EQ(noticed("#pragma once\nstruct Planted { std::vector<int> numbers; };\n"), compilers().size())
+  EXPECT_EQ(noticed("#pragma once\nstruct Planted { std::vector<int> numbers; };\n", 1, 1), 1u)
       << "a header that misses an include goes unnoticed";
   EXPECT_EQ(noticed("#pragma once\n#include <fmt/core.h>\n"), 1u) << "another library's goes unnoticed";
   EXPECT_EQ(noticed("#pragma once\n#define PLANTED 1\n#define BINOSPLAT_PLANTED 1\n"), 1u)

@@ -7,7 +7,8 @@
 #include <cstring>
 #include <optional>
 
-#include "formats/model_file.h"
+#include "base/output_file.h"
+#include "formats/model_writers.h"
 #include "library/renderer_fixture.h"
 #include "support/errors.h"
 #include "support/fixtures.h"
@@ -20,17 +21,22 @@ namespace {
 struct Levels : Library {
   static void SetUpTestSuite() {
     folder = std::make_unique<test::TempFolder>();
-    const std::string city = (*folder / "city").string();
-    ASSERT_EQ(test::run_program({"levels", "demo:city", "--count", "20000", "-o", city}).code, 0);
+    const std::string model = (*folder / "model.ply").string();
+    OutputFile file(model);
+    write_ply(file, test::random_model(3, 2000, 0));
+    file.commit();
+    ASSERT_EQ(
+        test::run_program({"levels", model, "-o", levels().string(), "--leaf", "64", "--levels", "3"}).code,
+        0);
   }
   static void TearDownTestSuite() { folder.reset(); }
-  static std::filesystem::path city() { return *folder / "city"; }
+  static std::filesystem::path levels() { return *folder / "levels"; }
 
   inline static std::unique_ptr<test::TempFolder> folder;
 };
 
 TEST_F(Levels, ComeAsFramesAreDrawn) {
-  SplatStream stream(city(), {.quality = 45.0});
+  SplatStream stream(levels(), {.quality = 45.0});
   const Placement there = stream.placement({0.0, 1.6, 0.0});
   EXPECT_TRUE(test::fails_saying([&] { stream.begin_frame(views(), there, over_black, 2.5); }, {"Renderer"}));
   Renderer renderer(caller.get_proc_address(), stream);
@@ -45,7 +51,7 @@ TEST_F(Levels, ComeAsFramesAreDrawn) {
   EXPECT_GT(stream.count(), at_first);
   EXPECT_NE(read(0), coarse);
   // The same as all of the model, but for what was asked to be lost.
-  Renderer whole(caller.get_proc_address(), SplatModel(city(), {.lod = 0}));
+  Renderer whole(caller.get_proc_address(), SplatModel(levels(), {.lod = 0}));
   const std::vector<float> drawn = read(0);
   whole.draw(views(), there, over_black);
   const std::vector<float> finest = read(0);
@@ -59,7 +65,7 @@ TEST_F(Levels, ComeAsFramesAreDrawn) {
 }
 
 TEST_F(Levels, HaveOneRendererAtATimeAndItsContext) {
-  std::optional<SplatStream> stream(std::in_place, city());
+  std::optional<SplatStream> stream(std::in_place, levels());
   std::optional<Renderer> renderer(std::in_place, caller.get_proc_address(), *stream);
   EXPECT_TRUE(test::fails_saying([&] { Renderer(caller.get_proc_address(), *stream); }, {"one renderer"}));
   renderer->submit(views(), placement, over_black);
@@ -77,8 +83,8 @@ TEST_F(Levels, HaveOneRendererAtATimeAndItsContext) {
 
 TEST_F(Levels, ThatCannotBeHadAreRefused) {
   EXPECT_TRUE(test::fails_saying([] { SplatStream("/no/such/city"); }, {"/no/such/city"}));
-  EXPECT_TRUE(test::fails_saying([&] { SplatStream(city(), {.quality = 300.0}); }, {"quality 300", "dB"}));
-  SplatStream stream(city());
+  EXPECT_TRUE(test::fails_saying([&] { SplatStream(levels(), {.quality = 300.0}); }, {"quality 300", "dB"}));
+  SplatStream stream(levels());
   Renderer renderer(caller.get_proc_address(), stream);
   EXPECT_TRUE(test::fails_saying([&] { stream.begin_frame(views(), placement, {}, NAN); }, {"ms"}));
   std::vector<View> bad = views();
@@ -90,7 +96,7 @@ TEST_F(Levels, ThatCannotBeHadAreRefused) {
 }
 
 TEST_F(Levels, WithAnInsetAmongMeshes) {
-  SplatStream stream(city());
+  SplatStream stream(levels());
   Renderer renderer(caller.get_proc_address(), stream);
   const Settings foveated{.foveation = Foveation{.inset_degrees = 15.0, .gaze = {{5.0, 0.0}}}};
   const std::vector<float> white(4 * static_cast<std::size_t>(size.x * size.y), 1.0f);
