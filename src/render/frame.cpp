@@ -60,15 +60,15 @@ Frame::Frame(std::shared_ptr<GpuModel> model)
       counters_read_(model_->context(), "counters for the CPU", gl::Buffer::Use::read) {}
 
 void Frame::submit(std::span<const shared::View> views, const FrameSettings& settings,
-                   const Workings& workings, const CallersTextures& given) {
-  check(given, views.size(), settings, workings);
+                   const Workings& workings, const CallersTextures& textures) {
+  check(textures, views.size(), settings, workings);
   submitted_ = {.views = {views.begin(), views.end()}, .settings = settings, .workings = workings};
   if (!workings.stand_in) {
-    submitted_.canvases.assign(given.canvases.begin(), given.canvases.end());
-    submitted_.mesh_depths.assign(given.mesh_depths.begin(), given.mesh_depths.end());
-    submitted_.depth_rows = given.depth_rows;
+    submitted_.canvases.assign(textures.canvases.begin(), textures.canvases.end());
+    submitted_.mesh_depths.assign(textures.mesh_depths.begin(), textures.mesh_depths.end());
+    submitted_.depth_rows = textures.depth_rows;
   }
-  const PlanRequest request{.textures = textures(true)};
+  const PlanRequest request{.textures = submitted_textures(true)};
   begin(request);
   if (settings.quality > 0.0f) {
     if (!history_.goes_on(plan_)) tolerance_control_.forget();
@@ -131,7 +131,7 @@ void Frame::begin(PlanRequest request) {
     history_.follow_levels(plan_.gaussian_count);
 }
 
-CallersTextures Frame::textures(bool with_canvases) const {
+CallersTextures Frame::submitted_textures(bool with_canvases) const {
   CallersTextures all{.depth_rows = submitted_.depth_rows, .mesh_depths = submitted_.mesh_depths};
   if (with_canvases) all.canvases = submitted_.canvases;
   return all;
@@ -141,7 +141,9 @@ CallersTextures Frame::textures(bool with_canvases) const {
 void Frame::start_search() {
   submitted_.searches = true;
   const Probe probe = tolerance_control_.next_probe(submitted_.views, submitted_.settings);
-  begin({.probe = probe, .tolerance = tolerance_control_.next_tolerance(), .textures = textures(false)});
+  begin({.probe = probe,
+         .tolerance = tolerance_control_.next_tolerance(),
+         .textures = submitted_textures(false)});
   start_attempt();
 }
 

@@ -145,7 +145,7 @@ class Frame {
     bool searches = false;  // for the tolerance of its quality: each attempt has a probe
   };
 
-  CallersTextures textures(bool with_canvases) const;
+  CallersTextures submitted_textures(bool with_canvases) const;
   void begin(PlanRequest request);
   void start_search();
   void start_attempt();

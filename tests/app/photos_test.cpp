@@ -13,7 +13,6 @@ namespace {
 using test::ended;
 using test::good;
 using test::has;
-using test::Outcome;
 using test::run_program;
 using test::Words;
 

@@ -109,7 +109,7 @@ struct Bench {
       const std::vector<float> is = caller.read<float>(pair[k].target.texture, small.x, small.y);
       for (int y = 0; y < small.y; ++y) {
         for (int x = 0; x < small.x; ++x) {
-          const glm::vec4 c = expected.colour[static_cast<std::size_t>(y * small.x + x)];
+          const glm::vec4 c = expected.colour[static_cast<std::size_t>(y) * small.x + x];
           for (int n = 0; n < 3; ++n) {
             a.at(x, y, n) = is[4 * static_cast<std::size_t>((small.y - 1 - y) * small.x + x) +
                                static_cast<std::size_t>(n)];

@@ -70,10 +70,11 @@ void write_walls(const fs::path& path) {
     const auto columns = count(wall.right, wall.left, wall.step),
                rows = count(wall.half_height, -wall.half_height, wall.step);
     for (std::int64_t at = 0; at < columns * rows; ++at) {
+      const std::int64_t nth = at / columns;
       const std::size_t row = file.rows.size();
       file.rows.push_back(empty);
       file.at(row, "x") = wall.left + wall.step * static_cast<double>(at % columns);
-      file.at(row, "y") = -wall.half_height + wall.step * static_cast<double>(at / columns);
+      file.at(row, "y") = -wall.half_height + wall.step * static_cast<double>(nth);
       file.at(row, "z") = wall.z;
       for (int c = 0; c < 3; ++c) {
         file.at(row, fmt::format("f_dc_{}", c)) = (wall.colour[c] - 0.5) / test::sh_c0;
@@ -95,7 +96,7 @@ std::vector<std::string> faults_of_mesh(const fs::path& picture, int axis) {
   const Image image = load_image(picture);
   std::vector<std::string> faults;
   const auto expect = [&](const char* what, int column, int row, const glm::vec3& colour) {
-    const auto at = static_cast<std::size_t>(3 * (row * image.width + column));
+    const std::size_t at = 3 * (static_cast<std::size_t>(row) * image.width + column);
     const glm::vec3 seen(image.data[at], image.data[at + 1], image.data[at + 2]);
     for (int c = 0; c < 3; ++c) {
       if (!(std::abs(seen[c] - colour[c]) < 0.02f)) {
@@ -270,7 +271,7 @@ std::vector<std::string> faults_of_headers(const test::TempFolder& folder, const
   }
   if (headers > 8) faults.push_back(std::to_string(headers) + " headers: at most 8 are to be read");
   if (lines > 1500) faults.push_back(std::to_string(lines) + " lines: at most 1,500 are to be read");
-  if (headers == 0) faults.push_back("no headers");
+  if (headers == 0) faults.emplace_back("no headers");
   return faults;
 }
 

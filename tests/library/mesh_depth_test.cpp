@@ -19,6 +19,9 @@ namespace {
 constexpr double inf = std::numeric_limits<double>::infinity();
 constexpr double floor_db = 60.0;
 
+/// Of a pixel in a picture, row by row.
+std::size_t place(int x, int y) { return static_cast<std::size_t>(y) * size.x + x; }
+
 /// How a texture keeps depths.
 struct Kept {
   GLenum format = GL_DEPTH_COMPONENT32F;
@@ -79,7 +82,7 @@ struct Meshes : Library {
     std::vector<Stencilled> stencilled;
     for (int y = size.y - 1; y >= 0; --y) {
       for (int x = 0; x < size.x; ++x) {
-        plain.push_back(static_cast<float>(kept.number_of(depths[static_cast<std::size_t>(y * size.x + x)])));
+        plain.push_back(static_cast<float>(kept.number_of(depths[place(x, y)])));
         stencilled.push_back({plain.back(), 77u});
       }
     }
@@ -98,8 +101,7 @@ struct Meshes : Library {
                               static_cast<GLsizei>(4 * plain.size()), plain.data());
     read.clear();
     for (int y = size.y - 1; y >= 0; --y) {
-      for (int x = 0; x < size.x; ++x)
-        read.push_back(kept.depth_of(plain[static_cast<std::size_t>(y * size.x + x)]));
+      for (int x = 0; x < size.x; ++x) read.push_back(kept.depth_of(plain[place(x, y)]));
     }
     return id;
   }
@@ -132,8 +134,8 @@ struct Meshes : Library {
     std::vector<float> over = behind(eye);
     for (int y = 0; y < size.y; ++y) {
       for (int x = 0; x < size.x; ++x) {
-        const glm::vec4 c = picture.colour[static_cast<std::size_t>((size.y - 1 - y) * size.x + x)];
-        float* to = &over[4 * static_cast<std::size_t>(y * size.x + x)];
+        const glm::vec4 c = picture.colour[place(x, size.y - 1 - y)];
+        float* to = &over[4 * place(x, y)];
         for (int k = 0; k < 3; ++k) to[k] = c[k] + c.a * to[k];
         to[3] = 1.0f - c.a * (1.0f - to[3]);
       }
@@ -272,12 +274,12 @@ TEST_F(Meshes, DepthsThatAreWrittenAreTheNearer) {
       int wrong = 0, of_meshes = 0;
       for (int y = 0; y < size.y; ++y) {
         for (int x = 0; x < size.x; ++x) {
-          const auto at = static_cast<std::size_t>(y * size.x + x);
+          const auto at = place(x, y);
           const double cover = 1.0 - picture.colour[at].a;
           const bool is_mesh = !(cover > 0.5);
           const double z = is_mesh ? depths[0][at] : picture.z_sum[at] / cover;
           of_meshes += is_mesh && std::isfinite(z) ? 1 : 0;
-          const double is = written[static_cast<std::size_t>((size.y - 1 - y) * size.x + x)];
+          const double is = written[place(x, size.y - 1 - y)];
           wrong += std::abs(is - kept.number_of(z)) > 1e-4 ? 1 : 0;
         }
       }

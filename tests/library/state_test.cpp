@@ -185,7 +185,7 @@ struct State : testing::Test {
     const auto of_unit = [this, unit](GLenum name) {
       const GLint active = static_cast<GLint>(integers(GL_ACTIVE_TEXTURE)[0]);
       caller.ActiveTexture(GL_TEXTURE0 + unit);
-      const Values values = integers(name);
+      Values values = integers(name);
       caller.ActiveTexture(static_cast<GLenum>(active));
       return values;
     };

@@ -91,8 +91,10 @@ TEST_F(Levels, ThatCannotBeHadAreRefused) {
   bad[1].eye.position.x = NAN;
   EXPECT_TRUE(test::fails_saying([&] { stream.begin_frame(bad, placement, {}, 2.5); }, {"views[1]"}));
   const SplatStream taken(std::move(stream));
+  // NOLINTBEGIN(bugprone-use-after-move)
   EXPECT_TRUE(test::fails_saying([&] { stream.begin_frame(views(), placement, {}, 2.5); }, {"moved from"}));
   EXPECT_TRUE(test::fails_saying([&] { Renderer(caller.get_proc_address(), stream); }, {"moved from"}));
+  // NOLINTEND(bugprone-use-after-move)
 }
 
 TEST_F(Levels, WithAnInsetAmongMeshes) {
