@@ -66,6 +66,7 @@ TEST(JobQueue, EndsWithTheFirstFailure) {
       },
       std::runtime_error);
   EXPECT_LT(begun, 20);
+  EXPECT_THROW(queue.finish(), std::runtime_error);  // what had begun beside it has ended then
   const int before = begun;
   EXPECT_THROW(queue.add([&begun] { ++begun; }), std::runtime_error);
   EXPECT_THROW(queue.finish(), std::runtime_error);
