@@ -60,6 +60,7 @@ TEST(JobQueue, EndsWithTheFirstFailure) {
           queue.add([&begun, k] {
             ++begun;
             if (k == 6) throw std::runtime_error("the seventh");
+            std::this_thread::sleep_for(std::chrono::milliseconds(1));  // or many run before it is caught
           });
         }
         queue.finish();
