@@ -187,10 +187,7 @@ void FoveatedFrame::compose_eye(gl::Dispatcher& dispatcher, std::size_t k) {
     const render::Canvas& to = to_[k];
     gl.gl().BindImageTexture(0, to.texture, to.level, GL_FALSE, to.layer, GL_WRITE_ONLY, to.format);
   }
-  if (among_meshes_) {
-    gl.gl().BindTextureUnit(0, to_[k].texture);
-    gl.gl().BindSampler(0, frame_.buffers().nearest.id());
-  }
+  if (among_meshes_) frame_.buffers().nearest.bind(0, to_[k].texture);
   const std::uint64_t groups = std::uint64_t{(eye.width + COMPOSE_COLUMNS - 1) / COMPOSE_COLUMNS} *
                                ((eye.height + COMPOSE_ROWS - 1) / COMPOSE_ROWS);
   const std::array variant = {gl::Number{"CANVASES", !to_.empty(), 2},

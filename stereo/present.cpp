@@ -188,10 +188,7 @@ void Presenter::draw(const gl::Buffer& colours, std::span<const shared::View> vi
   const auto write = [&](const Target& image, GLenum format) {
     context.gl().BindImageTexture(0, image.texture, image.level, GL_FALSE, std::max(image.layer, 0),
                                   GL_WRITE_ONLY, format);
-    if (over_target) {
-      context.gl().BindTextureUnit(0, image.texture);
-      context.gl().BindSampler(0, nearest_.id());
-    }
+    if (over_target) nearest_.bind(0, image.texture);
     dispatcher_.start(context.program("present.comp", gl::Number{"OVER", over_target, 2}),
                       gl::DispatchSize::of_groups(std::uint64_t{groups.x} * groups.y), {{"Colours", colours}},
                       {{"kind", static_cast<std::uint32_t>(layout)},

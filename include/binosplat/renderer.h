@@ -11,7 +11,7 @@
 //   // ... the program's own work of the CPU, while the GPU draws ...
 //   renderer.finish();
 //
-// examples/embed.cpp and examples/openxr.cpp are whole programs.
+// examples/embed.cpp, examples/mesh.cpp and examples/openxr.cpp are whole programs.
 
 #include <glm/glm.hpp>
 #include <memory>

@@ -72,9 +72,8 @@ struct DepthTarget {
 
 /// How a number d of a depth texture tells how far something is.
 enum class DepthCoding {
-  /// As OpenGL's depth buffer keeps it, d = far (1 - near / z) / (far - near): 0 at MeshDepth::near_plane, 1
-  /// at
-  /// far_plane. Pixels that have the number of the farther plane have no mesh: what a cleared buffer holds.
+  /// As OpenGL's depth buffer keeps it: d = far (1 - near / z) / (far - near), near and far being the planes
+  /// of MeshDepth. Pixels that have the number of the farther plane, as a cleared buffer does, have no mesh.
   planes,
   axis,  // d times units_per_number is z; pixels whose d is 0, less, infinite or not a number have no mesh
 };

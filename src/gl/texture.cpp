@@ -34,6 +34,11 @@ Sampler::Sampler(Context& context) : context_(context) {
   context_.gl().SamplerParameteri(id_, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
 }
 
+void Sampler::bind(GLuint unit, std::uint32_t texture) const {
+  context_.gl().BindTextureUnit(unit, texture);
+  context_.gl().BindSampler(unit, id_);
+}
+
 Sampler::~Sampler() { context_.gl().DeleteSamplers(1, &id_); }
 
 }  // namespace binosplat::gl

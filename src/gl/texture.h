@@ -40,7 +40,8 @@ class Sampler {
   Sampler(const Sampler&) = delete;
   Sampler& operator=(const Sampler&) = delete;
 
-  std::uint32_t id() const { return id_; }
+  /// Has shaders read a 2D texture by it at a unit.
+  void bind(GLuint unit, std::uint32_t texture) const;
 
  private:
   Context& context_;

@@ -57,14 +57,12 @@ void add_mesh_depth(gl::Context& context, const View& view, const Argument& argu
     read.nothing = 0.0f;
   } else if (mesh.coding != DepthCoding::planes) {
     fail("{}: coding {}: there is none of this number", argument.name(), static_cast<int>(mesh.coding));
-  } else if (near > 0.0 && far > 0.0 && near != far) {
+  } else {
+    check_planes(near, far, argument);
     // 1 / z is 1 / near where d is 0, and 1 / far where d is 1, and linear between.
     read.offset = static_cast<float>(1.0 / near);
     read.scale = static_cast<float>(1.0 / far - 1.0 / near);
     read.nothing = near < far ? 1.0f : 0.0f;
-  } else {
-    fail("{}: planes at {} and {}: expected two distances above zero, one of which may be infinite",
-         argument.name(), near, far);
   }
   depths.list.push_back(read);
 }

@@ -3,7 +3,7 @@
 
 #include "base/error.h"
 #include "formats/model_file.h"
-#include "scene/axes.h"
+#include "library/placement.h"
 
 namespace binosplat {
 
@@ -28,8 +28,7 @@ std::size_t SplatModel::count() const { return model_in(model_).count(); }
 Bounds SplatModel::bounds() const { return core_bounds(model_in(model_)); }
 
 Placement SplatModel::placement(const glm::dvec3& origin, double units_per_metre) const {
-  const glm::dmat3 into_model = glm::transpose(world_from_axes(model_in(model_).axes));
-  return {into_model * origin, into_model * Placement{}.axes, units_per_metre};
+  return library::placement_in(model_in(model_), origin, units_per_metre);
 }
 
 }  // namespace binosplat

@@ -56,8 +56,7 @@ void check_numbers(std::span<const View> views, const Placement& placement) {
     const glm::dvec4& q = eye.orientation;
     if (!is_finite(q) || q == glm::dvec4(0.0)) {
       fail(
-          "views[{}].eye.orientation ({}, {}, {}, {}): expected a quaternion x, y, z, w that is finite and "
-          "not "
+          "views[{}].eye.orientation ({}, {}, {}, {}): expected a finite quaternion x, y, z, w that is not "
           "zero",
           k, q.x, q.y, q.z, q.w);
     }

@@ -5,9 +5,9 @@
 #include "base/error.h"
 #include "gl/state.h"
 #include "library/numbers.h"
+#include "library/placement.h"
 #include "library/settings.h"
 #include "library/views.h"
-#include "scene/axes.h"
 
 namespace binosplat {
 
@@ -24,6 +24,12 @@ StreamSettings settings_of(const StreamOptions& options) {
   return settings;
 }
 
+template <typename Impl>
+Stream& stream_in(const std::shared_ptr<Impl>& impl) {
+  if (impl == nullptr) fail("this SplatStream was moved from: expected one that holds a model");
+  return impl->stream;
+}
+
 }  // namespace
 
 SplatStream::SplatStream(const std::filesystem::path& path, const StreamOptions& options)
@@ -33,26 +39,24 @@ SplatStream::SplatStream(SplatStream&&) noexcept = default;
 SplatStream& SplatStream::operator=(SplatStream&&) noexcept = default;
 
 Placement SplatStream::placement(const glm::dvec3& origin, double units_per_metre) const {
-  const glm::dmat3 into_model = glm::transpose(world_from_axes(impl_->stream.model().axes));
-  return {into_model * origin, into_model * Placement{}.axes, units_per_metre};
+  return library::placement_in(stream_in(impl_).model(), origin, units_per_metre);
 }
 
 bool SplatStream::begin_frame(std::span<const View> views, const Placement& placement,
                               const Settings& settings, double ms) {
-  if (impl_ == nullptr) fail("this SplatStream was moved from: expected one that holds a model");
+  Stream& stream = stream_in(impl_);
   if (impl_->context == nullptr) fail("a stream without a renderer: make a Renderer of it first");
   impl_->context->check_current();
   if (impl_->is_drawn) fail("a frame of the stream is under way: call finish() before begin_frame()");
   if (!(ms >= 0.0)) fail("begin_frame of {} ms: expected none or more", ms);
   library::check_numbers(views, placement);
-  library::check_numbers(settings);
+  const render::FrameSettings of_frame = library::frame_settings(settings, views);
   const gl::KeptState kept(*impl_->context);
-  return impl_->stream.begin_frame(library::views_of(views, placement, settings).views,
-                                   library::frame_settings(settings, views), ms);
+  return stream.begin_frame(library::views_of(views, placement, settings).views, of_frame, ms);
 }
 
-bool SplatStream::settled() const { return impl_->stream.settled(); }
-std::size_t SplatStream::count() const { return impl_->stream.gaussians(); }
-std::optional<double> SplatStream::quality() const { return impl_->stream.reported_db(); }
+bool SplatStream::settled() const { return stream_in(impl_).settled(); }
+std::size_t SplatStream::count() const { return stream_in(impl_).gaussians(); }
+std::optional<double> SplatStream::quality() const { return stream_in(impl_).reported_db(); }
 
 }  // namespace binosplat

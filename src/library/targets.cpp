@@ -164,11 +164,7 @@ void Targets::check_attached(const Target& target, const glm::ivec2& size, const
 }
 
 void Targets::check_depth(const DepthTarget& target, const Argument& argument) const {
-  const double near = target.near_plane, far = target.far_plane;
-  if (!(near > 0.0 && far > 0.0 && near != far)) {
-    fail("{}: planes at {} and {}: expected two distances above zero, one of which may be infinite",
-         argument.name(), near, far);
-  }
+  check_planes(target.near_plane, target.far_plane, argument);
   const TextureLevel level = texture_level(context_, {target.texture, target.level, target.layer}, argument);
   const auto bits = [&](GLenum what) {
     GLint value = 0;

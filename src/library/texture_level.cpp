@@ -43,6 +43,12 @@ TextureLevel texture_level(const gl::Context& context, const Place& place, const
   return level;
 }
 
+void check_planes(double near, double far, const Argument& argument) {
+  if (near > 0.0 && far > 0.0 && near != far) return;
+  fail("{}: planes at {} and {}: expected two distances above zero, one of which may be infinite",
+       argument.name(), near, far);
+}
+
 void check_within(const glm::ivec2& there, const glm::ivec2& corner, const glm::ivec2& size,
                   const Argument& argument) {
   if (corner.x >= 0 && corner.y >= 0 && size.x <= there.x - corner.x && size.y <= there.y - corner.y) return;

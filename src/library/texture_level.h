@@ -37,6 +37,9 @@ struct TextureLevel {
 /// or layer that it lacks. Leaves no error in the context.
 TextureLevel texture_level(const gl::Context& context, const Place& place, const Argument& argument);
 
+/// Throws Error(bad_input) for planes of depths that bound nothing.
+void check_planes(double near, double far, const Argument& argument);
+
 /// Throws Error(bad_input) unless a picture of `size` px at a corner lies within what there is of it.
 void check_within(const glm::ivec2& there, const glm::ivec2& corner, const glm::ivec2& size,
                   const Argument& argument);

@@ -59,13 +59,6 @@ const gl::Program& program(gl::Context& context, const FramePlan& plan, const Bl
   return context.program(v.shader(), v);
 }
 
-// A texture of the caller's, to be read as it is.
-void bind_texture(gl::Context& context, std::size_t unit, std::uint32_t texture,
-                  const FrameBuffers& buffers) {
-  context.gl().BindTextureUnit(static_cast<GLuint>(unit), texture);
-  context.gl().BindSampler(static_cast<GLuint>(unit), buffers.nearest.id());
-}
-
 void run(gl::Dispatcher& dispatcher, const FramePlan& plan, FrameBuffers& buffers, const BlendTask& task,
          const gl::Buffer& measured) {
   gl::Context& context = dispatcher.context();
@@ -75,10 +68,10 @@ void run(gl::Dispatcher& dispatcher, const FramePlan& plan, FrameBuffers& buffer
     const Canvas& to = plan.canvases[k];
     context.gl().BindImageTexture(static_cast<GLuint>(k), to.texture, to.level, GL_FALSE, to.layer,
                                   GL_WRITE_ONLY, to.format);
-    if (!plan.meshes.depths.empty()) bind_texture(context, k, to.texture, buffers);
+    if (!plan.meshes.depths.empty()) buffers.nearest.bind(static_cast<GLuint>(k), to.texture);
   }
   for (std::size_t k = 0; k < plan.meshes.depths.size(); ++k)
-    bind_texture(context, MAX_CANVASES + k, plan.meshes.depths[k].texture, buffers);
+    buffers.nearest.bind(static_cast<GLuint>(MAX_CANVASES + k), plan.meshes.depths[k].texture);
   if (task.tiles_a_splat == 0.0) program(context, plan, task, false, true);  // soon, maybe
   const auto draw = [&](bool long_lists, const gl::DispatchSize& size) {
     dispatcher.start(program(context, plan, task, long_lists, task.tiles_a_splat > large_tiles), size,

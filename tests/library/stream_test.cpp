@@ -94,6 +94,8 @@ TEST_F(Levels, ThatCannotBeHadAreRefused) {
   // NOLINTBEGIN(bugprone-use-after-move)
   EXPECT_TRUE(test::fails_saying([&] { stream.begin_frame(views(), placement, {}, 2.5); }, {"moved from"}));
   EXPECT_TRUE(test::fails_saying([&] { Renderer(caller.get_proc_address(), stream); }, {"moved from"}));
+  EXPECT_TRUE(test::fails_saying([&] { stream.count(); }, {"moved from"}));
+  EXPECT_TRUE(test::fails_saying([&] { stream.placement(); }, {"moved from"}));
   // NOLINTEND(bugprone-use-after-move)
 }
 
