@@ -62,12 +62,12 @@ void Dispatcher::run(const Program& program, const DispatchSize& work,
   wait_for_writes();
 }
 
-void Dispatcher::draw_whole(const Program& program, std::initializer_list<Binding> bindings,
-                            std::initializer_list<Uniform> uniforms) {
-  if (context_.is_preparing()) return;
+void Dispatcher::draw(const Program& program, int vertices, std::initializer_list<Binding> bindings,
+                      std::initializer_list<Uniform> uniforms) {
+  if (context_.is_preparing() || vertices == 0) return;
   bind(program, bindings, uniforms);
   context_.gl().UseProgram(program.id());
-  context_.gl().DrawArrays(GL_TRIANGLES, 0, 3);
+  context_.gl().DrawArrays(GL_TRIANGLES, 0, vertices);
 }
 
 void Dispatcher::wait_for_writes() {

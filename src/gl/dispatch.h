@@ -75,7 +75,12 @@ class Dispatcher {
 
   /// Draws all of the framebuffer that is bound, by a fragment shader (KeptDrawing of gl/state.h).
   void draw_whole(const Program& program, std::initializer_list<Binding> bindings,
-                  std::initializer_list<Uniform> uniforms);
+                  std::initializer_list<Uniform> uniforms) {
+    draw(program, 3, bindings, uniforms);
+  }
+  /// Draws so many vertices, as triangles, into it.
+  void draw(const Program& program, int vertices, std::initializer_list<Binding> bindings,
+            std::initializer_list<Uniform> uniforms = {});
 
   /// The barrier that start() leaves out.
   void wait_for_writes();

@@ -23,6 +23,11 @@ void for_each_resource(const Functions& gl, std::uint32_t program, GLenum kind, 
   }
 }
 
+std::string vertex_shader_of(const std::string& fragment_shader) {
+  const std::string own = fragment_shader.substr(0, fragment_shader.size() - 4) + "vert";
+  return embedded_shaders().contains(own) ? own : "whole.vert";
+}
+
 }  // namespace
 
 Program::Program(const Functions& gl, const std::string& name, const Defines& defines,
@@ -30,7 +35,7 @@ Program::Program(const Functions& gl, const std::string& name, const Defines& de
     : gl_(&gl), name_(name), id_(gl.CreateProgram()) {
   std::vector<std::pair<GLenum, ShaderSource>> sources;
   const bool draws = name.ends_with(".frag");
-  if (draws) sources.emplace_back(GL_VERTEX_SHADER, ShaderSource("whole.vert", {}, folder));
+  if (draws) sources.emplace_back(GL_VERTEX_SHADER, ShaderSource(vertex_shader_of(name), {}, folder));
   sources.emplace_back(draws ? GL_FRAGMENT_SHADER : GL_COMPUTE_SHADER, ShaderSource(name, defines, folder));
   for (const auto& [kind, source] : sources) text_ += source.text();
   if (cache.load(gl, id_, text_)) return;

@@ -1,5 +1,5 @@
 #pragma once
-// A compiled compute shader, or a fragment shader that draws all of a texture, and the names in it.
+// A compiled compute shader, or a fragment shader with the vertex shader before it, and the names in it.
 
 #include <cstdint>
 #include <string>
@@ -24,9 +24,9 @@ class Program {
     std::int32_t location;
   };
 
-  /// A name that ends with .frag is a fragment shader's, which is linked with whole.vert. Takes the program
-  /// from the cache, or asks the driver to compile and link it, which does so for several at once where it
-  /// can.
+  /// A name that ends with .frag is a fragment shader's, which is linked with the vertex shader of the same
+  /// name, or else with whole.vert. Takes the program from the cache, or asks the driver to compile and link
+  /// it, which does so for several at once where it can.
   Program(const Functions& gl, const std::string& name, const Defines& defines,
           const std::filesystem::path& folder, const ProgramCache& cache);
   ~Program();
