@@ -19,6 +19,7 @@ inline constexpr KeyHelp key_help[] = {
     {"N, P", "next camera, the one before"},
     {"R", "back to the camera (reset view)"},
     {"L, V", "next layout, kind of picture; Shift: back"},
+    {"B, C", "show or hide a grid on the ground, the cameras"},
     {"T, H", "next tile test, threshold; Shift: back"},
     {"F", "full screen, or a window again"},
     {"F1", "show or hide the panel"},

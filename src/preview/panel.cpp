@@ -127,6 +127,12 @@ bool Panel::draw_view(Session& session) {
   if (ImGui::Button("save pose")) requests.save_pose();
   ImGui::TextWrapped("camera: %s", session.camera_name().c_str());
   ImGui::Checkbox("walk", &walking);
+  ImGui::SameLine();
+  changed |= ImGui::Checkbox("grid (B)", &c.grid);
+  ImGui::SameLine();
+  ImGui::BeginDisabled(!session.has_cameras());
+  changed |= ImGui::Checkbox("cameras (C)", &c.cameras);
+  ImGui::EndDisabled();
   auto fov = static_cast<float>(glm::degrees(session.head.fov()));
   if (ImGui::SliderFloat("field of view", &fov, 10.0f, 120.0f, "%.0f degrees",
                          ImGuiSliderFlags_AlwaysClamp)) {

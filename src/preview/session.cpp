@@ -63,15 +63,14 @@ int next_divisor(int divisor, double ms) {
   return ms > moving_ms ? std::min(most, divisor + 1) : divisor;
 }
 
-Session::Session(gl::Context& context, Loaded loaded, std::vector<Camera> cameras, const glm::dvec3& up,
-                 Choices wanted, std::filesystem::path folder)
+Session::Session(gl::Context& context, Loaded loaded, Start start, Choices wanted,
+                 std::filesystem::path folder)
     : keys(folder),
-      head(cameras.at(0), up, depth_ahead(loaded.shown(), cameras[0])),
+      head(start.cameras.at(0), start.up, depth_ahead(loaded.shown(), start.cameras[0])),
       choices(std::move(wanted)),
       context_(context),
       loaded_(std::move(loaded)),
-      cameras_(std::move(cameras)),
-      up_(up),
+      start_(std::move(start)),
       folder_(std::move(folder)),
       frame_(loaded_.stream
                  ? loaded_.stream->gpu_model(context, choices.settings.precision)
@@ -107,13 +106,13 @@ void Session::resize(const glm::ivec2& framebuffer) {
 }
 
 void Session::step_camera(int by) {
-  const int count = static_cast<int>(cameras_.size());
+  const int count = static_cast<int>(start_.cameras.size());
   camera_ = static_cast<std::size_t>(((static_cast<int>(camera_) + by) % count + count) % count);
-  go_to(cameras_[camera_]);
+  go_to(start_.cameras[camera_]);
 }
 
 void Session::go_to(const Camera& camera) {
-  head = Navigator(camera, up_, depth_ahead(model(), camera));
+  head = Navigator(camera, start_.up, depth_ahead(model(), camera));
   change();
 }
 
@@ -140,8 +139,10 @@ Camera Session::head_camera(int divisor) const {
 }
 
 void Session::set_up() {
-  up_ = -head.camera().rotation[1];
-  head = Navigator(head.camera(), up_, head.distance());
+  start_.up = -head.camera().rotation[1];
+  head = Navigator(head.camera(), start_.up, head.distance());
+  marks_.ground.reset();
+  if (shows_marks()) change();
 }
 
 // Maps come by way of the CPU, as files do: slower than pictures, for as long as they are looked at.
@@ -165,6 +166,33 @@ render::FrameSettings Session::settings() const {
   render::FrameSettings of_frame = choices.settings;
   if (loaded_.stream) of_frame.quality = static_cast<float>(loaded_.stream->quality_left(of_frame.quality));
   return of_frame;
+}
+
+MarkPlaces Session::mark_places() {
+  if (!marks_.ground) marks_.ground = find_mark_ground(model(), start_.up);
+  return places_of(*marks_.ground, start_.cameras, choices.rig.units_per_metre);
+}
+
+// Maps tell of frames as they are without.
+bool Session::shows_marks() const {
+  return choices.show == SHOW_PICTURE && (choices.grid || (choices.cameras && has_cameras()));
+}
+
+render::FrameReport Session::draw_frame(std::span<const shared::View> asked) {
+  if (!shows_marks()) {
+    marks_.drawing.reset();
+    return frame_.draw(asked, settings());
+  }
+  const MarkPlaces places = mark_places();
+  std::vector<Line> lines;
+  if (choices.grid) lines = grid_lines(places);
+  if (choices.cameras && has_cameras()) {
+    const std::vector<Line> more =
+        camera_lines(start_.cameras, camera_, head.camera().position, places.camera_size);
+    lines.insert(lines.end(), more.begin(), more.end());
+  }
+  if (!marks_.drawing) marks_.drawing = std::make_unique<MarkDrawing>(context_);
+  return marks_.drawing->draw(frame_, asked, eyes_, settings(), lines);
 }
 
 void Session::follow_levels() {
@@ -196,7 +224,7 @@ bool Session::draw() {
     const std::vector<shared::View> asked = views_of(camera);
     eyes_ = stereo::make_rig(camera, choices.rig).cameras;
     divisor_ = divisor;
-    reports_.push_back(frame_.draw(asked, settings()));
+    reports_.push_back(draw_frame(asked));
     shown_layout_ = choices.layout;
     drawn_ = frame_.views();
     make_shown(asked);
@@ -305,13 +333,18 @@ std::string Session::move_key(std::size_t k) {
 }
 
 void Session::save_pose(const std::filesystem::path& path) const {
-  SavedPose pose{head_camera(), up_, choices.rig.units_per_metre, choices.rig.ipd, choices.rig.near_plane};
+  SavedPose pose{head_camera(), start_.up, choices.rig.units_per_metre, choices.rig.ipd,
+                 choices.rig.near_plane};
   pose.camera.name = "saved";
   binosplat::save_pose(path, pose);
 }
 
 double Session::psnr_against_exact() {
   draw_at_rest();
+  if (shows_marks()) {  // which the exact pictures are without
+    frame_.draw(views(), settings());
+    change();
+  }
   const std::vector<Picture> shown = frame_.read_pictures();
   const std::vector<Picture> right = debug_view_.exact(views(), choices.settings);
   return measure::psnr(shown, right, choices.background);

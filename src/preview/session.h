@@ -11,6 +11,7 @@
 
 #include "gl/texture.h"
 #include "preview/key_list.h"
+#include "preview/mark_drawing.h"
 #include "preview/navigator.h"
 #include "render/frame.h"
 #include "scene/model.h"
@@ -30,6 +31,8 @@ struct Choices {
   stereo::RigSettings rig;
   glm::vec3 background{0.0f};
   bool seeks_screen = false;  // rig.convergence is to suit what a model's first picture shows
+  bool grid = false;          // on the ground
+  bool cameras = false;       // are drawn where they stand
 };
 
 /// Another rule, with the tolerance at which a search would begin.
@@ -61,12 +64,17 @@ struct Loaded {
   std::unique_ptr<Stream> stream;
 };
 
+/// Where a scene is looked at from.
+struct Start {
+  std::vector<Camera> cameras;  // to start at the first and step through; not empty
+  glm::dvec3 up;                // the world's
+  bool listed = true;           // the cameras are a file's or a built-in scene's, and not made up
+};
+
 class Session {
  public:
-  /// Uploads; the context is current here and in every call. `cameras` are where to start and what to step
-  /// through, not empty. `folder` is where pictures and keys are saved.
-  Session(gl::Context& context, Loaded loaded, std::vector<Camera> cameras, const glm::dvec3& up,
-          Choices wanted, std::filesystem::path folder);
+  /// Uploads; the context is current here and in every call. `folder` is where pictures and keys are saved.
+  Session(gl::Context& context, Loaded loaded, Start start, Choices wanted, std::filesystem::path folder);
   ~Session();
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
@@ -99,8 +107,12 @@ class Session {
   /// Goes on to the next camera, or back.
   void step_camera(int by);
   /// Back to the camera, with its own field of view.
-  void reset_view() { go_to(cameras_[camera_]); }
-  const std::string& camera_name() const { return cameras_[camera_].name; }
+  void reset_view() { go_to(start_.cameras[camera_]); }
+  const std::string& camera_name() const { return start_.cameras[camera_].name; }
+  /// Cameras that choices.cameras has drawn; none that were made up.
+  bool has_cameras() const { return start_.listed; }
+  /// Where choices.grid and choices.cameras have things drawn.
+  MarkPlaces mark_places();
 
   /// Draws a frame if anything changed; false if nothing did, or there is nothing to draw into. What goes
   /// wrong is told by trouble(), and the last picture stays.
@@ -143,13 +155,14 @@ class Session {
   void draw_at_rest();
   render::FrameSettings settings() const;
   void find_screen();
+  bool shows_marks() const;
+  render::FrameReport draw_frame(std::span<const shared::View> asked);
   void make_shown(std::span<const shared::View> views);
 
   gl::Context& context_;
   Loaded loaded_;
-  std::vector<Camera> cameras_;
+  Start start_;
   std::size_t camera_ = 0;
-  glm::dvec3 up_;
   std::filesystem::path folder_;
   render::Frame frame_;
   stereo::Presenter presenter_;
@@ -169,6 +182,12 @@ class Session {
     std::uint32_t framebuffer = 0;
   };
   Smaller smaller_;
+  /// Made at first use; the drawing, which has textures, goes once nothing of it is shown.
+  struct Marks {
+    std::unique_ptr<MarkDrawing> drawing;
+    std::optional<MarkGround> ground;
+  };
+  Marks marks_;
   std::array<Camera, 2> eyes_;
   int shown_layout_ = LAYOUT_SEPARATE;  // of the last frame drawn, as are
   std::vector<shared::View> drawn_;     // its views as the frame has them

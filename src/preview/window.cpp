@@ -149,8 +149,8 @@ void Window::take_loaded() {
     levels_.gaussians = loaded.gaussians();
     log_info("{}: {} Gaussians", loading_.scene.name, loaded.gaussians());
     scene_ = std::move(loading_.scene);
-    session_ = std::make_unique<Session>(*context_, std::move(loaded), std::move(start.cameras), start.up,
-                                         choices, scene_.folder);
+    session_ =
+        std::make_unique<Session>(*context_, std::move(loaded), std::move(start), choices, scene_.folder);
     announced_ = false;
     playing_.reset();
     if (head) session_->head = *head;

@@ -12,12 +12,6 @@
 
 namespace binosplat::preview {
 
-/// Where a scene is looked at from.
-struct Start {
-  std::vector<Camera> cameras;  // to start at the first and step through; not empty
-  glm::dvec3 up;                // the world's
-};
-
 /// A scene to open: read in a thread of its own, then shown.
 struct Opened {
   std::string name;

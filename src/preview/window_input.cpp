@@ -161,12 +161,29 @@ void Window::key_of_scene(int key, int by) {
     choose_threshold(c.settings, c.settings.th);
     tell(fmt::format("threshold {}: {}", th_choices[c.settings.th].name, th_choices[c.settings.th].help));
   }
+  if (key == GLFW_KEY_B || key == GLFW_KEY_C) key_of_marks(key);
   if (key == GLFW_KEY_L || key == GLFW_KEY_T || key == GLFW_KEY_H) session_->change();
   if (key == GLFW_KEY_SPACE) play_or_stop();
   if (key == GLFW_KEY_K) save_in_folder([this] { return session_->add_key(); });
   if (key == GLFW_KEY_F9) save([this] { return save_pose(); });
   if (key == GLFW_KEY_F11 || key == GLFW_KEY_F12)
     save_in_folder([&] { return session_->save_picture(key == GLFW_KEY_F11); });
+}
+
+void Window::key_of_marks(int key) {
+  Choices& c = session_->choices;
+  if (key == GLFW_KEY_C && !session_->has_cameras())
+    return tell(scene_.name + " comes without cameras", true);
+  bool& shown = key == GLFW_KEY_B ? c.grid : c.cameras;
+  shown = !shown;
+  session_->change();
+  const char* const name = key == GLFW_KEY_B ? "grid" : "cameras";
+  if (!shown) return tell(fmt::format("no {}", name));
+  std::string text = name;
+  if (key == GLFW_KEY_B)
+    text += fmt::format(": lines {:.3g} m apart", session_->mark_places().spacing / c.rig.units_per_metre);
+  if (c.show != SHOW_PICTURE) text += fmt::format(", with the {} (V)", show_choices[SHOW_PICTURE].name);
+  tell(text);
 }
 
 void Window::play_or_stop() {

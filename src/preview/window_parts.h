@@ -57,6 +57,7 @@ class Window {
   void read_again();
   void key(int key, int mods);
   void key_of_scene(int key, int by);
+  void key_of_marks(int key);
   void play_or_stop();
   void play();
   void delete_key(std::size_t k);

@@ -180,6 +180,34 @@ TEST_F(ViewOnADisplay, ShowsWhatRenderDraws) {
   EXPECT_EQ(leave(program).code, 0);
 }
 
+TEST_F(ViewOnADisplay, AGridAndCamerasAreShownByKeys) {
+  Program program = view();
+  ASSERT_TRUE(says(program, "Gaussians"));
+  key("F1");
+  hands("keydown s sleep 0.5 keyup s");  // out of where the cameras are
+  int saved = 0;
+  const auto after = [&](const std::string& name) {
+    if (!name.empty()) key(name);
+    key("F12");
+    EXPECT_TRUE(says(program, "saved", ++saved));
+    return picture(saved);
+  };
+  const Image plain = after(""), grid = after("b"), both = after("c"), of_cameras = after("b");
+  EXPECT_FALSE(same(grid, plain));
+  EXPECT_FALSE(same(both, grid));
+  EXPECT_FALSE(same(of_cameras, both));
+  EXPECT_FALSE(same(of_cameras, plain));
+  EXPECT_TRUE(same(after("c"), plain));
+  EXPECT_EQ(leave(program).code, 0);
+
+  fs::remove(folder / "cameras.json");
+  Program without = view();
+  ASSERT_TRUE(says(without, "Gaussians"));
+  key("c");
+  EXPECT_TRUE(says(without, "comes without cameras"));
+  EXPECT_EQ(leave(without).code, 0);
+}
+
 TEST_F(ViewOnADisplay, KeysArePlayedAndGoneOnWith) {
   Program program = view();
   ASSERT_TRUE(says(program, "Gaussians"));

@@ -132,7 +132,8 @@ struct Bench {
   // The widgets in a window of full HD; the session's frames are small.
   void widgets(Model model, const Camera& head) {
     preview::Choices choices;
-    preview::Session session(*context, std::move(model), {head}, {0, -1, 0}, choices, ".");
+    choices.grid = choices.cameras = true;
+    preview::Session session(*context, std::move(model), {{head}, {0, -1, 0}}, choices, ".");
     session.resize({64, 64});
     for (int n = 0; n < 130; ++n) {
       session.change();

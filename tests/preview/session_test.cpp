@@ -29,8 +29,7 @@ struct SessionTest : testing::Test {
   }();
   Session session{test::gl_context(),
                   test::random_model(9, 400, 0, 0.6),
-                  {test::front_camera(64, 40, 55.0)},
-                  glm::dvec3(0, -1, 0),
+                  {{test::front_camera(64, 40, 55.0)}, glm::dvec3(0, -1, 0)},
                   coarse,
                   folder.path()};
 
@@ -69,8 +68,8 @@ TEST(Session, OtherLevelsTakeThePlaceOfThoseThatAreThere) {
   const test::TempFolder folder;
   const Camera camera = look_at({0, -1, -20}, {0, -1, 0}, {0, -1, 0}, 60, 64, 40);
   const auto session_of = [&](Loaded loaded) {
-    auto session = std::make_unique<Session>(test::gl_context(), std::move(loaded), std::vector{camera},
-                                             glm::dvec3(0, -1, 0), Choices{}, folder.path());
+    auto session = std::make_unique<Session>(test::gl_context(), std::move(loaded),
+                                             Start{{camera}, glm::dvec3(0, -1, 0)}, Choices{}, folder.path());
     session->resize({128, 40});
     return session;
   };
@@ -100,9 +99,10 @@ TEST(Session, LevelsGoByWhatItShows) {
   const test::Copy scene(fixtures / "sog/st-lod");
   test::add_level_errors(scene);
   const auto gaussians_for = [&](double db) {
-    Session session(
-        test::gl_context(), std::make_unique<Stream>(scene.path(), StreamSettings{.detail = {.db = db}}),
-        {look_at({0, -1, -20}, {0, -1, 0}, {0, -1, 0}, 60, 64, 40)}, glm::dvec3(0, -1, 0), {}, folder.path());
+    Session session(test::gl_context(),
+                    std::make_unique<Stream>(scene.path(), StreamSettings{.detail = {.db = db}}),
+                    Start{{look_at({0, -1, -20}, {0, -1, 0}, {0, -1, 0}, 60, 64, 40)}, glm::dvec3(0, -1, 0)},
+                    {}, folder.path());
     session.resize({128, 40});
     do session.follow_levels();
     while (!session.stream()->settled());
@@ -148,8 +148,8 @@ TEST_F(SessionTest, TheScreenStandsWhereItSuitsTheFirstPicture) {
   Choices seeking = coarse;
   seeking.seeks_screen = true;
   seeking.layout = LAYOUT_SEPARATE;
-  Session other(test::gl_context(), test::random_model(9, 400, 0, 0.6), {test::front_camera(64, 40, 55.0)},
-                glm::dvec3(0, -1, 0), seeking, folder.path());
+  Session other(test::gl_context(), test::random_model(9, 400, 0, 0.6),
+                {{test::front_camera(64, 40, 55.0)}, glm::dvec3(0, -1, 0)}, seeking, folder.path());
   other.resize({128, 40});
   other.draw();
   EXPECT_FALSE(other.screen_found()) << "one eye has no screen";

@@ -109,7 +109,7 @@ preview::Opened open(const Wanted& wanted) {
       std::rotate(cameras.begin(), at, cameras.end());
     }
     if (pose) cameras.insert(cameras.begin(), pose->cameras[0]);
-    return preview::Start{std::move(cameras), up_of(o, all.known)};
+    return preview::Start{std::move(cameras), up_of(o, all.known), list.listed};
   };
   return opened;
 }

@@ -1,0 +1,12 @@
+// The lines that the preview draws among the splats, as triangles that the CPU has brought into a picture (preview/marks.h).
+struct MarkVertex {
+  vec4 place;   // in clip space
+  vec4 colour;  // as a screen takes it
+};
+layout(std430, binding = 0) readonly buffer Vertices { MarkVertex vertices[]; };
+out vec4 colour;
+
+void main() {
+  colour = vertices[gl_VertexID].colour;
+  gl_Position = vertices[gl_VertexID].place;
+}

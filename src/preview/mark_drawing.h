@@ -1,0 +1,46 @@
+#pragma once
+// Draws a frame with lines among its splats, so that they hide each other.
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "gl/texture.h"
+#include "preview/marks.h"
+#include "render/frame.h"
+
+namespace binosplat::preview {
+
+class MarkDrawing {
+ public:
+  explicit MarkDrawing(gl::Context& context);
+  ~MarkDrawing();
+  MarkDrawing(const MarkDrawing&) = delete;
+  MarkDrawing& operator=(const MarkDrawing&) = delete;
+
+  /// The frame's draw() of the eyes' views with these lines in them: they are in the frame's pictures, and
+  /// their depths, too. No transmittance is measured, of what lines would hide. `views` as the frame takes
+  /// them, `eyes` the same in the world.
+  render::FrameReport draw(render::Frame& frame, std::span<const shared::View> views,
+                           std::span<const Camera, 2> eyes, render::FrameSettings settings,
+                           std::span<const Line> lines);
+
+ private:
+  struct Eye {
+    std::unique_ptr<gl::Texture> colours, depths;
+    std::uint32_t framebuffer = 0;
+  };
+  void draw_lines(Eye& eye, const Camera& camera, double near_plane, std::span<const Line> lines);
+  void put_behind(gl::Dispatcher& dispatcher, const render::Frame& frame) const;
+
+  gl::Dispatcher dispatcher_;
+  gl::Sampler nearest_;
+  gl::Buffer vertices_;
+  std::uint32_t no_vertices_ = 0;
+  std::array<Eye, 2> eyes_;
+};
+
+}  // namespace binosplat::preview
