@@ -145,6 +145,7 @@ class ShotPipeline {
     times_.encoding = files_.encoding_seconds();
     times_.writing = files_.writing_seconds();
     times_.threads = files_.threads();
+    times_.is_video = files_.is_video();
     return times_;
   }
 

@@ -67,6 +67,7 @@ struct RunTimes {
   double gpu = 0.0;                      // ms of the GPU, of all frames
   double encoding = 0.0, writing = 0.0;  // s of all threads of files together
   int threads = 0;
+  bool is_video = false;  // ffmpeg writes, one frame after the other
 };
 
 struct RenderReport {

@@ -39,6 +39,23 @@ void print_widest(const std::vector<Drawn>& all) {
   if (widest.comfort) print_comfort(widest);
 }
 
+// Where most of the time is waited for files.
+std::string what_bounds(const RunTimes& run, const OutputOptions& o) {
+  const std::string cores = fmt::format("on {} core{}", run.threads, run.threads == 1 ? "" : "s");
+  if (run.is_video) {
+    const bool is_ffmpeg = run.writing > run.encoding / run.threads;
+    return is_ffmpeg ? "ffmpeg, which encodes the video, bounds this run"
+                     : fmt::format("converting frames {} bounds this run: more cores would help", cores);
+  }
+  if (run.writing > run.encoding)
+    return fmt::format("writing files {} bounds this run: a faster disk would help", cores);
+  return fmt::format("encoding files {} bounds this run: {}", cores,
+                     o.exr_half && o.exr_compression == ExrCompression::zip
+                         ? "--exr-compression rle is faster"
+                     : o.png_level > 0 ? "--png-level 0 is faster"
+                                       : "more cores would help");
+}
+
 }  // namespace
 
 double reported_psnr(const Drawn& drawn) {
@@ -118,17 +135,7 @@ void print_run(const RenderReport& report) {
       "files {} %\n",
       shots, 1e-3 * run.all, 1e3 * static_cast<double>(shots) / run.all, drawing, percent(run.reading),
       files);
-  if (files > 50) {
-    const OutputOptions& o = report.options.output;
-    const char* const faster = run.writing > run.encoding ? "a faster disk would help"
-                               : o.exr_half && o.exr_compression == ExrCompression::zip
-                                   ? "--exr-compression rle is faster"
-                               : o.png_level > 0 ? "--png-level 0 is faster"
-                                                 : "more cores would help";
-    fmt::print("{} files on {} core{} bounds this run: {}\n",
-               run.writing > run.encoding ? "writing" : "encoding", run.threads, run.threads == 1 ? "" : "s",
-               faster);
-  }
+  if (files > 50) fmt::print("{}\n", what_bounds(run, report.options.output));
   if (!report.context.software() && run.gpu < 0.5 * run.all)
     fmt::print(
         "The GPU had nothing to do for {} % of the time and may have run at a low clock: `binosplat bench` "

@@ -62,39 +62,48 @@ ShotFiles::ShotFiles(const RenderOptions& options, const OutputPlan& plan, std::
   double most = 1.0;
   for (const Shot& shot : shots) most = std::max(most, bytes_of(shot));
   const double budget = std::min(0.25 * memory_bytes(), picture_memory_allowed.load());
-  // Besides one that waits and one that is on its way from the GPU. A video takes its frames one by one.
+  // Besides one that waits and one that is on its way from the GPU.
   const double fit = budget / most - 2.0;
-  const double useful = video_ ? 1.0 : std::min<double>(core_count(), static_cast<double>(shots.size()));
+  const double useful = std::min<double>(core_count(), static_cast<double>(shots.size()));
   threads_ = static_cast<int>(std::clamp(fit, 1.0, std::max(1.0, useful)));
   queue_ = std::make_unique<JobQueue>(threads_, 1);
 }
 
 void ShotFiles::add(Drawn& drawn, std::function<ShotPictures()> take) {
-  queue_->add([this, &drawn, take = std::move(take)] { make(drawn, take()); });
+  const auto taken = [this, &drawn, take = std::move(take)] {
+    ShotPictures of = take();
+    look_at(drawn, of.pictures);
+    if (!of.shown) of.shown = {std::move(of.pictures), std::nullopt};
+    return of;
+  };
+  if (!video_) return queue_->add([this, &drawn, taken] { write_files(drawn, taken()); });
+  drawn.files = {plan_.video.string()};
+  const auto frame = std::make_shared<std::vector<std::uint8_t>>();
+  queue_->add([this, taken, frame] { *frame = frame_for_video(taken()); },
+              [this, frame] { add_to_video(*frame); });
 }
 
-void ShotFiles::make(Drawn& drawn, ShotPictures of) {
-  std::vector<Picture>& pictures = of.pictures;
+void ShotFiles::look_at(Drawn& drawn, const std::vector<Picture>& pictures) {
   if (!std::all_of(pictures.begin(), pictures.end(), is_empty)) all_empty_ = false;
   if (!plan_.vr180) drawn.comfort = comfort_of(drawn.shot, options_.camera.lens.headset(), pictures[0]);
   drawn.photo_psnr = photo_psnr(photos_, options_.output.backdrop(), drawn.shot, pictures[0]);
-  if (!of.shown) of.shown = {std::move(pictures), std::nullopt};
-  const stereo::DebugPictures& shown = *of.shown;
-  if (video_) {
-    Image frame;
-    {
-      const Timed timed(encoding_ns_);
-      frame = frame_of(plan_, options_.output.background, shown.pictures);
-    }
-    const Timed timed(writing_ns_);
-    video_->add(frame);
-    drawn.files = {plan_.video.string()};
-    return;
-  }
+}
+
+std::vector<std::uint8_t> ShotFiles::frame_for_video(const ShotPictures& of) {
+  const Timed timed(encoding_ns_);
+  return Video::bytes_of(frame_of(plan_, options_.output.background, of.shown->pictures));
+}
+
+void ShotFiles::add_to_video(const std::vector<std::uint8_t>& frame) {
+  const Timed timed(writing_ns_);
+  video_->add(frame);
+}
+
+void ShotFiles::write_files(Drawn& drawn, const ShotPictures& of) {
   std::vector<EncodedFile> files;
   {
     const Timed timed(encoding_ns_);
-    files = encode_outputs(options_.scene.name, options_.output, plan_, drawn.shot, shown);
+    files = encode_outputs(options_.scene.name, options_.output, plan_, drawn.shot, *of.shown);
   }
   const Timed timed(writing_ns_);
   for (const EncodedFile& file : files) {

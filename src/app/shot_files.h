@@ -25,8 +25,8 @@ class ShotFiles {
  public:
   /// `photos`: a folder to compare with, or empty. `shots`: those to come. Pictures that are drawn and not
   /// written yet take a quarter of the machine's memory at most, or what --max-memory allows if that is less;
-  /// those of three shots in any case. There are as many threads as cores where memory allows that, and one
-  /// for a video, whose frames so keep their order; loops within a job run on all cores.
+  /// those of three shots in any case. There are as many threads as cores where memory allows that. A video
+  /// gets its frames one by one, in order.
   ShotFiles(const RenderOptions& options, const OutputPlan& plan, std::string photos,
             const std::vector<Shot>& shots);
 
@@ -45,9 +45,13 @@ class ShotFiles {
   double encoding_seconds() const { return 1e-9 * static_cast<double>(encoding_ns_.load()); }
   double writing_seconds() const { return 1e-9 * static_cast<double>(writing_ns_.load()); }
   int threads() const { return threads_; }
+  bool is_video() const { return video_ != nullptr; }
 
  private:
-  void make(Drawn& drawn, ShotPictures of);
+  void look_at(Drawn& drawn, const std::vector<Picture>& pictures);
+  std::vector<std::uint8_t> frame_for_video(const ShotPictures& of);
+  void add_to_video(const std::vector<std::uint8_t>& frame);
+  void write_files(Drawn& drawn, const ShotPictures& of);
 
   const RenderOptions& options_;
   const OutputPlan& plan_;

@@ -3,10 +3,12 @@
 
 #include <sys/types.h>
 
+#include <cstdint>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -35,8 +37,11 @@ class Video {
   Video(const Video&) = delete;
   Video& operator=(const Video&) = delete;
 
-  /// The next frame, RGB. Throws Error with what ffmpeg said if it has ended.
-  void add(const Image& image);
+  /// The bytes of a frame, from RGB.
+  static std::vector<std::uint8_t> bytes_of(const Image& image);
+
+  /// The next frame. Throws Error with what ffmpeg said if it has ended.
+  void add(std::span<const std::uint8_t> bytes);
 
   /// Waits for ffmpeg, then gives the file its name: it appears whole or not at all.
   void finish();

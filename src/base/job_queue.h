@@ -22,20 +22,27 @@ class JobQueue {
   JobQueue(const JobQueue&) = delete;
   JobQueue& operator=(const JobQueue&) = delete;
 
-  /// Waits while as many jobs wait as may. Once a job has thrown, no other begins, and this throws that.
-  void add(std::function<void()> job);
+  /// Waits while as many jobs wait as may. `then` is called when the job is done: one at a time, in the order
+  /// in which jobs were added. Once a job or a `then` has thrown, no other begins, and this throws that.
+  void add(std::function<void()> job, std::function<void()> then = {});
 
   /// Waits until all jobs are done. Throws as add() does.
   void finish();
 
  private:
+  struct Job {
+    std::function<void()> work, then;
+    std::size_t turn = 0;  // of `then`
+  };
   void work(const std::stop_token& stop);
+  void run(std::unique_lock<std::mutex>& lock, const std::function<void()>& part);
 
   std::size_t waiting_max_;
   std::mutex mutex_;
   std::condition_variable_any changed_;
-  std::deque<std::function<void()>> waiting_;
+  std::deque<Job> waiting_;
   std::size_t running_ = 0;
+  std::size_t turns_ = 0, turn_ = 0;   // handed out, and whose it is
   std::exception_ptr failure_;         // of the job that failed first
   std::vector<std::jthread> threads_;  // last: they end first
 };

@@ -31,6 +31,50 @@ TEST(JobQueue, OneThreadKeepsTheOrder) {
   EXPECT_EQ(order, expected);
 }
 
+TEST(JobQueue, WhatFollowsJobsKeepsTheirOrder) {
+  constexpr int jobs = 100;
+  std::vector<int> order, expected;
+  std::atomic<int> at_once = 0, most_at_once = 0, following = 0;
+  JobQueue queue(4, 2);
+  for (int k = 0; k < jobs; ++k) {
+    expected.push_back(k);
+    const auto work = [&at_once, &most_at_once, k] {
+      const int now = ++at_once;
+      for (int most = most_at_once; most < now && !most_at_once.compare_exchange_weak(most, now);) {
+      }
+      std::this_thread::sleep_for(
+          std::chrono::microseconds(k % 3 == 0 ? 2000 : 100));  // later ones end first
+      --at_once;
+    };
+    queue.add(work, [&order, &following, k] {
+      EXPECT_EQ(++following, 1);
+      order.push_back(k);
+      --following;
+    });
+  }
+  queue.finish();
+  EXPECT_EQ(order, expected);
+  EXPECT_GT(most_at_once, 1);
+}
+
+TEST(JobQueue, EndsWhereWhatFollowsAJobFails) {
+  std::vector<int> order;
+  JobQueue queue(3, 2);
+  const auto add_all = [&] {
+    for (int k = 0; k < 1000; ++k) {
+      queue.add([] {},
+                [&order, k] {
+                  if (k == 7) throw std::runtime_error("the eighth");
+                  order.push_back(k);
+                });
+    }
+    queue.finish();
+  };
+  EXPECT_THROW(add_all(), std::runtime_error);
+  EXPECT_THROW(queue.finish(), std::runtime_error);
+  EXPECT_EQ(order, (std::vector<int>{0, 1, 2, 3, 4, 5, 6}));
+}
+
 TEST(JobQueue, HoldsNoMoreThanItMay) {
   constexpr int threads = 2, waiting = 1;
   std::atomic<int> held = 0, most = 0;
