@@ -113,6 +113,7 @@ class Stream {
   bool has_all() const;
   bool needs_another_pass() const;
   double reported(double error) const;
+  double elsewhere() const;
   // Used by settle():
   void start_over();
   void bring_to(const LevelChoice& choice);

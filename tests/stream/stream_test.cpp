@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <thread>
 
 #include "formats/model_file.h"
@@ -117,6 +118,23 @@ TEST(Stream, FollowsAHeadThatMoves) {
   EXPECT_GE(followed, coarsest);
   EXPECT_EQ(pictures(frames.gpu_model, before_all(5.0))[0].colour,
             pictures(frames.stream.model(), before_all(5.0))[0].colour);
+}
+
+// What levels lose was measured where the head was before.
+TEST(Stream, TellsLessOfAHeadThatMovesOn) {
+  const test::TempFolder folder;
+  test::write_levels(folder, 3000);
+  Frames frames(folder.path(), {.detail = {.db = 20.0}});
+  const shared::View view = before_all(40.0), near_it = before_all(40.001);
+  frames.rest({view, view});
+  const double at_rest = *frames.stream.reported_db();
+  ASSERT_LT(at_rest, 60.0) << "levels lose something";
+  frames.step({view, view});
+  EXPECT_EQ(*frames.stream.reported_db(), at_rest);
+  frames.step({near_it, near_it});  // a pass measures one view a frame: nothing is chosen yet
+  EXPECT_NEAR(*frames.stream.reported_db(), at_rest - 10.0 * std::log10(1.3), 1e-6);
+  frames.rest({near_it, near_it});
+  EXPECT_NEAR(*frames.stream.reported_db(), at_rest, 1.0);
 }
 
 TEST(Stream, SharesAQuality) {
