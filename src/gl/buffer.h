@@ -29,6 +29,8 @@ class Buffer {
   /// Makes room for at least `bytes`; what was in it stays. Throws as reserve does.
   void grow(std::int64_t bytes);
 
+  /// Makes room, and writes from the start. Draws that read this buffer must have run: NVIDIA's driver 580
+  /// let uploads overtake them, and a picture had the lines of the next one.
   template <typename T>
   void upload(std::span<const T> data) {
     reserve(static_cast<std::int64_t>(data.size_bytes()));

@@ -8,7 +8,7 @@
 namespace binosplat::preview {
 
 MarkDrawing::MarkDrawing(gl::Context& context)
-    : dispatcher_(context), nearest_(context), vertices_(context, "lines among the splats") {
+    : dispatcher_(context), nearest_(context), eyes_{Eye(context), Eye(context)} {
   context.gl().CreateVertexArrays(1, &no_vertices_);
   for (Eye& eye : eyes_) context.gl().CreateFramebuffers(1, &eye.framebuffer);
 }
@@ -39,9 +39,9 @@ void MarkDrawing::draw_lines(Eye& eye, const Camera& camera, double near_plane, 
   gl.ClearColor(0.0f, 0.0f, 0.0f, 0.0f);
   gl.Clear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
   if (corners.empty()) return;
-  vertices_.upload(corners);
+  eye.vertices.upload(corners);
   dispatcher_.draw(context.program("marks.frag"), static_cast<int>(corners.size()),
-                   {{"Vertices", vertices_}});
+                   {{"Vertices", eye.vertices}});
 }
 
 void MarkDrawing::put_behind(gl::Dispatcher& dispatcher, const render::Frame& frame) const {

@@ -30,15 +30,16 @@ class MarkDrawing {
 
  private:
   struct Eye {
+    explicit Eye(gl::Context& context) : vertices(context, "lines among the splats") {}
     std::unique_ptr<gl::Texture> colours, depths;
     std::uint32_t framebuffer = 0;
+    gl::Buffer vertices;  // its own: an upload may overtake a draw (gl/buffer.h)
   };
   void draw_lines(Eye& eye, const Camera& camera, double near_plane, std::span<const Line> lines);
   void put_behind(gl::Dispatcher& dispatcher, const render::Frame& frame) const;
 
   gl::Dispatcher dispatcher_;
   gl::Sampler nearest_;
-  gl::Buffer vertices_;
   std::uint32_t no_vertices_ = 0;
   std::array<Eye, 2> eyes_;
 };

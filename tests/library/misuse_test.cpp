@@ -169,8 +169,10 @@ TEST_F(Misuse, DepthsThatCannotBeKept) {
                               {"views[1].depth", "without stencil"}))
         << format;
   }
-  std::uint32_t deleted = caller.texture(GL_DEPTH_COMPONENT24, size.x, size.y);
+  std::uint32_t used_again = caller.texture(GL_DEPTH_COMPONENT24, size.x, size.y),
+                deleted = caller.texture(GL_DEPTH_COMPONENT24, size.x, size.y);
   caller.gl.DeleteTextures(1, &deleted);
+  caller.gl.DeleteTextures(1, &used_again);  // the name of the texture that is made next
   EXPECT_TRUE(depth_refused({.texture = deleted}, {"views[1].depth", "there is no texture"}));
   EXPECT_TRUE(depth_refused({}, {"views[1].depth", "there is no texture 0"}));
   EXPECT_TRUE(depth_refused({.texture = good, .level = 1}, {"has no level 1"}));
