@@ -77,11 +77,18 @@ struct Outcome {
   long peak_kib = 0;  // of memory
 };
 
+/// The program that was built; in a bundle for a GPU server (tests/bench/bundle), the one beside the tests.
+inline std::filesystem::path built_program() {
+  const std::filesystem::path built = BINOSPLAT_PROGRAM;
+  if (exists(built)) return built;
+  return std::filesystem::read_symlink("/proc/self/exe").parent_path() / built.filename();
+}
+
 struct Surroundings {
   std::filesystem::path folder;                  // the working folder; empty: this one's
   std::map<std::string, std::string> variables;  // of the environment, in addition
   std::map<int, rlim_t> limits;                  // RLIMIT_FSIZE and its like
-  std::filesystem::path program = BINOSPLAT_PROGRAM;
+  std::filesystem::path program = built_program();
 };
 
 /// A run under way.
