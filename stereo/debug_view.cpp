@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "base/statistics.h"
 #include "stereo/disagreement.h"
 
 namespace binosplat::stereo {
@@ -54,11 +55,7 @@ double range_of(const std::vector<Image>& maps, double share) {
   std::nth_element(numbers.begin(), at, numbers.end());
   const double most = *at > 0.0f ? *at : *std::max_element(numbers.begin(), numbers.end());
   if (most == 0.0) return 0.0;
-  const double ten = std::pow(10.0, std::floor(std::log10(most)));
-  for (const double step : {1.0, 2.0, 5.0}) {
-    if (most <= step * ten) return step * ten;
-  }
-  return 10.0 * ten;
+  return round_up(most);
 }
 
 Picture coloured(const Image& map, double most) {

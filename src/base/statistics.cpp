@@ -17,4 +17,12 @@ double mean(const std::vector<double>& values) {
   return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
 }
 
+double round_up(double number) {
+  const double ten = std::pow(10.0, std::floor(std::log10(number)));
+  for (const double step : {1.0, 2.0, 5.0}) {
+    if (number <= step * ten) return step * ten;
+  }
+  return 10.0 * ten;
+}
+
 }  // namespace binosplat

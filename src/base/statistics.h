@@ -13,4 +13,7 @@ double quantile(std::vector<double> values, double share);
 /// empty.
 double mean(const std::vector<double>& values);
 
+/// The least of 1, 2 and 5 times a power of ten that is no less than a number above 0: for scales and grids.
+double round_up(double number);
+
 }  // namespace binosplat

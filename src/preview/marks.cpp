@@ -21,16 +21,7 @@ constexpr double lines_least = 2.0, lines_most = 40.0;
 double spacing_for(double reach, double metre) {
   const double metres = reach / metre;
   if (metres >= lines_least && metres <= lines_most) return metre;
-  const double wanted = metres / 20.0, power = std::pow(10.0, std::floor(std::log10(wanted)));
-  const double digit = wanted / power;
-  return metre * power * (digit <= 1.0 ? 1.0 : digit <= 2.0 ? 2.0 : digit <= 5.0 ? 5.0 : 10.0);
-}
-
-/// Two directions in the plane across `up`.
-std::array<glm::dvec3, 2> across(const glm::dvec3& up) {
-  const glm::dvec3 a =
-      glm::normalize(glm::cross(up, std::abs(up.z) < 0.9 ? glm::dvec3(0, 0, 1) : glm::dvec3(1, 0, 0)));
-  return {a, glm::cross(up, a)};
+  return metre * round_up(metres / 20.0);
 }
 
 }  // namespace
@@ -66,13 +57,13 @@ MarkPlaces places_of(const MarkGround& ground, std::span<const Camera> cameras, 
   }
   // Lines go through whole numbers of spacings from the world's origin, wherever the model's middle is.
   places.middle = height * up;
-  for (const glm::dvec3& axis : across(up))
+  for (const glm::dvec3& axis : level_directions(up))
     places.middle += std::round(glm::dot(ground.middle, axis) / places.spacing) * places.spacing * axis;
   return places;
 }
 
 std::vector<Line> grid_lines(const MarkPlaces& places) {
-  const auto [a, b] = across(places.up);
+  const auto [a, b] = level_directions(places.up);
   const int count = std::max(1, static_cast<int>(std::round(places.reach / places.spacing)));
   const double end = count * places.spacing;
   std::vector<Line> lines;

@@ -144,9 +144,7 @@ std::optional<double> floor_of(const glm::dvec3& up, std::span<const Piece> piec
   constexpr double thick = 0.1, near = 0.3;
   constexpr int sectors = 8, most_sectors = 6;
   constexpr double share = 0.02;
-  const glm::dvec3 aside =
-      glm::normalize(glm::cross(up, std::abs(up.z) < 0.9 ? glm::dvec3(0, 0, 1) : glm::dvec3(1, 0, 0)));
-  const glm::dvec3 ahead = glm::cross(up, aside);
+  const auto [aside, ahead] = level_directions(up);
   std::array<bool, sectors> reached{};
   double floor_weight = 0.0;
   for (const Piece& piece : pieces) {
@@ -181,6 +179,12 @@ std::optional<Ground> find_ground(const CoredModel& cored, const std::optional<g
     ground.height = glm::dot(world_from_axes(cored.model.axes) * cored.core.middle, ground.up) +
                     *floor * cored.core.radius;
   return ground;
+}
+
+std::array<glm::dvec3, 2> level_directions(const glm::dvec3& up) {
+  const glm::dvec3 aside =
+      glm::normalize(glm::cross(up, std::abs(up.z) < 0.9 ? glm::dvec3(0, 0, 1) : glm::dvec3(1, 0, 0)));
+  return {aside, glm::cross(up, aside)};
 }
 
 }  // namespace binosplat

@@ -1,6 +1,7 @@
 #pragma once
 // Which way is up in a model and where its floor is, found in the model itself, for those without cameras.
 
+#include <array>
 #include <glm/glm.hpp>
 #include <optional>
 
@@ -21,5 +22,8 @@ struct Ground {
 /// Nothing where no direction stands out, as with models of round Gaussians and those that a network makes.
 /// `up`, where it is known, is taken as it is.
 std::optional<Ground> find_ground(const CoredModel& cored, const std::optional<glm::dvec3>& up = {});
+
+/// Two directions of length 1 in the plane across `up`, which has length 1: the same ones each time.
+std::array<glm::dvec3, 2> level_directions(const glm::dvec3& up);
 
 }  // namespace binosplat

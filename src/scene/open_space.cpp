@@ -51,8 +51,8 @@ struct Plan {
   Plan(const CoredModel& cored, const Ground& ground)
       : core(cored.core), world(world_from_axes(cored.model.axes)), cell(core.radius / space_half) {
     up = glm::transpose(world) * ground.up;
-    aside = glm::normalize(glm::cross(up, std::abs(up.z) < 0.9 ? glm::dvec3(0, 0, 1) : glm::dvec3(1, 0, 0)));
-    ahead = glm::cross(up, aside);
+    aside = level_directions(up)[0];
+    ahead = level_directions(up)[1];
     floor = *ground.height - glm::dot(core.middle, up);
   }
 

@@ -17,8 +17,8 @@ constexpr double put_share = 0.75;  // of a frame's ms that uploading is expecte
 // many Gaussians, however few frames there were.
 constexpr double requests_at_once = 2.0, requested_least = 1 << 14;
 // What levels lose is measured where the views rest. Where a head has moved on, they count as losing so many
-// times as much: along walks it was 0.7 to 1.6 times (README.md), and less than what was asked for is worse
-// than more.
+// times as much (README.md has what other factors do): along walks it was 0.7 to 1.6 times, and less than
+// what was asked for is worse than more.
 constexpr double lost_elsewhere = 1.3;
 // Of a frame's time, ms: what is neither drawing nor levels.
 constexpr double apart_ms = 1.2;
