@@ -4,6 +4,8 @@
 // word).
 
 #include <cstdint>
+#include <deque>
+#include <functional>
 #include <initializer_list>
 #include <string>
 #include <vector>
@@ -73,6 +75,14 @@ class Dispatcher {
   void start(const Program& program, const DispatchSize& work, std::initializer_list<Binding> bindings,
              std::initializer_list<Uniform> uniforms = {});
 
+  /// Gives the GPU more to do beside runs that do not fill it: each run() from here on first starts the next
+  /// of these pieces. A piece starts dispatches that may need what earlier runs and pieces wrote, but not
+  /// what the runs beside it write, nor these what it writes.
+  void add_beside(std::function<void()> piece) { beside_.push_back(std::move(piece)); }
+  /// Starts what is left of them, each with a barrier after it. What needs them all comes next. end_frame()
+  /// does so, too.
+  void finish_beside();
+
   /// Draws all of the framebuffer that is bound, by a fragment shader (KeptDrawing of gl/state.h).
   void draw_whole(const Program& program, std::initializer_list<Binding> bindings,
                   std::initializer_list<Uniform> uniforms) {
@@ -95,12 +105,14 @@ class Dispatcher {
     std::uint32_t query;
   };
   void mark(const std::string& stage);
+  void start_beside();
   void bind(const Program& program, std::initializer_list<Binding> bindings,
             std::initializer_list<Uniform> uniforms);
 
   Context& context_;
   std::vector<std::uint32_t> queries_;
   std::vector<Mark> marks_;
+  std::deque<std::function<void()>> beside_;
   Fence frame_end_;
 };
 

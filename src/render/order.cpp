@@ -6,6 +6,7 @@ void order(gl::Dispatcher& dispatcher, const FramePlan& plan, std::uint32_t grou
   // Depths are positive floats: their bits sort as unsigned numbers do.
   buffers.sort.run(dispatcher, buffers.drawn[group]->arguments, buffers.ordering.order,
                    plan.groups[group].key_bits);
+  dispatcher.finish_beside();  // project()'s last part
 }
 
 }  // namespace binosplat::render

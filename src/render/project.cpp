@@ -107,41 +107,46 @@ void project(gl::Dispatcher& dispatcher, const FramePlan& plan, std::uint32_t gr
   variant.subgroups = dispatcher.context().limits().subgroups_of_32;
   variant.sh_degree = plan.degree;
   const gl::Program& program = dispatcher.context().program("project.comp", variant);
-  for (std::size_t p = 0; p < model.pages.size(); ++p) {
-    const ModelBuffers::Page& page = model.pages[p];
-    dispatcher.run(
-        program, gl::DispatchSize::indirect(drawn.arguments, offsetof(shared::DispatchArguments, threads_x)),
-        {{"Frame", buffers.parameters},
-         {"Views", buffers.views},
-         {"RegionRows", buffers.region_rows},
-         {"Gaussians", *page.gaussians},
-         {"Kept", kept_of(model, p, buffers)},
-         {"Harmonics", *page.harmonics},
-         {"Arguments", drawn.arguments},
-         {"Indices", drawn.indices},
-         {"Splats", buffers.projected.splats},
-         {"Coverages", buffers.projected.coverages},
-         {"FrameCounters", buffers.counters},
-         {"Tall", buffers.projected.tall},
-         {"Bounds", *buffers.transmittance.bounds},
-         {"DepthTable", buffers.transmittance.depth_table},
-         {"Measured", buffers.transmittance.measured}},
-        {{"page_first", page.first},
-         {"page_count", page.count},
-         {"view_begin", views.begin},
-         {"view_end", views.end}});
-  }
+  dispatcher.add_beside([&, views] {
+    for (std::size_t p = 0; p < model.pages.size(); ++p) {
+      const ModelBuffers::Page& page = model.pages[p];
+      dispatcher.start(
+          program,
+          gl::DispatchSize::indirect(drawn.arguments, offsetof(shared::DispatchArguments, threads_x)),
+          {{"Frame", buffers.parameters},
+           {"Views", buffers.views},
+           {"RegionRows", buffers.region_rows},
+           {"Gaussians", *page.gaussians},
+           {"Kept", kept_of(model, p, buffers)},
+           {"Harmonics", *page.harmonics},
+           {"Arguments", drawn.arguments},
+           {"Indices", drawn.indices},
+           {"Splats", buffers.projected.splats},
+           {"Coverages", buffers.projected.coverages},
+           {"FrameCounters", buffers.counters},
+           {"Tall", buffers.projected.tall},
+           {"Bounds", *buffers.transmittance.bounds},
+           {"DepthTable", buffers.transmittance.depth_table},
+           {"Measured", buffers.transmittance.measured}},
+          {{"page_first", page.first},
+           {"page_count", page.count},
+           {"view_begin", views.begin},
+           {"view_end", views.end}});
+    }
+  });
   variant.measures = false;
   variant.sh_degree = 0;
-  dispatcher.run(dispatcher.context().program("project_count_tall.comp", variant),
-                 gl::DispatchSize::indirect(buffers.counters, offsetof(shared::Counters, tall_x)),
-                 {{"Frame", buffers.parameters},
-                  {"Views", buffers.views},
-                  {"RegionRows", buffers.region_rows},
-                  {"FrameCounters", buffers.counters},
-                  {"Tall", buffers.projected.tall},
-                  {"Splats", buffers.projected.splats},
-                  {"Coverages", buffers.projected.coverages}});
+  const gl::Program& tall = dispatcher.context().program("project_count_tall.comp", variant);
+  dispatcher.add_beside([&] {
+    dispatcher.start(tall, gl::DispatchSize::indirect(buffers.counters, offsetof(shared::Counters, tall_x)),
+                     {{"Frame", buffers.parameters},
+                      {"Views", buffers.views},
+                      {"RegionRows", buffers.region_rows},
+                      {"FrameCounters", buffers.counters},
+                      {"Tall", buffers.projected.tall},
+                      {"Splats", buffers.projected.splats},
+                      {"Coverages", buffers.projected.coverages}});
+  });
 }
 
 }  // namespace binosplat::render
