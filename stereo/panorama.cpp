@@ -49,7 +49,7 @@ void add(const render::FrameReport& face, render::FrameReport& sum) {
   sum.supertile_pairs += face.supertile_pairs;
   sum.redrawn += face.redrawn;
   sum.total_ms += face.total_ms;
-  sum.submit_ms += face.submit_ms;
+  sum.cpu.submit += face.cpu.submit;
   sum.gpu_bytes = face.gpu_bytes;
   for (std::size_t k = 0; k < sum.stages.size(); ++k) sum.stages[k].ms += face.stages[k].ms;
 }

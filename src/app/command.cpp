@@ -22,14 +22,10 @@ namespace binosplat::app {
 
 namespace fs = std::filesystem;
 
-namespace {
-
 // Names come from files and may be in any encoding; what is not UTF-8 is replaced rather than refused.
-std::string text_of(const nlohmann::ordered_json& value) {
+std::string json_text(const nlohmann::ordered_json& value) {
   return value.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
 }
-
-}  // namespace
 
 int end_by_what_was_thrown() {
   const auto end = [](ExitCode code, const std::string& text) {
@@ -125,12 +121,12 @@ nlohmann::ordered_json load_json(const fs::path& path) {
 }
 
 void save_json(const fs::path& path, const nlohmann::ordered_json& value) {
-  write_file(path, text_of(value));
+  write_file(path, json_text(value));
 }
 
 bool save_json_as_first(const fs::path& path, const nlohmann::ordered_json& value) {
   OutputFile file(path);
-  file.write(text_of(value));
+  file.write(json_text(value));
   return file.commit_as_first();
 }
 

@@ -21,6 +21,7 @@ void add_compare(CLI::App& program, Command& command);
 void add_devices(CLI::App& program, Command& command);
 void add_study(CLI::App& program, Command& command);
 void add_bench(CLI::App& program, Command& command);
+void add_profile(CLI::App& program, Command& command);
 void add_calibrate(CLI::App& program, Command& command);
 void add_view(CLI::App& program, Command& command);
 void add_convert(CLI::App& program, Command& command);
@@ -52,6 +53,9 @@ void check_output(const std::filesystem::path& path);
 
 /// Throws Error for a file that is no JSON.
 nlohmann::ordered_json load_json(const std::filesystem::path& path);
+
+/// `value` as JSON for people and programs to read.
+std::string json_text(const nlohmann::ordered_json& value);
 
 /// Writes `value` for people and programs to read. Numbers that are not finite become null, as JSON has none.
 void save_json(const std::filesystem::path& path, const nlohmann::ordered_json& value);

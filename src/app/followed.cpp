@@ -5,6 +5,7 @@
 #include "app/detail.h"
 #include "app/load_scene.h"
 #include "formats/model_file.h"
+#include "formats/streamed_sog.h"
 #include "measure/metrics.h"
 #include "scene/camera.h"
 
@@ -45,6 +46,16 @@ std::unique_ptr<Stream> open_stream(const SceneOptions& options, StreamSettings 
   auto stream = std::make_unique<Stream>(options.name, std::move(settings));
   set_as_asked(options, stream->model());
   return stream;
+}
+
+std::unique_ptr<Stream> open_for_frames(const SceneOptions& options, const render::FrameSettings& settings) {
+  const bool asked = options.detail || options.gpu_memory;
+  const bool follows =
+      !options.lod && !is_built_in(options.name) && (asked || is_streamed_sog(options.name));
+  if (!follows) return nullptr;
+  StreamSettings of_stream = stream_settings(options, settings);
+  of_stream.reserve = std::size_t{1} << 22;  // 0.4 GB, or 1 with all their harmonics
+  return open_stream(options, std::move(of_stream));
 }
 
 std::unique_ptr<Stream> open_for_shots(const SceneOptions& options, const render::FrameSettings& settings,

@@ -34,6 +34,10 @@ StreamSettings stream_settings(const SceneOptions& options, const render::FrameS
 /// Opens a scene, with axes and anti-aliasing as options say. Throws Error where it is no streamed SOG.
 std::unique_ptr<Stream> open_stream(const SceneOptions& options, StreamSettings settings);
 
+/// The same for frames that must not wait, which begin with the coarsest levels while the others are read;
+/// null where no levels follow what is seen.
+std::unique_ptr<Stream> open_for_frames(const SceneOptions& options, const render::FrameSettings& settings);
+
 /// The same for shots that may wait, of a head that turns, or single pictures: those with little memory, or a
 /// --detail, go by dB however few Gaussians there are.
 std::unique_ptr<Stream> open_for_shots(const SceneOptions& options, const render::FrameSettings& settings,

@@ -91,7 +91,8 @@ std::string keys_text() {
   return text;
 }
 
-// All but what is done with the pictures.
+}  // namespace
+
 void add_picture_options(CLI::App& sub, RenderOptions& o, bool in_window) {
   add_scene_options(sub, o.scene);
   add_camera_options(sub, o.camera);
@@ -99,8 +100,6 @@ void add_picture_options(CLI::App& sub, RenderOptions& o, bool in_window) {
   add_drawing_options(sub, o.drawing, in_window);
   add_context_options(sub, o.context);
 }
-
-}  // namespace
 
 void add_options(CLI::App& sub, RenderOptions& o) {
   add_picture_options(sub, o, false);

@@ -33,12 +33,16 @@ std::string command_line() {
 
 }  // namespace
 
-void save_report(const std::filesystem::path& folder, const std::string& name,
-                 const nlohmann::ordered_json& results, lab::Page page) {
-  save_json(folder / name, results);
+lab::Page with_command(lab::Page page) {
   page.facts.emplace_back("command", command_line());
   page.facts.emplace_back("date", fmt::format("{:%Y-%m-%d %H:%M} UTC", fmt::gmtime(std::time(nullptr))));
-  lab::save_page(folder / "report.html", page, results);
+  return page;
+}
+
+void save_report(const std::filesystem::path& folder, const std::string& name,
+                 const nlohmann::ordered_json& results, const lab::Page& page) {
+  save_json(folder / name, results);
+  lab::save_page(folder / "report.html", with_command(page), results);
 }
 
 }  // namespace binosplat::app

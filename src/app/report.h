@@ -12,6 +12,9 @@ namespace binosplat::app {
 /// Writes the numbers, as `name`, and their page, report.html, with the command and the date; each whole or
 /// not at all.
 void save_report(const std::filesystem::path& folder, const std::string& name,
-                 const nlohmann::ordered_json& results, lab::Page page);
+                 const nlohmann::ordered_json& results, const lab::Page& page);
+
+/// The page with the facts that all have: the command and the date.
+lab::Page with_command(lab::Page page);
 
 }  // namespace binosplat::app

@@ -17,6 +17,36 @@ double mean(const std::vector<double>& values) {
   return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
 }
 
+double deviation(const std::vector<double>& values) {
+  const double middle = mean(values);
+  double squares = 0.0;
+  for (const double value : values) squares += (value - middle) * (value - middle);
+  return std::sqrt(squares / static_cast<double>(values.size() - 1));
+}
+
+// The share of Student's distribution beyond +-t in closed form (Abramowitz and Stegun 26.7.3 and 4), halved
+// in on.
+double student_t(double outside, int freedom) {
+  const auto beyond = [&](double t) {
+    const double angle = std::atan(t / std::sqrt(static_cast<double>(freedom))), c = std::cos(angle);
+    const bool is_odd = freedom % 2 == 1;
+    double term = is_odd ? c : 1.0, sum = 0.0;
+    for (int k = is_odd ? 1 : 0; k < freedom - 1; k += 2) {
+      sum += term;
+      term *= c * c * (k + 1.0) / (k + 2.0);
+    }
+    const double within = is_odd ? (angle + std::sin(angle) * sum) * 2.0 / std::acos(-1.0) : std::sin(angle) * sum;
+    return 1.0 - within;
+  };
+  double low = 0.0, high = 1.0;
+  while (beyond(high) > outside && high < 1e9) high *= 2.0;
+  for (int step = 0; step < 60; ++step) {
+    const double middle = 0.5 * (low + high);
+    (beyond(middle) > outside ? low : high) = middle;
+  }
+  return high;
+}
+
 double round_up(double number) {
   const double ten = std::pow(10.0, std::floor(std::log10(number)));
   for (const double step : {1.0, 2.0, 5.0}) {

@@ -13,6 +13,14 @@ double quantile(std::vector<double> values, double share);
 /// empty.
 double mean(const std::vector<double>& values);
 
+/// Of numbers that scatter by chance around one value, of which `freedom` + 1 told how far, the mean of n lies
+/// within so many times (their standard deviation / sqrt(n)) of it, but for a share `outside` of all cases:
+/// Student's t, both sides. `freedom` is at least 1.
+double student_t(double outside, int freedom);
+
+/// The standard deviation that a sample of two or more tells of what it is from.
+double deviation(const std::vector<double>& values);
+
 /// The least of 1, 2 and 5 times a power of ten that is no less than a number above 0: for scales and grids.
 double round_up(double number);
 

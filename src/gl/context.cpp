@@ -9,6 +9,7 @@
 
 #include "base/error.h"
 #include "base/log.h"
+#include "base/spans.h"
 #include "gl/backends.h"
 #include "gl/subgroups.h"
 
@@ -174,17 +175,29 @@ const Program& Context::program(std::string_view name, std::span<const Number> v
   const std::uint64_t key = key_of(variant);
   auto found = of_shader->second.find(key);
   if (found == of_shader->second.end()) {
+    const auto begin = Clock::now();
     Program made(functions_, of_shader->first, defines_of(variant), shader_folder_, *program_cache_);
+    add_span((made.is_compiled() ? "compile " : "load ") + of_shader->first, begin);
+    ++programs_made_;
     found = of_shader->second.emplace(key, std::move(made)).first;
   }
-  if (is_preparing_) return found->second;
+  if (is_preparing_ || found->second.is_complete()) return found->second;
   try {
+    const auto begin = Clock::now();
+    const bool is_compiled = found->second.is_compiled();
     found->second.complete(*program_cache_);
+    if (is_compiled) add_span("compile " + of_shader->first, begin);
   } catch (...) {
     of_shader->second.erase(found);
     throw;
   }
   return found->second;
+}
+
+std::int64_t Context::gpu_time_ns() const {
+  std::int64_t ns = 0;
+  functions_.GetInteger64v(GL_TIMESTAMP, &ns);
+  return ns;
 }
 
 void Context::prepare(const std::function<void()>& record) {

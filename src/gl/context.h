@@ -94,6 +94,8 @@ class Context {
   /// Calls `record` for the programs that it asks for: drivers that can compile them all at once. Dispatchers
   /// run nothing meanwhile (dispatch.h).
   void prepare(const std::function<void()>& record);
+  /// How many programs were compiled, or loaded from the cache, so far.
+  int programs_made() const { return programs_made_; }
   bool is_preparing() const { return is_preparing_; }
 
   /// Shaders are read from this folder from now on; empty: the embedded ones.
@@ -102,6 +104,9 @@ class Context {
   /// ProgramCache::default_folder().
   void set_program_cache(const std::filesystem::path& folder);
   const ProgramCache& program_cache() const { return *program_cache_; }
+
+  /// What the GPU's clock says once it has what was handed to it so far; stages are timed by this clock.
+  std::int64_t gpu_time_ns() const;
 
   /// Bytes in buffers now and at most; buffers report here.
   std::int64_t allocated_bytes() const { return allocated_; }
@@ -139,6 +144,7 @@ class Context {
   std::unique_ptr<ProgramCache> program_cache_;
   std::map<std::string, std::map<std::uint64_t, Program>, std::less<>> programs_;  // by shader and key_of()
   bool is_preparing_ = false;
+  int programs_made_ = 0;
   std::int64_t allocated_ = 0, peak_ = 0;
 };
 

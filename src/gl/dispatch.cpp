@@ -111,19 +111,25 @@ void Dispatcher::start(const Program& program, const DispatchSize& work,
   context_.check(program.name());
 }
 
-std::vector<StageTime> Dispatcher::wait_and_time() {
-  const Functions& gl = context_.gl();
-  frame_end_.wait();
-  std::vector<std::uint64_t> at(marks_.size());
+std::vector<StageSpan> Dispatcher::read_spans() {
+  std::vector<StageSpan> spans;
   for (std::size_t i = 0; i < marks_.size(); ++i) {
-    gl.GetQueryObjectui64v(marks_[i].query, GL_QUERY_RESULT, &at[i]);
+    std::uint64_t ns = 0;
+    context_.gl().GetQueryObjectui64v(marks_[i].query, GL_QUERY_RESULT, &ns);
+    const auto at = static_cast<std::int64_t>(ns);
+    // Drivers that tell no times tell 0.
+    if (i > 0) spans.back().end_ns = std::max(at, spans.back().begin_ns);
+    if (i + 1 < marks_.size()) spans.push_back({marks_[i].stage, at, at});
   }
+  return spans;
+}
+
+std::vector<StageTime> sums_of(const std::vector<StageSpan>& spans) {
   std::vector<StageTime> times;
-  for (std::size_t i = 0; i + 1 < marks_.size(); ++i) {
-    const std::string& name = marks_[i].stage;
-    auto found = std::find_if(times.begin(), times.end(), [&](const StageTime& t) { return t.name == name; });
-    if (found == times.end()) found = times.insert(times.end(), {name, 0.0});
-    found->ms += static_cast<double>(at[i + 1] - at[i]) * 1e-6;
+  for (const StageSpan& span : spans) {
+    auto found = std::ranges::find(times, span.name, &StageTime::name);
+    if (found == times.end()) found = times.insert(times.end(), {span.name, 0.0});
+    found->ms += span.ms();
   }
   return times;
 }

@@ -49,6 +49,17 @@ struct StageTime {
   double ms = 0;
 };
 
+/// When the GPU was at a stage, on its own clock (Context::gpu_time_ns).
+struct StageSpan {
+  std::string name;
+  std::int64_t begin_ns = 0, end_ns = 0;
+
+  double ms() const { return static_cast<double>(end_ns - begin_ns) * 1e-6; }
+};
+
+/// The time of each stage, in order of first appearance.
+std::vector<StageTime> sums_of(const std::vector<StageSpan>& spans);
+
 class Dispatcher {
  public:
   explicit Dispatcher(Context& context) : context_(context), frame_end_(context) {}
@@ -95,9 +106,16 @@ class Dispatcher {
   /// The barrier that start() leaves out.
   void wait_for_writes();
 
-  /// Waits for the frame on the GPU, then the time of each stage in order of first appearance, from
-  /// timestamps (llvmpipe reports nothing between a GL_TIME_ELAPSED pair).
-  std::vector<StageTime> wait_and_time();
+  /// Waits for the frame on the GPU.
+  void wait() { frame_end_.wait(); }
+  /// When the stages of a frame that is done were drawn, one after the other, from timestamps (llvmpipe
+  /// reports nothing between a GL_TIME_ELAPSED pair).
+  std::vector<StageSpan> read_spans();
+  /// Waits, then the time of each stage.
+  std::vector<StageTime> wait_and_time() {
+    wait();
+    return sums_of(read_spans());
+  }
 
  private:
   struct Mark {

@@ -48,6 +48,8 @@ Functions load_functions(GetProcAddress get_proc_address) {
 #undef BINOSPLAT_GL_LOAD
   table.MaxShaderCompilerThreadsKHR = reinterpret_cast<PFNGLMAXSHADERCOMPILERTHREADSKHRPROC>(
       get_proc_address("glMaxShaderCompilerThreadsKHR"));
+  table.GetUnsignedBytei_vEXT =
+      reinterpret_cast<Functions::GetBytes>(get_proc_address("glGetUnsignedBytei_vEXT"));
   return table;
 }
 

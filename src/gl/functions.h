@@ -121,6 +121,9 @@ struct Functions {
 #undef BINOSPLAT_GL_MEMBER
   /// Of GL_KHR_parallel_shader_compile, where there is that.
   PFNGLMAXSHADERCOMPILERTHREADSKHRPROC MaxShaderCompilerThreadsKHR = nullptr;
+  /// Of GL_EXT_memory_object, likewise; the headers do not have it.
+  using GetBytes = void(APIENTRY*)(GLenum name, GLuint index, GLubyte* bytes);
+  GetBytes GetUnsignedBytei_vEXT = nullptr;
 };
 
 constexpr const char* no_context =

@@ -34,6 +34,9 @@ class Program {
   /// Waits for compiler and linker, keeps what they made in the cache, and learns the names in it; to be
   /// called before the program is used. Throws Error(no_gl) with the driver's log, places given as file:line.
   void complete(const ProgramCache& cache);
+  bool is_complete() const { return is_complete_; }
+  /// Until it is complete: whether the cache did not have it.
+  bool is_compiled() const { return !shaders_.empty(); }
 
   Program(Program&& other) noexcept;
   Program(const Program&) = delete;

@@ -306,7 +306,7 @@ void Bench::time(const BenchSettings& settings, BenchNumbers& point) {
       of_views.push_back(typical_of(of_view[repeat]));
       for (const render::FrameReport& report : of_view[repeat]) {
         frame_ms.push_back(report.total_ms);
-        submit_ms.push_back(report.submit_ms);
+        submit_ms.push_back(report.cpu.submit);
       }
     }
     repeats.push_back(mean_of(of_views).frame_ms);

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "lab/bench_results.h"
+#include "lab/csv.h"
 #include "lab/fields.h"
 
 namespace binosplat::lab {
@@ -80,16 +81,6 @@ void from_json(const ordered_json& json, BenchPoint& point) {
 }
 
 namespace {
-
-std::string csv_field(const Cell& cell) {
-  const auto* const text = std::get_if<std::string>(&cell.value);
-  const std::string bare = text == nullptr ? ordered_json(cell).dump() : *text;
-  if (text == nullptr) return bare == "null" ? "" : bare;
-  if (bare.empty()) return "";
-  std::string quoted = "\"";
-  for (const char c : bare) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return quoted + "\"";
-}
 
 double stage_ms(const BenchPoint& p, const char* name) {
   const auto found = std::find_if(p.stages.begin(), p.stages.end(),

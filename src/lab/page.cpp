@@ -41,7 +41,7 @@ static void fields(const auto& io, const Figure& f) {
 
 static void fields(const auto& io, const Chart& c) {
   io("x", c.x, "y", c.y, "by", c.by, "label", c.label, "filled", c.filled, "title", c.title, "order", c.order,
-     "bars", c.bars, "line", c.line, "steps", c.steps, "dots", c.dots, "front", c.front, "log_x", c.log_x,
+     "bars", c.bars, "areas", c.areas, "line", c.line, "steps", c.steps, "dots", c.dots, "front", c.front, "log_x", c.log_x,
      "log_y", c.log_y);
 }
 
@@ -90,8 +90,7 @@ std::string escaped(const std::string& text) {
 
 }  // namespace
 
-Image for_page(const Image& image) {
-  constexpr int widest = 640;
+Image for_page(const Image& image, int widest) {
   const int by = (image.width + widest - 1) / widest;
   Image small(image.width / by, std::max(1, image.height / by), image.channels);
   for (int y = 0; y < std::min(small.height * by, image.height); ++y) {

@@ -64,6 +64,7 @@ struct Chart {
   std::string title = {};               // of the axis up; otherwise the first of `y`
   std::vector<std::string> order = {};  // texts in `by` whose series come first
   bool bars = false;                    // horizontal, stacked by series, over names in `x`
+  bool areas = false;                   // stacked by series, over numbers in `x`
   bool line = true;                     // the points of a series are joined in their order,
   bool steps = false;                   // by steps: a value holds until the next
   bool dots = true;
@@ -77,8 +78,8 @@ struct Figure {
   Image image;  // RGB, grey or with alpha
 };
 
-/// A picture by whole factors smaller, so that a page can hold many: at most 640 px wide.
-Image for_page(const Image& image);
+/// A picture by whole factors smaller, so that a page can hold many: at most `widest` px wide.
+Image for_page(const Image& image, int widest = 640);
 
 /// The GPU and its driver, for the page's facts.
 std::string device_text(const gl::Context& context);

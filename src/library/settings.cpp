@@ -83,7 +83,7 @@ Report report_of(const render::FrameReport& frame) {
   Report report;
   for (const gl::StageTime& stage : frame.stages) report.stages.push_back({stage.name, stage.ms});
   report.gpu_ms = frame.total_ms;
-  report.submit_ms = frame.submit_ms;
+  report.submit_ms = frame.cpu.submit;
   report.gpu_bytes = frame.gpu_bytes;
   report.visible = frame.visible;
   report.pairs = frame.pairs;

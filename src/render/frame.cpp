@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <utility>
 
-#include "base/clock.h"
 #include "base/error.h"
+#include "base/spans.h"
 #include "primitives/arguments.h"
 #include "render/stages.h"
 
@@ -40,13 +40,14 @@ void check(const CallersTextures& textures, std::size_t views, const FrameSettin
 void add(FrameReport attempt, FrameReport& report) {
   attempt.attempts += report.attempts;
   attempt.redrawn += report.redrawn;
-  attempt.submit_ms += report.submit_ms;
+  attempt.sampled_error = attempt.sampled_error || report.sampled_error;
   attempt.total_ms += report.total_ms;
   for (const gl::StageTime& before : report.stages) {
     const auto same = std::find_if(attempt.stages.begin(), attempt.stages.end(),
                                    [&](const gl::StageTime& s) { return s.name == before.name; });
     if (same != attempt.stages.end()) same->ms += before.ms;
   }
+  attempt.spans.insert(attempt.spans.begin(), report.spans.begin(), report.spans.end());
   report = std::move(attempt);
 }
 
@@ -62,6 +63,7 @@ Frame::Frame(std::shared_ptr<GpuModel> model)
 void Frame::submit(std::span<const shared::View> views, const FrameSettings& settings,
                    const Workings& workings, const CallersTextures& textures) {
   check(textures, views.size(), settings, workings);
+  note_begin();
   submitted_ = {.views = {views.begin(), views.end()}, .settings = settings, .workings = workings};
   if (!workings.stand_in) {
     submitted_.canvases.assign(textures.canvases.begin(), textures.canvases.end());
@@ -70,6 +72,8 @@ void Frame::submit(std::span<const shared::View> views, const FrameSettings& set
   }
   const PlanRequest request{.textures = submitted_textures(true)};
   begin(request);
+  is_cut_ =
+      (settings.quality > 0.0f || measures(settings.transmittance)) && !history_.goes_on(plan_);
   if (settings.quality > 0.0f) {
     if (!history_.goes_on(plan_)) tolerance_control_.forget();
     if (!tolerance_control_.knows(settings) || !history_.probed_lately(plan_, workings.probe_every))
@@ -96,11 +100,20 @@ FrameReport Frame::finish() {
   }
   if (submitted_.settings.quality > 0.0f && submitted_.last == Stage::probe)
     report.quality = tolerance_control_.quality();
+  report.cpu = cpu_;
+  report.programs_made = dispatcher_.context().programs_made() - programs_before_;
+  report.is_cut = is_cut_;
   return report;
+}
+
+void Frame::note_begin() {
+  cpu_ = {};
+  programs_before_ = dispatcher_.context().programs_made();
 }
 
 FrameReport Frame::draw_until(Stage last, std::span<const shared::View> views, const FrameSettings& settings,
                               const Workings& workings, const std::optional<Probe>& probe) {
+  note_begin();
   submitted_ = {
       .views = {views.begin(), views.end()}, .settings = settings, .workings = workings, .last = last};
   begin({.probe = probe});
@@ -109,6 +122,7 @@ FrameReport Frame::draw_until(Stage last, std::span<const shared::View> views, c
 }
 
 void Frame::begin(PlanRequest request) {
+  const TimedSpan span("plan", &cpu_.plan);
   const std::vector<shared::View>& views = submitted_.views;
   const FrameSettings& settings = submitted_.settings;
   const Workings& workings = submitted_.workings;
@@ -160,8 +174,7 @@ FrameReport Frame::finish_attempt() {
   FrameReport report;
   for (;; ++report.redrawn) {
     if (report.redrawn == drawings_max) throw std::logic_error("a frame overflowed again and again");
-    report.stages = dispatcher_.wait_and_time();
-    counters_ = counters_read_.mapped<shared::Counters>(1).front();
+    wait_and_read(report);
     if (counters_.overflow == 0) break;
     capacity_.grow(plan_, counters_);
     record();
@@ -180,24 +193,41 @@ FrameReport Frame::finish_attempt() {
   return report;
 }
 
+void Frame::wait_and_read(FrameReport& report) {
+  {
+    const TimedSpan span("wait for the GPU", &cpu_.wait);
+    dispatcher_.wait();
+  }
+  const TimedSpan span("read back", &cpu_.read);
+  const std::vector<gl::StageSpan> spans = dispatcher_.read_spans();
+  report.stages = gl::sums_of(spans);
+  report.spans.insert(report.spans.end(), spans.begin(), spans.end());
+  counters_ = counters_read_.mapped<shared::Counters>(1).front();
+}
+
 void Frame::record() {
   const Workings& workings = submitted_.workings;
-  buffers_.reserve(plan_, *model_buffers_, capacity_);
-  buffers_.upload(plan_, measuring_.uses_last);
-  model_buffers_->reserve(plan_);
-  buffers_.counters.upload(std::vector{shared::Counters{}});
+  {
+    const TimedSpan span("upload", &cpu_.upload);
+    buffers_.reserve(plan_, *model_buffers_, capacity_);
+    buffers_.upload(plan_, measuring_.uses_last);
+    model_buffers_->reserve(plan_);
+    buffers_.counters.upload(std::vector{shared::Counters{}});
+  }
   pictures_stood_in_.clear();
   // First, since a sort that is recorded takes its pairs to lie elsewhere then.
-  if (!std::exchange(is_prepared_, true)) dispatcher_.context().prepare([this] { record_stages(); });
+  if (!std::exchange(is_prepared_, true)) {
+    const TimedSpan span("prepare programs", &cpu_.submit);
+    dispatcher_.context().prepare([this] { record_stages(); });
+  }
   if (workings.stand_in)
     pictures_stood_in_ = workings.stand_in->fill(model_->model(), plan_, *model_buffers_, buffers_);
-  const auto start = Clock::now();
+  const TimedSpan span("submit", &cpu_.submit);
   dispatcher_.begin_frame();
   record_stages();
   counters_read_.reserve(sizeof(shared::Counters));
   counters_read_.copy(buffers_.counters, 0, sizeof(shared::Counters), 0);
   dispatcher_.end_frame();
-  submit_ms_ = ms_since(start);
 }
 
 // The stages in order, without a read-back between them.
@@ -233,7 +263,6 @@ void Frame::record_stages() {
 
 void Frame::fill(FrameReport& report) const {
   report.attempts = 1;
-  report.submit_ms = submit_ms_;
   report.visible = counters_.visible;
   report.pairs = plan_.supertile_side == 1 ? counters_.pairs : counters_.tile_pairs;
   report.supertile_pairs = counters_.pairs;
@@ -247,6 +276,7 @@ void Frame::fill(FrameReport& report) const {
   report.tolerance = plan_.tolerance;
   report.used_measured = measuring_.uses_last;
   report.measured = measuring_.measures;
+  report.sampled_error = plan_.probe.has_value();
   report.on_canvases = !plan_.canvases.empty();
 }
 

@@ -19,6 +19,17 @@
 
 namespace binosplat::render {
 
+/// CPU time of a frame, in ms.
+struct CpuTimes {
+  double plan = 0;    // to decide what is drawn
+  double upload = 0;  // to hand buffers and parameters to the driver
+  double submit = 0;  // to hand it the stages; with programs that had to be made
+  double wait = 0;    // for the GPU
+  double read = 0;    // to read back what it counted and timed
+
+  double sum() const { return plan + upload + submit + wait + read; }
+};
+
 /// What drawing a frame took.
 struct FrameReport {
   std::uint64_t visible = 0;  // Gaussians in depth order, summed over the order groups (1 for parallel eyes)
@@ -31,13 +42,17 @@ struct FrameReport {
   int redrawn = 0;   // times that buffers had to grow
   std::vector<gl::StageTime> stages;  // GPU time of the complete drawing, summed over attempts
   double total_ms = 0;                // their sum
-  double submit_ms = 0;               // CPU time of handing it to the driver, likewise
+  std::vector<gl::StageSpan> spans;   // when these were drawn; of drawings that overflowed, too
+  CpuTimes cpu;                       // of all drawings
+  int programs_made = 0;              // that were compiled for it, or loaded from the cache
   std::int64_t gpu_bytes = 0;         // in buffers, the model's included
   int tile_size = 0;                  // px
   int supertile_side = 0;             // tiles along a side of a supertile
   float tolerance = 0.0f;             // K or kappa that the frame was drawn with
   bool used_measured = false;         // it used the transmittance that an earlier frame measured
   bool measured = false;              // it measured for later ones
+  bool sampled_error = false;         // it drew tiles exactly, too, to measure its error
+  bool is_cut = false;  // it could not go by earlier frames, as it asked to: it is the first, or a camera cut
   bool on_canvases = false;           // its pictures are on the canvases that it was given, and nowhere else
   double quality = 0.0;  // with settings.quality: its PSNR in dB, as this and earlier frames' probes tell
 };
@@ -146,9 +161,11 @@ class Frame {
   };
 
   CallersTextures submitted_textures(bool with_canvases) const;
+  void note_begin();
   void begin(PlanRequest request);
   void start_search();
   void start_attempt();
+  void wait_and_read(FrameReport& report);
   void record();
   void record_stages();
   FrameReport finish_attempt();
@@ -164,7 +181,9 @@ class Frame {
   FramePlan plan_;
   Measuring measuring_;
   gl::Buffer counters_read_;     // Counters
-  double submit_ms_ = 0.0;       // CPU time of handing the last drawing to the driver
+  CpuTimes cpu_;                 // of the frame since it was submitted
+  int programs_before_ = 0;      // Context::programs_made() at that time
+  bool is_cut_ = false;          // FrameReport
   shared::Counters counters_{};  // of the last drawing
   double tiles_a_splat_ = 0.0;   // likewise
   Capacity capacity_;

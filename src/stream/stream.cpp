@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "base/spans.h"
+
 namespace binosplat {
 
 namespace {
@@ -152,6 +154,7 @@ bool Stream::pass_is_due() const {
 
 // At one more of the views, each as it is by then.
 void Stream::make_pass(const render::FrameSettings& settings) {
+  const TimedSpan span("visibility pass");
   if (!visibility_) visibility_.emplace(gpu_model_);
   const std::vector<shared::View> ahead = motion_.ahead(lead_s);
   if (pass_.views.empty()) {
@@ -189,10 +192,12 @@ bool Stream::put_some(double ms) {
   const auto most = static_cast<std::size_t>(put_share * ms * put_a_ms_);
   std::vector<LodFiles::Piece> pieces = worker_->take(std::max(most, put_least));
   if (pieces.empty()) return false;
+  const TimedSpan span("upload levels");
   put(pieces);
   gpu_model_->reload(chunks_.take_changes());
   std::size_t gaussians = 0;
   for (const LodFiles::Piece& piece : pieces) gaussians += piece.model.count();
+  times_.put += gaussians;
   pieces.clear();  // which takes time, too
   if (gaussians >= put_least)
     put_a_ms_ = std::lerp(put_a_ms_, static_cast<double>(gaussians) / std::max(ms_since(start), 1e-3), 0.2);
@@ -202,6 +207,7 @@ bool Stream::put_some(double ms) {
 
 // What is drawn then is chosen anew by it.
 void Stream::calibrate_at_rest(const render::FrameSettings& settings) {
+  const TimedSpan span("calibrate levels");
   is_calibrated_ = is_due_ = true;
   if (!visibility_) visibility_.emplace(gpu_model_);
   chooser_.forget();

@@ -93,9 +93,11 @@ class Stream {
   /// The dB that a frame itself must keep, so that frame and levels together keep `together_db`.
   double quality_left(double together_db) const;
 
-  /// ms that reading and uploading took in settle() since the last call.
+  /// Since the last call: ms that reading and uploading took in settle(), and the Gaussians that
+  /// begin_frame() put into the model.
   struct Times {
     double read_ms = 0.0, upload_ms = 0.0;
+    std::size_t put = 0;
   };
   Times take_times() { return std::exchange(times_, {}); }
 

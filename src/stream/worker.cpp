@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "base/parallel.h"
+#include "base/spans.h"
 
 namespace binosplat {
 
@@ -61,6 +62,7 @@ void StreamWorker::check() const {
 }
 
 void StreamWorker::run(const std::stop_token& stop) {
+  name_thread("reads levels");
   std::unique_lock lock(mutex_);
   while (changed_.wait(lock, stop, [&] { return request_.has_value(); })) {
     const Request request = *std::exchange(request_, std::nullopt);
@@ -80,8 +82,10 @@ void StreamWorker::run(const std::stop_token& stop) {
 }
 
 void StreamWorker::work(const Request& request, const std::stop_token& stop) {
+  const auto begin = Clock::now();
   const auto choice =
       std::make_shared<const LevelChoice>(chooser_.choose(request.views, request.detail, request.visible));
+  add_span("choose levels", begin);
   Chosen chosen{.is_limited = choice->is_limited, .here = request.here, .at = request.at};
   if (choice->knows_errors()) chosen.error = std::make_shared<RunningError>(choice, request.visible.drawn);
   chosen.made_at = Clock::now();
@@ -90,6 +94,7 @@ void StreamWorker::work(const Request& request, const std::stop_token& stop) {
     std::swap(chosen_, chosen);  // the one before is freed when no frame waits for the lock any more
     is_choosing_ = false;
   }
+  const TimedSpan span("read levels");
   files_.read(
       keep_wanted(*choice), *choice, [&](LodFiles::Piece piece) { add(std::move(piece), stop); },
       [&] {

@@ -18,7 +18,6 @@
 #include "base/log.h"
 #include "base/mapped_file.h"
 #include "base/memory.h"
-#include "formats/streamed_sog.h"
 #include "preview/window.h"
 
 namespace binosplat::app {
@@ -63,15 +62,11 @@ struct Wanted {
   render::FrameSettings settings;
 };
 
-// The coarsest levels of a streamed SOG are there at once, the others come while one looks.
 preview::Loaded load(const SceneOptions& scene, const std::vector<Camera>& cameras,
                      const render::FrameSettings& settings) {
-  const bool asked = scene.detail || scene.gpu_memory;
-  const bool follows = !scene.lod && !is_built_in(scene.name) && (asked || is_streamed_sog(scene.name));
-  if (!follows) return load_scene(scene, {}, cameras);
-  StreamSettings of_stream = stream_settings(scene, settings);
-  of_stream.reserve = std::size_t{1} << 22;  // 0.4 GB, or 1 with all their harmonics
-  return open_stream(scene, std::move(of_stream));
+  auto stream = open_for_frames(scene, settings);
+  if (stream) return stream;
+  return load_scene(scene, {}, cameras);
 }
 
 // Cameras that come as pairs of eyes are taken one by one.

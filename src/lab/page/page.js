@@ -112,8 +112,22 @@ function curves(chart, chosen, width) {
     x: scale(chart.x, chart.log_x), y: scale(titleOf(chart), chart.log_y), marks };
 }
 
+// Stacked areas over a number, the first series at the bottom.
+function areas(chart, chosen, width) {
+  const points = chosen.flatMap((s) => s.good.map((p) => ({ ...p, of: s })));
+  const place = { x: "x", y: "y", z: (p) => p.of.name, order: null };
+  return { height: Math.max(260, Math.min(440, width * 0.55)), marginLeft: 56, marginBottom: 42,
+    x: scale(chart.x, false), y: scale(titleOf(chart), false),
+    marks: [
+      Plot.areaY(points, Plot.stackY({ ...place, fill: (p) => p.of.style.colour })),
+      Plot.tip(points, Plot.pointerX(Plot.stackY({ ...place, title: (p) => pointText(chart, p.of, p) }))),
+      Plot.ruleY([0])
+    ] };
+}
+
 function draw(chart, chosen, width) {
-  const options = chart.bars ? bars(chart, chosen, width) : curves(chart, chosen, width);
+  const options = chart.bars ? bars(chart, chosen, width) : chart.areas ? areas(chart, chosen, width)
+    : curves(chart, chosen, width);
   return Plot.plot({ width, color: { type: "identity" }, symbol: { type: "identity" }, ...options,
     style: { background: "none", color: "var(--ink)", fontSize: "12px", fontFamily: "inherit" } });
 }
@@ -137,10 +151,10 @@ function save(text, name, type) {
 }
 
 function legendSymbol(chart, style) {
-  const mark = chart.bars ? Plot.barX([1], { x: () => 1, fill: style.colour })
+  const mark = chart.bars || chart.areas ? Plot.barX([1], { x: () => 1, fill: style.colour })
     : Plot.dot([0], { x: () => 0.5, y: () => 0.5, symbol: style.symbol, stroke: style.colour, strokeWidth: 1.75, r: 4 });
   const svg = Plot.plot({ width: 14, height: 14, margin: 1, axis: null, x: { domain: [0, 1] },
-    ...(chart.bars ? {} : { y: { domain: [0, 1] } }), symbol: { type: "identity" }, marks: [mark] });
+    ...(chart.bars || chart.areas ? {} : { y: { domain: [0, 1] } }), symbol: { type: "identity" }, marks: [mark] });
   svg.setAttribute("aria-hidden", "true");
   return svg;
 }

@@ -1,0 +1,222 @@
+// binosplat profile: every frame of a way through a scene, what it waited for, and why some took longer.
+
+#include "app/profile.h"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <memory>
+
+#include "app/calibrated.h"
+#include "app/command.h"
+#include "app/followed.h"
+#include "app/foveate_options.h"
+#include "app/load_scene.h"
+#include "app/option_checks.h"
+#include "app/shots.h"
+#include "app/tour.h"
+#include "base/log.h"
+#include "base/mapped_file.h"
+#include "base/progress.h"
+#include "formats/content.h"
+#include "lab/csv.h"
+#include "lab/profile_run.h"
+#include "lab/settings.h"
+
+namespace binosplat::app {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr double seconds_default = 10.0;
+constexpr double quality_to_try = 40.0;  // dB: an error that is hard to see
+
+struct ProfileOptions : RenderOptions {
+  double fps = headset_fps;  // 0: as fast as possible
+  std::string folder = "out/profile";
+  std::string compare;  // frames.csv of an older run
+};
+
+/// What only `render` does, or what is no way through a scene.
+constexpr std::array not_profiled = {"--orbit", "--keys", "--frames", "--reference-until"};
+
+void check(const ProfileOptions& o) {
+  check(o.scene);
+  check(o.drawing);
+  check(o.rig);
+  check(o.context);
+  const bool stands = !o.camera.views.empty() || o.camera.eye;
+  if (int{stands} + int{o.camera.tour.has_value()} + int{!o.camera.path.empty()} > 1)
+    fail("profile: --tour, --path and --view (or --eye) are ways of their own: choose one of them");
+  if (o.camera.eye.has_value() != o.camera.at.has_value())
+    fail("--eye and --at go together: where the camera is, and what it looks at");
+  if (o.camera.views.size() > 1 || (stands && !o.camera.eye && o.camera.views.front() == all_views.front()))
+    fail("profile: --view stands at one camera: name one");
+  check_foveate(o);
+}
+
+/// Frames a second that the poses are for.
+double pose_rate(const ProfileOptions& o) { return o.fps > 0.0 ? o.fps : headset_fps; }
+
+/// The cameras that the head goes through, one a frame, and what that is called. A scene whose cameras nobody
+/// named is toured if it has two or more.
+std::string choose_way(ProfileOptions& o, CameraList& list) {
+  const bool stands = !o.camera.views.empty() || o.camera.eye || !list.listed;
+  if (!o.camera.path.empty()) {
+    list = go_along_path(o.camera, pose_rate(o), true, std::move(list));
+    return "path " + o.camera.path;
+  }
+  if (!stands && !o.camera.tour && list.cameras.size() > 1) o.camera.tour = head_motions()[1];
+  if (!o.camera.tour) return "";
+  if (!o.camera.seconds) o.camera.seconds = seconds_default;
+  list = go_on_tour(o.scene, o.camera, o.rig, pose_rate(o), std::move(list));
+  return "tour " + o.camera.tour->name;
+}
+
+std::string drawing_of(const ProfileOptions& o, const render::FrameSettings& settings) {
+  std::string text = settings.quality > 0.0f           ? fmt::format("at about {:g} dB", settings.quality)
+                     : render::is_exact(settings.th) ? "exact"
+                                                     : lab::describe({settings});
+  if (o.foveate) text += ", foveated";
+  if (o.scene.detail || o.scene.gpu_memory) text += ", levels of detail follow";
+  return text;
+}
+
+/// The views of each frame.
+std::vector<std::vector<shared::View>> frames_of(const ProfileOptions& o, const std::vector<Shot>& shots) {
+  std::vector<std::vector<shared::View>> frames;
+  if (shots.size() > 1 || o.camera.along_path()) {
+    for (const Shot& shot : shots) frames.push_back(views_of(shot));
+    return frames;
+  }
+  const double seconds = o.camera.seconds.value_or(seconds_default);
+  frames.assign(static_cast<std::size_t>(std::max(1.0, std::round(seconds * pose_rate(o)))),
+                views_of(shots.front()));
+  return frames;
+}
+
+/// What is drawn, and by what.
+struct Profiled {
+  std::unique_ptr<gl::Context> context;  // outlives what draws with it
+  std::unique_ptr<Stream> stream;
+  Model loaded;
+  lab::ProfileRun run;
+  lab::Profile profile;
+
+  const Model& model() const { return stream ? stream->model() : loaded; }
+};
+
+Profiled open_profiled(ProfileOptions o) {
+  CalibratedSettings calibrated(o.drawing);
+  CameraList list = listed_cameras(o.scene, o.camera, o.rig);
+  check_views(o.camera.views, o.rig.mono, list);
+  Profiled all;
+  std::string way = choose_way(o, list);
+  all.context = open_context(o.context);
+  render::FrameSettings settings = settings_of(o.drawing);
+  all.stream = open_for_frames(o.scene, settings);
+  if (!all.stream) all.loaded = load_scene(o.scene, {}, list.cameras);
+  if (!list.listed && !o.camera.along_path())
+    list = made_up_cameras(o.scene, o.camera, list.known, all.model());
+  const double near_plane = near_plane_of(o.camera, list);
+  std::vector<Shot> shots =
+      make_shots(o.camera.views, o.camera.lens, o.rig, list, near_plane, all.model().axes);
+  if (!o.camera.along_path()) shots.resize(1);
+  if (way.empty()) way = "standing at " + shots.front().name;
+  calibrated.check_model(all.model());
+  settings = calibrated.of(shots.front(), settings);
+  all.run = {frames_of(o, shots), settings, o.foveate, o.fps};
+  all.profile.facts = {o.scene.name, way, drawing_of(o, settings), lab::device_text(*all.context),
+                       all.context->software()};
+  return all;
+}
+
+void tell_how_long(double frame_ms, std::size_t frames) {
+  constexpr double worth_telling_s = 30.0;
+  const double seconds = 1e-3 * frame_ms * static_cast<double>(frames);
+  if (seconds > worth_telling_s)
+    log_info("{} frames take about {}: fewer --seconds or a smaller --size take less", frames,
+             spoken_time(seconds));
+}
+
+lab::Profile record(const ProfileOptions& o) {
+  Profiled all = open_profiled(o);
+  const auto model = all.stream ? all.stream->gpu_model(*all.context, all.run.settings.precision)
+                                : std::make_shared<render::GpuModel>(*all.context, all.loaded,
+                                                                     all.run.settings.precision);
+  lab::ProfileDrawer drawer(model, all.run, all.stream.get());
+  tell_how_long(drawer.warm_up(), all.run.frames.size());
+  {
+    Progress progress("profiling", all.run.frames.size(), "frames");
+    all.profile.recording = drawer.record([&](std::size_t done) { progress.update(done); });
+  }
+  const lab::ProfileSummary summary = lab::summary_of(all.profile);
+  for (const std::size_t n : summary.worst) all.profile.pictures.emplace_back(drawer.picture(n));
+  if (!all.stream) all.profile.saving = drawer.saving(summary.worst[summary.worst.size() / 2], quality_to_try);
+  return std::move(all.profile);
+}
+
+ExitCode profile(const ProfileOptions& o) {
+  check(o);
+  for (const char* const name : profile_files) check_output(fs::path(o.folder) / name);
+  std::optional<lab::Table> before;
+  if (!o.compare.empty()) before = lab::read_csv(as_text(MappedFile(o.compare).bytes()), o.compare);
+  const lab::Profile profile = record(o);
+  const lab::ProfileSummary summary = lab::summary_of(profile);
+  std::vector<std::string> changes;
+  if (before) changes = lab::compare_frames(*before, lab::frames_table(profile.recording), o.compare);
+  save_profile(o.folder, profile, changes);
+  for (const std::string& line : lab::lines_of(profile, summary)) fmt::print("{}\n", line);
+  if (before) fmt::print("\nSince {}:\n{}\n", o.compare, fmt::join(changes, "\n"));
+  fmt::print("{}: report.html, trace.json (for ui.perfetto.dev), frames.csv, profile.json\n", o.folder);
+  return ExitCode::done;
+}
+
+}  // namespace
+
+void add_profile(CLI::App& program, Command& command) {
+  CLI::App* sub = program.add_subcommand("profile", "Time every frame on a way, and say why some are slow");
+  const auto options = std::make_shared<ProfileOptions>();
+  ProfileOptions& o = *options;
+  add_picture_options(*sub, o, true);
+  add_tour_options(*sub, o.camera);
+  add_foveate_option(*sub, o.foveate);
+  sub->option_defaults()->group("Options");
+  sub->get_option("--view")->description("Stand at this camera")->type_name("NAME");
+  sub->get_option("--tour")->description(
+      "Go through all cameras as a head does (walk, where nothing else is\nasked for), or at so many metres "
+      "and degrees a second");
+  sub->get_option("--seconds")->description(
+      "So much of the tour, or so long at a view (10); or go through the\nkeys of --path in S seconds");
+  sub->get_option("--preset")->description("preview: 1280 x 720 an eye; headset: 3660 x 3200 an eye,\n100 degrees (headset, without --size)");
+  sub->add_option("--fps", o.fps, "Frames begin so often a second, as in a headset of 72, 90 or 120;\n0: as soon as the last one is drawn (90)")
+      ->type_name("N")
+      ->check(between(0.0, 1000.0, "frames a second from 0 to 1000"));
+  sub->add_option("-o,--output", o.folder, "Folder for report.html, trace.json, frames.csv and profile.json\n(out/profile)")
+      ->type_name("DIR");
+  sub->add_option("--compare", o.compare, "Say what changed beyond noise since an older frames.csv of the\nsame frames")
+      ->type_name("FILE")
+      ->check(CLI::ExistingFile.description(""));
+  for (const char* name : not_profiled) sub->get_option(name)->group("");
+  sub->footer(
+      "trace.json opens in ui.perfetto.dev and chrome://tracing.\n"
+      "Examples:\n"
+      "  binosplat profile garden.ply -o out/profile\n"
+      "  binosplat profile garden.ply --tour calm --seconds 5 --quality 40 --fps 72\n"
+      "  binosplat profile garden.ply --view DSC07956 --fps 0 --compare out/profile/frames.csv -o out/new\n"
+      "  binosplat profile demo:room --size 320x180 --seconds 2");
+  sub->parse_complete_callback([sub] {
+    for (const char* name : not_profiled) {
+      if (sub->count(name) > 0) fail("{} is for `binosplat render`: leave it out", name);
+    }
+  });
+  sub->callback([options, &command] {
+    Lens& lens = options->camera.lens;
+    if (lens.preset.empty() && !lens.size) lens.preset = "headset";
+    command = [options] { return profile(*options); };
+  });
+}
+
+}  // namespace binosplat::app

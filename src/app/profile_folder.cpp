@@ -1,0 +1,29 @@
+#include <deque>
+#include <nlohmann/json.hpp>
+
+#include "app/command.h"
+#include "app/profile.h"
+#include "app/report.h"
+#include "base/output_file.h"
+#include "lab/csv.h"
+
+namespace binosplat::app {
+
+void save_profile(const std::filesystem::path& folder, const lab::Profile& profile,
+                  const std::vector<std::string>& changes) {
+  const lab::ProfileSummary summary = lab::summary_of(profile);
+  const nlohmann::ordered_json json = lab::profile_json(profile, summary);
+  const lab::Page page = with_command(lab::profile_page(profile, summary, changes));
+  const std::array contents = {lab::html(page, json), lab::trace_of(profile),
+                               lab::csv(lab::frames_table(profile.recording)), json_text(json)};
+  // None gets its name before all are on the disk.
+  std::deque<OutputFile> files;
+  for (std::size_t k = 0; k < profile_files.size(); ++k) {
+    OutputFile& file = files.emplace_back(folder / profile_files[k]);
+    file.write(contents[k]);
+    file.flush();
+  }
+  for (OutputFile& file : files) file.commit();
+}
+
+}  // namespace binosplat::app

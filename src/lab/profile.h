@@ -1,0 +1,93 @@
+#pragma once
+// What a recording of frames says: which were bad and why, and what they all wait for.
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "lab/page.h"
+#include "render/recorder.h"
+
+namespace binosplat::lab {
+
+/// What was recorded, for whoever reads of it.
+struct ProfileFacts {
+  std::string scene, motion, drawing;  // the model; "tour walk"; "exact"
+  std::string device;
+  bool is_software = false;  // the CPU draws
+};
+
+/// What one more try showed: ms that a frame of this --quality takes less.
+struct Saving {
+  double quality_db = 0.0, ms = 0.0;
+};
+
+struct Profile {
+  ProfileFacts facts;
+  render::Recording recording;
+  std::vector<std::optional<Image>> pictures;  // of the left eye in the worst frames, in their order
+  std::optional<Saving> saving;
+};
+
+/// Something that happened in a frame.
+struct FrameEvent {
+  std::string name, detail;  // "drawn again", "2 times, since a buffer was too small"
+
+  std::string text() const { return detail.empty() ? name : name + ": " + detail; }
+};
+
+struct Quantiles {
+  double median = 0.0, p90 = 0.0, p99 = 0.0, most = 0.0;
+};
+
+struct ProfileSummary {
+  Quantiles wall, gpu, cpu;           // ms
+  std::vector<gl::StageTime> stages;  // of the GPU: the mean over all frames
+  std::vector<gl::StageTime> usual;   // of the GPU's stages and the CPU's work: the median
+  std::size_t missed = 0;             // frames that were not done when the next one was due
+  std::size_t gpu_bound = 0;          // frames in which the GPU takes longer than the CPU
+  std::optional<Quantiles> mhz;
+  std::size_t slow_clock = 0;       // frames
+  std::vector<std::size_t> worst;   // up to ten frames that took longest, longest first
+};
+
+/// ms of a frame.
+double gpu_ms(const render::FrameRecord& frame);  // of all its drawings
+double cpu_ms(const render::FrameRecord& frame);  // of the thread that draws, without its waiting
+
+bool is_missed(const render::Recording& recording, std::size_t n);
+
+std::vector<FrameEvent> events_of(const render::Recording& recording, std::size_t n);
+
+/// Throws Error for a recording without frames.
+ProfileSummary summary_of(const Profile& profile);
+
+/// Why a frame took longer than others: its events, and what took longer than usual.
+std::string reason_of(const Profile& profile, const ProfileSummary& summary, std::size_t n);
+
+/// What bounds frames, as in "GPU (blend 61 %)".
+std::string bound_of(const Profile& profile, const ProfileSummary& summary);
+
+/// What to try next; empty where there is nothing.
+std::string advice_of(const Profile& profile, const ProfileSummary& summary);
+
+/// The lines that a terminal shows.
+std::vector<std::string> lines_of(const Profile& profile, const ProfileSummary& summary);
+
+/// A row for each frame: the columns of frames.csv.
+Table frames_table(const render::Recording& recording);
+
+/// Trace Event JSON, as Perfetto and chrome://tracing read it: a track for the GPU and one for each thread.
+std::string trace_of(const Profile& profile);
+
+Page profile_page(const Profile& profile, const ProfileSummary& summary, const std::vector<std::string>& changes);
+
+/// What changed beyond noise since an earlier frames.csv of the same frames, a line each; the last one
+/// counts. `before` is its table, called `place` in errors. Frames of a run are compared with the same ones
+/// of the other, by stretches, whose differences tell the noise. Throws Error for another number of frames.
+std::vector<std::string> compare_frames(const Table& before, const Table& now, const std::string& place);
+
+/// The facts and the summary as JSON.
+nlohmann::ordered_json profile_json(const Profile& profile, const ProfileSummary& summary);
+
+}  // namespace binosplat::lab

@@ -1,0 +1,102 @@
+// What changed between two runs of the same frames.
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.h"
+#include "base/statistics.h"
+#include "lab/profile.h"
+
+namespace binosplat::lab {
+
+namespace {
+
+constexpr std::size_t stretches = 10;
+constexpr double told_by_chance = 0.01;  // of runs in which nothing changed
+constexpr double least_change = 0.02;    // of what it was
+
+std::vector<double> column_of(const Table& table, const std::string& name) {
+  const auto found = std::ranges::find(table.columns, name);
+  std::vector<double> values;
+  if (found == table.columns.end()) return values;
+  const auto at = static_cast<std::size_t>(found - table.columns.begin());
+  for (const std::vector<Cell>& row : table.rows) {
+    const auto* const number = std::get_if<double>(&row[at].value);
+    const auto* const whole = std::get_if<std::int64_t>(&row[at].value);
+    const auto* const yes = std::get_if<bool>(&row[at].value);
+    values.push_back(number != nullptr  ? *number
+                     : whole != nullptr ? static_cast<double>(*whole)
+                                        : (yes != nullptr && *yes ? 1.0 : 0.0));
+  }
+  return values;
+}
+
+/// The median difference of each stretch of frames: frames beside each other share their disturbances.
+std::vector<double> differences(const std::vector<double>& before, const std::vector<double>& now) {
+  const std::size_t count = std::min(stretches, before.size() / 2);
+  std::vector<double> medians;
+  for (std::size_t k = 0; k < count; ++k) {
+    std::vector<double> some;
+    for (std::size_t n = k * now.size() / count; n < (k + 1) * now.size() / count; ++n)
+      some.push_back(now[n] - before[n]);
+    medians.push_back(quantile(some, 0.5));
+  }
+  return medians;
+}
+
+/// A line where a column changed beyond noise, else nothing.
+std::string change_of(const std::string& name, const std::vector<double>& before,
+                      const std::vector<double>& now, double outside) {
+  const std::vector<double> by_stretch = differences(before, now);
+  const double change = mean(by_stretch), was = quantile(before, 0.5), is = quantile(now, 0.5);
+  const auto n = static_cast<double>(by_stretch.size());
+  const double noise = student_t(outside, static_cast<int>(n) - 1) * deviation(by_stretch) / std::sqrt(n);
+  if (std::abs(change) <= std::max(noise, least_change * std::abs(was))) return "";
+  return fmt::format("{}: median {:.4g} -> {:.4g} ({:+.1f} %, noise {:.1f} %)", name, was, is,
+                     100.0 * change / std::abs(was), 100.0 * noise / std::abs(was));
+}
+
+/// The ranks, from 0 on, between which the quantile of what a sample is from lies, but for three in a thousand
+/// cases.
+std::pair<double, double> bounds_of(std::vector<double> values, double share) {
+  std::ranges::sort(values);
+  const auto n = static_cast<double>(values.size());
+  const double scatter = 3.0 * std::sqrt(n * share * (1.0 - share));
+  const auto at = [&](double rank) {
+    return values[static_cast<std::size_t>(std::clamp(rank, 0.0, n - 1.0))];
+  };
+  return {at(std::floor(n * share - scatter)), at(std::ceil(n * share + scatter))};
+}
+
+}  // namespace
+
+std::vector<std::string> compare_frames(const Table& before, const Table& now, const std::string& place) {
+  if (before.rows.size() != now.rows.size()) {
+    fail("--compare {}: {} frames, and this run has {}: compare runs of the same options", place,
+         before.rows.size(), now.rows.size());
+  }
+  if (now.rows.size() < 4) fail("--compare {}: {} frames tell no noise: expected 4 or more", place, now.rows.size());
+  std::vector<std::string> names;
+  for (const std::string& name : now.columns) {
+    const bool is_time = name.ends_with("_ms") && name != "begin_ms" && name != "late_ms" && name != "display_ms";
+    if ((is_time || name == "pairs" || name == "visible") && !column_of(before, name).empty()) names.push_back(name);
+  }
+  if (std::ranges::find(names, "wall_ms") == names.end())
+    fail("--compare {}: no column wall_ms: expected the frames.csv of a profile", place);
+  std::vector<std::string> lines;
+  for (const std::string& name : names) {
+    const std::string line = change_of(name, column_of(before, name), column_of(now, name),
+                                       told_by_chance / static_cast<double>(names.size()));
+    if (!line.empty()) lines.push_back(line);
+  }
+  for (const char* const name : {"wall_ms", "gpu_ms"}) {
+    const auto was = bounds_of(column_of(before, name), 0.99), is = bounds_of(column_of(now, name), 0.99);
+    if (is.first > (1.0 + least_change) * was.second || was.first > (1.0 + least_change) * is.second)
+      lines.push_back(fmt::format("{}: p99 {:.4g} -> {:.4g}", name, quantile(column_of(before, name), 0.99),
+                                  quantile(column_of(now, name), 0.99)));
+  }
+  lines.push_back(fmt::format("{} of {} numbers changed beyond noise", lines.size(), names.size() + 2));
+  return lines;
+}
+
+}  // namespace binosplat::lab

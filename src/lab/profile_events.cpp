@@ -1,0 +1,177 @@
+// What happened in a frame, and why it took long.
+
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <set>
+
+#include "base/statistics.h"
+#include "lab/profile.h"
+
+namespace binosplat::lab {
+
+namespace {
+
+using render::FrameRecord;
+using render::Recording;
+
+constexpr double slow_share = 0.95;  // of the fastest clock of a run: below it a frame is marked
+
+/// Programs that were made within a frame, by the spans of its thread: "compile blend.comp".
+std::string programs_of(const Recording& recording, const FrameRecord& frame) {
+  std::set<std::string> names;
+  for (const Span& span : recording.spans) {
+    if (span.begin < frame.begin || span.end > frame.end) continue;
+    for (const std::string start : {"compile ", "load "}) {
+      if (span.name.starts_with(start)) names.insert(span.name.substr(start.size()));
+    }
+  }
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
+std::string times(int count) { return count == 1 ? "once" : fmt::format("{} times", count); }
+
+double fastest(const Recording& recording) {
+  double most = 0.0;
+  for (const FrameRecord& frame : recording.frames) most = std::max(most, frame.mhz.value_or(0.0));
+  return most;
+}
+
+/// The parts of a frame: the GPU's stages, then what the CPU does. Where the CPU draws, submitting is drawing.
+std::vector<gl::StageTime> parts_of(const FrameRecord& frame, bool is_software) {
+  std::vector<gl::StageTime> parts = gl::sums_of(frame.report.spans);
+  const render::CpuTimes& cpu = frame.report.cpu;
+  parts.insert(parts.end(), {{"levels", frame.levels.ms},
+                             {"plan", cpu.plan},
+                             {"upload", cpu.upload},
+                             {"read back", cpu.read}});
+  if (!is_software) parts.push_back({"submit", cpu.submit});
+  return parts;
+}
+
+double ms_named(const std::vector<gl::StageTime>& all, const std::string& name) {
+  const auto found = std::ranges::find(all, name, &gl::StageTime::name);
+  return found == all.end() ? 0.0 : found->ms;
+}
+
+Quantiles quantiles_of(const std::vector<double>& values) {
+  return {quantile(values, 0.5), quantile(values, 0.9), quantile(values, 0.99), quantile(values, 1.0)};
+}
+
+/// The stages of all frames in order of appearance, with `sum` of the values that frames have.
+template <typename Parts, typename Sum>
+std::vector<gl::StageTime> over_frames(const Recording& recording, const Parts& parts, const Sum& sum) {
+  std::vector<gl::StageTime> all;
+  std::vector<std::vector<double>> values;
+  for (std::size_t n = 0; n < recording.frames.size(); ++n) {
+    for (const gl::StageTime& part : parts(recording.frames[n])) {
+      const auto found = std::ranges::find(all, part.name, &gl::StageTime::name);
+      const auto k = static_cast<std::size_t>(found - all.begin());
+      if (found == all.end()) {
+        all.push_back({part.name, 0.0});
+        values.emplace_back(recording.frames.size(), 0.0);
+      }
+      values[k][n] = part.ms;
+    }
+  }
+  for (std::size_t k = 0; k < all.size(); ++k) all[k].ms = sum(values[k]);
+  return all;
+}
+
+}  // namespace
+
+double gpu_ms(const FrameRecord& frame) {
+  double ms = 0.0;
+  for (const gl::StageSpan& span : frame.report.spans) ms += span.ms();
+  return ms;
+}
+
+double cpu_ms(const FrameRecord& frame) {
+  return frame.levels.ms + frame.report.cpu.sum() - frame.report.cpu.wait;
+}
+
+bool is_missed(const Recording& recording, std::size_t n) {
+  const FrameRecord& frame = recording.frames[n];
+  if (frame.display && frame.display->missed > 0) return true;
+  return recording.fps > 0.0 &&
+         std::chrono::duration<double, std::milli>(frame.end - frame.due).count() > recording.budget_ms();
+}
+
+std::vector<FrameEvent> events_of(const Recording& recording, std::size_t n) {
+  const FrameRecord& frame = recording.frames[n];
+  const render::FrameReport& report = frame.report;
+  std::vector<FrameEvent> events;
+  if (report.redrawn > 0)
+    events.push_back({"drawn again", times(report.redrawn) + ", since a buffer was too small"});
+  if (report.attempts > 1) {
+    events.push_back({"drawn again", fmt::format("{}, since its quality of {:.1f} dB was missed",
+                                                 times(report.attempts - 1), report.quality)});
+  }
+  if (report.is_cut) events.push_back({"camera cut", "it goes by nothing that earlier frames measured"});
+  if (report.sampled_error) events.push_back({"measured its error", ""});
+  if (report.programs_made > 0) events.push_back({"program compiled", programs_of(recording, frame)});
+  if (frame.levels.uploaded > 0)
+    events.push_back({"levels uploaded", fmt::format("{} Gaussians", frame.levels.uploaded)});
+  const std::int64_t before = n == 0 ? report.gpu_bytes : recording.frames[n - 1].report.gpu_bytes;
+  if (report.gpu_bytes > before)
+    events.push_back(
+        {"buffers grew", fmt::format("{:.1f} MB", 1e-6 * static_cast<double>(report.gpu_bytes - before))});
+  if (frame.mhz && *frame.mhz < slow_share * fastest(recording))
+    events.push_back({"low clock", fmt::format("{:.0f} MHz", *frame.mhz)});
+  if (frame.display && frame.display->missed > 0)
+    events.push_back({"display missed", times(frame.display->missed)});
+  return events;
+}
+
+ProfileSummary summary_of(const Profile& profile) {
+  const Recording& recording = profile.recording;
+  const bool is_software = profile.facts.is_software;
+  if (recording.frames.empty()) fail("no frame was recorded: there is nothing to report");
+  ProfileSummary summary;
+  std::vector<double> wall, gpu, cpu, mhz;
+  for (std::size_t n = 0; n < recording.frames.size(); ++n) {
+    const FrameRecord& frame = recording.frames[n];
+    wall.push_back(frame.wall_ms());
+    gpu.push_back(gpu_ms(frame));
+    cpu.push_back(cpu_ms(frame));
+    if (frame.mhz) mhz.push_back(*frame.mhz);
+    summary.missed += is_missed(recording, n);
+    summary.gpu_bound += gpu.back() >= cpu.back();
+    summary.slow_clock += frame.mhz && *frame.mhz < slow_share * fastest(recording);
+    summary.worst.push_back(n);
+  }
+  summary.wall = quantiles_of(wall);
+  summary.gpu = quantiles_of(gpu);
+  summary.cpu = quantiles_of(cpu);
+  if (!mhz.empty()) summary.mhz = quantiles_of(mhz);
+  summary.stages = over_frames(
+      recording, [](const FrameRecord& frame) { return gl::sums_of(frame.report.spans); },
+      [](const std::vector<double>& values) { return mean(values); });
+  summary.usual = over_frames(
+      recording, [&](const FrameRecord& frame) { return parts_of(frame, is_software); },
+      [](const std::vector<double>& values) { return quantile(values, 0.5); });
+  std::ranges::stable_sort(summary.worst, [&](std::size_t a, std::size_t b) { return wall[a] > wall[b]; });
+  summary.worst.resize(std::min<std::size_t>(10, wall.size()));
+  return summary;
+}
+
+std::string reason_of(const Profile& profile, const ProfileSummary& summary, std::size_t n) {
+  const FrameRecord& frame = profile.recording.frames[n];
+  std::vector<std::string> reasons;
+  for (const FrameEvent& event : events_of(profile.recording, n)) reasons.push_back(event.text());
+  const double longer = frame.wall_ms() - summary.wall.median;
+  gl::StageTime most{"", 0.0};
+  double all = 0.0;
+  for (const gl::StageTime& part : parts_of(frame, profile.facts.is_software)) {
+    const double beyond = part.ms - ms_named(summary.usual, part.name);
+    all += std::max(beyond, 0.0);
+    if (beyond > most.ms) most = {part.name, beyond};
+  }
+  const double telling = 0.1 * std::max(longer, 0.1 * summary.wall.median);
+  if (most.ms > telling) reasons.push_back(fmt::format("{} took {:.2f} ms more than usual", most.name, most.ms));
+  if (longer - all > std::max(telling, 0.5 * longer))
+    reasons.push_back(fmt::format("{:.2f} ms in none of these: the driver, or other programs", longer - all));
+  return reasons.empty() ? "as others" : fmt::format("{}", fmt::join(reasons, "; "));
+}
+
+}  // namespace binosplat::lab

@@ -1,0 +1,180 @@
+// frames.csv and trace.json of a profile.
+
+#include <algorithm>
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "lab/csv.h"
+#include "lab/fields.h"
+#include "lab/profile.h"
+
+namespace binosplat::lab {
+
+namespace {
+
+using nlohmann::ordered_json;
+using render::FrameRecord;
+using render::Recording;
+
+double ms_between(Clock::time_point from, Clock::time_point to) {
+  return std::chrono::duration<double, std::milli>(to - from).count();
+}
+
+/// The names of all stages, in order of appearance.
+std::vector<std::string> stage_names_of(const Recording& recording) {
+  std::vector<std::string> names;
+  for (const FrameRecord& frame : recording.frames) {
+    for (const gl::StageSpan& span : frame.report.spans) {
+      if (std::ranges::find(names, span.name) == names.end()) names.push_back(span.name);
+    }
+  }
+  return names;
+}
+
+/// ms of spans of a name that ended within a frame.
+double ms_of_spans(const Recording& recording, const FrameRecord& frame, const std::string& name) {
+  double ms = 0.0;
+  auto span = std::ranges::lower_bound(recording.spans, frame.begin, {}, &Span::end);
+  for (; span != recording.spans.end() && span->end <= frame.end; ++span) {
+    if (span->name == name) ms += ms_between(span->begin, span->end);
+  }
+  return ms;
+}
+
+std::string events_text(const Recording& recording, std::size_t n) {
+  std::string text;
+  for (const FrameEvent& event : events_of(recording, n)) text += (text.empty() ? "" : "; ") + event.text();
+  return text;
+}
+
+/// Builds the list of events. Times are in microseconds since `start`.
+class TraceEvents {
+ public:
+  explicit TraceEvents(Clock::time_point start) : start_(start) {}
+
+  void name_track(int track, const std::string& name) {
+    add({{"name", "thread_name"}, {"ph", "M"}}, track)["args"] = {{"name", name}};
+    add({{"name", "thread_sort_index"}, {"ph", "M"}}, track)["args"] = {{"sort_index", track}};
+  }
+  ordered_json& slice(const std::string& name, int track, Clock::time_point begin, Clock::time_point end) {
+    return add({{"name", name}, {"ph", "X"}, {"ts", us(begin)}, {"dur", us_between(begin, end)}}, track);
+  }
+  void counter(const std::string& name, Clock::time_point at, double value) {
+    add({{"name", name}, {"ph", "C"}, {"ts", us(at)}}, 0)["args"] = {{"value", value}};
+  }
+  void instant(const FrameEvent& event, int track, Clock::time_point at) {
+    add({{"name", event.name}, {"ph", "i"}, {"s", "t"}, {"ts", us(at)}}, track)["args"] = {
+        {"detail", event.detail}};
+  }
+
+  ordered_json take() { return std::move(events_); }
+
+ private:
+  static double us_between(Clock::time_point begin, Clock::time_point end) {
+    return std::chrono::duration<double, std::micro>(std::max(end, begin) - begin).count();
+  }
+  double us(Clock::time_point at) const { return us_between(start_, at); }
+  ordered_json& add(ordered_json event, int track) {
+    event["pid"] = 1;
+    event["tid"] = track;
+    events_.push_back(std::move(event));
+    return events_.back();
+  }
+
+  Clock::time_point start_;
+  ordered_json events_ = ordered_json::array();
+};
+
+constexpr int gpu_track = 1, drawing_track = 2;
+
+void add_gpu(const Recording& recording, std::size_t n, TraceEvents& events) {
+  const auto& spans = recording.frames[n].report.spans;
+  if (spans.empty() || spans.back().end_ns == 0) return;  // the driver tells no times
+  const auto at = [&](std::int64_t gpu_ns) { return recording.cpu_time(gpu_ns); };
+  events.slice(fmt::format("frame {}", n), gpu_track, at(spans.front().begin_ns),
+               at(spans.back().end_ns))["args"] = {{"gpu_ms", gpu_ms(recording.frames[n])}};
+  for (const gl::StageSpan& span : spans)
+    events.slice(span.name, gpu_track, at(span.begin_ns), at(span.end_ns))["args"] = {{"frame", n}};
+}
+
+void add_cpu(const Recording& recording, std::size_t n, TraceEvents& events) {
+  const FrameRecord& frame = recording.frames[n];
+  events.slice(fmt::format("frame {}", n), drawing_track, frame.begin, frame.end)["args"] = {
+      {"events", events_text(recording, n)}, {"missed", is_missed(recording, n)}};
+  for (const FrameEvent& event : events_of(recording, n)) events.instant(event, drawing_track, frame.begin);
+  events.counter("pairs", frame.begin, static_cast<double>(frame.report.pairs));
+  events.counter("Gaussians in view", frame.begin, static_cast<double>(frame.report.visible));
+  events.counter("Gaussians of the model", frame.begin, static_cast<double>(frame.gaussians));
+  events.counter("GPU memory, MB", frame.begin, 1e-6 * static_cast<double>(frame.report.gpu_bytes));
+  if (frame.mhz) events.counter("GPU clock, MHz", frame.begin, *frame.mhz);
+}
+
+/// When the first thing of a recording happened, on the CPU or on the GPU.
+Clock::time_point start_of(const Recording& recording) {
+  Clock::time_point start = recording.first.cpu;
+  for (const Span& span : recording.spans) start = std::min(start, span.begin);
+  for (const FrameRecord& frame : recording.frames) {
+    start = std::min(start, frame.begin);
+    if (!frame.report.spans.empty() && frame.report.spans.back().end_ns != 0)
+      start = std::min(start, recording.cpu_time(frame.report.spans.front().begin_ns));
+  }
+  return start;
+}
+
+}  // namespace
+
+Table frames_table(const Recording& recording) {
+  const std::vector<std::string> stages = stage_names_of(recording);
+  Table table{{"frame", "begin_ms", "late_ms", "wall_ms", "missed", "gpu_ms"}, {}};
+  for (const std::string& stage : stages) table.columns.push_back("gpu_" + stage + "_ms");
+  for (const char* name :
+       {"cpu_ms", "levels_ms", "plan_ms", "upload_ms", "submit_ms", "wait_ms", "read_ms", "choose_ms", "pairs",
+        "visible", "gaussians", "gpu_bytes", "levels_uploaded", "attempts", "redrawn", "programs_made",
+        "tolerance", "quality_db", "mhz", "display_ms", "displays_missed", "events"})
+    table.columns.emplace_back(name);
+  for (std::size_t n = 0; n < recording.frames.size(); ++n) {
+    const FrameRecord& frame = recording.frames[n];
+    const render::FrameReport& report = frame.report;
+    const render::CpuTimes& cpu = report.cpu;
+    std::vector<Cell>& cells = table.rows.emplace_back(
+        row(n, ms_between(recording.frames.front().begin, frame.begin),
+            std::max(0.0, ms_between(frame.due, frame.begin)), frame.wall_ms(), is_missed(recording, n),
+            gpu_ms(frame)));
+    std::map<std::string, double> by_stage;
+    for (const gl::StageSpan& span : report.spans) by_stage[span.name] += span.ms();
+    for (const std::string& stage : stages) cells.emplace_back(by_stage[stage]);
+    const std::optional<double> display = frame.display ? std::optional(frame.display->predicted_ms) : std::nullopt;
+    const std::optional<int> displays = frame.display ? std::optional(frame.display->missed) : std::nullopt;
+    for (Cell& cell :
+         row(cpu_ms(frame), frame.levels.ms, cpu.plan, cpu.upload, cpu.submit, cpu.wait, cpu.read,
+             ms_of_spans(recording, frame, "choose levels"), report.pairs, report.visible, frame.gaussians,
+             report.gpu_bytes, frame.levels.uploaded, report.attempts, report.redrawn, report.programs_made,
+             static_cast<double>(report.tolerance), report.quality, frame.mhz, display, displays,
+             events_text(recording, n)))
+      cells.push_back(std::move(cell));
+  }
+  return table;
+}
+
+std::string trace_of(const Profile& profile) {
+  const Recording& recording = profile.recording;
+  TraceEvents events(start_of(recording));
+  events.name_track(gpu_track, profile.facts.is_software ? "GPU (the CPU draws)" : "GPU");
+  std::map<std::string, int> tracks = {{"draws", drawing_track}};
+  for (const Span& span : recording.spans)
+    tracks.try_emplace(span.thread, static_cast<int>(tracks.size()) + drawing_track);
+  for (const auto& [name, track] : tracks) events.name_track(track, "thread that " + name);
+  for (std::size_t n = 0; n < recording.frames.size(); ++n) {
+    add_gpu(recording, n, events);
+    add_cpu(recording, n, events);
+  }
+  for (const Span& span : recording.spans) events.slice(span.name, tracks.at(span.thread), span.begin, span.end);
+  const ordered_json trace = {
+      {"traceEvents", events.take()},
+      {"displayTimeUnit", "ms"},
+      {"otherData",
+       {{"scene", profile.facts.scene}, {"motion", profile.facts.motion}, {"device", profile.facts.device}}}};
+  return trace.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
+}
+
+}  // namespace binosplat::lab

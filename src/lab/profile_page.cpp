@@ -1,0 +1,186 @@
+// report.html of a profile.
+
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "base/statistics.h"
+#include "lab/profile.h"
+
+namespace binosplat::lab {
+
+namespace {
+
+using render::Recording;
+
+/// Some columns of frames.csv under names for readers.
+Table some_columns(const Table& all, const std::vector<std::pair<std::string, std::string>>& named) {
+  Table some;
+  std::vector<std::size_t> at;
+  for (const auto& [name, shown] : named) {
+    at.push_back(static_cast<std::size_t>(std::ranges::find(all.columns, name) - all.columns.begin()));
+    some.columns.push_back(shown);
+  }
+  for (const std::vector<Cell>& from : all.rows) {
+    std::vector<Cell>& cells = some.rows.emplace_back();
+    for (const std::size_t k : at) cells.push_back(from[k]);
+  }
+  return some;
+}
+
+Section frame_times(const Profile& profile, const ProfileSummary& summary, const Table& frames) {
+  const double budget = profile.recording.budget_ms();
+  Section section{"frames", "Every frame",
+                  fmt::format("Frames take {:.2f} ms (median), {:.2f} at p99, {:.2f} at most.", summary.wall.median,
+                              summary.wall.p99, summary.wall.most)};
+  Table& table = section.numbers.emplace(some_columns(
+      frames, {{"frame", "frame"}, {"events", "events"}, {"wall_ms", "frame ms"}, {"gpu_ms", "GPU ms"}}));
+  section.chart = Chart{.x = "frame", .y = {"frame ms", "GPU ms"}, .label = "events", .title = "ms", .dots = false};
+  if (budget == 0.0) return section;
+  table.columns.emplace_back("budget ms");
+  for (std::vector<Cell>& cells : table.rows) cells.emplace_back(budget);
+  section.chart->y.emplace_back("budget ms");
+  section.sentence += fmt::format(" {} of {} were not done after {:.1f} ms, when the next one was due ({:g} a second).",
+                                  summary.missed, frames.rows.size(), budget, profile.recording.fps);
+  return section;
+}
+
+Section stacked_stages(const ProfileSummary& summary, const Table& frames) {
+  Section section{"stages", "Stages on the GPU",
+                  "GPU time of each frame by its stages, those of drawings that were repeated included."};
+  if (summary.gpu.most == 0.0) {
+    section.problem = "This driver does not tell when stages begin and end.";
+    return section;
+  }
+  std::vector<std::pair<std::string, std::string>> named = {{"frame", "frame"}};
+  for (const gl::StageTime& stage : summary.stages) named.emplace_back("gpu_" + stage.name + "_ms", stage.name);
+  section.numbers = some_columns(frames, named);
+  section.chart = Chart{.x = "frame",
+                        .y = {section.numbers->columns.begin() + 1, section.numbers->columns.end()},
+                        .title = "ms",
+                        .areas = true};
+  Table& means = section.table.emplace(Table{{"stage", "mean ms", "% of the GPU time"}, {}});
+  double all = 0.0;
+  for (const gl::StageTime& stage : summary.stages) all += stage.ms;
+  for (const gl::StageTime& stage : summary.stages)
+    means.rows.push_back(row(stage.name, stage.ms, 100.0 * stage.ms / all));
+  return section;
+}
+
+Section histogram(const Profile& profile, const ProfileSummary& summary) {
+  Section section{"spread", "How frame times spread",
+                  "How many frames took so long, and the times that half, 90 % and 99 % of them keep."};
+  constexpr std::size_t bins_most = 24;
+  std::vector<double> wall;
+  for (const render::FrameRecord& frame : profile.recording.frames) wall.push_back(frame.wall_ms());
+  const double least = quantile(wall, 0.0), width = round_up(std::max(1e-3, (summary.wall.most - least) / 16.0));
+  const double first = width * std::floor(least / width);
+  std::vector<std::int64_t> counts(std::min(bins_most, static_cast<std::size_t>((summary.wall.most - first) / width) + 1));
+  for (const double ms : wall)
+    ++counts[std::min(counts.size() - 1, static_cast<std::size_t>((ms - first) / width))];
+  Table& bins = section.numbers.emplace(Table{{"frame ms", "frames"}, {}});
+  for (std::size_t k = 0; k < counts.size(); ++k) {
+    const double from = first + width * static_cast<double>(k);
+    bins.rows.push_back(row(fmt::format("{:.4g} to {:.4g}", from, from + width), counts[k]));
+  }
+  section.chart = Chart{.x = "frame ms", .y = {"frames"}, .bars = true};
+  section.table = Table{{"ms", "median", "p90", "p99", "most"}, {}};
+  for (const auto& [name, q] : {std::pair{"frame", summary.wall}, {"GPU", summary.gpu}, {"CPU", summary.cpu}})
+    section.table->rows.push_back(row(name, q.median, q.p90, q.p99, q.most));
+  return section;
+}
+
+Section worst_frames(const Profile& profile, const ProfileSummary& summary) {
+  const Recording& recording = profile.recording;
+  Section section{"worst", "The frames that took longest", "With what happened in them, and what took longer than usual."};
+  Table& table = section.table.emplace(Table{{"frame", "s", "frame ms", "GPU ms", "CPU ms", "why"}, {}});
+  for (std::size_t k = 0; k < summary.worst.size(); ++k) {
+    const std::size_t n = summary.worst[k];
+    const render::FrameRecord& frame = recording.frames[n];
+    const double seconds = std::chrono::duration<double>(frame.begin - recording.frames.front().begin).count();
+    table.rows.push_back(row(n, seconds, frame.wall_ms(), gpu_ms(frame), cpu_ms(frame), reason_of(profile, summary, n)));
+    if (k < profile.pictures.size() && profile.pictures[k])
+      section.figures.push_back({fmt::format("frame {}, {:.2f} ms", n, frame.wall_ms()), *profile.pictures[k]});
+  }
+  return section;
+}
+
+Section bound(const Profile& profile, const ProfileSummary& summary, const Table& frames) {
+  Section section{"bound", "GPU against CPU",
+                  fmt::format("What bounds the frames: {}. The CPU's time is that of the thread that draws, without its "
+                              "waiting for the GPU.",
+                              bound_of(profile, summary))};
+  section.numbers = some_columns(frames, {{"frame", "frame"},
+                                          {"gpu_ms", "GPU"},
+                                          {"levels_ms", "levels"},
+                                          {"plan_ms", "plan"},
+                                          {"upload_ms", "upload"},
+                                          {"submit_ms", "submit"},
+                                          {"wait_ms", "wait"},
+                                          {"read_ms", "read back"}});
+  section.chart = Chart{.x = "frame",
+                        .y = {section.numbers->columns.begin() + 1, section.numbers->columns.end()},
+                        .title = "ms",
+                        .dots = false};
+  return section;
+}
+
+Section work(const Table& frames) {
+  Section section{"work", "What there was to draw", "Pairs and Gaussians in view of each frame, and those of the model."};
+  section.numbers = some_columns(
+      frames, {{"frame", "frame"}, {"pairs", "pairs"}, {"visible", "Gaussians in view"}, {"gaussians", "Gaussians of the model"}});
+  section.chart = Chart{.x = "frame",
+                        .y = {section.numbers->columns.begin() + 1, section.numbers->columns.end()},
+                        .title = "count",
+                        .dots = false};
+  return section;
+}
+
+Section clock_section(const Profile& profile, const ProfileSummary& summary, const Table& frames) {
+  Section section{"clock", "The GPU's clock", ""};
+  if (!summary.mhz) {
+    section.problem = fmt::format("The clock is not told: {}.", profile.recording.no_clock);
+    return section;
+  }
+  section.sentence = fmt::format("{:.0f} MHz (median); {} frames were drawn below 95 % of the fastest, {:.0f} MHz.",
+                                 summary.mhz->median, summary.slow_clock, summary.mhz->most);
+  section.numbers = some_columns(frames, {{"frame", "frame"}, {"mhz", "MHz"}});
+  section.chart = Chart{.x = "frame", .y = {"MHz"}, .dots = false};
+  return section;
+}
+
+}  // namespace
+
+Page profile_page(const Profile& profile, const ProfileSummary& summary, const std::vector<std::string>& changes) {
+  const Recording& recording = profile.recording;
+  const auto& views = recording.frames.front().views;
+  const Table frames = frames_table(recording);
+  Page page{.title = fmt::format("Frame times: {}, {}", profile.facts.scene, profile.facts.motion),
+            .sentence = fmt::format("Half of {} frames take {:.2f} ms or less, 99 % of them {:.2f}. They wait for the {}.",
+                                    recording.frames.size(), summary.wall.median, summary.wall.p99,
+                                    bound_of(profile, summary))};
+  page.facts = {{"scene", profile.facts.scene},
+                {"Gaussians", recording.frames.back().gaussians},
+                {"way", profile.facts.motion},
+                {"drawn", profile.facts.drawing},
+                {"pictures", fmt::format("{} x {} x {} px", views.size(), views.front().width, views.front().height)},
+                {"device", profile.facts.device},
+                {"rate", recording.fps > 0.0 ? fmt::format("{:g} frames a second", recording.fps) : "as fast as possible"}};
+  page.sections = {frame_times(profile, summary, frames), stacked_stages(summary, frames),
+                   histogram(profile, summary),           worst_frames(profile, summary),
+                   bound(profile, summary, frames),       work(frames),
+                   clock_section(profile, summary, frames)};
+  const std::string advice = advice_of(profile, summary);
+  if (!advice.empty()) page.sections.push_back({"next", "What to try", advice});
+  if (!changes.empty()) {
+    Section& section = page.sections.emplace_back(Section{"changes", "What changed", changes.back() + "."});
+    section.table = Table{{"changed beyond noise"}, {}};
+    for (std::size_t k = 0; k + 1 < changes.size(); ++k) section.table->rows.push_back(row(changes[k]));
+    if (changes.size() == 1) section.table.reset();
+  }
+  return page;
+}
+
+}  // namespace binosplat::lab

@@ -1,0 +1,127 @@
+#include "lab/profile_run.h"
+
+#include <algorithm>
+#include <cmath>
+#include <thread>
+#include <utility>
+
+#include "base/statistics.h"
+#include "lab/timed_rounds.h"
+
+namespace binosplat::lab {
+
+namespace {
+
+constexpr double busy_ms = 1000.0;           // until a GPU's clock is up
+constexpr double levels_wait_ms = 10'000.0;  // at most, for the levels of the first frame
+constexpr double usual_frame_ms = 1000.0 / 90.0;
+constexpr double slow_ms = 300.0;  // a frame that is too slow to be drawn for advice alone
+constexpr int picture_width = 320;
+
+/// Sleeps as long as that is exact, then looks at the clock again and again.
+void wait_until(Clock::time_point due) {
+  constexpr std::chrono::milliseconds late_by_sleeping{1};
+  std::this_thread::sleep_until(due - late_by_sleeping);
+  while (Clock::now() < due) std::this_thread::yield();
+}
+
+}  // namespace
+
+ProfileDrawer::ProfileDrawer(std::shared_ptr<render::GpuModel> model, const ProfileRun& run, Stream* stream)
+    : run_(run),
+      stream_(stream),
+      context_(model->context()),
+      frame_(std::move(model)),
+      clock_(std::make_shared<gl::GpuClock>(context_)) {}
+
+render::FrameSettings ProfileDrawer::settings_now() const {
+  render::FrameSettings settings = run_.settings;
+  if (stream_ != nullptr) settings.quality = static_cast<float>(stream_->quality_left(settings.quality));
+  return settings;
+}
+
+render::FrameReport ProfileDrawer::draw(std::span<const shared::View> views,
+                                        const render::FrameSettings& settings) {
+  return run_.foveation ? frame_.draw(views, *run_.foveation, settings)
+                        : frame_.frame().draw(views, settings);
+}
+
+render::FrameLevels ProfileDrawer::follow_levels(std::span<const shared::View> views, double drawn_ms) {
+  render::FrameLevels levels;
+  if (stream_ == nullptr) return levels;
+  const TimedSpan span("levels", &levels.ms);
+  const double period_ms = run_.fps > 0.0 ? 1000.0 / run_.fps : usual_frame_ms;
+  stream_->begin_frame(views, run_.settings, time_for_levels(period_ms, drawn_ms));
+  levels.uploaded = stream_->take_times().put;
+  return levels;
+}
+
+double ProfileDrawer::warm_up() {
+  const std::vector<shared::View>& first = run_.frames.front();
+  const auto begin = Clock::now();
+  double ms = 0.0;
+  const auto draw_first = [&] {
+    const auto frame_begin = Clock::now();
+    draw(first, settings_now());
+    ms = ms_since(frame_begin);
+  };
+  for (int n = 0; n < 2; ++n) draw_first();
+  if (stream_ != nullptr) {
+    do follow_levels(first, ms);
+    while (!stream_->settled() && ms_since(begin) < levels_wait_ms);
+    draw_first();
+  }
+  wake(context_, busy_ms, draw_first);
+  frame_.frame().start_over();
+  return ms;
+}
+
+render::Recording ProfileDrawer::record(const std::function<void(std::size_t)>& progress) {
+  render::Recorder recorder(context_, run_.fps, clock_);
+  const std::chrono::duration<double> period(run_.fps > 0.0 ? 1.0 / run_.fps : 0.0);
+  const Clock::time_point start = Clock::now();
+  double ticks = 0.0, drawn_ms = 0.0;
+  for (std::size_t n = 0; n < run_.frames.size(); ++n) {
+    render::FrameRecord frame{.due = Clock::now(), .views = run_.frames[n]};
+    if (run_.fps > 0.0) {
+      // The next time that a frame may begin at.
+      ticks = std::max(ticks, std::ceil((Clock::now() - start) / period));
+      frame.due = start + std::chrono::duration_cast<Clock::duration>(ticks * period);
+      wait_until(frame.due);
+      ticks += 1.0;
+    }
+    frame.begin = Clock::now();
+    frame.levels = follow_levels(frame.views, drawn_ms);
+    frame.report = draw(frame.views, settings_now());
+    frame.end = Clock::now();
+    frame.gaussians = stream_ != nullptr ? stream_->gaussians() : frame_.frame().model()->size().gaussians;
+    drawn_ms = frame.report.total_ms;
+    recorder.add(std::move(frame));
+    progress(n + 1);
+  }
+  return recorder.finish();
+}
+
+Image ProfileDrawer::picture(std::size_t frame) {
+  draw(run_.frames[frame], settings_now());
+  const std::vector<Picture> pictures =
+      run_.foveation ? frame_.read_pictures() : frame_.frame().read_pictures();
+  return for_page(composite(pictures.front(), run_.settings.background), picture_width);
+}
+
+std::optional<Saving> ProfileDrawer::saving(std::size_t frame, double quality_db) {
+  const std::vector<shared::View>& views = run_.frames[frame];
+  if (!render::is_exact(run_.settings.th) || run_.foveation) return std::nullopt;
+  render::FrameSettings less = run_.settings;
+  less.th = TH_SQUARED;
+  less.quality = static_cast<float>(quality_db);
+  std::vector<double> before, after;
+  if (draw(views, run_.settings).total_ms > slow_ms) return std::nullopt;
+  for (int n = 0; n < (context_.software() ? 4 : 16); ++n) before.push_back(draw(views, run_.settings).total_ms);
+  for (int n = 0; n < (context_.software() ? 4 : 16); ++n) after.push_back(draw(views, less).total_ms);
+  // The first of them looks for its tolerance; one in four measures its error, which counts.
+  after.erase(after.begin());
+  return Saving{quality_db, quantile(before, 0.5) - mean(after)};
+}
+
+}  // namespace binosplat::lab

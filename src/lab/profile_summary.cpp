@@ -1,0 +1,122 @@
+// What a profile says in words: for a terminal, and for the heads of its page.
+
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "lab/fields.h"
+#include "lab/profile.h"
+
+namespace binosplat::lab {
+
+namespace {
+
+double all_stages(const ProfileSummary& summary) {
+  double all = 0.0;
+  for (const gl::StageTime& stage : summary.stages) all += stage.ms;
+  return all;
+}
+
+const gl::StageTime& longest_stage(const ProfileSummary& summary) {
+  return *std::ranges::max_element(summary.stages, {}, &gl::StageTime::ms);
+}
+
+std::string line_of(const char* what, const Quantiles& q) {
+  return fmt::format("{:<8}{:>10.3f}{:>10.3f}{:>10.3f}{:>10.3f}", what, q.median, q.p90, q.p99, q.most);
+}
+
+std::string clock_of(const Profile& profile, const ProfileSummary& summary) {
+  if (!summary.mhz) return "not told: " + profile.recording.no_clock;
+  return fmt::format("{:.0f} MHz (median), {} of {} frames below 95 % of {:.0f}", summary.mhz->median,
+                     summary.slow_clock, profile.recording.frames.size(), summary.mhz->most);
+}
+
+nlohmann::ordered_json json_of(const Quantiles& q) {
+  return object("median", q.median, "p90", q.p90, "p99", q.p99, "most", q.most);
+}
+
+}  // namespace
+
+std::string bound_of(const Profile& profile, const ProfileSummary& summary) {
+  const std::size_t frames = profile.recording.frames.size();
+  const bool is_gpu = 2 * summary.gpu_bound >= frames;
+  const double all = all_stages(summary);
+  const std::string stage =
+      all > 0.0 ? fmt::format("{} {:.0f} %", longest_stage(summary).name,
+                              100.0 * longest_stage(summary).ms / all)
+                : "stages are not timed";
+  if (profile.facts.is_software) return fmt::format("the CPU, which draws ({})", stage);
+  if (is_gpu) return fmt::format("GPU ({}), in {} of {} frames", stage, summary.gpu_bound, frames);
+  const auto& most = *std::ranges::max_element(
+      summary.usual, {}, [&](const gl::StageTime& part) {
+        const bool is_stage =
+            std::ranges::find(summary.stages, part.name, &gl::StageTime::name) != summary.stages.end();
+        return is_stage ? -1.0 : part.ms;
+      });
+  return fmt::format("CPU ({} {:.2f} ms), in {} of {} frames", most.name, most.ms,
+                     frames - summary.gpu_bound, frames);
+}
+
+std::string advice_of(const Profile& profile, const ProfileSummary& summary) {
+  const double all = all_stages(summary);
+  if (profile.saving && profile.saving->ms > 0.02 * summary.gpu.median)
+    return fmt::format(
+        "--quality {:g} would save {:.2g} ms a frame: binosplat bench {} --axes headset compares settings",
+        profile.saving->quality_db, profile.saving->ms, profile.facts.scene);
+  if (summary.slow_clock > 0 && summary.missed > 0)
+    return "keep the GPU's clock up (nvidia-smi --lock-gpu-clocks), and look at what is left";
+  const std::size_t gaussians = profile.recording.frames.back().gaussians;
+  if (gaussians > 1'000'000 && all > 0.0 && longest_stage(summary).name == "project")
+    return fmt::format("levels of detail: binosplat levels {} writes them", profile.facts.scene);
+  return summary.missed > 0 ? "a smaller --size, or --foveate for eyes that are tracked" : "";
+}
+
+std::vector<std::string> lines_of(const Profile& profile, const ProfileSummary& summary) {
+  const render::Recording& recording = profile.recording;
+  const auto& views = recording.frames.front().views;
+  std::vector<std::string> lines = {
+      fmt::format("{}, {}: {} frames of {} x {} x {} px, {}", profile.facts.scene, profile.facts.motion,
+                  recording.frames.size(), views.size(), views.front().width, views.front().height,
+                  profile.facts.drawing),
+      fmt::format("{:<8}{:>10}{:>10}{:>10}{:>10}", "ms", "median", "p90", "p99", "most"),
+      line_of("frame", summary.wall), line_of("GPU", summary.gpu), line_of("CPU", summary.cpu)};
+  if (recording.fps > 0.0) {
+    lines.push_back(fmt::format("missed  {} of {} frames: they were not done after {:.1f} ms, {:g} a second",
+                                summary.missed, recording.frames.size(), recording.budget_ms(), recording.fps));
+  }
+  for (std::size_t k = 0; k < std::min<std::size_t>(2, summary.worst.size()); ++k) {
+    const std::size_t n = summary.worst[k];
+    lines.push_back(fmt::format("worst   frame {}, {:.2f} ms: {}", n, recording.frames[n].wall_ms(),
+                                reason_of(profile, summary, n)));
+  }
+  lines.push_back("bound   " + bound_of(profile, summary));
+  lines.push_back("clock   " + clock_of(profile, summary));
+  const std::string advice = advice_of(profile, summary);
+  if (!advice.empty()) lines.push_back("try     " + advice);
+  return lines;
+}
+
+nlohmann::ordered_json profile_json(const Profile& profile, const ProfileSummary& summary) {
+  const render::Recording& recording = profile.recording;
+  const auto& views = recording.frames.front().views;
+  nlohmann::ordered_json stages = nlohmann::ordered_json::object();
+  for (const gl::StageTime& stage : summary.stages) stages[stage.name] = stage.ms;
+  nlohmann::ordered_json worst = nlohmann::ordered_json::array();
+  for (const std::size_t n : summary.worst) {
+    worst.push_back(object("frame", n, "wall_ms", recording.frames[n].wall_ms(), "gpu_ms",
+                           gpu_ms(recording.frames[n]), "reason", reason_of(profile, summary, n)));
+  }
+  nlohmann::ordered_json json = object(
+      "format", "binosplat profile", "version", 1, "scene", profile.facts.scene, "motion",
+      profile.facts.motion, "drawing", profile.facts.drawing, "device", profile.facts.device, "eyes",
+      views.size(), "width", views.front().width, "height", views.front().height, "fps", recording.fps,
+      "frames", recording.frames.size(), "missed", summary.missed, "wall_ms", json_of(summary.wall), "gpu_ms",
+      json_of(summary.gpu), "cpu_ms", json_of(summary.cpu), "stages_ms", stages, "bound",
+      bound_of(profile, summary), "gpu_bound", summary.gpu_bound, "clock", clock_of(profile, summary),
+      "slow_clock", summary.slow_clock, "worst", worst, "advice", advice_of(profile, summary));
+  if (profile.saving)
+    json["saving"] = object("quality_db", profile.saving->quality_db, "ms", profile.saving->ms);
+  return json;
+}
+
+}  // namespace binosplat::lab
