@@ -50,8 +50,7 @@ std::unique_ptr<Stream> open_stream(const SceneOptions& options, StreamSettings 
 
 std::unique_ptr<Stream> open_for_frames(const SceneOptions& options, const render::FrameSettings& settings) {
   const bool asked = options.detail || options.gpu_memory;
-  const bool follows =
-      !options.lod && !is_built_in(options.name) && (asked || is_streamed_sog(options.name));
+  const bool follows = !options.lod && !is_built_in(options.name) && (asked || is_streamed_sog(options.name));
   if (!follows) return nullptr;
   StreamSettings of_stream = stream_settings(options, settings);
   of_stream.reserve = std::size_t{1} << 22;  // 0.4 GB, or 1 with all their harmonics

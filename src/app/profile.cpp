@@ -76,7 +76,7 @@ std::string choose_way(ProfileOptions& o, CameraList& list) {
 }
 
 std::string drawing_of(const ProfileOptions& o, const render::FrameSettings& settings) {
-  std::string text = settings.quality > 0.0f           ? fmt::format("at about {:g} dB", settings.quality)
+  std::string text = settings.quality > 0.0f         ? fmt::format("at about {:g} dB", settings.quality)
                      : render::is_exact(settings.th) ? "exact"
                                                      : lab::describe({settings});
   if (o.foveate) text += ", foveated";
@@ -85,7 +85,8 @@ std::string drawing_of(const ProfileOptions& o, const render::FrameSettings& set
 }
 
 /// The views of each frame.
-std::vector<std::vector<shared::View>> frames_of(const ProfileOptions& o, const std::vector<Shot>& shots) {
+std::vector<std::vector<shared::View>> frames_to_profile(const ProfileOptions& o,
+                                                         const std::vector<Shot>& shots) {
   std::vector<std::vector<shared::View>> frames;
   if (shots.size() > 1 || o.camera.along_path()) {
     for (const Shot& shot : shots) frames.push_back(views_of(shot));
@@ -127,7 +128,7 @@ Profiled open_profiled(ProfileOptions o) {
   if (way.empty()) way = "standing at " + shots.front().name;
   calibrated.check_model(all.model());
   settings = calibrated.of(shots.front(), settings);
-  all.run = {frames_of(o, shots), settings, o.foveate, o.fps};
+  all.run = {frames_to_profile(o, shots), settings, o.foveate, o.fps};
   all.profile.facts = {o.scene.name, way, drawing_of(o, settings), lab::device_text(*all.context),
                        all.context->software()};
   return all;
@@ -143,9 +144,9 @@ void tell_how_long(double frame_ms, std::size_t frames) {
 
 lab::Profile record(const ProfileOptions& o) {
   Profiled all = open_profiled(o);
-  const auto model = all.stream ? all.stream->gpu_model(*all.context, all.run.settings.precision)
-                                : std::make_shared<render::GpuModel>(*all.context, all.loaded,
-                                                                     all.run.settings.precision);
+  const auto model =
+      all.stream ? all.stream->gpu_model(*all.context, all.run.settings.precision)
+                 : std::make_shared<render::GpuModel>(*all.context, all.loaded, all.run.settings.precision);
   lab::ProfileDrawer drawer(model, all.run, all.stream.get());
   tell_how_long(drawer.warm_up(), all.run.frames.size());
   {
@@ -154,7 +155,8 @@ lab::Profile record(const ProfileOptions& o) {
   }
   const lab::ProfileSummary summary = lab::summary_of(all.profile);
   for (const std::size_t n : summary.worst) all.profile.pictures.emplace_back(drawer.picture(n));
-  if (!all.stream) all.profile.saving = drawer.saving(summary.worst[summary.worst.size() / 2], quality_to_try);
+  if (!all.stream)
+    all.profile.saving = drawer.saving(summary.worst[summary.worst.size() / 2], quality_to_try);
   return std::move(all.profile);
 }
 
@@ -188,15 +190,22 @@ void add_profile(CLI::App& program, Command& command) {
   sub->get_option("--tour")->description(
       "Go through all cameras as a head does (walk, where nothing else is\nasked for), or at so many metres "
       "and degrees a second");
-  sub->get_option("--seconds")->description(
-      "So much of the tour, or so long at a view (10); or go through the\nkeys of --path in S seconds");
-  sub->get_option("--preset")->description("preview: 1280 x 720 an eye; headset: 3660 x 3200 an eye,\n100 degrees (headset, without --size)");
-  sub->add_option("--fps", o.fps, "Frames begin so often a second, as in a headset of 72, 90 or 120;\n0: as soon as the last one is drawn (90)")
+  sub->get_option("--seconds")
+      ->description(
+          "So much of the tour, or so long at a view (10); or go through the\nkeys of --path in S seconds");
+  sub->get_option("--preset")
+      ->description(
+          "preview: 1280 x 720 an eye; headset: 3660 x 3200 an eye,\n100 degrees (headset, without --size)");
+  sub->add_option("--fps", o.fps,
+                  "Frames begin so often a second, as in a headset of 72, 90 or 120;\n0: as soon as the last "
+                  "one is drawn (90)")
       ->type_name("N")
       ->check(between(0.0, 1000.0, "frames a second from 0 to 1000"));
-  sub->add_option("-o,--output", o.folder, "Folder for report.html, trace.json, frames.csv and profile.json\n(out/profile)")
+  sub->add_option("-o,--output", o.folder,
+                  "Folder for report.html, trace.json, frames.csv and profile.json\n(out/profile)")
       ->type_name("DIR");
-  sub->add_option("--compare", o.compare, "Say what changed beyond noise since an older frames.csv of the\nsame frames")
+  sub->add_option("--compare", o.compare,
+                  "Say what changed beyond noise since an older frames.csv of the\nsame frames")
       ->type_name("FILE")
       ->check(CLI::ExistingFile.description(""));
   for (const char* name : not_profiled) sub->get_option(name)->group("");

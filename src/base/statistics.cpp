@@ -35,7 +35,8 @@ double student_t(double outside, int freedom) {
       sum += term;
       term *= c * c * (k + 1.0) / (k + 2.0);
     }
-    const double within = is_odd ? (angle + std::sin(angle) * sum) * 2.0 / std::acos(-1.0) : std::sin(angle) * sum;
+    const double within =
+        is_odd ? (angle + std::sin(angle) * sum) * 2.0 / std::acos(-1.0) : std::sin(angle) * sum;
     return 1.0 - within;
   };
   double low = 0.0, high = 1.0;

@@ -13,9 +13,9 @@ double quantile(std::vector<double> values, double share);
 /// empty.
 double mean(const std::vector<double>& values);
 
-/// Of numbers that scatter by chance around one value, of which `freedom` + 1 told how far, the mean of n lies
-/// within so many times (their standard deviation / sqrt(n)) of it, but for a share `outside` of all cases:
-/// Student's t, both sides. `freedom` is at least 1.
+/// Of numbers that scatter by chance around one value, of which `freedom` + 1 told how far, the mean of n
+/// lies within so many times (their standard deviation / sqrt(n)) of it, but for a share `outside` of all
+/// cases: Student's t, both sides. `freedom` is at least 1.
 double student_t(double outside, int freedom);
 
 /// The standard deviation that a sample of two or more tells of what it is from.

@@ -47,8 +47,8 @@ struct ProfileSummary {
   std::size_t missed = 0;             // frames that were not done when the next one was due
   std::size_t gpu_bound = 0;          // frames in which the GPU takes longer than the CPU
   std::optional<Quantiles> mhz;
-  std::size_t slow_clock = 0;       // frames
-  std::vector<std::size_t> worst;   // up to ten frames that took longest, longest first
+  std::size_t slow_clock = 0;      // frames
+  std::vector<std::size_t> worst;  // up to ten frames that took longest, longest first
 };
 
 /// ms of a frame.
@@ -80,7 +80,8 @@ Table frames_table(const render::Recording& recording);
 /// Trace Event JSON, as Perfetto and chrome://tracing read it: a track for the GPU and one for each thread.
 std::string trace_of(const Profile& profile);
 
-Page profile_page(const Profile& profile, const ProfileSummary& summary, const std::vector<std::string>& changes);
+Page profile_page(const Profile& profile, const ProfileSummary& summary,
+                  const std::vector<std::string>& changes);
 
 /// What changed beyond noise since an earlier frames.csv of the same frames, a line each; the last one
 /// counts. `before` is its table, called `place` in errors. Frames of a run are compared with the same ones

@@ -11,9 +11,9 @@ namespace binosplat::lab {
 
 namespace {
 
-constexpr std::size_t stretches = 10;
-constexpr double told_by_chance = 0.01;  // of runs in which nothing changed
-constexpr double least_change = 0.02;    // of what it was
+constexpr std::size_t stretches = 10, stretch_least = 5;  // at most so many, of so many frames
+constexpr double told_by_chance = 0.01;                   // of runs in which nothing changed
+constexpr double least_change = 0.02;                     // of what it was
 
 std::vector<double> column_of(const Table& table, const std::string& name) {
   const auto found = std::ranges::find(table.columns, name);
@@ -31,15 +31,22 @@ std::vector<double> column_of(const Table& table, const std::string& name) {
   return values;
 }
 
+/// The middle, or the mean of both middles: of differences, neither sign comes first.
+double median_of(std::vector<double> values) {
+  std::ranges::sort(values);
+  const std::size_t half = values.size() / 2;
+  return values.size() % 2 == 1 ? values[half] : 0.5 * (values[half - 1] + values[half]);
+}
+
 /// The median difference of each stretch of frames: frames beside each other share their disturbances.
 std::vector<double> differences(const std::vector<double>& before, const std::vector<double>& now) {
-  const std::size_t count = std::min(stretches, before.size() / 2);
+  const std::size_t count = std::min(stretches, before.size() / stretch_least);
   std::vector<double> medians;
   for (std::size_t k = 0; k < count; ++k) {
     std::vector<double> some;
     for (std::size_t n = k * now.size() / count; n < (k + 1) * now.size() / count; ++n)
       some.push_back(now[n] - before[n]);
-    medians.push_back(quantile(some, 0.5));
+    medians.push_back(median_of(some));
   }
   return medians;
 }
@@ -56,16 +63,15 @@ std::string change_of(const std::string& name, const std::vector<double>& before
                      100.0 * change / std::abs(was), 100.0 * noise / std::abs(was));
 }
 
-/// The ranks, from 0 on, between which the quantile of what a sample is from lies, but for three in a thousand
-/// cases.
+/// Between which numbers the quantile of what a sample is from lies, but for three in a thousand cases; it
+/// may be beyond all that a small sample has.
 std::pair<double, double> bounds_of(std::vector<double> values, double share) {
   std::ranges::sort(values);
   const auto n = static_cast<double>(values.size());
   const double scatter = 3.0 * std::sqrt(n * share * (1.0 - share));
-  const auto at = [&](double rank) {
-    return values[static_cast<std::size_t>(std::clamp(rank, 0.0, n - 1.0))];
-  };
-  return {at(std::floor(n * share - scatter)), at(std::ceil(n * share + scatter))};
+  const double low = std::floor(n * share - scatter), high = std::ceil(n * share + scatter);
+  return {low < 0.0 ? -INFINITY : values[static_cast<std::size_t>(low)],
+          high < n ? values[static_cast<std::size_t>(high)] : INFINITY};
 }
 
 }  // namespace
@@ -75,11 +81,15 @@ std::vector<std::string> compare_frames(const Table& before, const Table& now, c
     fail("--compare {}: {} frames, and this run has {}: compare runs of the same options", place,
          before.rows.size(), now.rows.size());
   }
-  if (now.rows.size() < 4) fail("--compare {}: {} frames tell no noise: expected 4 or more", place, now.rows.size());
+  if (now.rows.size() < 3 * stretch_least)
+    fail("--compare {}: {} frames do not tell noise: expected {} or more", place, now.rows.size(),
+         3 * stretch_least);
   std::vector<std::string> names;
   for (const std::string& name : now.columns) {
-    const bool is_time = name.ends_with("_ms") && name != "begin_ms" && name != "late_ms" && name != "display_ms";
-    if ((is_time || name == "pairs" || name == "visible") && !column_of(before, name).empty()) names.push_back(name);
+    const bool is_time =
+        name.ends_with("_ms") && name != "begin_ms" && name != "late_ms" && name != "display_ms";
+    if ((is_time || name == "pairs" || name == "visible") && !column_of(before, name).empty())
+      names.push_back(name);
   }
   if (std::ranges::find(names, "wall_ms") == names.end())
     fail("--compare {}: no column wall_ms: expected the frames.csv of a profile", place);
@@ -90,12 +100,15 @@ std::vector<std::string> compare_frames(const Table& before, const Table& now, c
     if (!line.empty()) lines.push_back(line);
   }
   for (const char* const name : {"wall_ms", "gpu_ms"}) {
-    const auto was = bounds_of(column_of(before, name), 0.99), is = bounds_of(column_of(now, name), 0.99);
-    if (is.first > (1.0 + least_change) * was.second || was.first > (1.0 + least_change) * is.second)
-      lines.push_back(fmt::format("{}: p99 {:.4g} -> {:.4g}", name, quantile(column_of(before, name), 0.99),
-                                  quantile(column_of(now, name), 0.99)));
+    for (const double share : {0.9, 0.99}) {
+      const auto was = bounds_of(column_of(before, name), share), is = bounds_of(column_of(now, name), share);
+      if (is.first > (1.0 + least_change) * was.second || was.first > (1.0 + least_change) * is.second)
+        lines.push_back(fmt::format("{}: p{:g} {:.4g} -> {:.4g}", name, 100.0 * share,
+                                    quantile(column_of(before, name), share),
+                                    quantile(column_of(now, name), share)));
+    }
   }
-  lines.push_back(fmt::format("{} of {} numbers changed beyond noise", lines.size(), names.size() + 2));
+  lines.push_back(fmt::format("{} of {} numbers changed beyond noise", lines.size(), names.size() + 4));
   return lines;
 }
 

@@ -37,14 +37,14 @@ double fastest(const Recording& recording) {
   return most;
 }
 
-/// The parts of a frame: the GPU's stages, then what the CPU does. Where the CPU draws, submitting is drawing.
+/// The parts of a frame: the GPU's stages, then what the CPU does. Where the CPU draws, submitting is
+/// drawing.
 std::vector<gl::StageTime> parts_of(const FrameRecord& frame, bool is_software) {
   std::vector<gl::StageTime> parts = gl::sums_of(frame.report.spans);
   const render::CpuTimes& cpu = frame.report.cpu;
-  parts.insert(parts.end(), {{"levels", frame.levels.ms},
-                             {"plan", cpu.plan},
-                             {"upload", cpu.upload},
-                             {"read back", cpu.read}});
+  parts.insert(
+      parts.end(),
+      {{"levels", frame.levels.ms}, {"plan", cpu.plan}, {"upload", cpu.upload}, {"read back", cpu.read}});
   if (!is_software) parts.push_back({"submit", cpu.submit});
   return parts;
 }
@@ -168,7 +168,8 @@ std::string reason_of(const Profile& profile, const ProfileSummary& summary, std
     if (beyond > most.ms) most = {part.name, beyond};
   }
   const double telling = 0.1 * std::max(longer, 0.1 * summary.wall.median);
-  if (most.ms > telling) reasons.push_back(fmt::format("{} took {:.2f} ms more than usual", most.name, most.ms));
+  if (most.ms > telling)
+    reasons.push_back(fmt::format("{} took {:.2f} ms more than usual", most.name, most.ms));
   if (longer - all > std::max(telling, 0.5 * longer))
     reasons.push_back(fmt::format("{:.2f} ms in none of these: the driver, or other programs", longer - all));
   return reasons.empty() ? "as others" : fmt::format("{}", fmt::join(reasons, "; "));

@@ -63,8 +63,8 @@ class TraceEvents {
     add({{"name", name}, {"ph", "C"}, {"ts", us(at)}}, 0)["args"] = {{"value", value}};
   }
   void instant(const FrameEvent& event, int track, Clock::time_point at) {
-    add({{"name", event.name}, {"ph", "i"}, {"s", "t"}, {"ts", us(at)}}, track)["args"] = {
-        {"detail", event.detail}};
+    add({{"name", event.name}, {"ph", "i"}, {"s", "t"}, {"ts", us(at)}},
+        track)["args"] = {{"detail", event.detail}};
   }
 
   ordered_json take() { return std::move(events_); }
@@ -127,23 +127,25 @@ Table frames_table(const Recording& recording) {
   const std::vector<std::string> stages = stage_names_of(recording);
   Table table{{"frame", "begin_ms", "late_ms", "wall_ms", "missed", "gpu_ms"}, {}};
   for (const std::string& stage : stages) table.columns.push_back("gpu_" + stage + "_ms");
-  for (const char* name :
-       {"cpu_ms", "levels_ms", "plan_ms", "upload_ms", "submit_ms", "wait_ms", "read_ms", "choose_ms", "pairs",
-        "visible", "gaussians", "gpu_bytes", "levels_uploaded", "attempts", "redrawn", "programs_made",
-        "tolerance", "quality_db", "mhz", "display_ms", "displays_missed", "events"})
+  for (const char* name : {"cpu_ms",          "levels_ms", "plan_ms",         "upload_ms", "submit_ms",
+                           "wait_ms",         "read_ms",   "choose_ms",       "pairs",     "visible",
+                           "gaussians",       "gpu_bytes", "levels_uploaded", "attempts",  "redrawn",
+                           "programs_made",   "tolerance", "quality_db",      "mhz",       "display_ms",
+                           "displays_missed", "events"})
     table.columns.emplace_back(name);
   for (std::size_t n = 0; n < recording.frames.size(); ++n) {
     const FrameRecord& frame = recording.frames[n];
     const render::FrameReport& report = frame.report;
     const render::CpuTimes& cpu = report.cpu;
-    std::vector<Cell>& cells = table.rows.emplace_back(
-        row(n, ms_between(recording.frames.front().begin, frame.begin),
-            std::max(0.0, ms_between(frame.due, frame.begin)), frame.wall_ms(), is_missed(recording, n),
-            gpu_ms(frame)));
+    std::vector<Cell>& cells =
+        table.rows.emplace_back(row(n, ms_between(recording.frames.front().begin, frame.begin),
+                                    std::max(0.0, ms_between(frame.due, frame.begin)), frame.wall_ms(),
+                                    is_missed(recording, n), gpu_ms(frame)));
     std::map<std::string, double> by_stage;
     for (const gl::StageSpan& span : report.spans) by_stage[span.name] += span.ms();
     for (const std::string& stage : stages) cells.emplace_back(by_stage[stage]);
-    const std::optional<double> display = frame.display ? std::optional(frame.display->predicted_ms) : std::nullopt;
+    const std::optional<double> display =
+        frame.display ? std::optional(frame.display->predicted_ms) : std::nullopt;
     const std::optional<int> displays = frame.display ? std::optional(frame.display->missed) : std::nullopt;
     for (Cell& cell :
          row(cpu_ms(frame), frame.levels.ms, cpu.plan, cpu.upload, cpu.submit, cpu.wait, cpu.read,
@@ -168,7 +170,8 @@ std::string trace_of(const Profile& profile) {
     add_gpu(recording, n, events);
     add_cpu(recording, n, events);
   }
-  for (const Span& span : recording.spans) events.slice(span.name, tracks.at(span.thread), span.begin, span.end);
+  for (const Span& span : recording.spans)
+    events.slice(span.name, tracks.at(span.thread), span.begin, span.end);
   const ordered_json trace = {
       {"traceEvents", events.take()},
       {"displayTimeUnit", "ms"},

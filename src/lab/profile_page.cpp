@@ -33,17 +33,19 @@ Table some_columns(const Table& all, const std::vector<std::pair<std::string, st
 Section frame_times(const Profile& profile, const ProfileSummary& summary, const Table& frames) {
   const double budget = profile.recording.budget_ms();
   Section section{"frames", "Every frame",
-                  fmt::format("Frames take {:.2f} ms (median), {:.2f} at p99, {:.2f} at most.", summary.wall.median,
-                              summary.wall.p99, summary.wall.most)};
+                  fmt::format("Frames take {:.2f} ms (median), {:.2f} at p99, {:.2f} at most.",
+                              summary.wall.median, summary.wall.p99, summary.wall.most)};
   Table& table = section.numbers.emplace(some_columns(
       frames, {{"frame", "frame"}, {"events", "events"}, {"wall_ms", "frame ms"}, {"gpu_ms", "GPU ms"}}));
-  section.chart = Chart{.x = "frame", .y = {"frame ms", "GPU ms"}, .label = "events", .title = "ms", .dots = false};
+  section.chart =
+      Chart{.x = "frame", .y = {"frame ms", "GPU ms"}, .label = "events", .title = "ms", .dots = false};
   if (budget == 0.0) return section;
   table.columns.emplace_back("budget ms");
   for (std::vector<Cell>& cells : table.rows) cells.emplace_back(budget);
   section.chart->y.emplace_back("budget ms");
-  section.sentence += fmt::format(" {} of {} were not done after {:.1f} ms, when the next one was due ({:g} a second).",
-                                  summary.missed, frames.rows.size(), budget, profile.recording.fps);
+  section.sentence +=
+      fmt::format(" {} of {} were not done after {:.1f} ms, when the next one was due ({:g} a second).",
+                  summary.missed, frames.rows.size(), budget, profile.recording.fps);
   return section;
 }
 
@@ -55,7 +57,8 @@ Section stacked_stages(const ProfileSummary& summary, const Table& frames) {
     return section;
   }
   std::vector<std::pair<std::string, std::string>> named = {{"frame", "frame"}};
-  for (const gl::StageTime& stage : summary.stages) named.emplace_back("gpu_" + stage.name + "_ms", stage.name);
+  for (const gl::StageTime& stage : summary.stages)
+    named.emplace_back("gpu_" + stage.name + "_ms", stage.name);
   section.numbers = some_columns(frames, named);
   section.chart = Chart{.x = "frame",
                         .y = {section.numbers->columns.begin() + 1, section.numbers->columns.end()},
@@ -75,9 +78,11 @@ Section histogram(const Profile& profile, const ProfileSummary& summary) {
   constexpr std::size_t bins_most = 24;
   std::vector<double> wall;
   for (const render::FrameRecord& frame : profile.recording.frames) wall.push_back(frame.wall_ms());
-  const double least = quantile(wall, 0.0), width = round_up(std::max(1e-3, (summary.wall.most - least) / 16.0));
+  const double least = quantile(wall, 0.0),
+               width = round_up(std::max(1e-3, (summary.wall.most - least) / 16.0));
   const double first = width * std::floor(least / width);
-  std::vector<std::int64_t> counts(std::min(bins_most, static_cast<std::size_t>((summary.wall.most - first) / width) + 1));
+  std::vector<std::int64_t> counts(
+      std::min(bins_most, static_cast<std::size_t>((summary.wall.most - first) / width) + 1));
   for (const double ms : wall)
     ++counts[std::min(counts.size() - 1, static_cast<std::size_t>((ms - first) / width))];
   Table& bins = section.numbers.emplace(Table{{"frame ms", "frames"}, {}});
@@ -94,24 +99,29 @@ Section histogram(const Profile& profile, const ProfileSummary& summary) {
 
 Section worst_frames(const Profile& profile, const ProfileSummary& summary) {
   const Recording& recording = profile.recording;
-  Section section{"worst", "The frames that took longest", "With what happened in them, and what took longer than usual."};
+  Section section{"worst", "The frames that took longest",
+                  "With what happened in them, and what took longer than usual."};
   Table& table = section.table.emplace(Table{{"frame", "s", "frame ms", "GPU ms", "CPU ms", "why"}, {}});
   for (std::size_t k = 0; k < summary.worst.size(); ++k) {
     const std::size_t n = summary.worst[k];
     const render::FrameRecord& frame = recording.frames[n];
-    const double seconds = std::chrono::duration<double>(frame.begin - recording.frames.front().begin).count();
-    table.rows.push_back(row(n, seconds, frame.wall_ms(), gpu_ms(frame), cpu_ms(frame), reason_of(profile, summary, n)));
+    const double seconds =
+        std::chrono::duration<double>(frame.begin - recording.frames.front().begin).count();
+    table.rows.push_back(
+        row(n, seconds, frame.wall_ms(), gpu_ms(frame), cpu_ms(frame), reason_of(profile, summary, n)));
     if (k < profile.pictures.size() && profile.pictures[k])
-      section.figures.push_back({fmt::format("frame {}, {:.2f} ms", n, frame.wall_ms()), *profile.pictures[k]});
+      section.figures.push_back(
+          {fmt::format("frame {}, {:.2f} ms", n, frame.wall_ms()), *profile.pictures[k]});
   }
   return section;
 }
 
 Section bound(const Profile& profile, const ProfileSummary& summary, const Table& frames) {
-  Section section{"bound", "GPU against CPU",
-                  fmt::format("What bounds the frames: {}. The CPU's time is that of the thread that draws, without its "
-                              "waiting for the GPU.",
-                              bound_of(profile, summary))};
+  Section section{
+      "bound", "GPU against CPU",
+      fmt::format("What bounds the frames: {}. The CPU's time is that of the thread that draws, without its "
+                  "waiting for the GPU.",
+                  bound_of(profile, summary))};
   section.numbers = some_columns(frames, {{"frame", "frame"},
                                           {"gpu_ms", "GPU"},
                                           {"levels_ms", "levels"},
@@ -128,9 +138,12 @@ Section bound(const Profile& profile, const ProfileSummary& summary, const Table
 }
 
 Section work(const Table& frames) {
-  Section section{"work", "What there was to draw", "Pairs and Gaussians in view of each frame, and those of the model."};
-  section.numbers = some_columns(
-      frames, {{"frame", "frame"}, {"pairs", "pairs"}, {"visible", "Gaussians in view"}, {"gaussians", "Gaussians of the model"}});
+  Section section{"work", "What there was to draw",
+                  "Pairs and Gaussians in view of each frame, and those of the model."};
+  section.numbers = some_columns(frames, {{"frame", "frame"},
+                                          {"pairs", "pairs"},
+                                          {"visible", "Gaussians in view"},
+                                          {"gaussians", "Gaussians of the model"}});
   section.chart = Chart{.x = "frame",
                         .y = {section.numbers->columns.begin() + 1, section.numbers->columns.end()},
                         .title = "count",
@@ -144,8 +157,9 @@ Section clock_section(const Profile& profile, const ProfileSummary& summary, con
     section.problem = fmt::format("The clock is not told: {}.", profile.recording.no_clock);
     return section;
   }
-  section.sentence = fmt::format("{:.0f} MHz (median); {} frames were drawn below 95 % of the fastest, {:.0f} MHz.",
-                                 summary.mhz->median, summary.slow_clock, summary.mhz->most);
+  section.sentence =
+      fmt::format("{:.0f} MHz (median); {} frames were drawn below 95 % of the fastest, {:.0f} MHz.",
+                  summary.mhz->median, summary.slow_clock, summary.mhz->most);
   section.numbers = some_columns(frames, {{"frame", "frame"}, {"mhz", "MHz"}});
   section.chart = Chart{.x = "frame", .y = {"MHz"}, .dots = false};
   return section;
@@ -153,25 +167,28 @@ Section clock_section(const Profile& profile, const ProfileSummary& summary, con
 
 }  // namespace
 
-Page profile_page(const Profile& profile, const ProfileSummary& summary, const std::vector<std::string>& changes) {
+Page profile_page(const Profile& profile, const ProfileSummary& summary,
+                  const std::vector<std::string>& changes) {
   const Recording& recording = profile.recording;
   const auto& views = recording.frames.front().views;
   const Table frames = frames_table(recording);
   Page page{.title = fmt::format("Frame times: {}, {}", profile.facts.scene, profile.facts.motion),
-            .sentence = fmt::format("Half of {} frames take {:.2f} ms or less, 99 % of them {:.2f}. They wait for the {}.",
-                                    recording.frames.size(), summary.wall.median, summary.wall.p99,
-                                    bound_of(profile, summary))};
-  page.facts = {{"scene", profile.facts.scene},
-                {"Gaussians", recording.frames.back().gaussians},
-                {"way", profile.facts.motion},
-                {"drawn", profile.facts.drawing},
-                {"pictures", fmt::format("{} x {} x {} px", views.size(), views.front().width, views.front().height)},
-                {"device", profile.facts.device},
-                {"rate", recording.fps > 0.0 ? fmt::format("{:g} frames a second", recording.fps) : "as fast as possible"}};
-  page.sections = {frame_times(profile, summary, frames), stacked_stages(summary, frames),
-                   histogram(profile, summary),           worst_frames(profile, summary),
-                   bound(profile, summary, frames),       work(frames),
-                   clock_section(profile, summary, frames)};
+            .sentence = fmt::format(
+                "Half of {} frames take {:.2f} ms or less, 99 % of them {:.2f}. What bounds them: {}.",
+                recording.frames.size(), summary.wall.median, summary.wall.p99, bound_of(profile, summary))};
+  page.facts = {
+      {"scene", profile.facts.scene},
+      {"Gaussians", recording.frames.back().gaussians},
+      {"way", profile.facts.motion},
+      {"drawn", profile.facts.drawing},
+      {"pictures", fmt::format("{} x {} x {} px", views.size(), views.front().width, views.front().height)},
+      {"device", profile.facts.device},
+      {"rate",
+       recording.fps > 0.0 ? fmt::format("{:g} frames a second", recording.fps) : "as fast as possible"}};
+  page.sections = {
+      frame_times(profile, summary, frames),  stacked_stages(summary, frames), histogram(profile, summary),
+      worst_frames(profile, summary),         bound(profile, summary, frames), work(frames),
+      clock_section(profile, summary, frames)};
   const std::string advice = advice_of(profile, summary);
   if (!advice.empty()) page.sections.push_back({"next", "What to try", advice});
   if (!changes.empty()) {

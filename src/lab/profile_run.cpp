@@ -117,7 +117,8 @@ std::optional<Saving> ProfileDrawer::saving(std::size_t frame, double quality_db
   less.quality = static_cast<float>(quality_db);
   std::vector<double> before, after;
   if (draw(views, run_.settings).total_ms > slow_ms) return std::nullopt;
-  for (int n = 0; n < (context_.software() ? 4 : 16); ++n) before.push_back(draw(views, run_.settings).total_ms);
+  for (int n = 0; n < (context_.software() ? 4 : 16); ++n)
+    before.push_back(draw(views, run_.settings).total_ms);
   for (int n = 0; n < (context_.software() ? 4 : 16); ++n) after.push_back(draw(views, less).total_ms);
   // The first of them looks for its tolerance; one in four measures its error, which counts.
   after.erase(after.begin());

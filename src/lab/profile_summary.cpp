@@ -41,20 +41,18 @@ std::string bound_of(const Profile& profile, const ProfileSummary& summary) {
   const std::size_t frames = profile.recording.frames.size();
   const bool is_gpu = 2 * summary.gpu_bound >= frames;
   const double all = all_stages(summary);
-  const std::string stage =
-      all > 0.0 ? fmt::format("{} {:.0f} %", longest_stage(summary).name,
-                              100.0 * longest_stage(summary).ms / all)
-                : "stages are not timed";
+  const std::string stage = all > 0.0 ? fmt::format("{} {:.0f} %", longest_stage(summary).name,
+                                                    100.0 * longest_stage(summary).ms / all)
+                                      : "stages are not timed";
   if (profile.facts.is_software) return fmt::format("the CPU, which draws ({})", stage);
   if (is_gpu) return fmt::format("GPU ({}), in {} of {} frames", stage, summary.gpu_bound, frames);
-  const auto& most = *std::ranges::max_element(
-      summary.usual, {}, [&](const gl::StageTime& part) {
-        const bool is_stage =
-            std::ranges::find(summary.stages, part.name, &gl::StageTime::name) != summary.stages.end();
-        return is_stage ? -1.0 : part.ms;
-      });
-  return fmt::format("CPU ({} {:.2f} ms), in {} of {} frames", most.name, most.ms,
-                     frames - summary.gpu_bound, frames);
+  const auto& most = *std::ranges::max_element(summary.usual, {}, [&](const gl::StageTime& part) {
+    const bool is_stage =
+        std::ranges::find(summary.stages, part.name, &gl::StageTime::name) != summary.stages.end();
+    return is_stage ? -1.0 : part.ms;
+  });
+  return fmt::format("CPU ({} {:.2f} ms), in {} of {} frames", most.name, most.ms, frames - summary.gpu_bound,
+                     frames);
 }
 
 std::string advice_of(const Profile& profile, const ProfileSummary& summary) {
@@ -82,15 +80,16 @@ std::vector<std::string> lines_of(const Profile& profile, const ProfileSummary& 
       line_of("frame", summary.wall), line_of("GPU", summary.gpu), line_of("CPU", summary.cpu)};
   if (recording.fps > 0.0) {
     lines.push_back(fmt::format("missed  {} of {} frames: they were not done after {:.1f} ms, {:g} a second",
-                                summary.missed, recording.frames.size(), recording.budget_ms(), recording.fps));
+                                summary.missed, recording.frames.size(), recording.budget_ms(),
+                                recording.fps));
   }
   for (std::size_t k = 0; k < std::min<std::size_t>(2, summary.worst.size()); ++k) {
     const std::size_t n = summary.worst[k];
     lines.push_back(fmt::format("worst   frame {}, {:.2f} ms: {}", n, recording.frames[n].wall_ms(),
                                 reason_of(profile, summary, n)));
   }
-  lines.push_back("bound   " + bound_of(profile, summary));
-  lines.push_back("clock   " + clock_of(profile, summary));
+  lines.push_back(
+      fmt::format("bound   {}; clock {}", bound_of(profile, summary), clock_of(profile, summary)));
   const std::string advice = advice_of(profile, summary);
   if (!advice.empty()) lines.push_back("try     " + advice);
   return lines;
@@ -106,14 +105,14 @@ nlohmann::ordered_json profile_json(const Profile& profile, const ProfileSummary
     worst.push_back(object("frame", n, "wall_ms", recording.frames[n].wall_ms(), "gpu_ms",
                            gpu_ms(recording.frames[n]), "reason", reason_of(profile, summary, n)));
   }
-  nlohmann::ordered_json json = object(
-      "format", "binosplat profile", "version", 1, "scene", profile.facts.scene, "motion",
-      profile.facts.motion, "drawing", profile.facts.drawing, "device", profile.facts.device, "eyes",
-      views.size(), "width", views.front().width, "height", views.front().height, "fps", recording.fps,
-      "frames", recording.frames.size(), "missed", summary.missed, "wall_ms", json_of(summary.wall), "gpu_ms",
-      json_of(summary.gpu), "cpu_ms", json_of(summary.cpu), "stages_ms", stages, "bound",
-      bound_of(profile, summary), "gpu_bound", summary.gpu_bound, "clock", clock_of(profile, summary),
-      "slow_clock", summary.slow_clock, "worst", worst, "advice", advice_of(profile, summary));
+  nlohmann::ordered_json json =
+      object("format", "binosplat profile", "version", 1, "scene", profile.facts.scene, "motion",
+             profile.facts.motion, "drawing", profile.facts.drawing, "device", profile.facts.device, "eyes",
+             views.size(), "width", views.front().width, "height", views.front().height, "fps", recording.fps,
+             "frames", recording.frames.size(), "missed", summary.missed, "wall_ms", json_of(summary.wall),
+             "gpu_ms", json_of(summary.gpu), "cpu_ms", json_of(summary.cpu), "stages_ms", stages, "bound",
+             bound_of(profile, summary), "gpu_bound", summary.gpu_bound, "clock", clock_of(profile, summary),
+             "slow_clock", summary.slow_clock, "worst", worst, "advice", advice_of(profile, summary));
   if (profile.saving)
     json["saving"] = object("quality_db", profile.saving->quality_db, "ms", profile.saving->ms);
   return json;

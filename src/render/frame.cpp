@@ -72,8 +72,7 @@ void Frame::submit(std::span<const shared::View> views, const FrameSettings& set
   }
   const PlanRequest request{.textures = submitted_textures(true)};
   begin(request);
-  is_cut_ =
-      (settings.quality > 0.0f || measures(settings.transmittance)) && !history_.goes_on(plan_);
+  is_cut_ = (settings.quality > 0.0f || measures(settings.transmittance)) && !history_.goes_on(plan_);
   if (settings.quality > 0.0f) {
     if (!history_.goes_on(plan_)) tolerance_control_.forget();
     if (!tolerance_control_.knows(settings) || !history_.probed_lately(plan_, workings.probe_every))

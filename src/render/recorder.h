@@ -20,10 +20,10 @@ struct SameTime {
 /// What was recorded.
 struct Recording {
   std::vector<FrameRecord> frames;
-  std::vector<Span> spans;      // of the CPU's threads
-  SameTime first, last;         // before and after all of it
-  double fps = 0.0;             // frames were due so often a second; 0: as soon as the last one was drawn
-  std::string no_clock = {};    // why frames have no `mhz`; empty: they have
+  std::vector<Span> spans;    // of the CPU's threads
+  SameTime first, last;       // before and after all of it
+  double fps = 0.0;           // frames were due so often a second; 0: as soon as the last one was drawn
+  std::string no_clock = {};  // why frames have no `mhz`; empty: they have
 
   /// The ms that a frame may take; 0: nothing says so.
   double budget_ms() const { return fps > 0.0 ? 1000.0 / fps : 0.0; }

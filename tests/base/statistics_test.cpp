@@ -16,5 +16,15 @@ TEST(Quantile, IsTheSmallestValueThatEnoughDoNotExceed) {
   EXPECT_EQ(quantile({1, 2}, 0.5), 1);
 }
 
+TEST(Deviation, IsOfWhatTheSampleIsFrom) { EXPECT_DOUBLE_EQ(deviation({1.0, 3.0, 5.0}), 2.0); }
+
+TEST(StudentT, IsThatOfTables) {
+  EXPECT_NEAR(student_t(0.05, 1), 12.706, 1e-3);
+  EXPECT_NEAR(student_t(0.05, 2), 4.303, 1e-3);
+  EXPECT_NEAR(student_t(0.01, 7), 3.499, 1e-3);
+  EXPECT_NEAR(student_t(0.001, 30), 3.646, 1e-3);
+  EXPECT_NEAR(student_t(0.05, 100'000), 1.960, 1e-3);
+}
+
 }  // namespace
 }  // namespace binosplat

@@ -1,0 +1,105 @@
+// binosplat profile, as a user runs it.
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "app/scene.h"
+#include "lab/trace_rules.h"
+#include "support/full_disk.h"
+#include "support/program.h"
+
+namespace binosplat {
+namespace {
+
+using nlohmann::json;
+
+struct ProfileCommand : test::SceneTest {
+  ProfileCommand() { add_row_of_cameras(4); }
+
+  test::Outcome profile(std::vector<std::string> more) const {
+    more.insert(more.begin(), {"profile", model, "-o", out});
+    return test::run_program(more);
+  }
+  lab::Table frames() const { return lab::read_csv(test::read_text(out + "/frames.csv"), "frames.csv"); }
+};
+
+TEST_F(ProfileCommand, LeavesAReportATraceAndATable) {
+  const test::Outcome outcome = profile({"--tour", "calm", "--seconds", "0.2", "--size", "48x32"});
+  ASSERT_TRUE(test::good(outcome));
+  EXPECT_EQ(folder.files(), (std::set<std::string>{"cameras.json", "model.ply", "out/frames.csv",
+                                                   "out/profile.json", "out/report.html", "out/trace.json"}));
+  const json trace = json::parse(test::read_text(out + "/trace.json"));
+  EXPECT_EQ(test::faults_of_trace(trace), std::vector<std::string>());
+  EXPECT_EQ(test::differences_of(trace, frames()), std::vector<std::string>());
+  EXPECT_EQ(frames().rows.size(), 18u) << "90 a second";
+  const json numbers = json::parse(test::read_text(out + "/profile.json"));
+  EXPECT_EQ(numbers["frames"], 18);
+  EXPECT_EQ(numbers["eyes"], 2);
+  EXPECT_EQ(numbers["width"], 48);
+  EXPECT_EQ(numbers["motion"], "tour calm");
+  EXPECT_EQ(numbers["worst"].size(), 10u);
+  EXPECT_TRUE(test::has(outcome.out, "18 frames of 2 x 48 x 32 px, exact"));
+  EXPECT_TRUE(test::has(outcome.out, "missed  "));
+  EXPECT_TRUE(test::has(outcome.out, "\nbound   the CPU, which draws ("));
+  EXPECT_LE(std::count(outcome.out.begin(), outcome.out.end(), '\n'), 11);
+  const std::string page = test::read_text(out + "/report.html");
+  EXPECT_TRUE(page.find("The frames that took longest") != page.npos);
+  EXPECT_TRUE(page.find("binosplat profile ") != page.npos) << "the command";
+}
+
+TEST_F(ProfileCommand, StandsAtAViewAndComparesWithTheRunBefore) {
+  const std::vector<std::string> still = {"--view", "view1", "--seconds", "0.4",       "--fps", "0",
+                                          "--size", "36x24", "--mono",    "--quality", "40"};
+  ASSERT_TRUE(test::good(profile(still)));
+  EXPECT_EQ(json::parse(test::read_text(out + "/profile.json"))["motion"], "standing at view1");
+  const std::string text = test::read_text(out + "/frames.csv");
+  EXPECT_TRUE(text.find("measured its error") != text.npos);
+  const std::string before = folder / "before.csv";
+  test::write_text(before, text);
+  const auto more = [&](std::vector<std::string> words) {
+    words.insert(words.begin(), still.begin(), still.end());
+    return words;
+  };
+  const test::Outcome same = profile(more({"--compare", before}));
+  ASSERT_TRUE(test::good(same));
+  EXPECT_TRUE(test::has(same.out, "numbers changed beyond noise"));
+  // The same frames, as a machine ten times as slow would have timed them.
+  lab::Table slower = lab::read_csv(text, "before");
+  const auto wall = std::ranges::find(slower.columns, "wall_ms") - slower.columns.begin();
+  for (auto& cells : slower.rows) {
+    lab::Cell& cell = cells[static_cast<std::size_t>(wall)];
+    cell = 10.0 * std::get<double>(cell.value);
+  }
+  test::write_text(before, lab::csv(slower));
+  EXPECT_TRUE(test::has(profile(more({"--compare", before})).out, "\nwall_ms: median"));
+}
+
+TEST_F(ProfileCommand, WhatMakesNoSenseIsNamedAndLeavesNothing) {
+  const auto before = folder.files();
+  test::write_text(folder / "old.csv", "frame,wall_ms\n0,x\n");
+  const std::vector<std::pair<std::vector<std::string>, std::string>> wrong = {
+      {{"--tour", "calm", "--view", "view1"}, "ways of their own: choose one of them"},
+      {{"--view", "all"}, "--view stands at one camera: name one"},
+      {{"--view", "nobody"}, "nobody"},
+      {{"--tour", "crawl"}, "--tour crawl"},
+      {{"--frames", "3"}, "--frames is for `binosplat render`"},
+      {{"--fps", "-1"}, "frames a second from 0 to 1000"},
+      {{"--compare", folder / "none.csv"}, "none.csv"},
+      {{"--compare", folder / "old.csv"}, "old.csv:2: expected a number or a text in quotes in column 2"},
+      {{"-o", model}, "model.ply"},
+      {{"--eye", "0,0,0"}, "--eye and --at go together"}};
+  std::filesystem::remove(folder / "old.csv");
+  for (const auto& [options, message] : wrong) {
+    if (message.starts_with("old.csv")) test::write_text(folder / "old.csv", "frame,wall_ms\n0,x\n");
+    std::vector<std::string> all = {"profile", model, "--size", "36x24"};
+    if (options[0] != "-o") all.insert(all.end(), {"-o", out});
+    all.insert(all.end(), options.begin(), options.end());
+    EXPECT_TRUE(test::ended(test::run_program(all), 2, message)) << options[0];
+    std::filesystem::remove(folder / "old.csv");
+  }
+  EXPECT_EQ(folder.files(), before);
+}
+
+}  // namespace
+}  // namespace binosplat

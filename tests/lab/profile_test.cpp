@@ -1,0 +1,268 @@
+// What a profile makes of frames, on frames that were made up.
+
+#include "lab/profile.h"
+
+#include <gtest/gtest.h>
+
+#include "base/error.h"
+#include "lab/chromium.h"
+#include "lab/trace_rules.h"
+#include "support/errors.h"
+#include "support/models.h"
+#include "support/scenes.h"
+
+namespace binosplat::lab {
+namespace {
+
+using nlohmann::json;
+using std::chrono::microseconds;
+
+/// So many frames, one each 20 ms: 2 ms of project and 3 of blend on a GPU whose clock is 7 s ahead, 1 ms of
+/// submitting, 5 of waiting. Frame 3 was drawn again, 5 compiled, 7 had levels uploaded.
+Profile made_up(std::size_t count = 20) {
+  Profile profile{.facts = {"fox.ply", "tour walk", "exact", "a GPU", false}};
+  render::Recording& recording = profile.recording;
+  recording.fps = 100.0;
+  recording.no_clock = "nobody asked";
+  const Clock::time_point start = Clock::time_point() + std::chrono::hours(1);
+  constexpr std::int64_t ahead = 7'000'000'000;
+  recording.first = {start, ahead};
+  recording.last = {start + std::chrono::seconds(1), ahead + 1'000'000'000};
+  for (std::size_t n = 0; n < count; ++n) {
+    render::FrameRecord& frame = recording.frames.emplace_back();
+    frame.due = frame.begin = start + n * microseconds(20'000);
+    const int draws = n == 3 ? 2 : 1;
+    const auto compiling = microseconds(n == 5 ? 8'000 : 0);
+    std::int64_t gpu =
+        ahead + static_cast<std::int64_t>(n) * 20'000'000 + 1'000'000 + 1000 * compiling.count();
+    for (int k = 0; k < draws; ++k) {
+      frame.report.spans.push_back({"project", gpu, gpu + 2'000'000});
+      frame.report.spans.push_back({"blend", gpu + 2'000'000, gpu + 5'000'000});
+      gpu += 5'500'000;
+    }
+    frame.end = frame.begin + draws * microseconds(6'000) + compiling;
+    frame.report.attempts = 1;
+    frame.report.redrawn = draws - 1;
+    frame.report.cpu = {.submit = 1.0 + 1e-3 * double(compiling.count()), .wait = 5.0 * draws};
+    frame.report.programs_made = n == 5 ? 1 : 0;
+    frame.report.gpu_bytes = n < 3 ? 1'000'000 : 3'000'000;
+    frame.report.pairs = 1000 + n;
+    frame.gaussians = 600;
+    frame.levels.uploaded = n == 7 ? 250 : 0;
+    frame.views.resize(2);
+    frame.views[0].width = frame.views[1].width = 64;
+    frame.views[0].height = frame.views[1].height = 48;
+    if (n == 5)
+      recording.spans.push_back({"compile blend.comp", "draws", frame.begin, frame.begin + compiling});
+    recording.spans.push_back({"submit", "draws", frame.begin, frame.begin + microseconds(1000) + compiling});
+    recording.spans.push_back({"read levels", "reads levels", frame.begin, frame.end});
+  }
+  return profile;
+}
+
+TEST(Profile, NamesWhatHappenedInAFrame) {
+  const Profile profile = made_up();
+  const ProfileSummary summary = summary_of(profile);
+  const auto reason = [&](std::size_t n) { return reason_of(profile, summary, n); };
+  EXPECT_EQ(reason(0), "as others");
+  EXPECT_EQ(reason(3),
+            "drawn again: once, since a buffer was too small; buffers grew: 2.0 MB; blend took 3.00 ms more "
+            "than usual");
+  EXPECT_EQ(reason(5), "program compiled: blend.comp; submit took 8.00 ms more than usual");
+  EXPECT_EQ(reason(7), "levels uploaded: 250 Gaussians");
+  EXPECT_EQ(std::vector<std::size_t>(summary.worst.begin(), summary.worst.begin() + 2),
+            (std::vector<std::size_t>{5, 3}));
+  EXPECT_EQ(summary.missed, 2u);
+  EXPECT_EQ(summary.gpu.median, 5.0);
+  EXPECT_EQ(summary.wall.most, 14.0);
+  EXPECT_EQ(summary.gpu_bound, 19u) << "all but the one that compiles";
+  EXPECT_EQ(bound_of(profile, summary), "GPU (blend 60 %), in 19 of 20 frames");
+}
+
+TEST(Profile, TellsOfRepeatsCutsAndClocks) {
+  Profile profile = made_up(4);
+  profile.recording.frames[1].report.attempts = 3;
+  profile.recording.frames[1].report.quality = 39.25;
+  profile.recording.frames[1].report.sampled_error = true;
+  profile.recording.frames[2].report.is_cut = true;
+  for (render::FrameRecord& frame : profile.recording.frames) frame.mhz = 1980.0;
+  profile.recording.frames[2].mhz = 1200.0;
+  profile.recording.frames[0].display = render::FrameDisplay{20.0, 2};
+  const auto names = [&](std::size_t n) {
+    std::vector<std::string> texts;
+    for (const FrameEvent& event : events_of(profile.recording, n)) texts.push_back(event.text());
+    return texts;
+  };
+  EXPECT_EQ(names(0), (std::vector<std::string>{"display missed: 2 times"}));
+  EXPECT_EQ(names(1),
+            (std::vector<std::string>{"drawn again: 2 times, since its quality of 39.2 dB was missed",
+                                      "measured its error"}));
+  EXPECT_EQ(names(2), (std::vector<std::string>{"camera cut: it goes by nothing that earlier frames measured",
+                                                "low clock: 1200 MHz"}));
+  EXPECT_TRUE(is_missed(profile.recording, 0));
+  EXPECT_EQ(summary_of(profile).slow_clock, 1u);
+}
+
+TEST(Profile, ATraceKeepsTheRulesOfItsFormat) {
+  const Profile profile = made_up();
+  const json trace = json::parse(trace_of(profile));
+  EXPECT_EQ(test::faults_of_trace(trace), std::vector<std::string>());
+  EXPECT_EQ(test::differences_of(trace, frames_table(profile.recording)), std::vector<std::string>());
+  // The GPU's clock is brought to the CPU's: frame 1 begins at 20 ms, and its first stage a millisecond
+  // later.
+  std::map<std::string, int> kinds;
+  double project = -1.0;
+  std::set<std::string> instants;
+  for (const json& event : trace["traceEvents"]) {
+    ++kinds[event["ph"]];
+    if (event["name"] == "project" && event["args"]["frame"] == 1) project = event["ts"];
+    if (event["ph"] == "i")
+      instants.insert(event["name"].get<std::string>() + " " + event["args"]["detail"].get<std::string>());
+  }
+  EXPECT_DOUBLE_EQ(project, 21'000.0);
+  EXPECT_EQ(kinds["C"], 4 * 20) << "pairs, Gaussians in view and of the model, memory";
+  EXPECT_EQ(instants,
+            (std::set<std::string>{"drawn again once, since a buffer was too small", "buffers grew 2.0 MB",
+                                   "program compiled blend.comp", "levels uploaded 250 Gaussians"}));
+}
+
+TEST(Profile, PlantedFaultsOfTracesAreCaught) {
+  const Profile profile = made_up();
+  const json good = json::parse(trace_of(profile));
+  const auto first = [](json& trace, const std::string& name) -> json& {
+    for (json& event : trace["traceEvents"]) {
+      if (event["name"] == name && event["ph"] == "X") return event;
+    }
+    throw std::runtime_error("no " + name);
+  };
+  const auto faulty = [&](const auto& plant) {
+    json trace = good;
+    plant(trace);
+    return !test::faults_of_trace(trace).empty();
+  };
+  EXPECT_TRUE(faulty([&](json& t) { first(t, "blend")["dur"] = -1.0; }));
+  EXPECT_TRUE(faulty([&](json& t) { first(t, "blend")["dur"] = 4000.0; })) << "beyond its frame";
+  EXPECT_TRUE(faulty([&](json& t) { first(t, "project")["ts"] = 0.0; })) << "before its frame";
+  EXPECT_TRUE(faulty([&](json& t) { first(t, "submit").erase("ts"); }));
+  EXPECT_TRUE(faulty([&](json& t) { first(t, "read levels")["tid"] = 9; })) << "a track without a name";
+  json trace = good;
+  first(trace, "blend")["dur"] = 2000.0;
+  EXPECT_FALSE(test::differences_of(trace, frames_table(profile.recording)).empty()) << "another sum";
+}
+
+TEST(Profile, FramesAsCsvAreReadAgain) {
+  const Table frames = frames_table(made_up().recording);
+  const std::string text = csv(frames);
+  const Table again = read_csv(text, "frames.csv");
+  EXPECT_EQ(again.columns, frames.columns);
+  ASSERT_EQ(again.rows.size(), 20u);
+  EXPECT_EQ(csv(again), csv(read_csv(csv(again), "again")));
+  EXPECT_EQ(std::get<std::string>(again.rows[3].back().value),
+            "drawn again: once, since a buffer was too small; buffers grew: 2.0 MB");
+  EXPECT_TRUE(test::fails_saying([&] { read_csv("a,b\n1,2\n3\n", "old.csv"); },
+                                 {"old.csv:3: 1 cells under 2 names"}));
+  EXPECT_TRUE(test::fails_saying([&] { read_csv("a,b\n1,x\n", "old.csv"); },
+                                 {"old.csv:2: expected a number or a text in quotes in column 2"}));
+}
+
+/// The same frames as another run would time them: all times within `noise` of what they are, times `factor`.
+Table timed_again(double noise, double factor, unsigned seed, std::size_t count = 60) {
+  Table table = frames_table(made_up(count).recording);
+  test::Uniform random(seed);
+  for (std::vector<Cell>& cells : table.rows) {
+    for (std::size_t k = 0; k < cells.size(); ++k) {
+      auto* const ms = std::get_if<double>(&cells[k].value);
+      if (ms == nullptr || !table.columns[k].ends_with("_ms")) continue;
+      *ms *= factor * (1.0 + noise * random(-0.5, 0.5));
+    }
+  }
+  return table;
+}
+
+TEST(Profile, ComparesRunsOfTheSameFrames) {
+  int changed = 0;
+  std::string found;
+  for (unsigned pair = 0; pair < 40; ++pair) {
+    const auto lines =
+        compare_frames(timed_again(0.3, 1.0, 2 * pair), timed_again(0.3, 1.0, 2 * pair + 1), "old");
+    changed += lines.size() > 1;
+    if (lines.size() > 1) found += lines.front() + "\n";
+  }
+  EXPECT_LE(changed, 2) << "of 40 pairs in which nothing changed:\n" << found;
+  const std::vector<std::string> slower =
+      compare_frames(timed_again(0.3, 1.0, 1), timed_again(0.3, 1.15, 2), "old");
+  const auto of_wall = std::ranges::find_if(
+      slower, [](const std::string& line) { return line.starts_with("wall_ms: median"); });
+  EXPECT_NE(of_wall, slower.end()) << "15 % slower goes unnoticed";
+  const auto with_peaks = [](Table table, std::size_t each) {
+    for (std::size_t n = 0; n < table.rows.size(); n += each) table.rows[n][3] = 50.0;  // wall_ms
+    return table;
+  };
+  const Table many = timed_again(0.3, 1.0, 1, 1200), other = timed_again(0.3, 1.0, 2, 1200);
+  EXPECT_EQ(compare_frames(many, with_peaks(other, 40), "old").front(), "wall_ms: p99 6.884 -> 50");
+  Table fewer = timed_again(0.0, 1.0, 1);
+  fewer.rows.pop_back();
+  EXPECT_TRUE(test::fails_saying([&] { compare_frames(fewer, timed_again(0.0, 1.0, 1), "old.csv"); },
+                                 {"--compare old.csv: 59 frames, and this run has 60"}));
+  EXPECT_TRUE(test::fails_saying(
+      [&] {
+        compare_frames({{"a"}, std::vector(60, row(1.0))}, timed_again(0.0, 1.0, 1), "old.csv");
+      },
+      {"no column wall_ms"}));
+}
+
+TEST(Profile, ThePageHasTheBudgetTheReasonsAndThePictures) {
+  Profile profile = made_up();
+  profile.pictures.assign(10, Image(4, 3, 3));
+  const ProfileSummary summary = summary_of(profile);
+  const Page page =
+      profile_page(profile, summary,
+                   {"wall_ms: median 1 -> 2 (+100.0 %, noise 3.0 %)", "1 of 9 numbers changed beyond noise"});
+  std::vector<std::string> ids;
+  for (const Section& section : page.sections) ids.push_back(section.id);
+  EXPECT_EQ(ids, (std::vector<std::string>{"frames", "stages", "spread", "worst", "bound", "work", "clock",
+                                           "next", "changes"}));
+  EXPECT_EQ(page.sections[0].numbers->rows[5],
+            row(std::size_t{5}, "program compiled: blend.comp", 14.0, 5.0, 10.0));
+  EXPECT_EQ(page.sections[1].chart->y, (std::vector<std::string>{"project", "blend"}));
+  EXPECT_EQ(page.sections[3].table->rows[0].back(),
+            "program compiled: blend.comp; submit took 8.00 ms more than usual");
+  EXPECT_EQ(page.sections[3].figures.size(), 10u);
+  EXPECT_EQ(page.sections[7].sentence, advice_of(profile, summary));
+  EXPECT_NE(page.sections[6].problem.find("nobody asked"), std::string::npos);
+  EXPECT_FALSE(html(page, profile_json(profile, summary)).empty());
+  EXPECT_LE(lines_of(profile, summary).size(), 10u);
+  EXPECT_TRUE(test::fails_saying([&] { summary_of(Profile()); }, {"no frame was recorded"}));
+}
+
+TEST(Profile, IsShownByChromium) {
+  if (!test::switched_on("BINOSPLAT_LONG")) GTEST_SKIP() << "BINOSPLAT_LONG=1 opens the page in Chromium";
+  ASSERT_TRUE(test::has_chromium()) << "install the package chromium (packages/long.txt)";
+  const test::TempFolder folder;
+  Profile profile = made_up();
+  profile.pictures.assign(10, Image(4, 3, 3));
+  const ProfileSummary summary = summary_of(profile);
+  save_page(folder / "report.html", profile_page(profile, summary, {}), profile_json(profile, summary));
+  const test::Chromium chromium;
+  const std::string found = chromium.ask(
+      folder / "report.html", 1280, false,
+      "return JSON.stringify({alerts: [...document.querySelectorAll('[role=alert]')].map((a) => "
+      "a.textContent),"
+      "lines: document.querySelectorAll('#frames figure svg g[aria-label=line] path').length,"
+      "areas: [...document.querySelectorAll('#stages figure svg g[aria-label=area] path')].map((a) =>"
+      "a.getBoundingClientRect().height),"
+      "pictures: document.querySelectorAll('#worst img').length,"
+      "first: document.querySelector('#worst tbody tr').textContent});");
+  const json shown = json::parse(found, nullptr, false);
+  ASSERT_TRUE(shown.is_object()) << found;
+  EXPECT_EQ(shown["alerts"].size(), 1u) << "only the clock is not told: " << found;
+  EXPECT_EQ(shown["lines"], 3) << "frame, GPU and budget";
+  ASSERT_EQ(shown["areas"].size(), 2u) << found;
+  EXPECT_GT(shown["areas"][0].get<double>(), 10.0);
+  EXPECT_GT(shown["areas"][1].get<double>(), shown["areas"][0].get<double>()) << "blend lies on project";
+  EXPECT_EQ(shown["pictures"], 10);
+  EXPECT_NE(shown["first"].get<std::string>().find("program compiled: blend.comp"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace binosplat::lab
