@@ -1,5 +1,7 @@
 // binosplat bench: the chart of speed against accuracy.
 
+#include <fmt/ranges.h>
+
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
@@ -17,6 +19,7 @@
 #include "base/log.h"
 #include "base/progress.h"
 #include "lab/bench.h"
+#include "lab/bench_compare.h"
 
 namespace binosplat::app {
 
@@ -70,6 +73,17 @@ lab::Bench open_case(gl::Context& context, const BenchOptions& options, const Be
           {plan.axes.frames, plan.axes.repeats, options.ppd, peaks, foveated}};
 }
 
+/// Where the CPU draws: how long that takes, before it does.
+void tell_work(double seconds) {
+  constexpr double worth_telling_s = 60.0;
+  if (seconds < worth_telling_s) return;
+  log_info(
+      "without a GPU this takes about {}. For less, give --axes a file such as {{\"views\": 1, \"frames\": "
+      "3, "
+      "\"repeats\": 2, \"sizes\": [\"240x135\"], \"settings\": [{{\"tiles\": [\"obb\", \"ellipse\"]}}]}}",
+      spoken_time(seconds));
+}
+
 void measure_all(const BenchOptions& options, const BenchPlan& plan, const BenchFolder& folder) {
   std::vector<std::size_t> missing(plan.points.size());
   std::iota(missing.begin(), missing.end(), std::size_t{0});
@@ -105,6 +119,8 @@ void measure_all(const BenchOptions& options, const BenchPlan& plan, const Bench
         loaded = which.scene;
       }
       if (!bench) bench.emplace(open_case(*context, options, plan, which, *model, peaks));
+      if (done == 0 && context->software())
+        tell_work(1e-3 * bench->work_ms(plan.axes.settings[s], missing.size()));
       folder.save(missing[done], bench->measure(plan.axes.settings[s]));
       progress.update(++done);
     }
@@ -150,16 +166,26 @@ void print_points(const std::vector<lab::BenchPoint>& points) {
   }
 }
 
+void compare_with_older(const BenchOptions& options, const lab::BenchResults& results) {
+  const lab::BenchComparison found = lab::compare_results(load_points(options.compare), results.points);
+  fmt::print("\nSince {}:\n{}\n", options.compare, fmt::join(found.lines, "\n"));
+  if (!options.fail_if_slower) return;
+  if (found.matched == 0)
+    fail("--fail-if-slower: no point of this run is in {}: compare runs of the same scenes and axes",
+         options.compare);
+  if (found.slower_percent > *options.fail_if_slower) {
+    throw Error(ExitCode::fell_short,
+                fmt::format("{} is {:.1f} % slower than in {}, more than --fail-if-slower {:g}",
+                            found.slowest, found.slower_percent, options.compare, *options.fail_if_slower));
+  }
+}
+
 ExitCode finish(const BenchOptions& options, const BenchFolder& folder) {
   const lab::BenchResults results = folder.results();
   folder.save_results(results);
   print_points(results.points);
   fmt::print("\n{}: report.html, results.csv, results.json\n", folder.path().string());
-  if (!options.compare.empty()) {
-    fmt::print("\nSince {}:\n", options.compare);
-    for (const std::string& line : lab::compare_results(load_points(options.compare), results.points))
-      fmt::print("{}\n", line);
-  }
+  if (!options.compare.empty()) compare_with_older(options, results);
   const auto problems = std::count_if(results.points.begin(), results.points.end(),
                                       [](const lab::BenchPoint& p) { return !p.problem.empty(); });
   if (problems > 0)
@@ -191,6 +217,8 @@ void check_bench(const BenchOptions& options) {
   if (options.scenes.size() > 1 &&
       (!options.camera.file.empty() || !options.photos.empty() || !options.calibration.empty()))
     fail("--cameras, --photos and --calibration are of one scene: bench the scenes one by one");
+  if (options.fail_if_slower && options.compare.empty())
+    fail("--fail-if-slower goes with --compare: name the results.json of the run that it is to keep up with");
   check(options.context, "auto");
 }
 
@@ -247,11 +275,18 @@ void add_bench(CLI::App& program, Command& command) {
   sub->add_option("--merge", o->merge, "Join the folders of shards in -o")->type_name("DIR...");
   sub->add_option("--compare", o->compare, "Print what changed beyond noise since an older results.json")
       ->type_name("FILE");
+  sub->add_option(
+         "--fail-if-slower", o->fail_if_slower,
+         "With --compare: end with exit code 1 if a frame time has risen\nbeyond noise, and by more than "
+         "PERCENT")
+      ->type_name("PERCENT")
+      ->check(not_negative);
   sub->footer(
       "A run that was ended goes on where it was when it is started again with the same options.\n"
       "Examples:\n"
       "  binosplat bench fox.ply garden.ply -o out/chart\n"
       "  binosplat bench garden.ply --axes headset --compare last/results.json -o out/headset\n"
+      "  binosplat bench fox.ply --compare main/results.json --fail-if-slower 3 -o out/ci\n"
       "  binosplat bench fox.ply --axes paper --shard $I/8 -o out/shard$I     # on 8 machines\n"
       "  binosplat bench --merge out/shard1 out/shard2 -o out/chart");
   sub->callback([o, &command] { command = [o] { return bench(*o); }; });

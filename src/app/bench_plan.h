@@ -25,6 +25,7 @@ struct BenchOptions : MeasuredOptions {
   Shard shard;                     // of the points
   std::vector<std::string> merge;  // folders, instead of scenes
   std::string compare;             // results.json of an older run
+  std::optional<double> fail_if_slower;  // percent
   std::string calibration;         // a file whose settings are measured, too
   double ppd = 67.0;
   bool profile = false;

@@ -63,8 +63,7 @@ bool is_finite(const Picture& picture) {
 }
 
 bool is_empty(const Picture& picture) {
-  return std::all_of(picture.colour.begin(), picture.colour.end(),
-                     [](const glm::vec4& v) { return v.w == 1.0f; });
+  return std::ranges::all_of(picture.colour, [](const glm::vec4& v) { return v.w == 1.0f; });
 }
 
 bool same_inset(const Image& a, const Image& b, const stereo::FoveatedEye& parts) {
@@ -220,6 +219,18 @@ const render::DepthTable& Bench::depth_table() {
   return depth_table_;
 }
 
+double Bench::work_ms(const BenchSettings& settings, std::size_t points) {
+  BenchDrawer drawer(gpu_model_, settings);
+  double ms = 0.0;
+  for (int n = 0; n < 2; ++n) {  // in the first one drivers compile their programs
+    const auto start = Clock::now();
+    drawer.draw(views_.front().eyes);
+    ms = ms_since(start);
+  }
+  const int frames = effort_.repeats * (effort_.frames + render::settling_frames) + render::settling_frames;
+  return ms * frames * static_cast<double>(views_.size() * points);
+}
+
 // What a threshold by measurements draws has no reference; that the frame's other stages are right is seen
 // with all others.
 std::string Bench::verify(const BenchSettings& settings) {
@@ -315,6 +326,7 @@ void Bench::time(const BenchSettings& settings, BenchNumbers& point) {
   const auto [least, most] = std::minmax_element(repeats.begin(), repeats.end());
   point.frame_ms = mean(repeats);
   point.p99_ms = quantile(frame_ms, 0.99);
+  point.repeats_ms = repeats;
   if (effort_.repeats > 1) point.noise_ms = (*most - *least) / 2;
   point.settled = settled;
   point.frames = frame_ms.size();

@@ -41,6 +41,9 @@ class Bench {
   Bench(gl::Context& context, const Model& model, std::vector<BenchView> views, const shared::View& small,
         const BenchEffort& effort);
 
+  /// About how long so many points will take that are like this one, in ms. Draws two frames.
+  double work_ms(const BenchSettings& settings, std::size_t points);
+
   /// A point that fails verification is not timed: it has a problem instead. TRANSMITTANCE_DEPTH goes by a
   /// table of the bench's own views. Throws Error where the GPU cannot draw the views at all.
   BenchNumbers measure(BenchSettings settings);

@@ -42,10 +42,11 @@ static void fields(const auto& io, Some<PhotoNumbers> auto& p) {
 namespace {
 
 void numbers_fields(const auto& io, Some<BenchNumbers> auto& n) {
-  io("frame_ms", n.frame_ms, "p99_ms", n.p99_ms, "noise_ms", n.noise_ms, "settled", n.settled, "frames",
-     n.frames, "gpu_bytes", n.gpu_bytes, "submit_ms", n.submit_ms, "stages_ms", n.stages, "pairs", n.pairs,
-     "visible", n.visible, "alphas", n.alphas, "alphas_visible", n.alphas_visible, "profile", n.profile,
-     "exact", n.exact, "seen", n.seen, "photos", n.photos, "views", n.views);
+  io("frame_ms", n.frame_ms, "p99_ms", n.p99_ms, "noise_ms", n.noise_ms, "repeats_ms", n.repeats_ms,
+     "settled", n.settled, "frames", n.frames, "gpu_bytes", n.gpu_bytes, "submit_ms", n.submit_ms,
+     "stages_ms", n.stages, "pairs", n.pairs, "visible", n.visible, "alphas", n.alphas, "alphas_visible",
+     n.alphas_visible, "profile", n.profile, "exact", n.exact, "seen", n.seen, "photos", n.photos, "views",
+     n.views);
 }
 
 void names(const auto& io, Some<BenchPoint> auto& p) {

@@ -62,13 +62,14 @@ struct SeenNumbers {
 
 /// What Bench measures of a point.
 struct BenchNumbers {
-  std::string device;      // empty: not measured yet
-  std::string problem;     // why it was not timed; empty: it was
-  double frame_ms = NAN;   // the views' medians, in the mean
-  double p99_ms = NAN;     // of all frames
-  double noise_ms = NAN;   // half the spread of the repeats; not a number for a single one
-  bool settled = false;    // the clock did
-  std::size_t frames = 0;  // timed
+  std::string device;              // empty: not measured yet
+  std::string problem;             // why it was not timed; empty: it was
+  double frame_ms = NAN;           // the views' medians, in the mean
+  double p99_ms = NAN;             // of all frames
+  double noise_ms = NAN;           // half the spread of the repeats; not a number for a single one
+  std::vector<double> repeats_ms;  // frame_ms of each repeat
+  bool settled = false;            // the clock did
+  std::size_t frames = 0;          // timed
   std::int64_t gpu_bytes = 0;
   double submit_ms = NAN;  // CPU
   std::vector<gl::StageTime> stages;
@@ -114,11 +115,5 @@ std::string csv(const std::vector<BenchPoint>& points);
 
 /// The charts, by scene, eyes and size.
 Page bench_page(const BenchResults& results);
-
-/// What changed beyond noise since an older run, a line each; the last line counts. Points are matched by
-/// scene, eyes, size and settings. Frame times count as changed when they differ by more than both runs'
-/// noise and 2 %; PSNR by 0.01 dB; pairs by 0.1 %.
-std::vector<std::string> compare_results(const std::vector<BenchPoint>& before,
-                                         const std::vector<BenchPoint>& now);
 
 }  // namespace binosplat::lab

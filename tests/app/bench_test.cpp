@@ -46,7 +46,8 @@ struct BenchTest : test::SceneTest {
 /// Results without what another run measures differently: times.
 ordered_json without_times(ordered_json results) {
   for (ordered_json& point : results["points"]) {
-    for (const char* key : {"frame_ms", "p99_ms", "noise_ms", "settled", "submit_ms", "stages_ms"}) {
+    for (const char* key :
+         {"frame_ms", "p99_ms", "noise_ms", "repeats_ms", "settled", "submit_ms", "stages_ms"}) {
       EXPECT_TRUE(point.contains(key)) << key;
       point.erase(key);
     }
@@ -135,6 +136,26 @@ TEST_F(BenchTest, ShardsJoinToOneRun) {
   const Outcome compared = bench({"--merge", out, "--compare", folder / "old.json"}, out);
   EXPECT_NE(compared.out.find("8 of 8 points in both runs changed beyond noise"), std::string::npos)
       << compared.out;
+}
+
+TEST_F(BenchTest, FailsWhereItHasBecomeSlower) {
+  ASSERT_TRUE(good(measure(out)));
+  ordered_json old = results(out);
+  const auto compared = [&](const std::string& percent) {
+    write_text(folder / "old.json", old.dump());
+    return bench({"--merge", out, "--compare", folder / "old.json", "--fail-if-slower", percent}, out);
+  };
+  EXPECT_TRUE(good(compared("0"))) << "than itself";
+  for (ordered_json& point : old["points"]) {
+    point["frame_ms"] = point["frame_ms"].get<double>() / 1000.0;
+    for (ordered_json& ms : point["repeats_ms"]) ms = ms.get<double>() / 1000.0;
+  }
+  EXPECT_TRUE(ended(compared("50"), 1, "more than --fail-if-slower 50"));
+  EXPECT_TRUE(good(compared("1e9")));
+  for (ordered_json& point : old["points"]) point["scene"] = "another";
+  EXPECT_TRUE(ended(compared("50"), 2, "no point of this run is in"));
+  EXPECT_TRUE(ended(bench({"--merge", out, "--fail-if-slower", "3"}, out), 2,
+                    "--fail-if-slower goes with --compare"));
 }
 
 TEST_F(BenchTest, MeasuresWhatWasCalibrated) {
