@@ -13,13 +13,25 @@ struct StageTime {
   double ms = 0;          // on the GPU
 };
 
+/// When the GPU was at a stage, in ns on its own clock, which GL_TIMESTAMP tells. A stage may come more than
+/// once.
+struct StageSpan {
+  std::string name = {};
+  std::int64_t begin_ns = 0, end_ns = 0;
+};
+
 /// Times are sums over all attempts at a quality, without drawings for which a buffer was too small. What is
 /// written into targets after the blend is not timed.
 struct Report {
   std::vector<StageTime> stages = {};  // empty where the driver tells no times
   double gpu_ms = 0;                   // their sum
-  double submit_ms = 0;                // CPU time of handing the frame to the driver
-  std::int64_t gpu_bytes = 0;          // in the renderer's buffers, the model's included
+  std::vector<StageSpan> spans = {};   // of all drawings, one after the other
+  double plan_ms = 0;    // CPU time of deciding what is drawn, which submit() takes, as are the next two:
+  double upload_ms = 0;  // of handing parameters to the driver
+  double submit_ms = 0;  // of handing it the stages, with shaders that had to be compiled
+  double wait_ms = 0;    // CPU time that finish() waits for the GPU
+  double read_ms = 0;    // and that it takes to read back what the GPU counted and timed
+  std::int64_t gpu_bytes = 0;  // in the renderer's buffers, the model's included
 
   std::uint64_t visible = 0;  // Gaussians drawn, summed over the order groups
   std::uint64_t pairs = 0;    // (Gaussian, tile) over all views
@@ -30,6 +42,11 @@ struct Report {
   double quality = 0.0;    // with Settings::quality: PSNR in dB, as measured; infinite where nothing differs
   int attempts = 0;        // times that it was drawn until the quality held
   int redrawn = 0;         // times that it was drawn again, since a buffer was too small
+  int programs_made = 0;   // shaders that were compiled for it, or loaded from the cache
+  bool sampled_error = false;  // it drew some tiles exactly, too, to measure its error
+  /// With a quality or a measured transmittance: it could not go by earlier frames, as the first one cannot,
+  /// nor one after a camera cut.
+  bool is_cut = false;
 
   /// All pictures were blended straight into their targets. Not where there are more than 4 views, a layout
   /// other than `separate` or a target that takes a copy, nor in frames that measure the error for a quality:

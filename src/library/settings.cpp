@@ -83,7 +83,16 @@ Report report_of(const render::FrameReport& frame) {
   Report report;
   for (const gl::StageTime& stage : frame.stages) report.stages.push_back({stage.name, stage.ms});
   report.gpu_ms = frame.total_ms;
+  for (const gl::StageSpan& span : frame.spans)
+    report.spans.push_back({span.name, span.begin_ns, span.end_ns});
+  report.plan_ms = frame.cpu.plan;
+  report.upload_ms = frame.cpu.upload;
   report.submit_ms = frame.cpu.submit;
+  report.wait_ms = frame.cpu.wait;
+  report.read_ms = frame.cpu.read;
+  report.programs_made = frame.programs_made;
+  report.sampled_error = frame.sampled_error;
+  report.is_cut = frame.is_cut;
   report.gpu_bytes = frame.gpu_bytes;
   report.visible = frame.visible;
   report.pairs = frame.pairs;

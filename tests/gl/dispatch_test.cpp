@@ -139,6 +139,35 @@ TEST(Dispatcher, TimesEachStage) {
   EXPECT_GE(times[1].ms, 0.0);
 }
 
+/// What debuggers show: the names of groups that began.
+void APIENTRY note_group(GLenum, GLenum type, GLuint, GLenum, GLsizei, const GLchar* name,
+                         const void* names) {
+  if (type == GL_DEBUG_TYPE_PUSH_GROUP)
+    static_cast<std::vector<std::string>*>(const_cast<void*>(names))->emplace_back(name);
+}
+
+TEST(Dispatcher, DebuggersSeeTheNamesOfStages) {
+  Context& context = test::gl_context();
+  std::vector<std::string> names;
+  context.gl().Enable(GL_DEBUG_OUTPUT);
+  context.gl().Enable(GL_DEBUG_OUTPUT_SYNCHRONOUS);
+  context.gl().DebugMessageCallback(note_group, &names);
+  Dispatcher dispatcher(context);
+  dispatcher.begin_frame();
+  for (const char* const stage : {"one", "two", "one"}) dispatcher.begin_stage(stage);
+  dispatcher.end_frame();
+  context.gl().DebugMessageCallback(nullptr, nullptr);
+  EXPECT_EQ(names, (std::vector<std::string>{"one", "two", "one"}));
+  const std::vector<StageSpan> spans = dispatcher.read_spans();
+  ASSERT_EQ(spans.size(), 3u);
+  for (std::size_t k = 0; k < spans.size(); ++k) {
+    EXPECT_EQ(spans[k].name, names[k]) << "and times have the same";
+    EXPECT_GE(spans[k].end_ns, spans[k].begin_ns);
+    EXPECT_GE(spans[k].begin_ns, spans[0].begin_ns);
+  }
+  EXPECT_GE(context.gpu_time_ns(), spans.back().end_ns);
+}
+
 TEST(Buffer, KeepsWhatIsUploadedInPiecesOfItsOwn) {
   Context& context = test::gl_context();
   const std::int64_t before = context.allocated_bytes();

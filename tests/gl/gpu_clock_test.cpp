@@ -1,0 +1,47 @@
+#include "gl/gpu_clock.h"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <numeric>
+#include <thread>
+
+#include "support/gl.h"
+
+namespace binosplat::gl {
+namespace {
+
+GpuClock::Uuid counting() {
+  GpuClock::Uuid uuid{};
+  std::iota(uuid.begin(), uuid.end(), std::uint8_t{0});
+  return uuid;
+}
+
+TEST(GpuClock, IsThatOfTheGpuThatDrawsAndIsAskedAgain) {
+  const GpuClock clock(BINOSPLAT_FAKE_NVML, counting());
+  EXPECT_EQ(clock.problem(), "");
+  ASSERT_TRUE(clock.mhz());
+  const auto start = std::chrono::steady_clock::now();
+  while (*clock.mhz() > 1900.0 && std::chrono::steady_clock::now() - start < std::chrono::seconds(20))
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  EXPECT_LE(*clock.mhz(), 1900.0) << "it is told once only";
+}
+
+TEST(GpuClock, SaysWhyNothingTellsIt) {
+  const GpuClock none("libno-such-library.so.1", counting());
+  EXPECT_FALSE(none.mhz());
+  EXPECT_EQ(none.problem(), "there is no libno-such-library.so.1 to ask");
+  GpuClock::Uuid other = counting();
+  other[3] = 99;
+  const GpuClock of_another(BINOSPLAT_FAKE_NVML, other);
+  EXPECT_FALSE(of_another.mhz());
+  EXPECT_NE(of_another.problem().find("does not know the GPU that draws"), std::string::npos);
+  const GpuClock of_two(BINOSPLAT_FAKE_NVML, std::nullopt);
+  EXPECT_FALSE(of_two.mhz()) << "one of two, nobody knows which";
+  if (test::gl_context().software()) {
+    EXPECT_EQ(GpuClock(test::gl_context()).problem(), "the CPU draws");
+  }
+}
+
+}  // namespace
+}  // namespace binosplat::gl
