@@ -17,4 +17,8 @@ inline constexpr std::array profile_files = {"report.html", "trace.json", "frame
 void save_profile(const std::filesystem::path& folder, const lab::Profile& profile,
                   const std::vector<std::string>& changes);
 
+/// The same of frames that were recorded while somebody looked: "in the window".
+void save_recording(const std::filesystem::path& folder, const lab::ProfileFacts& facts,
+                    render::Recording recording);
+
 }  // namespace binosplat::app

@@ -1,9 +1,11 @@
 #include <deque>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "app/command.h"
 #include "app/profile.h"
 #include "app/report.h"
+#include "base/log.h"
 #include "base/output_file.h"
 #include "lab/csv.h"
 
@@ -24,6 +26,13 @@ void save_profile(const std::filesystem::path& folder, const lab::Profile& profi
     file.flush();
   }
   for (OutputFile& file : files) file.commit();
+}
+
+void save_recording(const std::filesystem::path& folder, const lab::ProfileFacts& facts,
+                    render::Recording recording) {
+  const lab::Profile profile{.facts = facts, .recording = std::move(recording)};
+  save_profile(folder, profile, {});
+  for (const std::string& line : lab::lines_of(profile, lab::summary_of(profile))) log_info("{}", line);
 }
 
 }  // namespace binosplat::app

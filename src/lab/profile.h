@@ -29,13 +29,6 @@ struct Profile {
   std::optional<Saving> saving;
 };
 
-/// Something that happened in a frame.
-struct FrameEvent {
-  std::string name, detail;  // "drawn again", "2 times, since a buffer was too small"
-
-  std::string text() const { return detail.empty() ? name : name + ": " + detail; }
-};
-
 struct Quantiles {
   double median = 0.0, p90 = 0.0, p99 = 0.0, most = 0.0;
 };
@@ -57,7 +50,8 @@ double cpu_ms(const render::FrameRecord& frame);  // of the thread that draws, w
 
 bool is_missed(const render::Recording& recording, std::size_t n);
 
-std::vector<FrameEvent> events_of(const render::Recording& recording, std::size_t n);
+/// As render::events_of(), with the names of programs, and where the clock was low.
+std::vector<render::FrameEvent> events_of(const render::Recording& recording, std::size_t n);
 
 /// Throws Error for a recording without frames.
 ProfileSummary summary_of(const Profile& profile);

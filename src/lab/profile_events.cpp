@@ -12,6 +12,7 @@ namespace binosplat::lab {
 
 namespace {
 
+using render::FrameEvent;
 using render::FrameRecord;
 using render::Recording;
 
@@ -28,8 +29,6 @@ std::string programs_of(const Recording& recording, const FrameRecord& frame) {
   }
   return fmt::format("{}", fmt::join(names, ", "));
 }
-
-std::string times(int count) { return count == 1 ? "once" : fmt::format("{} times", count); }
 
 double fastest(const Recording& recording) {
   double most = 0.0;
@@ -99,27 +98,12 @@ bool is_missed(const Recording& recording, std::size_t n) {
 
 std::vector<FrameEvent> events_of(const Recording& recording, std::size_t n) {
   const FrameRecord& frame = recording.frames[n];
-  const render::FrameReport& report = frame.report;
-  std::vector<FrameEvent> events;
-  if (report.redrawn > 0)
-    events.push_back({"drawn again", times(report.redrawn) + ", since a buffer was too small"});
-  if (report.attempts > 1) {
-    events.push_back({"drawn again", fmt::format("{}, since its quality of {:.1f} dB was missed",
-                                                 times(report.attempts - 1), report.quality)});
+  std::vector<FrameEvent> events = render::events_of(frame, n == 0 ? nullptr : &recording.frames[n - 1]);
+  for (FrameEvent& event : events) {
+    if (event.name == "program compiled") event.detail = programs_of(recording, frame);
   }
-  if (report.is_cut) events.push_back({"camera cut", "it goes by nothing that earlier frames measured"});
-  if (report.sampled_error) events.push_back({"measured its error", ""});
-  if (report.programs_made > 0) events.push_back({"program compiled", programs_of(recording, frame)});
-  if (frame.levels.uploaded > 0)
-    events.push_back({"levels uploaded", fmt::format("{} Gaussians", frame.levels.uploaded)});
-  const std::int64_t before = n == 0 ? report.gpu_bytes : recording.frames[n - 1].report.gpu_bytes;
-  if (report.gpu_bytes > before)
-    events.push_back(
-        {"buffers grew", fmt::format("{:.1f} MB", 1e-6 * static_cast<double>(report.gpu_bytes - before))});
   if (frame.mhz && *frame.mhz < slow_share * fastest(recording))
     events.push_back({"low clock", fmt::format("{:.0f} MHz", *frame.mhz)});
-  if (frame.display && frame.display->missed > 0)
-    events.push_back({"display missed", times(frame.display->missed)});
   return events;
 }
 

@@ -13,6 +13,7 @@ namespace binosplat::lab {
 namespace {
 
 using nlohmann::ordered_json;
+using render::FrameEvent;
 using render::FrameRecord;
 using render::Recording;
 

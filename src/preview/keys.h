@@ -24,6 +24,7 @@ inline constexpr KeyHelp key_help[] = {
     {"F", "full screen, or a window again"},
     {"F1", "show or hide the panel"},
     {"F5", "read the model again"},
+    {"F8", "record ten seconds of frames, as `profile` does"},
     {"F9", "save the pose beside the model"},
     {"F11, F12", "save an OpenEXR of both eyes, a PNG"},
     {"K, Space", "add a key to the path, play the path"},

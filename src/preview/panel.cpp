@@ -176,6 +176,11 @@ void Panel::draw_open() {
   ImGui::TextDisabled("or drop it on the window");
 }
 
+void Panel::draw_times_of(Session& session) {
+  draw_times(session.frames(), budget_ms);
+  if (ImGui::Button(recording ? "stop recording (F8)" : "record 10 s (F8)")) requests.record();
+}
+
 void Panel::draw_accuracy(Session& session) {
   if (draw_thresholds(session.choices.settings)) {
     session.change();
@@ -219,12 +224,12 @@ void Panel::draw(Session& session) {
   if (ImGui::Button("hide (F1)")) open = false;
   ImGui::SameLine();
   if (ImGui::Button("full screen (F)")) requests.full_screen();
-  draw_speed(session.reports(), frames_a_second);
+  draw_speed(session.frames(), frames_a_second);
   draw_controls(session);
   if (ImGui::CollapsingHeader("path", ImGuiTreeNodeFlags_DefaultOpen)) draw_path(session);
   if (ImGui::CollapsingHeader("open", ImGuiTreeNodeFlags_DefaultOpen)) draw_open();
   if (ImGui::CollapsingHeader("accuracy")) draw_accuracy(session);
-  if (ImGui::CollapsingHeader("times")) draw_times(session.reports());
+  if (ImGui::CollapsingHeader("times")) draw_times_of(session);
   if (ImGui::CollapsingHeader("keys")) draw_keys();
   ImGui::PopItemWidth();
   ImGui::End();

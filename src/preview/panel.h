@@ -11,7 +11,7 @@ namespace binosplat::preview {
 
 /// What buttons ask of the window.
 struct Requests {
-  std::function<void()> save_pose, full_screen, add_key, play;
+  std::function<void()> save_pose, full_screen, add_key, play, record;
   std::function<void(std::size_t key)> move_key, delete_key;
   std::function<void(const std::string& file)> open;
 };
@@ -20,7 +20,9 @@ struct Panel {
   bool open = true;
   bool walking = false;
   bool playing = false;
-  bool stereo_window = false;  // LAYOUT_QUAD_BUFFER may be chosen
+  bool recording = false;
+  double budget_ms = 1000.0 / 60.0;  // that a frame may take: the display's
+  bool stereo_window = false;        // LAYOUT_QUAD_BUFFER may be chosen
   Requests requests;
   std::optional<double> frames_a_second;  // as they were shown last while the head moved
   std::optional<double> psnr;             // dB, of the last picture that was compared
@@ -37,6 +39,7 @@ struct Panel {
   bool draw_view(Session& session);
   void draw_open();
   void draw_path(Session& session);
+  void draw_times_of(Session& session);
   void draw_accuracy(Session& session);
 
   std::string file_;  // that is typed, to be opened

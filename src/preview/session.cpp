@@ -1,8 +1,10 @@
 #include "preview/session.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "base/error.h"
+#include "base/spans.h"
 #include "formats/exr.h"
 #include "formats/image_file.h"
 #include "formats/pose_file.h"
@@ -16,7 +18,7 @@ namespace binosplat::preview {
 
 namespace {
 
-constexpr std::size_t reports_kept = 240;
+constexpr std::size_t frames_kept = 240;
 
 // Where the densest part of a model lies before a camera: the median view depth of what is ahead.
 double depth_ahead(const Model& model, const Camera& of_world) {
@@ -196,7 +198,13 @@ render::FrameReport Session::draw_frame(std::span<const shared::View> asked) {
 }
 
 void Session::follow_levels() {
-  if (!loaded_.stream || !loaded_.stream->begin_frame(views(), choices.settings, levels_ms_most)) return;
+  if (!loaded_.stream) return;
+  last_.followed = Clock::now();
+  last_.levels.ms = 0.0;
+  const TimedSpan span("levels", &last_.levels.ms);
+  const bool has_changed = loaded_.stream->begin_frame(views(), choices.settings, levels_ms_most);
+  last_.levels.uploaded += loaded_.stream->take_times().put;
+  if (!has_changed) return;
   debug_view_.release();
   change();
 }
@@ -214,8 +222,8 @@ std::vector<shared::View> Session::views_of(const Camera& camera) {
 
 bool Session::draw() {
   const bool interlaced = choices.layout == LAYOUT_ROWS || choices.layout == LAYOUT_COLUMNS;  // never scaled
-  const bool shrinks = moving_ && !interlaced && !reports_.empty();
-  const int divisor = shrinks ? next_divisor(divisor_, reports_.back().total_ms) : 1;
+  const bool shrinks = moving_ && !interlaced && !last_.frames.empty();
+  const int divisor = shrinks ? next_divisor(divisor_, last_.frames.back().report.total_ms) : 1;
   const glm::ivec2 size = eye_size(divisor);
   if (pending_ == 0 || size.x < 1 || size.y < 1) return false;
   --pending_;
@@ -224,7 +232,12 @@ bool Session::draw() {
     const std::vector<shared::View> asked = views_of(camera);
     eyes_ = stereo::make_rig(camera, choices.rig).cameras;
     divisor_ = divisor;
-    reports_.push_back(draw_frame(asked));
+    render::FrameRecord frame{.views = asked, .gaussians = loaded_.gaussians()};
+    frame.begin = frame.due = std::exchange(last_.followed, {}).value_or(Clock::now());
+    frame.report = draw_frame(asked);
+    frame.end = Clock::now();
+    frame.levels = std::exchange(last_.levels, {});
+    last_.frames.push_back(std::move(frame));
     shown_layout_ = choices.layout;
     drawn_ = frame_.views();
     make_shown(asked);
@@ -235,7 +248,7 @@ bool Session::draw() {
     pending_ = 0;
     return true;
   }
-  if (reports_.size() > reports_kept) reports_.pop_front();
+  if (last_.frames.size() > frames_kept) last_.frames.pop_front();
   ++frames_drawn_;
   if (screen_.is_sought && shown_layout_ != LAYOUT_SEPARATE) find_screen();
   return true;

@@ -13,7 +13,7 @@
 #include "preview/key_list.h"
 #include "preview/mark_drawing.h"
 #include "preview/navigator.h"
-#include "render/frame.h"
+#include "render/frame_record.h"
 #include "scene/model.h"
 #include "stereo/debug_view.h"
 #include "stereo/present.h"
@@ -135,8 +135,8 @@ class Session {
   /// PSNR of what is drawn against the exact frame, dB, over both eyes.
   double psnr_against_exact();
 
-  /// The reports of the last frames drawn, newest last.
-  const std::deque<render::FrameReport>& reports() const { return reports_; }
+  /// The last frames drawn, newest last.
+  const std::deque<render::FrameRecord>& frames() const { return last_.frames; }
   /// The number of a map's brightest colour (stereo/debug_view.h).
   std::optional<double> most_shown() const { return shown_.pictures.most; }
   std::size_t frames_drawn() const { return frames_drawn_; }
@@ -193,7 +193,13 @@ class Session {
   std::vector<shared::View> drawn_;     // its views as the frame has them
   int pending_ = 1;                     // frames still to draw
   std::size_t frames_drawn_ = 0;
-  std::deque<render::FrameReport> reports_;
+  /// The last frames, and the levels that came since.
+  struct Last {
+    std::deque<render::FrameRecord> frames;
+    render::FrameLevels levels;
+    std::optional<Clock::time_point> followed;  // when the next frame's levels were followed
+  };
+  Last last_;
   std::string trouble_;
   /// Whether the convergence that suits the first picture is sought, and what was found.
   struct Screen {

@@ -37,6 +37,8 @@ Window::Window(const Choices& choices, const WindowSettings& settings,
                std::function<Opened(const std::string&)> open)
     : choices_(choices), settings_(settings), open_(std::move(open)) {
   panel_.stereo_window = choices_.layout == LAYOUT_QUAD_BUFFER;
+  const GLFWvidmode* const mode = glfwGetVideoMode(glfwGetPrimaryMonitor());
+  if (mode != nullptr && mode->refreshRate > 0) panel_.budget_ms = 1000.0 / mode->refreshRate;
   window_ = open_window(settings_.size, panel_.stereo_window);
   glfwMakeContextCurrent(window_);
   glfwSwapInterval(1);
@@ -52,6 +54,7 @@ Window::Window(const Choices& choices, const WindowSettings& settings,
       .full_screen = [this] { key(GLFW_KEY_F, 0); },
       .add_key = [this] { save_in_folder([this] { return session_->add_key(); }); },
       .play = [this] { play_or_stop(); },
+      .record = [this] { record_or_stop(); },
       .move_key = [this](std::size_t k) { save_in_folder([&] { return session_->move_key(k); }); },
       .delete_key = [this](std::size_t k) { delete_key(k); },
       .open = [this](const std::string& file) { open_file(file); }};
@@ -63,6 +66,7 @@ Window::Window(const Choices& choices, const WindowSettings& settings,
 }
 
 Window::~Window() {
+  recording_.reset();
   session_.reset();
   ImGui_ImplOpenGL3_Shutdown();
   ImGui_ImplGlfw_Shutdown();
@@ -90,10 +94,12 @@ void Window::run() {
       if (session_->moving() && glfwGetTime() - moved_at_ > seconds_to_rest) session_->rest();
       follow_levels();
       if (draw()) {
+        if (recording_) record(session_->frames().back());
         measure_pace();
         ui_frames_ = std::max(ui_frames_, 1);
       }
     }
+    if (recording_ && glfwGetTime() > recording_->until) record_or_stop();
     if (ui_frames_ > 0) show();
     context_->check_alive();
   }
@@ -115,6 +121,7 @@ void Window::wait() {
   if (loading_.loaded.valid()) at_most(0.05);
   if (levels_.moved || levels_move()) at_most(0.02);
   if (session_ && session_->moving()) at_most(seconds_to_rest);
+  if (recording_) at_most(std::max(0.0, recording_->until - glfwGetTime()));
   if (!settings_.shader_folder.empty()) at_most(0.5);
   if (!seconds) return glfwWaitEvents();
   glfwWaitEventsTimeout(std::max(*seconds, 1e-3));
@@ -143,6 +150,7 @@ void Window::take_loaded() {
       choices = session_->choices;
       choices.seeks_screen = choices.seeks_screen && !choices.rig.convergence;  // it stays where it is
     }
+    recording_.reset();
     session_.reset();  // its memory first
     levels_.follow = loaded.stream != nullptr;
     levels_.moved = false;
@@ -247,6 +255,7 @@ void Window::show() {
     if (!announced_)
       messages.push_back({"drawing the first picture: the driver may have to build its shaders"});
     panel_.playing = playing_.has_value();
+    panel_.recording = recording_.has_value();
     panel_.draw(*session_);
   }
   if (loading_.loaded.valid()) {

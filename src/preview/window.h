@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "preview/session.h"
+#include "render/recorder.h"
 
 namespace binosplat::preview {
 
@@ -23,10 +24,15 @@ struct Opened {
   std::function<Start(const Model& model, Choices& choices)> start;
 };
 
+/// Writes frames of a scene, that were recorded with this context, into a new folder.
+using SaveRecording = std::function<void(const std::filesystem::path& folder, const std::string& scene,
+                                         const gl::Context& context, render::Recording recording)>;
+
 struct WindowSettings {
   std::optional<glm::ivec2> size;  // px; none: what suits the display
   std::filesystem::path
       shader_folder;  // empty: the embedded shaders; else they are read again when they change
+  SaveRecording save_recording;
 };
 
 /// Shows a scene until the window is closed; files dropped on it are opened with `open`, whose Errors are

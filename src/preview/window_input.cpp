@@ -165,6 +165,7 @@ void Window::key_of_scene(int key, int by) {
   if (key == GLFW_KEY_L || key == GLFW_KEY_T || key == GLFW_KEY_H) session_->change();
   if (key == GLFW_KEY_SPACE) play_or_stop();
   if (key == GLFW_KEY_K) save_in_folder([this] { return session_->add_key(); });
+  if (key == GLFW_KEY_F8) record_or_stop();
   if (key == GLFW_KEY_F9) save([this] { return save_pose(); });
   if (key == GLFW_KEY_F11 || key == GLFW_KEY_F12)
     save_in_folder([&] { return session_->save_picture(key == GLFW_KEY_F11); });
@@ -235,6 +236,28 @@ void Window::save_in_folder(const std::function<std::string()>& write) {
     return write();
   });
 }
+
+// A frame is due as often as the display shows one.
+void Window::record_or_stop() {
+  constexpr double seconds = 10.0;
+  if (!recording_) {
+    recording_.emplace(
+        Recording{{*context_, 1000.0 / panel_.budget_ms, std::make_shared<gl::GpuClock>(*context_)},
+                  glfwGetTime() + seconds});
+    return tell(fmt::format("recording {:.0f} s: F8 ends it", seconds));
+  }
+  render::Recording recording = recording_->recorder.finish();
+  recording_.reset();
+  if (recording.frames.empty())
+    return tell("no frame was drawn meanwhile: move the head while recording", true);
+  save_in_folder([&] {
+    const std::filesystem::path folder = free_name(scene_.folder, "profile", "");
+    settings_.save_recording(folder, scene_.name, *context_, std::move(recording));
+    return folder.string();
+  });
+}
+
+void Window::record(const render::FrameRecord& frame) { recording_->recorder.add(frame); }
 
 std::string Window::save_pose() const {
   if (scene_.pose_file.empty()) fail("{} is built in: there is no file to save a pose beside", scene_.name);

@@ -64,6 +64,8 @@ class Window {
   void save(const std::function<std::string()>& write);
   void save_in_folder(const std::function<std::string()>& write);
   std::string save_pose() const;
+  void record_or_stop();
+  void record(const render::FrameRecord& frame);
 
   Choices choices_;
   WindowSettings settings_;
@@ -100,6 +102,12 @@ class Window {
     Camera head = {};  // where that has brought it
   };
   std::optional<Playing> playing_;
+  /// Frames that are recorded, until then.
+  struct Recording {
+    render::Recorder recorder;
+    double until = 0.0;
+  };
+  std::optional<Recording> recording_;
   std::optional<double> drawn_at_;    // the last frame, where the next may follow at once
   std::deque<double> frame_seconds_;  // between the last frames that did
   glm::dvec2 cursor_{0.0};

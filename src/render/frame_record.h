@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "base/clock.h"
@@ -18,8 +19,8 @@ struct FrameLevels {
 
 /// What a headset's runtime said of a frame.
 struct FrameDisplay {
-  double predicted_ms = 0.0;  // from the frame's begin to when it is shown
-  int missed = 0;             // times that something is shown between the last frame's and this one's
+  double predicted_ms = 0.0;  // when it is to be shown, since the first frame was
+  int missed = 0;             // times that something was shown between the last frame and this one
 };
 
 struct FrameRecord {
@@ -35,5 +36,15 @@ struct FrameRecord {
 
   double wall_ms() const { return std::chrono::duration<double, std::milli>(end - begin).count(); }
 };
+
+/// Something that happened in a frame.
+struct FrameEvent {
+  std::string name, detail;  // "drawn again", "2 times, since a buffer was too small"
+
+  std::string text() const { return detail.empty() ? name : name + ": " + detail; }
+};
+
+/// `before` is the frame before it; null for the first one.
+std::vector<FrameEvent> events_of(const FrameRecord& frame, const FrameRecord* before);
 
 }  // namespace binosplat::render

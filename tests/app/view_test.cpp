@@ -9,6 +9,7 @@
 
 #include "app/scene.h"
 #include "formats/image_file.h"
+#include "lab/trace_rules.h"
 #include "measure/metrics.h"
 #include "support/broken.h"
 #include "support/display.h"
@@ -206,6 +207,24 @@ TEST_F(ViewOnADisplay, AGridAndCamerasAreShownByKeys) {
   key("c");
   EXPECT_TRUE(says(without, "comes without cameras"));
   EXPECT_EQ(leave(without).code, 0);
+}
+
+TEST_F(ViewOnADisplay, FramesAreRecordedByAKey) {
+  Program program = view();
+  ASSERT_TRUE(says(program, "Gaussians"));
+  key("F8");
+  hands("keydown w sleep 1 keyup w");
+  key("F8");
+  ASSERT_TRUE(says(program, "saved " + out + "/profile_001"));
+  EXPECT_TRUE(says(program, "model.ply, in the window: "));
+  EXPECT_EQ(leave(program).code, 0);
+  for (const char* const name : {"report.html", "trace.json", "frames.csv", "profile.json"})
+    EXPECT_TRUE(fs::exists(fs::path(out) / "profile_001" / name)) << name;
+  const auto trace = nlohmann::json::parse(test::read_text(out + "/profile_001/trace.json"));
+  EXPECT_EQ(test::faults_of_trace(trace), std::vector<std::string>());
+  const lab::Table frames = lab::read_csv(test::read_text(out + "/profile_001/frames.csv"), "frames.csv");
+  EXPECT_GT(frames.rows.size(), 3u) << "the head was under way for a second";
+  EXPECT_EQ(test::differences_of(trace, frames), std::vector<std::string>());
 }
 
 TEST_F(ViewOnADisplay, KeysArePlayedAndGoneOnWith) {

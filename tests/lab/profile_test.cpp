@@ -15,6 +15,7 @@ namespace binosplat::lab {
 namespace {
 
 using nlohmann::json;
+using render::FrameEvent;
 using std::chrono::microseconds;
 
 /// So many frames, one each 20 ms: 2 ms of project and 3 of blend on a GPU whose clock is 7 s ahead, 1 ms of

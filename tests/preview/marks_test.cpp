@@ -175,11 +175,11 @@ struct MarkedSession : testing::Test {
 
 TEST_F(MarkedSession, OffTheyLeaveNoTrace) {
   const Image before = with(false, false);
-  const auto stages = session->reports().back().stages.size();
+  const auto stages = session->frames().back().report.stages.size();
   EXPECT_GT(difference(with(true, true), before), 0.1);
-  EXPECT_GT(session->reports().back().stages.size(), stages);
+  EXPECT_GT(session->frames().back().report.stages.size(), stages);
   EXPECT_EQ(difference(with(false, false), before), 0.0);
-  EXPECT_EQ(session->reports().back().stages.size(), stages);
+  EXPECT_EQ(session->frames().back().report.stages.size(), stages);
 }
 
 TEST_F(MarkedSession, SplatsAndTheGridHideEachOther) {

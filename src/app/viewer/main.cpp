@@ -11,6 +11,7 @@
 #include "app/command_line.h"
 #include "app/followed.h"
 #include "app/load_scene.h"
+#include "app/profile.h"
 #include "app/render_options.h"
 #include "app/render_outputs.h"
 #include "app/shots.h"
@@ -117,6 +118,12 @@ void view(const RenderOptions& o) {
   preview::WindowSettings window;
   window.size = o.camera.lens.size;
   window.shader_folder = o.context.shader_dir;
+  window.save_recording = [](const fs::path& to, const std::string& scene, const gl::Context& context,
+                             render::Recording recording) {
+    save_recording(to,
+                   {scene, "in the window", "as chosen there", lab::device_text(context), context.software()},
+                   std::move(recording));
+  };
   // What is saved of another model lies apart.
   const auto open_other = [folder, metre = o.rig.units_per_metre](const std::string& file) {
     const fs::path own = folder.empty() ? folder : folder / default_folder(file).filename();

@@ -1,0 +1,36 @@
+#include "render/frame_record.h"
+
+#include <fmt/core.h>
+
+namespace binosplat::render {
+
+namespace {
+
+std::string times(int count) { return count == 1 ? "once" : fmt::format("{} times", count); }
+
+}  // namespace
+
+std::vector<FrameEvent> events_of(const FrameRecord& frame, const FrameRecord* before) {
+  const FrameReport& report = frame.report;
+  std::vector<FrameEvent> events;
+  if (report.redrawn > 0)
+    events.push_back({"drawn again", times(report.redrawn) + ", since a buffer was too small"});
+  if (report.attempts > 1) {
+    events.push_back({"drawn again", fmt::format("{}, since its quality of {:.1f} dB was missed",
+                                                 times(report.attempts - 1), report.quality)});
+  }
+  if (report.is_cut) events.push_back({"camera cut", "it goes by nothing that earlier frames measured"});
+  if (report.sampled_error) events.push_back({"measured its error", ""});
+  if (report.programs_made > 0)
+    events.push_back({"program compiled", fmt::format("{} or loaded", times(report.programs_made))});
+  if (frame.levels.uploaded > 0)
+    events.push_back({"levels uploaded", fmt::format("{} Gaussians", frame.levels.uploaded)});
+  const std::int64_t grown = before == nullptr ? 0 : report.gpu_bytes - before->report.gpu_bytes;
+  if (grown > 0)
+    events.push_back({"buffers grew", fmt::format("{:.1f} MB", 1e-6 * static_cast<double>(grown))});
+  if (frame.display && frame.display->missed > 0)
+    events.push_back({"display missed", times(frame.display->missed)});
+  return events;
+}
+
+}  // namespace binosplat::render
