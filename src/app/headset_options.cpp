@@ -15,7 +15,7 @@ namespace {
 // What a headset has of its own, and what only windows have.
 constexpr const char* of_windows[] = {"--size", "--layout", "--ipd", "--convergence", "--cant",
                                       "--show", "--split",  "--fov", "--output"};
-constexpr const char* of_headsets[] = {"--scale", "--frame-budget", "--no-mirror", "--foveate"};
+constexpr const char* of_headsets[] = {"--scale", "--frame-budget", "--no-mirror", "--record", "--foveate"};
 
 bool is_given(const CLI::App& sub, const char* name) {
   const CLI::Option* const option = sub.get_option_no_throw(name);
@@ -43,6 +43,11 @@ void add_headset_options(CLI::App& sub, HeadsetOptions& o) {
          "Quality, then size, as a frame's time allows: less where frames take\nlonger; auto: four fifths of "
          "the time that the runtime has for one")
       ->type_name("MS|auto");
+  sub.add_option(
+         "--record", o.record_s,
+         "Record the first S seconds as `profile` does; F8 in the window that\nmirrors records ten more")
+      ->type_name("S")
+      ->check(positive);
   sub.add_flag_callback(
       "--no-mirror", [&o] { o.mirror = false; }, "No window that shows what the left eye sees");
 }

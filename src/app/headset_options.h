@@ -11,6 +11,7 @@ struct HeadsetOptions {
   bool xr = false;
   double scale = 1.0;               // of the sizes that the runtime recommends
   std::optional<double> budget_ms;  // 0: what the runtime has for a frame
+  std::optional<double> record_s;   // so much is recorded, from the first frame on
   bool mirror = true;               // the left eye in a window, where there is a display
 };
 

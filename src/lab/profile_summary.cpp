@@ -66,7 +66,7 @@ std::string advice_of(const Profile& profile, const ProfileSummary& summary) {
   const std::size_t gaussians = profile.recording.frames.back().gaussians;
   if (gaussians > 1'000'000 && all > 0.0 && longest_stage(summary).name == "project")
     return fmt::format("levels of detail: binosplat levels {} writes them", profile.facts.scene);
-  return summary.missed > 0 ? "a smaller --size, or --foveate for eyes that are tracked" : "";
+  return summary.missed > 0 ? "smaller pictures, or --foveate for eyes that are tracked" : "";
 }
 
 std::vector<std::string> lines_of(const Profile& profile, const ProfileSummary& summary) {

@@ -30,6 +30,12 @@ bool Mirror::step() {
   return glfwWindowShouldClose(window_) == GLFW_FALSE && glfwGetKey(window_, GLFW_KEY_ESCAPE) != GLFW_PRESS;
 }
 
+bool Mirror::take_record_key() {
+  const bool was_down = is_record_down_;
+  is_record_down_ = glfwGetKey(window_, GLFW_KEY_F8) == GLFW_PRESS;
+  return is_record_down_ && !was_down;
+}
+
 void Mirror::show(const Target& picture, const glm::ivec2& size) {
   const gl::Functions& gl = context_->gl();
   if (framebuffer_ == 0) gl.CreateFramebuffers(1, &framebuffer_);

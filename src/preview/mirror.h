@@ -28,12 +28,16 @@ class Mirror {
   /// in it.
   bool step();
 
+  /// Whether F8, which records, was pressed since the last call.
+  bool take_record_key();
+
  private:
   Glfw glfw_;
   GLFWwindow* window_ = nullptr;
   std::unique_ptr<gl::Context> context_;
   std::uint32_t framebuffer_ = 0;  // of what is shown
   bool drawn_ = false;             // and not on the screen yet
+  bool is_record_down_ = false;    // when it was asked last
 };
 
 }  // namespace binosplat::preview

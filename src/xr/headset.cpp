@@ -2,12 +2,16 @@
 
 #include <binosplat/report.h>
 
+#include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <glm/gtc/quaternion.hpp>
 #include <thread>
+#include <utility>
 
 #include "base/error.h"
 #include "base/log.h"
+#include "base/spans.h"
 #include "base/statistics.h"
 #include "xr/hands.h"
 
@@ -76,11 +80,13 @@ class Viewer {
   /// A frame of the runtime's.
   void draw(Session& session, Hands& hands, std::unique_ptr<Projection>& projection) {
     const FrameTime time = session.begin_frame();
+    const auto began = Clock::now();
     const std::vector<XrView> views = time.is_shown ? session.locate(time.display) : std::vector<XrView>();
     if (time.is_shown && views.empty() && tracked_) log_info("the head is not tracked: nothing is shown");
     if (time.is_shown) tracked_ = !views.empty();
     if (views.empty()) {
       last_.reset();
+      if (shown_) shown_->last = time.display;  // which was not missed: nothing was to be drawn
       return session.end_frame(time, nullptr);
     }
     if (session.take_recentred(time.display)) frame_.frame().forget();
@@ -94,7 +100,12 @@ class Viewer {
     if (session.take_masks_changed()) projection->take_masks();
     follow(session, hands, views, time);
     const double period_ms = 1e-6 * static_cast<double>(time.period);
-    const float left = follow_levels(period_ms);
+    render::FrameRecord record{.due = began, .begin = began};
+    float left = 0.0f;
+    {
+      const TimedSpan span("levels", &record.levels.ms);
+      left = follow_levels(period_ms);
+    }
     if (settings_.budget_ms && !budget_) {
       budget_.emplace(*settings_.budget_ms > 0.0 ? *settings_.budget_ms : own_share * period_ms);
     }
@@ -104,12 +115,27 @@ class Viewer {
     if (budget_ && effort.quality) settings.th = TH_SQUARED;
     const std::optional<XrPosef> gaze =
         settings_.projection.foveation ? hands.gaze(time.display) : std::nullopt;
-    const render::FrameReport report =
-        projection->draw(frame_, views, walk_->placement(), settings,
-                         {.scale = effort.scale, .gaze = gaze, .drawn_left = beside_.show});
-    times_.push_back(report.total_ms);
-    if (budget_) budget_->took(report.total_ms, period_ms);
+    record.report = projection->draw(frame_, views, walk_->placement(), settings,
+                                     {.scale = effort.scale, .gaze = gaze, .drawn_left = beside_.show});
+    times_.push_back(record.report.total_ms);
+    if (budget_) budget_->took(record.report.total_ms, period_ms);
     session.end_frame(time, projection->layer());
+    tell_drawn(std::move(record), time);
+  }
+
+  /// Tells of a frame that the runtime has, and of the times at which it shows frames.
+  void tell_drawn(render::FrameRecord record, const FrameTime& time) {
+    record.end = Clock::now();
+    record.views.assign(frame_.frame().views().begin(),
+                        frame_.frame().views().begin() + frame_.frame().plan().asked);
+    record.gaussians = frame_.frame().model()->size().gaussians;
+    if (!shown_) shown_ = {time.display, time.display};
+    const auto periods = std::llround(static_cast<double>(time.display - shown_->last) /
+                                      static_cast<double>(std::max<XrDuration>(time.period, 1)));
+    record.display = {1e-6 * static_cast<double>(time.display - shown_->first),
+                      static_cast<int>(std::max(periods - 1, 0LL))};
+    shown_->last = time.display;
+    if (beside_.drawn) beside_.drawn(std::move(record), 1e-6 * static_cast<double>(time.period));
   }
 
   std::unique_ptr<Projection> make_projection(const Session& session) const {
@@ -149,8 +175,13 @@ class Viewer {
   std::optional<Walk> walk_;  // goes on where a session is lost
   std::optional<FrameBudget> budget_;
   std::optional<XrTime> last_;  // when the last frame was seen
-  XrTime looked_ = 0;           // when it was asked which sizes the runtime recommends
-  std::vector<double> times_;   // ms
+  /// When the first and the last frame were shown that were drawn.
+  struct Shown {
+    XrTime first = 0, last = 0;
+  };
+  std::optional<Shown> shown_;
+  XrTime looked_ = 0;          // when it was asked which sizes the runtime recommends
+  std::vector<double> times_;  // ms
   bool tracked_ = true, leaving_ = false;
 };
 

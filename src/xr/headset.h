@@ -6,6 +6,7 @@
 #include <optional>
 #include <span>
 
+#include "render/frame_record.h"
 #include "xr/projection.h"
 
 namespace binosplat::xr {
@@ -31,6 +32,8 @@ struct Beside {
   /// the last one took `drawn_ms`. Returns the PSNR in dB that the frame itself must keep, since levels lose
   /// a part of what FrameSettings::quality allows; 0: the frame is drawn without a quality.
   std::function<float(std::span<const shared::View> views, double frame_ms, double drawn_ms)> levels;
+  /// Takes each frame once it was handed to the runtime, which shows one every `period_ms`. May be empty.
+  std::function<void(render::FrameRecord frame, double period_ms)> drawn = {};
 };
 
 /// Where OpenXR's space lies at first: its origin at the start camera, 1.6 m lower where it lies on the

@@ -11,6 +11,7 @@
 #include "base/error.h"
 #include "formats/model_file.h"
 #include "formats/model_output.h"
+#include "lab/trace_rules.h"
 #include "measure/metrics.h"
 #include "support/display.h"
 #include "support/gl.h"
@@ -180,6 +181,37 @@ TEST_F(XrView, DepthIsTheMedian) {
     EXPECT_GT(differing(median[1 - k]), 20) << "the other eye's go unnoticed";
     EXPECT_GT(differing(median[k], 0), 20) << "another pixel's go unnoticed";
   }
+}
+
+TEST_F(XrView, RecordsFramesAndTheDisplaysThatTheyMissed) {
+  stage.script = {{"frames", 12}, {"late", {5}}, {"not_rendered", {8}}, {"pixels", Json::array()}};
+  const Outcome outcome = run_program(
+      [&] {
+        Strings words = plain_words;
+        words.insert(words.end(), {"--record", "60"});
+        return words;
+      }(),
+      {.folder = folder.path(), .variables = stage.variables()});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const std::filesystem::path recorded = folder.path() / "out" / folder.path().filename() / "profile_001";
+  ASSERT_TRUE(std::filesystem::exists(recorded / "report.html")) << outcome.err;
+  EXPECT_NE(outcome.err.find("frames of 2 x 96 x 80 px"), std::string::npos) << outcome.err;
+  const lab::Table frames = lab::read_csv(read_text(recorded / "frames.csv"), "frames.csv");
+  const auto column = [&](const std::string& name) {
+    const auto at = std::ranges::find(frames.columns, name) - frames.columns.begin();
+    std::vector<double> numbers;
+    for (const auto& row : frames.rows)
+      numbers.push_back(std::get<double>(row[static_cast<std::size_t>(at)].value));
+    return numbers;
+  };
+  // The first frame begins the recording; the ninth was not to be drawn.
+  ASSERT_EQ(frames.rows.size(), 10u);
+  EXPECT_EQ(column("displays_missed"), (std::vector<double>{0, 0, 0, 0, 1, 0, 0, 0, 0, 0}));
+  EXPECT_NEAR(column("display_ms")[0], 11.1, 0.1);
+  EXPECT_NEAR(column("display_ms")[4], 6 * 11.1, 0.1) << "a period later than the fifth would be";
+  const Json trace = Json::parse(read_text(recorded / "trace.json"));
+  EXPECT_EQ(faults_of_trace(trace), Strings());
+  EXPECT_EQ(differences_of(trace, frames), Strings());
 }
 
 // The runtime's session is ended in order, and what was drawn is told.

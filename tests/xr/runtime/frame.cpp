@@ -61,7 +61,8 @@ XrResult wait_frame(XrSession handle, const XrFrameWaitInfo* info, XrFrameState*
   FrameRecord frame;
   frame.number = r.next_frame++;
   apply_events(session, frame.number);
-  frame.time = r.time_of(frame.number);
+  const auto late = std::distance(r.script.late.begin(), r.script.late.upper_bound(frame.number));
+  frame.time = r.time_of(frame.number) + late * r.script.period;
   frame.should_render = is_shown(session) && r.script.not_rendered.count(frame.number) == 0;
   state->predictedDisplayTime = frame.time;
   state->predictedDisplayPeriod = r.script.period;

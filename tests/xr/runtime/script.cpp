@@ -126,6 +126,7 @@ const std::map<std::string, Setter>& setters() {
       {"frames", plain(&Script::frames)},
       {"invisible_frames", plain(&Script::invisible_frames)},
       {"not_rendered", plain(&Script::not_rendered)},
+      {"late", plain(&Script::late)},
       {"sleep", plain(&Script::sleep)},
       {"immutable", plain(&Script::immutable)},
       {"unordered_srgb", plain(&Script::unordered_srgb)},

@@ -63,6 +63,7 @@ struct Script {
   int frames = 3;                       // that are ended before the runtime asks to stop
   int invisible_frames = 0;             // at the beginning
   std::set<int> not_rendered;           // frames whose shouldRender is false
+  std::set<int> late;                   // frames that are shown a period later, as are all after them
   bool sleep = false;                   // for a period in each xrWaitFrame
   bool immutable = true;                // textures made by glTextureStorage*
   bool unordered_srgb = true;           // unordered access to sRGB
