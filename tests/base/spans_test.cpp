@@ -1,0 +1,56 @@
+#include "base/spans.h"
+
+#include <gtest/gtest.h>
+
+#include <thread>
+
+namespace binosplat {
+namespace {
+
+TEST(Spans, AreKeptOfAllThreadsWhileSomebodyAsks) {
+  { const TimedSpan before("before"); }
+  keep_spans();
+  double ms = 0.0;
+  {
+    const TimedSpan outer("outer", &ms);
+    const TimedSpan inner("inner");
+    std::thread([] {
+      name_thread("reads");
+      add_span("read " + std::to_string(1), Clock::now());
+    }).join();
+  }
+  const std::vector<Span> spans = take_spans();
+  { const TimedSpan after("after"); }
+  ASSERT_EQ(spans.size(), 3u);
+  EXPECT_EQ(spans[0].name, "read 1");
+  EXPECT_EQ(spans[0].thread, "reads");
+  EXPECT_EQ(spans[1].name, "inner");
+  EXPECT_EQ(spans[2].name, "outer");
+  EXPECT_EQ(spans[2].thread, "draws");
+  EXPECT_LE(spans[2].begin, spans[1].begin);
+  EXPECT_LE(spans[1].end, spans[2].end);
+  const std::chrono::duration<double, std::milli> of_inner = spans[1].end - spans[1].begin;
+  EXPECT_GE(ms, of_inner.count());
+  EXPECT_TRUE(take_spans().empty());
+}
+
+TEST(Spans, AddToASumWhetherKeptOrNot) {
+  double ms = 0.0;
+  {
+    const TimedSpan span("sleep", &ms);
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  }
+  EXPECT_GE(ms, 2.0);
+}
+
+// A frame has some ten of them, and a headset's takes 11 ms, of which 2 % are 220 us.
+TEST(Spans, TakeLittleTime) {
+  keep_spans();
+  const auto start = Clock::now();
+  for (int n = 0; n < 100'000; ++n) const TimedSpan span("one of many");
+  EXPECT_LT(ms_since(start), 1000.0) << "10 us each";
+  EXPECT_EQ(take_spans().size(), 100'000u);
+}
+
+}  // namespace
+}  // namespace binosplat
