@@ -37,6 +37,7 @@ struct ProfileOptions : RenderOptions {
   double fps = headset_fps;  // 0: as fast as possible
   std::string folder = "out/profile";
   std::string compare;  // frames.csv of an older run
+  bool asks_clock = true;
 };
 
 /// What only `render` does, or what is no way through a scene.
@@ -128,7 +129,7 @@ Profiled open_profiled(ProfileOptions o) {
   if (way.empty()) way = "standing at " + shots.front().name;
   calibrated.check_model(all.model());
   settings = calibrated.of(shots.front(), settings);
-  all.run = {frames_to_profile(o, shots), settings, o.foveate, o.fps};
+  all.run = {frames_to_profile(o, shots), settings, o.foveate, o.fps, o.asks_clock};
   all.profile.facts = {o.scene.name, way, drawing_of(o, settings), lab::device_text(*all.context),
                        all.context->software()};
   return all;
@@ -208,6 +209,9 @@ void add_profile(CLI::App& program, Command& command) {
                   "Say what changed beyond noise since an older frames.csv of the\nsame frames")
       ->type_name("FILE")
       ->check(CLI::ExistingFile.description(""));
+  sub->add_flag_callback(
+      "--no-clock", [&o] { o.asks_clock = false; },
+      "Do not ask the driver for the GPU's clock meanwhile, which it may take\ntime for");
   for (const char* name : not_profiled) sub->get_option(name)->group("");
   sub->footer(
       "trace.json opens in ui.perfetto.dev and chrome://tracing.\n"

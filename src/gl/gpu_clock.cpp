@@ -12,8 +12,8 @@ namespace binosplat::gl {
 
 namespace {
 
-constexpr GLenum device_uuid = 0x9597;  // GL_DEVICE_UUID_EXT
-constexpr std::chrono::milliseconds between_readings{5};
+constexpr GLenum device_uuid = 0x9597;                     // GL_DEVICE_UUID_EXT
+constexpr std::chrono::milliseconds between_readings{20};  // more often might hold up the driver
 
 /// As the library spells it: GPU-8-4-4-4-12 digits.
 std::string text_of(const GpuClock::Uuid& uuid) {

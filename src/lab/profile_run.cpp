@@ -32,7 +32,7 @@ ProfileDrawer::ProfileDrawer(std::shared_ptr<render::GpuModel> model, const Prof
       stream_(stream),
       context_(model->context()),
       frame_(std::move(model)),
-      clock_(std::make_shared<gl::GpuClock>(context_)) {}
+      clock_(run.asks_clock ? std::make_shared<gl::GpuClock>(context_) : nullptr) {}
 
 render::FrameSettings ProfileDrawer::settings_now() const {
   render::FrameSettings settings = run_.settings;

@@ -19,6 +19,7 @@ struct ProfileRun {
   render::FrameSettings settings;
   std::optional<stereo::Foveation> foveation;
   double fps = 0.0;  // frames begin so often a second; 0: as soon as the last one is drawn
+  bool asks_clock = true;
 };
 
 class ProfileDrawer {
