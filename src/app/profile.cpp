@@ -71,6 +71,7 @@ std::string choose_way(ProfileOptions& o, CameraList& list) {
   }
   if (!stands && !o.camera.tour && list.cameras.size() > 1) o.camera.tour = head_motions()[1];
   if (!o.camera.tour) return "";
+  list.path = true;
   if (!o.camera.seconds) o.camera.seconds = seconds_default;
   list = go_on_tour(o.scene, o.camera, o.rig, pose_rate(o), std::move(list));
   return "tour " + o.camera.tour->name;

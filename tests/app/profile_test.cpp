@@ -48,6 +48,23 @@ TEST_F(ProfileCommand, LeavesAReportATraceAndATable) {
   EXPECT_TRUE(page.find("binosplat profile ") != page.npos) << "the command";
 }
 
+TEST_F(ProfileCommand, WalksThroughTheCamerasWhereNothingElseIsAskedFor) {
+  ASSERT_TRUE(test::good(profile({"--seconds", "0.1", "--size", "24x16", "--fps", "0", "--no-clock"})));
+  const json numbers = json::parse(test::read_text(out + "/profile.json"));
+  EXPECT_EQ(numbers["motion"], "tour walk");
+  EXPECT_EQ(numbers["frames"], 9) << "poses are 90 a second";
+  EXPECT_EQ(numbers["missed"], 0) << "nothing is due";
+  std::filesystem::remove(folder / "cameras.json");
+  ASSERT_TRUE(test::good(profile({"--seconds", "0.1", "--size", "24x16", "--fps", "20"})));
+  EXPECT_EQ(json::parse(test::read_text(out + "/profile.json"))["frames"], 2) << "without cameras it stands";
+  add_row_of_cameras(1);
+  ASSERT_TRUE(test::good(profile({"--seconds", "0.1", "--size", "24x16", "--fps", "20"})));
+  EXPECT_EQ(json::parse(test::read_text(out + "/profile.json"))["motion"], "standing at view0");
+  EXPECT_TRUE(test::ended(profile({"--path", folder / "none.json"}), 2, "none.json"));
+  ASSERT_TRUE(test::good(profile({"--path", folder / "cameras.json", "--size", "24x16"})));
+  EXPECT_EQ(json::parse(test::read_text(out + "/profile.json"))["frames"], 1);
+}
+
 TEST_F(ProfileCommand, StandsAtAViewAndComparesWithTheRunBefore) {
   const std::vector<std::string> still = {"--view", "view1", "--seconds", "0.4",       "--fps", "0",
                                           "--size", "36x24", "--mono",    "--quality", "40"};
