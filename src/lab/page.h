@@ -64,6 +64,7 @@ struct Chart {
   std::string title = {};               // of the axis up; otherwise the first of `y`
   std::vector<std::string> order = {};  // texts in `by` whose series come first
   bool bars = false;                    // horizontal, stacked by series, over names in `x`
+  bool zero = false;                    // the axis up begins at 0
   bool areas = false;                   // stacked by series, over numbers in `x`
   bool line = true;                     // the points of a series are joined in their order,
   bool steps = false;                   // by steps: a value holds until the next

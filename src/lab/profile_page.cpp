@@ -37,8 +37,12 @@ Section frame_times(const Profile& profile, const ProfileSummary& summary, const
                               summary.wall.median, summary.wall.p99, summary.wall.most)};
   Table& table = section.numbers.emplace(some_columns(
       frames, {{"frame", "frame"}, {"events", "events"}, {"wall_ms", "frame ms"}, {"gpu_ms", "GPU ms"}}));
-  section.chart =
-      Chart{.x = "frame", .y = {"frame ms", "GPU ms"}, .label = "events", .title = "ms", .dots = false};
+  section.chart = Chart{.x = "frame",
+                        .y = {"frame ms", "GPU ms"},
+                        .label = "events",
+                        .title = "ms",
+                        .zero = true,
+                        .dots = false};
   if (budget == 0.0) return section;
   table.columns.emplace_back("budget ms");
   for (std::vector<Cell>& cells : table.rows) cells.emplace_back(budget);
@@ -63,6 +67,7 @@ Section stacked_stages(const ProfileSummary& summary, const Table& frames) {
   section.chart = Chart{.x = "frame",
                         .y = {section.numbers->columns.begin() + 1, section.numbers->columns.end()},
                         .title = "ms",
+                        .zero = true,
                         .areas = true};
   Table& means = section.table.emplace(Table{{"stage", "mean ms", "% of the GPU time"}, {}});
   double all = 0.0;
@@ -133,6 +138,7 @@ Section bound(const Profile& profile, const ProfileSummary& summary, const Table
   section.chart = Chart{.x = "frame",
                         .y = {section.numbers->columns.begin() + 1, section.numbers->columns.end()},
                         .title = "ms",
+                        .zero = true,
                         .dots = false};
   return section;
 }

@@ -16,7 +16,7 @@ std::vector<FrameEvent> events_of(const FrameRecord& frame, const FrameRecord* b
   if (report.redrawn > 0)
     events.push_back({"drawn again", times(report.redrawn) + ", since a buffer was too small"});
   if (report.attempts > 1) {
-    events.push_back({"drawn again", fmt::format("{}, since its quality of {:.1f} dB was missed",
+    events.push_back({"drawn again", fmt::format("{}, until it kept its quality: {:.1f} dB",
                                                  times(report.attempts - 1), report.quality)});
   }
   if (report.is_cut) events.push_back({"camera cut", "it goes by nothing that earlier frames measured"});

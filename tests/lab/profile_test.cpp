@@ -96,7 +96,7 @@ TEST(Profile, TellsOfRepeatsCutsAndClocks) {
   };
   EXPECT_EQ(names(0), (std::vector<std::string>{"display missed: 2 times"}));
   EXPECT_EQ(names(1),
-            (std::vector<std::string>{"drawn again: 2 times, since its quality of 39.2 dB was missed",
+            (std::vector<std::string>{"drawn again: 2 times, until it kept its quality: 39.2 dB",
                                       "measured its error"}));
   EXPECT_EQ(names(2), (std::vector<std::string>{"camera cut: it goes by nothing that earlier frames measured",
                                                 "low clock: 1200 MHz"}));

@@ -109,7 +109,7 @@ function curves(chart, chosen, width) {
   const points = chosen.flatMap((s) => s.good.map((p) => ({ ...p, text: pointText(chart, s, p) })));
   marks.push(Plot.tip(points, Plot.pointer({ x: "x", y: "y", title: "text" })));
   return { height: Math.max(260, Math.min(440, width * 0.55)), marginLeft: 56, marginBottom: 42,
-    x: scale(chart.x, chart.log_x), y: scale(titleOf(chart), chart.log_y), marks };
+    x: scale(chart.x, chart.log_x), y: { ...scale(titleOf(chart), chart.log_y), zero: chart.zero }, marks };
 }
 
 // Stacked areas over a number, the first series at the bottom.
