@@ -6,7 +6,6 @@
 
 #include "app/scene.h"
 #include "lab/trace_rules.h"
-#include "support/full_disk.h"
 #include "support/program.h"
 
 namespace binosplat {
@@ -115,6 +114,12 @@ TEST_F(ProfileCommand, WhatMakesNoSenseIsNamedAndLeavesNothing) {
     EXPECT_TRUE(test::ended(test::run_program(all), 2, message)) << options[0];
     std::filesystem::remove(folder / "old.csv");
   }
+  EXPECT_EQ(folder.files(), before);
+  // The table is small, the page is not: neither is left.
+  const test::Outcome full =
+      test::run_program({"profile", model, "--size", "36x24", "--seconds", "0.1", "-o", out},
+                        {.limits = {{RLIMIT_FSIZE, 100'000}}});
+  EXPECT_TRUE(test::ended(full, 2, "report.html"));
   EXPECT_EQ(folder.files(), before);
 }
 
