@@ -22,8 +22,10 @@ if(TARGET binosplat_python)
     COMMAND ${Python_EXECUTABLE} -c
             "import sysconfig as s; print(s.get_path('platlib', 'deb_system' if 'deb_system' in s.get_scheme_names() else 'posix_prefix', {'base': '.', 'platbase': '.'}))"
     OUTPUT_VARIABLE python_modules OUTPUT_STRIP_TRAILING_WHITESPACE COMMAND_ERROR_IS_FATAL ANY)
-  install(TARGETS binosplat_python LIBRARY DESTINATION ${python_modules} COMPONENT python
+  install(TARGETS binosplat_python LIBRARY DESTINATION ${python_modules}/binosplat COMPONENT python
           OPTIONAL)  # ./demo builds without it
+  list(TRANSFORM python_files PREPEND src/python/binosplat/)
+  install(FILES ${python_files} DESTINATION ${python_modules}/binosplat COMPONENT python)
 endif()
 install(TARGETS binosplat_archive EXPORT binosplat_targets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
 install(DIRECTORY include/binosplat DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -11,6 +12,7 @@
 #include "formats/dataparser.h"
 #include "formats/lens.h"
 #include "formats/view_files.h"
+#include "python/help.h"
 #include "python/module.h"
 #include "python/rig.h"
 #include "python/unlocked.h"
@@ -56,6 +58,11 @@ glm::dvec3 vector_of(const char* name, const Three& values) {
   return {values[0], values[1], values[2]};
 }
 
+glm::dmat3 matrix_of(const Rows& rows) {
+  return glm::transpose(glm::dmat3(vector_of("rotation", rows[0]), vector_of("rotation", rows[1]),
+                                   vector_of("rotation", rows[2])));
+}
+
 Camera make_camera(int width, int height, double fx, const std::optional<double>& fy,
                    const std::optional<double>& cx, const std::optional<double>& cy, const Three& position,
                    const Rows& rotation, const std::string& name) {
@@ -68,9 +75,7 @@ Camera make_camera(int width, int height, double fx, const std::optional<double>
   camera.cx = cx.value_or(width / 2.0);
   camera.cy = cy.value_or(height / 2.0);
   camera.position = vector_of("position", position);
-  for (int row = 0; row < 3; ++row)
-    camera.rotation[row] = vector_of("rotation", rotation[static_cast<std::size_t>(row)]);
-  camera.rotation = glm::transpose(camera.rotation);
+  camera.rotation = matrix_of(rotation);
   const std::string what = name.empty() ? "camera" : "camera " + name;
   check_lens(what, camera);
   if (const std::string fault = rotation_fault(camera.rotation); !fault.empty())
@@ -102,6 +107,37 @@ std::string describe_camera(const Camera& c) {
                      c.position.x, c.position.y, c.position.z);
 }
 
+/// What a pickle has of a camera: every number as it is.
+py::tuple state_of(const Camera& c) {
+  return py::make_tuple(c.name, c.width, c.height, c.fx, c.fy, c.cx, c.cy, c.time, to_array(c.position),
+                        to_array(c.rotation));
+}
+
+Camera camera_of(const py::tuple& state) {
+  using State =
+      std::tuple<std::string, int, int, double, double, double, double, std::optional<double>, Three, Rows>;
+  Camera c;
+  Three position;
+  Rows rotation;
+  std::tie(c.name, c.width, c.height, c.fx, c.fy, c.cx, c.cy, c.time, position, rotation) =
+      py::cast<State>(state);
+  c.position = vector_of("position", position);
+  c.rotation = matrix_of(rotation);
+  return c;
+}
+
+py::tuple state_of_rig(const Rig& rig) {
+  const auto& s = rig.settings;
+  return py::make_tuple(rig.head, rig.eyes, s.ipd, s.units_per_metre, s.convergence, s.cant_degrees);
+}
+
+Rig rig_of(const py::tuple& state) {
+  return {state[0].cast<Camera>(),
+          state[1].cast<std::optional<std::array<Camera, 2>>>(),
+          {state[2].cast<double>(), state[3].cast<double>(), state[4].cast<std::optional<double>>(),
+           state[5].cast<double>()}};
+}
+
 Rig make_rig(const Camera& head, double ipd, double units_per_metre, const std::optional<double>& convergence,
              double cant) {
   Rig rig{head, {}, {ipd, units_per_metre, convergence, cant}};
@@ -111,15 +147,8 @@ Rig make_rig(const Camera& head, double ipd, double units_per_metre, const std::
 
 constexpr Three up_in_colmap = {default_up.x, default_up.y, default_up.z};
 
-constexpr const char* camera_help =
-    "A pinhole camera of the world: x right, y down, z forward, as COLMAP leaves it.\n\n"
-    "width, height: px. fx, fy: focal lengths, px (fy: as fx). cx, cy: principal point, px from the\n"
-    "picture's left and upper edge (the middle). position: world units. rotation: three rows of three,\n"
-    "camera to world; its columns are the camera's axes x right, y down, z forward in the world.\n"
-    "Raises InputError for numbers that make no camera.";
-
 void add_camera(py::module_& module) {
-  py::class_<Camera>(module, "Camera", camera_help)
+  py::class_<Camera>(module, "Camera", help::camera)
       .def(py::init(&make_camera), py::arg("width"), py::arg("height"), py::arg("fx"), py::kw_only(),
            py::arg("fy") = py::none(), py::arg("cx") = py::none(), py::arg("cy") = py::none(),
            py::arg("position") = Three{}, py::arg("rotation") = Rows{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}},
@@ -143,8 +172,8 @@ void add_camera(py::module_& module) {
             check_size(width, height);
             return resized(camera, width, height);
           },
-          py::arg("width"), py::arg("height"),
-          "The same at another size in px, as `--size` does: the vertical field of view is kept.")
+          py::arg("width"), py::arg("height"), help::resized)
+      .def(py::pickle(&state_of, &camera_of))
       .def("__repr__", &describe_camera);
   module.def(
       "look_at",
@@ -154,9 +183,7 @@ void add_camera(py::module_& module) {
         return look_at(vector_of("eye", eye), vector_of("at", at), vector_of("up", up), fov, width, height);
       },
       py::arg("eye"), py::arg("at"), py::arg("width"), py::arg("height"), py::kw_only(),
-      py::arg("up") = up_in_colmap, py::arg("fov") = default_fov_degrees,
-      "A camera at eye that looks at a point, in world units, with what is up in the picture and the\n"
-      "vertical field of view in degrees. Raises InputError if they make no camera.");
+      py::arg("up") = up_in_colmap, py::arg("fov") = default_fov_degrees, help::look_at);
   module.def(
       "frame",
       [](const std::shared_ptr<Model>& model, int width, int height, const Three& up, double fov) {
@@ -167,9 +194,7 @@ void add_camera(py::module_& module) {
         return frame_model(*model, width, height, fov, {upwards});
       },
       py::arg("model").none(false), py::arg("width"), py::arg("height"), py::kw_only(),
-      py::arg("up") = up_in_colmap, py::arg("fov") = default_fov_degrees,
-      "A camera that shows all of a model from outside; draw with near=model.near. up, fov: as of\n"
-      "look_at. Raises InputError, for one of an empty model.");
+      py::arg("up") = up_in_colmap, py::arg("fov") = default_fov_degrees, help::frame);
 }
 
 void add_list(py::module_& module) {
@@ -182,6 +207,10 @@ void add_list(py::module_& module) {
       .def(
           "__iter__", [](const Cameras& c) { return py::make_iterator(c.list.begin(), c.list.end()); },
           py::keep_alive<0, 1>())
+      .def(py::pickle([](const Cameras& c) { return py::make_tuple(c.source, c.list); },
+                      [](const py::tuple& state) {
+                        return Cameras{state[0].cast<std::string>(), state[1].cast<std::vector<Camera>>()};
+                      }))
       .def("__repr__", [](const Cameras& c) {
         return fmt::format("<binosplat.Cameras: {} of {}>", c.list.size(), c.source);
       });
@@ -194,12 +223,7 @@ void add_list(py::module_& module) {
         if (dataparser) move_into_training(*dataparser, path, cameras.list);
         return cameras;
       },
-      py::arg("path"), py::arg("model") = py::none(),
-      "Reads cameras.json, transforms.json, nerfstudio's camera_path.json or a COLMAP reconstruction, by "
-      "their\n"
-      "file or folder, or the camera in a SHARP model's ply. With the path of a model that nerfstudio "
-      "trained,\n"
-      "they are moved into the world of its training (dataparser_transforms.json). Raises InputError.");
+      py::arg("path"), py::arg("model") = py::none(), help::load_cameras);
   module.def("find_cameras", &find_cameras, py::arg("model"),
              "The file or folder with the cameras of a model, beside the model's path; None without.");
   module.def("find_photos", &find_photos, py::arg("cameras"),
@@ -213,12 +237,7 @@ void add_list(py::module_& module) {
 void add_cameras(py::module_& module) {
   add_camera(module);
   add_list(module);
-  py::class_<Rig>(
-      module, "Rig",
-      "Both eyes of a head camera.\n\n"
-      "ipd: their distance in metres, of which each is units_per_metre world units. convergence:\n"
-      "the distance without disparity, in metres (None: infinite). cant: degrees by which each\n"
-      "eye is turned outwards. Raises InputError for values that make no rig.")
+  py::class_<Rig>(module, "Rig", help::rig)
       .def(py::init(&make_rig), py::arg("head"), py::kw_only(), py::arg("ipd") = stereo::RigSettings().ipd,
            py::arg("units_per_metre") = 1.0, py::arg("convergence") = py::none(), py::arg("cant") = 0.0)
       .def_static(
@@ -233,7 +252,8 @@ void add_cameras(py::module_& module) {
             const auto pair = rig.pair();
             return py::make_tuple(pair.cameras[0], pair.cameras[1]);
           },
-          "The cameras of the left and of the right eye.");
+          "The cameras of the left and of the right eye.")
+      .def(py::pickle(&state_of_rig, &rig_of));
 }
 
 }  // namespace binosplat::python

@@ -38,23 +38,29 @@ GlThread::~GlThread() {
 
 void GlThread::hand_over(std::function<void()> job) {
   {
-    std::unique_lock lock(mutex_);
-    changed_.wait(lock, [this] { return !job_; });
-    job_ = std::move(job);
+    const std::lock_guard lock(mutex_);
+    jobs_.push_back(std::move(job));
   }
   changed_.notify_all();
+}
+
+bool GlThread::is_busy() {
+  const std::lock_guard lock(mutex_);
+  return !jobs_.empty();
 }
 
 void GlThread::loop() {
   std::unique_lock lock(mutex_);
   while (true) {
-    changed_.wait(lock, [this] { return job_ || ended_; });
-    if (!job_) return;
-    lock.unlock();
-    job_();  // what it throws, its future keeps
-    lock.lock();
-    job_ = nullptr;
-    changed_.notify_all();
+    changed_.wait(lock, [this] { return !jobs_.empty() || ended_; });
+    if (jobs_.empty()) return;
+    {
+      const std::function<void()>& job = jobs_.front();
+      lock.unlock();
+      job();  // what it throws, its future keeps
+      lock.lock();
+    }
+    jobs_.pop_front();
   }
 }
 

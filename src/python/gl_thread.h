@@ -3,12 +3,15 @@
 // collects garbage on any. And a context of the caller's, current on the caller's thread, stays so.
 
 #include <condition_variable>
+#include <deque>
 #include <functional>
 #include <future>
 #include <memory>
 #include <mutex>
 #include <thread>
 #include <utility>
+
+#include "python/unlocked.h"
 
 namespace binosplat::python {
 
@@ -25,17 +28,26 @@ class GlThread {
   /// Whether this is the process that the first of these threads was started in.
   static bool in_its_process();
 
-  /// Has the thread call `work`, one caller after the other, and returns or throws what that does. `work`
-  /// must not need Python's lock, which the caller may hold.
+  /// Has the thread call `work` after what it was given before, and returns at once. The result may be
+  /// dropped, so `work` must refer to nothing of the caller's; nor may it need Python's lock.
   template <typename Work>
-  auto run(Work work) -> decltype(work()) {
+  auto start(Work work) -> std::future<decltype(work())> {
     check_process();
     // Shared, because the caller may have the result before the thread is out of the call.
     const auto task = std::make_shared<std::packaged_task<decltype(work())()>>(std::move(work));
     auto result = task->get_future();
-    hand_over([task] { (*task)(); });
-    return result.get();
+    hand_over([task, lives = std::make_shared<const Outlived>()] { (*task)(); });
+    return result;
   }
+
+  /// The same, and waits: returns or throws what `work` does.
+  template <typename Work>
+  auto run(Work work) -> decltype(work()) {
+    return start(std::move(work)).get();
+  }
+
+  /// Whether it has work that is not done.
+  bool is_busy();
 
  private:
   static void check_process();
@@ -44,7 +56,7 @@ class GlThread {
 
   std::mutex mutex_;
   std::condition_variable changed_;
-  std::function<void()> job_;  // none: the thread waits
+  std::deque<std::function<void()>> jobs_;  // the first one is under way
   bool ended_ = false;
   std::thread thread_;
 };

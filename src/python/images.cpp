@@ -1,6 +1,9 @@
 // Pictures as arrays: from files, and how far two are apart.
 
+#include <algorithm>
 #include <array>
+#include <cctype>
+#include <cmath>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -8,6 +11,7 @@
 #include "base/error.h"
 #include "formats/image_file.h"
 #include "measure/comparison.h"
+#include "python/help.h"
 #include "python/module.h"
 #include "python/unlocked.h"
 
@@ -46,6 +50,33 @@ Image empty_image(const py::array& array, const std::string& name) {
         name, std::string(py::str(array.attr("shape"))));
   }
   return {static_cast<int>(side(1)), static_cast<int>(side(0)), static_cast<int>(side(2))};
+}
+
+/// Refuses floats that count to 255: a picture that is twice as bright as white in the mean, or that has
+/// whole numbers only.
+void check_white(const Image& image, const std::string& name) {
+  double sum = 0.0;
+  float largest = 0.0f;
+  bool is_whole = true;
+  for (const float v : image.data) {
+    if (!std::isfinite(v)) return;
+    sum += v;
+    largest = std::max(largest, v);
+    is_whole = is_whole && v == std::floor(v);
+  }
+  const double mean = sum / static_cast<double>(std::max<std::size_t>(1, image.data.size()));
+  if (!(largest > 1.0f && is_whole) && !(mean > 2.0)) return;
+  fail(
+      "{}: floats have white 1, but these go up to {:.6g} with a mean of {:.3g}: divide them by their white, "
+      "or "
+      "pass uint8 or uint16; a picture that is so bright can be clipped to 0 to 1 before",
+      name, largest, mean);
+}
+
+void check_png_name(const std::filesystem::path& path) {
+  std::string ending = path.extension().string();
+  std::ranges::transform(ending, ending.begin(), [](unsigned char c) { return std::tolower(c); });
+  if (ending != ".png") fail("{}: save_png writes PNG, so the name must end in .png", path.string());
 }
 
 Comparison compare(const py::object& a, const py::object& b, double pixels_per_degree,
@@ -88,6 +119,7 @@ Image image_of(const py::object& picture, const std::string& name) {
   Image image = empty_image(array, name);
   fill<float>(image, array, 1.0f);
   fill<double>(image, array, 1.0f);
+  if (holds<float>(array) || holds<double>(array)) check_white(image, name);
   fill<std::uint8_t>(image, array, 255.0f);
   fill<std::uint16_t>(image, array, 65535.0f);
   return image;
@@ -106,24 +138,21 @@ void add_images(py::module_& module) {
         }
         return array_of(std::move(image));
       },
-      py::arg("path"),
-      "A PNG, JPEG or OpenEXR as display-referred float32, white 1: (height, width) of grey,\n"
-      "(height, width, 3) of RGB, (height, width, 4) with straight alpha. Raises InputError.");
+      py::arg("path"), help::load_image);
   module.def(
       "save_png",
       [](const std::filesystem::path& path, const py::object& picture, int bits) {
+        check_png_name(path);
         if (bits != 8 && bits != 16) fail("bits {}: expected 8 or 16", bits);
         const Image image = image_of(picture, "picture");
         const Unlocked unlocked;
         save_png(path, image, {.bits = bits});
       },
-      py::arg("path"), py::arg("picture"), py::arg("bits") = 8,
-      "Writes a picture of 1, 3 or 4 channels, of 8 or 16 bits; the file is there whole or not at all.\n"
-      "Raises InputError.");
+      py::arg("path"), py::arg("picture"), py::arg("bits") = 8, help::save_png);
   module.def(
       "quantised",
       [](const py::object& picture) { return array_of(quantised(image_of(picture, "picture"))); },
-      py::arg("picture"), "The picture as 8 bits keep it: round(255 clip(v, 0, 1)) / 255, as float32.");
+      py::arg("picture"), help::quantised);
 
   py::class_<Comparison>(module, "Comparison", "By how much two pictures differ.")
       .def_readonly("psnr", &Comparison::psnr, "dB; inf for equal pictures, -inf where one holds a NaN.")
@@ -138,16 +167,9 @@ void add_images(py::module_& module) {
           [](const Comparison& c) { return py::make_tuple(c.largest.y, c.largest.x, c.largest.channel); },
           "Row, column and channel of the largest error.")
       .def("__repr__", &describe_comparison);
-  module.def(
-      "compare", &compare, py::arg("a"), py::arg("b"), py::arg("ppd") = measure::flip_pixels_per_degree,
-      py::arg("background") = py::none(),
-      "What `binosplat compare` says of two pictures of one size, arrays of (height, width) or\n"
-      "(height, width, 1, 3 or 4): float with white 1, uint8 or uint16. Values are clamped to\n"
-      "0 to 1 and not rounded (see quantised); grey counts as colour beside colour. background: RGB\n"
-      "before which pictures with alpha are compared; by default alpha counts where both have some\n"
-      "that is not 1, and is before black where one has. ppd: pixels per degree that the viewer has,\n"
-      "1 to 1000, for FLIP. Raises InputError for shapes that do not go together, TypeError for other\n"
-      "types of numbers.");
+  module.def("compare", &compare, py::arg("a"), py::arg("b"),
+             py::arg("ppd") = measure::flip_pixels_per_degree, py::arg("background") = py::none(),
+             help::compare);
 }
 
 }  // namespace binosplat::python

@@ -1,8 +1,9 @@
-// Models from files.
+// Models: from files, and what they are.
 
 #include <memory>
 
 #include "formats/model_file.h"
+#include "python/help.h"
 #include "python/module.h"
 #include "python/unlocked.h"
 #include "scene/axes.h"
@@ -27,8 +28,9 @@ std::shared_ptr<Model> load(const std::filesystem::path& path, const std::option
 }  // namespace
 
 void add_models(py::module_& module) {
-  py::class_<Model, std::shared_ptr<Model>>(module, "Model", "A model in memory, as load_model() read it.")
-      .def_readonly("name", &Model::name)
+  py::class_<Model, std::shared_ptr<Model>> model(module, "Model", help::model);
+  add_model_arrays(model);
+  model.def_readonly("name", &Model::name)
       .def_readonly("format", &Model::format, "Of its file, in words.")
       .def_property_readonly("count", &Model::count, "Gaussians; anchors of Scaffold-GS.")
       .def_readonly("degree", &Model::degree, "Of the spherical harmonics, 0 to 3.")
@@ -49,10 +51,7 @@ void add_models(py::module_& module) {
       });
   module.def("load_model", &load, py::arg("path"), py::kw_only(), py::arg("lod") = py::none(),
              py::arg("appearance") = py::none(), py::arg("axes") = py::none(),
-             py::arg("antialiased") = py::none(),
-             "Reads a model of any format that `binosplat render` takes, a file or its folder; what it is,\n"
-             "its content decides. lod: level of detail of a streamed SOG, 0 the finest. appearance: of\n"
-             "Scaffold-GS. axes, antialiased: where the file is wrong about them. Raises InputError.");
+             py::arg("antialiased") = py::none(), help::load_model);
 }
 
 }  // namespace binosplat::python

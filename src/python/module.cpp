@@ -57,8 +57,9 @@ void add_errors(py::module_& module) {
 
 }  // namespace binosplat::python
 
-PYBIND11_MODULE(binosplat, module) {
+PYBIND11_MODULE(_binosplat, module) {
   using namespace binosplat::python;
+  module.attr("__name__") = "binosplat";  // the package, which its types are part of for whoever looks
   module.doc() =
       "3D Gaussian Splatting models as pictures for one eye or both, drawn by OpenGL compute shaders.";
   module.attr("__version__") = BINOSPLAT_VERSION;

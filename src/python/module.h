@@ -6,12 +6,14 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
 
 #include "base/choices.h"
 #include "base/image.h"
+#include "scene/model.h"
 
 namespace binosplat::python {
 
@@ -21,6 +23,7 @@ namespace py = pybind11;
 void add_errors(py::module_& module);
 void add_images(py::module_& module);
 void add_models(py::module_& module);
+void add_model_arrays(py::class_<Model, std::shared_ptr<Model>>& model);
 void add_cameras(py::module_& module);
 void add_renderer(py::module_& module);
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/error.h"
+#include "python/help.h"
 #include "python/module.h"
 #include "python/renderer.h"
 #include "python/rig.h"
@@ -29,7 +30,7 @@ std::shared_ptr<Renderer> open(std::shared_ptr<Model> model, const std::string& 
   return std::make_shared<Renderer>(std::move(model), chosen, device.value_or(-1), kept);
 }
 
-void check(const render::FrameSettings& s, bool given, bool scaffold) {
+void check(const render::FrameSettings& s, bool given, bool scaffold, bool follows) {
   for (int c = 0; c < 3; ++c) {
     if (!(s.background[c] >= 0.0f && s.background[c] <= 1.0f))
       fail("background: expected three numbers from 0 to 1");
@@ -43,6 +44,8 @@ void check(const render::FrameSettings& s, bool given, bool scaffold) {
          decode_choices[s.decode].name);
   }
   render::check_choice(s);
+  if (s.transmittance == TRANSMITTANCE_LAST && !follows)
+    fail("transmittance last: needs follow=True; it is the light that the frame before measured");
 }
 
 /// The views of a camera or of both eyes in the model's frame.
@@ -60,8 +63,8 @@ py::dict dict_of(const render::FrameReport& report) {
   using namespace py::literals;
   return py::dict("total_ms"_a = report.total_ms, "stages_ms"_a = stages, "visible"_a = report.visible,
                   "pairs"_a = report.pairs, "tolerance"_a = report.tolerance, "quality"_a = report.quality,
-                  "attempts"_a = report.attempts, "remembered"_a = report.used_measured,
-                  "gpu_bytes"_a = report.gpu_bytes);
+                  "submit_ms"_a = report.submit_ms, "attempts"_a = report.attempts,
+                  "remembered"_a = report.used_measured, "gpu_bytes"_a = report.gpu_bytes);
 }
 
 /// What Python sees of a view's picture.
@@ -94,7 +97,7 @@ Settings settings_of(const Renderer& renderer, const std::optional<float>& quali
   settings.decode = find_choice("decode", decode, decode_choices);
   settings.background = {background[0], background[1], background[2]};
   settings.precision = renderer.precision();
-  check(settings, given, renderer.model().scaffold != nullptr);
+  check(settings, given, renderer.model().scaffold != nullptr, follow);
   static constexpr Choice depths[] = {{"mean", ""}, {"median", ""}};
   settings.depth = find_choice("depth", depth, depths) == 0 ? Depth::mean : Depth::median;
   return {settings, near_plane, follow};
@@ -117,12 +120,7 @@ using SeenBy = std::variant<Camera, Rig>;
 // A Renderer that is held here outlives what Python does to its own while it ends.
 py::object draw(const std::shared_ptr<Renderer>& renderer, const SeenBy& view, const Settings& settings) {
   const Views views = views_of(view, renderer->model().axes, settings.near_plane);
-  Drawn drawn;
-  {
-    const Unlocked unlocked;
-    drawn = renderer->draw(views, settings);
-  }
-  return pictures_of(std::move(drawn));
+  return pictures_of(awaited(renderer->draw(views, settings)));
 }
 
 /// Python's iterator of draw_all().
@@ -135,22 +133,15 @@ class PathPictures {
   PathPictures& operator=(const PathPictures&) = delete;
 
   py::object next() {
-    if (const std::optional<Views> first = has_begun_ ? std::nullopt : next_views()) {
-      const Unlocked unlocked;
-      path_ = renderer_->begin(*first, settings_);
-      is_under_way_ = true;
-    }
-    has_begun_ = true;
-    if (!std::exchange(is_under_way_, false)) {
+    const std::optional<Views> first = std::exchange(has_begun_, true) ? std::nullopt : next_views();
+    if (first) awaited(renderer_->begin(path_, *first, settings_));
+    // After an error or a Ctrl-C the path is at its end.
+    if (const bool goes_on = std::exchange(is_under_way_, false); !goes_on && !first) {
       end();
       throw py::stop_iteration();
     }
     const std::optional<Views> following = next_views();
-    Drawn drawn;
-    {
-      const Unlocked unlocked;
-      drawn = renderer_->next(path_, following, settings_);
-    }
+    Drawn drawn = awaited(renderer_->next(path_, following, settings_));
     is_under_way_ = following.has_value();
     return pictures_of(std::move(drawn));
   }
@@ -167,13 +158,13 @@ class PathPictures {
   }
 
   void end() {
-    if (GlThread::in_its_process() && !path_.expired()) renderer_->end(path_);
+    if (GlThread::in_its_process() && has_begun_) renderer_->end(path_);
   }
 
   std::shared_ptr<Renderer> renderer_;
   py::iterator views_;
   Settings settings_;
-  std::weak_ptr<Path> path_;
+  std::uint64_t path_ = Renderer::new_path();
   bool has_begun_ = false, is_under_way_ = false;
 };
 
@@ -181,26 +172,6 @@ void close(const std::shared_ptr<Renderer>& renderer) {
   const Unlocked unlocked;
   renderer->close();
 }
-
-constexpr const char* draw_help =
-    "Draws a Camera, which returns its Picture, or a Rig: the pictures of the left and the right eye.\n\n"
-    "Without settings a picture is exact. quality: dB of PSNR that it should have against the exact\n"
-    "one. Or tolerance: what leaving a Gaussian out of a tile may cost, in the unit of th: 'squared'\n"
-    "(where one of the two is given) or 'peripheral'; 'tau' is exact. transmittance: the light that a\n"
-    "Gaussian is taken to get, 'one' or, with follow, 'last'. order: 'depth' or 'distance', projection:\n"
-    "'affine' or 'tangent' (None: as the model was trained). tiles: 'ellipse', 'snug', 'all' (exact),\n"
-    "'aabb' or 'obb'. decode: of Scaffold-GS, 'eyes' or, with a Rig, 'cyclopean'. background: RGB behind\n"
-    "the scene. near: nothing nearer is drawn, world units. depth: 'mean' of what is seen, or 'median',\n"
-    "by which half of it is. follow: this is the next frame of a path, which goes by what the one\n"
-    "before measured; else the picture depends on nothing drawn before.\n\n"
-    "May be called from any thread; pictures of one Renderer are drawn one after the other.\n"
-    "Raises InputError for settings that contradict each other, OutOfMemory.";
-
-constexpr const char* draw_all_help =
-    "Draws Cameras or Rigs one after another, from any iterable, and gives what draw() would return of each\n"
-    "while the GPU draws the next one. The settings are draw()'s, and the same for all; with follow they "
-    "are\n"
-    "the frames of a path. Raises as draw(), at the view concerned.";
 
 using RendererClass = py::class_<Renderer, std::shared_ptr<Renderer>>;
 
@@ -242,17 +213,13 @@ void add_renderer(py::module_& module) {
           "alpha is at most 0.5.")
       .def_readonly(
           "report", &DrawnPicture::report,
-          "Of the frame, a dict: total_ms and stages_ms (GPU times), visible, pairs, tolerance and\n"
-          "quality (dB) that it came to, attempts, remembered, gpu_bytes.");
+          "Of the frame, a dict: total_ms and stages_ms (GPU times), submit_ms (CPU time of handing it to\n"
+          "the driver), visible, pairs, tolerance and quality (dB) that it came to, attempts, remembered\n"
+          "(whether it used what the frame before measured), gpu_bytes.");
   py::class_<PathPictures>(module, "PathPictures", "What draw_all() returns: an iterator.")
       .def("__iter__", [](PathPictures& pictures) -> PathPictures& { return pictures; })
       .def("__next__", &PathPictures::next);
-  RendererClass renderer(
-      module, "Renderer",
-      "A model on a GPU, or in Mesa's software renderer.\n\n"
-      "backend: 'auto' (a GPU, else Mesa), 'device', 'surfaceless' or 'osmesa'. device:\n"
-      "number of the EGL device. precision: 'full', or 'half' for half the memory at 60 dB\n"
-      "and more. Raises OpenGLError, OutOfMemory, InputError.");
+  RendererClass renderer(module, "Renderer", help::renderer);
   renderer
       .def(py::init(&open), py::arg("model").none(false), py::kw_only(), py::arg("backend") = "auto",
            py::arg("device") = py::none(), py::arg("precision") = "full")
@@ -261,13 +228,13 @@ void add_renderer(py::module_& module) {
            "Gives the GPU's memory back; it is also given back with the last reference, and by `with`.")
       .def("__enter__", [](Renderer& self) -> Renderer& { return self; })
       .def("__exit__", [](const std::shared_ptr<Renderer>& self, const py::args&) { close(self); });
-  add_drawing<SeenBy>(renderer, "draw", "view", &draw, draw_help);
+  add_drawing<SeenBy>(renderer, "draw", "view", &draw, help::draw);
   add_drawing<py::iterable>(
       renderer, "draw_all", "views",
       [](const std::shared_ptr<Renderer>& of, const py::iterable& views, const Settings& settings) {
         return std::make_unique<PathPictures>(of, views, settings);
       },
-      draw_all_help);
+      help::draw_all);
 }
 
 }  // namespace binosplat::python

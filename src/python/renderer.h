@@ -1,6 +1,10 @@
 #pragma once
 // A model on the GPU, drawn on a thread of its own.
 
+#include <atomic>
+#include <cstdint>
+#include <future>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -71,11 +75,13 @@ class Renderer {
     device_ = fmt::format("{} ({}, OpenGL {})", context.renderer(), context.backend(), context.version());
   }
   ~Renderer() {
-    if (GlThread::in_its_process()) {
+    const bool is_here = GlThread::in_its_process();  // else neither has survived the fork
+    if (is_here && !(Unlocked::ends_by_interrupt() && thread_->is_busy())) {
       close();
-    } else {  // neither has survived the fork
+    } else {
       static_cast<void>(thread_.release());
       static_cast<void>(on_gpu_.release());
+      static_cast<void>(new std::shared_ptr<const Model>(model_));
     }
   }
   Renderer(const Renderer&) = delete;
@@ -85,8 +91,8 @@ class Renderer {
     thread_->run([this] { on_gpu_.reset(); });
   }
 
-  Drawn draw(const Views& views, const Settings& settings) {
-    return thread_->run([&] {
+  std::future<Drawn> draw(const Views& views, const Settings& settings) {
+    return thread_->start([this, views, settings] {
       render::Frame& frame = on_gpu().frame;
       if (!settings.follow) frame.start_over();
       render::FrameReport report = frame.draw(views, settings.frame);
@@ -94,31 +100,39 @@ class Renderer {
     });
   }
 
-  /// A path that begins with these views. It ends with end() or close().
-  std::weak_ptr<Path> begin(const Views& views, const Settings& settings) {
-    return thread_->run([&] {
-      auto path = std::make_shared<Path>(*on_gpu().context, on_gpu().frame.model());
-      path->submit(views, settings);
-      return std::weak_ptr(on_gpu().paths.emplace_back(std::move(path)));
+  /// A number for a path, which begin() makes; it ends with end() or close().
+  static std::uint64_t new_path() {
+    static std::atomic<std::uint64_t> last = 0;
+    return ++last;
+  }
+
+  std::future<void> begin(std::uint64_t number, const Views& views, const Settings& settings) {
+    return thread_->start([this, number, views, settings] {
+      OnGpu& on = on_gpu();
+      Path& path = on.paths.try_emplace(number, *on.context, on.frame.model()).first->second;
+      path.submit(views, settings);
     });
   }
 
   /// What was begun; where there are views to follow, the GPU draws them from now on.
-  Drawn next(const std::weak_ptr<Path>& of, const std::optional<Views>& following, const Settings& settings) {
-    return thread_->run([&] {
-      const std::shared_ptr<Path> path = of.lock();
-      if (!path) fail(closed);
-      render::FrameReport report = path->frame.finish();
-      const auto pictures = path->read_back.start(path->frame);
-      if (following) path->submit(*following, settings);
+  std::future<Drawn> next(std::uint64_t number, const std::optional<Views>& following,
+                          const Settings& settings) {
+    return thread_->start([this, number, following, settings] {
+      const auto found = on_gpu().paths.find(number);
+      if (found == on_gpu().paths.end()) fail(closed);
+      Path& path = found->second;
+      render::FrameReport report = path.frame.finish();
+      const auto pictures = path.read_back.start(path.frame);
+      if (following) path.submit(*following, settings);
       pictures->wait();
       return drawn_of(std::move(report), pictures->take(), settings.frame.background);
     });
   }
 
-  void end(const std::weak_ptr<Path>& path) {
-    thread_->run([&] {
-      if (on_gpu_) std::erase(on_gpu_->paths, path.lock());
+  /// Does not wait for it.
+  void end(std::uint64_t number) {
+    thread_->start([this, number] {
+      if (on_gpu_) on_gpu_->paths.erase(number);
     });
   }
 
@@ -134,7 +148,7 @@ class Renderer {
         : context(gl::Context::open(backend, number)), frame(*context, model, precision) {}
     std::unique_ptr<gl::Context> context;
     render::Frame frame;
-    std::vector<std::shared_ptr<Path>> paths;
+    std::map<std::uint64_t, Path> paths;
   };
 
   OnGpu& on_gpu() {

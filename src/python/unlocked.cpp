@@ -4,13 +4,14 @@
 #include <unistd.h>
 
 #include <atomic>
+#include <csignal>
 
 namespace binosplat::python {
 
 namespace {
 
 std::atomic<int> alive = 0;
-std::atomic<bool> python_is_gone = false;
+std::atomic<bool> python_is_gone = false, is_interrupted = false;
 
 void leave() {
   --alive;
@@ -24,6 +25,10 @@ void leave() {
 
 void wait_for_all() {
   python_is_gone = true;
+  if (is_interrupted && alive > 0) {
+    std::signal(SIGINT, SIG_DFL);
+    std::raise(SIGINT);
+  }
   for (int left = alive; left > 0; left = alive) alive.wait(left);
 }
 
@@ -44,8 +49,19 @@ Unlocked::~Unlocked() {
 
 void Unlocked::outlive_all() {
   Py_AtExit(wait_for_all);
+  namespace py = pybind11;
+  // Python keeps there what it has shown as the reason of its end.
+  py::module_::import("atexit").attr("register")(py::cpp_function([] {
+    const py::object last = py::getattr(py::module_::import("sys"), "last_type", py::none());
+    is_interrupted = last.is(py::handle(PyExc_KeyboardInterrupt));
+  }));
   // The threads of the others are not in a process that is forked.
   pthread_atfork(nullptr, nullptr, [] { alive = 0; });
 }
+
+bool Unlocked::ends_by_interrupt() { return is_interrupted; }
+
+Outlived::Outlived() { ++alive; }
+Outlived::~Outlived() { leave(); }
 
 }  // namespace binosplat::python

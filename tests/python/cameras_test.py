@@ -1,7 +1,9 @@
 """Models, cameras and rigs: what files and numbers become, and what is refused."""
 
+import copy
 import json
 import os
+import pickle
 
 import numpy as np
 import pytest
@@ -149,3 +151,38 @@ def test_cameras_of_nerfstudio_are_moved_into_its_training(tmp_path):
     file = tmp_path / "transforms.json"
     assert list(binosplat.load_cameras(file)[0].position) == [1, 2, 3]
     assert list(binosplat.load_cameras(file, tmp_path / "splat.ply")[0].position) == [0.5, 1, 1.5]
+
+
+def test_cameras_and_rigs_can_be_pickled(renderer, cameras):
+    turn = np.array([[0.8, 0, 0.6], [0, 1, 0], [-0.6, 0, 0.8]])
+    camera = binosplat.Camera(40, 30, 35, fy=36, cx=21, cy=14, position=(-2, 0.1, 0), rotation=turn, name="a")
+    rig = binosplat.Rig(cameras["front"], ipd=0.2, units_per_metre=2, convergence=3)
+    of_eyes = binosplat.Rig.of_eyes(cameras["pair_left"], cameras["pair_right"])
+
+    def pictures(view):
+        drawn = renderer.draw(view)
+        return [picture.colour for picture in (drawn if isinstance(drawn, tuple) else (drawn,))]
+
+    for view in (camera, rig, of_eyes):
+        for other in (pickle.loads(pickle.dumps(view)), copy.deepcopy(view)):
+            assert all(map(np.array_equal, pictures(other), pictures(view)))
+    other = pickle.loads(pickle.dumps(camera))
+    assert (repr(other), other.time, other.fy) == (repr(camera), camera.time, 36)
+    assert not np.array_equal(pictures(other)[0], pictures(cameras["front"].resized(40, 30))[0])
+    again = pickle.loads(pickle.dumps(cameras))
+    assert again.source == cameras.source and [c.name for c in again] == [c.name for c in cameras]
+
+
+def test_a_mistyped_keyword_is_named(renderer, model, cameras):
+    front = cameras["front"]
+    for call, words in (
+            (lambda: renderer.draw(front, qualty=40), "Renderer.draw() has no argument 'qualty'; did you mean 'quality'?"),
+            (lambda: renderer.draw_all([], folow=True), "Renderer.draw_all() has no argument 'folow'; did you mean 'follow'?"),
+            (lambda: binosplat.Camera(1, 1, 1, rotatoin=0), "Camera() has no argument 'rotatoin'; did you mean 'rotation'?"),
+            (lambda: binosplat.Rig(front, eyes=0.06), "Rig() has no argument 'eyes'"),
+            (lambda: binosplat.Renderer(model, gpu=1), "Renderer() has no argument 'gpu'"),
+            (lambda: binosplat.compare(1, 2, pdd=3), "compare() has no argument 'pdd'; did you mean 'ppd'?"),
+            (lambda: binosplat.Model(means=0, quat=0), "Model() has no argument 'quat'; did you mean 'quats'?")):
+        with pytest.raises(TypeError) as raised:
+            call()
+        assert str(raised.value) == words

@@ -23,7 +23,7 @@ def test_a_picture_is_three_arrays(renderer, cameras):
     assert np.isinf(picture.depth[~seen]).all()
     assert (picture.depth[seen] > 2).all() and (picture.depth[seen] < 6).all()
     assert picture.report["pairs"] > 0 and picture.report["total_ms"] > 0
-    assert "blend" in picture.report["stages_ms"]
+    assert "blend" in picture.report["stages_ms"] and 0 < picture.report["submit_ms"] < 60000
 
 
 def test_the_median_depth_is_one_that_is_there(renderer, cameras):
@@ -107,12 +107,14 @@ def test_a_pair_of_given_eyes_is_each_eye_drawn_alone(renderer, cameras):
 def test_a_picture_depends_on_nothing_drawn_before_but_when_it_follows(model, cameras):
     fast = {"tolerance": 2, "transmittance": "last"}
     with binosplat.Renderer(model, backend="surfaceless") as renderer:
-        first = renderer.draw(cameras["front"], **fast)
+        first = renderer.draw(cameras["front"], **fast, follow=True)
         assert not first.report["remembered"]
-        assert same(renderer.draw(cameras["front"], **fast).colour, first.colour)
         following = renderer.draw(cameras["front"], **fast, follow=True)
         assert following.report["remembered"]
         assert not same(following.colour, first.colour)
+        alone = renderer.draw(cameras["front"], tolerance=2)
+        assert not alone.report["remembered"]
+        assert same(renderer.draw(cameras["front"], tolerance=2).colour, alone.colour)
 
 
 def test_frames_that_follow_are_those_of_a_path(model, cameras, scene, program, tmp_path):
@@ -156,6 +158,7 @@ WRONG = [
     ({"tiles": "round"}, "tiles: 'round' is not one of aabb, ellipse"),
     ({"transmittance": "depth", "tolerance": 1}, "transmittance depth: needs a table"),
     ({"transmittance": "last"}, "transmittance has no effect with th tau"),
+    ({"transmittance": "last", "tolerance": 1}, "transmittance last: needs follow=True"),
     ({"decode": "cyclopean"}, "decode cyclopean: this is no Scaffold-GS model"),
     ({"near": 0}, "near 0: expected world units above zero"),
     ({"background": (0, 0, 2)}, "background: expected three numbers from 0 to 1"),
@@ -227,9 +230,10 @@ def test_a_path_says_what_is_wrong_where_it_is(renderer, cameras, scene):
 
 
 def test_a_path_goes_by_what_came_before_only_where_it_follows(renderer, cameras):
-    settings = {"tolerance": 0.5, "transmittance": "last"}
     views = [cameras["front"]] * 3
-    followed = [p.report["remembered"] for p in renderer.draw_all(views, follow=True, **settings)]
-    alone = [p.report["remembered"] for p in renderer.draw_all(views, **settings)]
-    assert followed == [False, True, True]
+    settings = {"tolerance": 0.5, "transmittance": "last", "follow": True}
+    assert [p.report["remembered"] for p in renderer.draw_all(views, **settings)] == [False, True, True]
+    with pytest.raises(binosplat.InputError, match="needs follow=True"):
+        renderer.draw_all(views, tolerance=0.5, transmittance="last")
+    alone = [p.report["remembered"] for p in renderer.draw_all(views, tolerance=0.5)]
     assert alone == [False, False, False]

@@ -57,6 +57,31 @@ def test_equal_pictures_and_grey_beside_colour(pictures):
     assert "psnr=inf" in repr(same)
 
 
+def test_floats_that_count_to_255_are_refused(pictures, tmp_path):
+    a, b = pictures
+    dark = np.zeros((24, 20, 3))
+    dark[0, 0] = 7.0  # whole numbers, though dark
+    noisy = np.float32(b) + np.float32(0.25)
+    for wrong in (np.float32(a), np.float64(b), dark, noisy):
+        for use in (lambda x: binosplat.compare(a, x), lambda x: binosplat.save_png(tmp_path / "a.png", x),
+                    binosplat.quantised):
+            with pytest.raises(binosplat.InputError, match="floats have white 1, but these go up to"):
+                use(wrong)
+    assert not (tmp_path / "a.png").exists()
+    overshooting = np.float32(a) / 255
+    overshooting[:4] += 3  # a window in the sun
+    assert binosplat.compare(overshooting, a).psnr < 20
+    assert binosplat.quantised(np.eye(5)).max() == 1
+
+
+def test_only_png_is_written(pictures, tmp_path):
+    for name in ("a.jpg", "a", "a.png.exr"):
+        with pytest.raises(binosplat.InputError, match="the name must end in .png"):
+            binosplat.save_png(tmp_path / name, pictures[0])
+    binosplat.save_png(tmp_path / "A.PNG", pictures[0])
+    assert [file.name for file in tmp_path.iterdir()] == ["A.PNG"]
+
+
 @pytest.mark.parametrize("shape", [(), (5,), (24, 20, 2), (24, 20, 5), (2, 24, 20, 3), (0, 20, 3)])
 def test_other_shapes_are_refused(pictures, shape):
     with pytest.raises(binosplat.InputError):

@@ -16,8 +16,9 @@ def test_the_installed_module_draws(scene, tmp_path):
     install = [os.environ["BINOSPLAT_CMAKE"], "--install", os.environ["BINOSPLAT_BUILD_DIR"], "--component"]
     subprocess.run([*install, "python", "--prefix", tmp_path / "first"], check=True, capture_output=True)
     (tmp_path / "first").rename(tmp_path / "prefix")
-    (module,) = (tmp_path / "prefix").rglob("binosplat*.so")
-    environment = {**os.environ, "PYTHONPATH": str(module.parent)}
+    (module,) = (tmp_path / "prefix").rglob("binosplat/__init__.py")
+    assert {file.suffix for file in module.parent.iterdir()} == {".py", ".pyi", ".so", ".typed"}
+    environment = {**os.environ, "PYTHONPATH": str(module.parent.parent)}
     command = [sys.executable, "-c", CODE, scene / "model.ply", scene]
     ended = subprocess.run(command, capture_output=True, text=True, env=environment)
     assert ended.returncode == 0, ended.stderr

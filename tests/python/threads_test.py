@@ -2,9 +2,11 @@
 
 import ctypes
 import os
+import signal
 import subprocess
 import sys
 import threading
+import time
 
 import numpy as np
 import pytest
@@ -219,3 +221,46 @@ def test_pools_of_processes(scene, tmp_path, method, said):
                            text=True, timeout=120)
     assert ended.returncode == 0, ended.stderr
     assert said in ended.stdout
+
+
+LONG = """
+import sys, time, binosplat
+camera = binosplat.Camera(4500, 4500, 4000)
+renderer = binosplat.Renderer(binosplat.load_model(sys.argv[1]), backend="surfaceless")
+renderer.draw(camera.resized(60, 60))
+print("begins", flush=True)
+begin = time.monotonic()
+try:
+    HOW
+except KeyboardInterrupt:
+    print("interrupted", flush=True)
+    WHAT
+print(time.monotonic() - begin, flush=True)
+"""
+
+
+def interrupted_after(scene, how, what, interrupt=True):
+    """Runs the program above and interrupts it; returns how it ended, what it printed, and after how many seconds."""
+    code = LONG.replace("HOW", how).replace("WHAT", what)
+    with subprocess.Popen([sys.executable, "-c", code, scene / "model.ply"], stdout=subprocess.PIPE,
+                          stderr=subprocess.PIPE, text=True) as running:
+        assert running.stdout.readline() == "begins\n"
+        begin = time.monotonic()
+        time.sleep(0.3)
+        if interrupt:
+            running.send_signal(signal.SIGINT)
+        said = running.communicate(timeout=120)
+    return running.returncode, said, time.monotonic() - begin
+
+
+@pytest.mark.parametrize("how", ["renderer.draw(camera)", "list(renderer.draw_all([camera]))"])
+def test_ctrl_c_ends_a_long_draw(scene, how):
+    code, (said, errors), seconds = interrupted_after(scene, how, "raise")
+    assert code == -signal.SIGINT and "KeyboardInterrupt" in errors and said == "interrupted\n"
+    # What it would have taken: a draw that nobody interrupts, and one that is waited for.
+    code, (said, _), whole = interrupted_after(scene, how, "raise", interrupt=False)
+    assert code == 0 and whole > 2 * seconds, (whole, seconds)
+    caught = "assert renderer.draw(camera.resized(60, 60)).colour.any()"
+    code, (said, errors), waited = interrupted_after(scene, how, caught)
+    assert code == 0 and said.startswith("interrupted\n"), errors
+    assert waited > seconds

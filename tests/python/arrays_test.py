@@ -1,0 +1,146 @@
+"""Models from arrays, and back."""
+
+import numpy as np
+import pytest
+
+import binosplat
+
+NAMES = ["means", "quats", "scales", "opacities", "sh"]
+
+
+def arrays_of(model):
+    return {name: getattr(model, name) for name in NAMES}
+
+
+def pixels(model, camera):
+    with binosplat.Renderer(model, backend="surfaceless") as renderer:
+        return renderer.draw(camera).colour
+
+
+@pytest.fixture()
+def arrays(model):
+    return arrays_of(model)
+
+
+class Tensor:
+    """As torch's on the CPU: it gives an array once it is detached."""
+
+    def __init__(self, values):
+        self.values = values
+
+    def detach(self):
+        return Detached(self.values)
+
+    def __array__(self, dtype=None):
+        raise RuntimeError("Can't call numpy() on Tensor that requires grad")
+
+
+class Detached:
+    def __init__(self, values):
+        self.values = values
+
+    def __array__(self, dtype=None):
+        return self.values
+
+
+class Lender:
+    """What has DLPack and nothing else."""
+
+    def __init__(self, values):
+        self.values = values
+
+    def __dlpack__(self, **options):
+        return self.values.__dlpack__(**options)
+
+    def __dlpack_device__(self):
+        return self.values.__dlpack_device__()
+
+
+def test_arrays_are_what_the_file_holds(model, arrays):
+    shapes = {"means": (300, 3), "quats": (300, 4), "scales": (300, 3), "opacities": (300,), "sh": (300, 1, 3)}
+    for name, array in arrays.items():
+        assert array.shape == shapes[name] and array.dtype == np.float32, name
+    assert 0.01 < np.median(arrays["scales"]) < 0.5 and (arrays["scales"] > 0).all()
+    assert 0 <= arrays["opacities"].min() < 0.5 < arrays["opacities"].max() <= 1
+    np.testing.assert_allclose(np.linalg.norm(arrays["quats"], axis=1), 1, atol=1e-6)
+    arrays["means"][:] = 0  # a copy
+    assert model.means.any()
+
+
+@pytest.mark.parametrize("how", [
+    np.asarray, np.float64, np.asfortranarray, Tensor, Lender,
+    lambda x: np.repeat(x, 2, axis=0)[::2],  # not contiguous
+    lambda x: x[::-1].copy()[::-1],  # strides below zero
+    lambda x: x.tolist(),
+    lambda x: x.astype(">f4"),
+])
+def test_a_picture_is_that_of_the_file_to_the_bit(model, arrays, cameras, how):
+    made = binosplat.Model(*[how(array) for array in arrays.values()], name="made")
+    assert (made.name, made.format, made.count, made.degree) == ("made", "arrays", 300, 0)
+    assert np.array_equal(pixels(made, cameras["front"]), pixels(model, cameras["front"]))
+    for name in NAMES:  # what differs in one value is another picture
+        assert np.array_equal(getattr(made, name), arrays[name])
+    other = dict(arrays, means=arrays["means"] + np.float32(0.01))
+    assert not np.array_equal(pixels(binosplat.Model(**other), cameras["front"]), pixels(model, cameras["front"]))
+
+
+@pytest.mark.parametrize("degree", [0, 1, 2, 3])
+def test_harmonics_of_every_degree(arrays, cameras, degree):
+    sh = np.zeros((300, (degree + 1)**2, 3), np.float32)
+    sh[:, 0] = arrays["sh"][:, 0]
+    made = binosplat.Model(**dict(arrays, sh=sh))
+    assert made.degree == degree and made.sh.shape == sh.shape
+    flat = binosplat.Model(**arrays)
+    assert np.array_equal(pixels(made, cameras["front"]), pixels(flat, cameras["front"]))
+    sh[:, -1] += 0.5
+    assert not np.array_equal(pixels(binosplat.Model(**dict(arrays, sh=sh)), cameras["front"]),
+                              pixels(flat, cameras["front"]))
+
+
+def test_quaternions_of_any_length_and_axes(arrays, cameras):
+    once, twice = (binosplat.Model(**dict(arrays, quats=arrays["quats"] * k)) for k in (2, 4))
+    assert np.array_equal(pixels(twice, cameras["front"]), pixels(once, cameras["front"]))
+    turned = binosplat.Model(**arrays, axes="LUF", antialiased=True)
+    assert turned.axes == "LUF" and turned.antialiased
+    assert not np.array_equal(pixels(turned, cameras["front"]), pixels(once, cameras["front"]))
+
+
+def planted(array, value, at=7):
+    array = array.copy()
+    array[at] = value
+    return array
+
+
+@pytest.mark.parametrize("name, change, words", [
+    ("means", lambda x: x[:, :2], "means: an array of shape (300, 2): expected (N, 3)"),
+    ("means", lambda x: x[:299], "quats: an array of shape (300, 4): expected (299, 4)"),
+    ("quats", lambda x: x[:, :3], "quats: an array of shape (300, 3): expected (300, 4)"),
+    ("scales", lambda x: x[:, 0], "scales: an array of shape (300,): expected (300, 3)"),
+    ("opacities", lambda x: x[:, None], "opacities: an array of shape (300, 1): expected (300,)"),
+    ("sh", lambda x: x[:, 0], "sh: an array of shape (300, 3): expected (N, 1, 3), (N, 4, 3)"),
+    ("sh", lambda x: np.repeat(x, 5, axis=1), "sh: an array of shape (300, 5, 3): expected (N, 1, 3)"),
+    ("means", lambda x: planted(x, np.nan), "means[7]: expected finite numbers"),
+    ("means", lambda x: planted(np.float64(x), -np.inf), "means[7]: expected finite numbers"),
+    ("quats", lambda x: planted(x, 0), "quats[7]: a quaternion of zeros"),
+    ("quats", lambda x: planted(x, np.inf), "quats[7]: expected finite numbers"),
+    ("scales", lambda x: planted(x, -1), "scales[7]: below 0: expected standard deviations"),
+    ("scales", lambda x: planted(x, np.nan), "scales[7]: expected finite numbers"),
+    ("opacities", lambda x: planted(x, 1.5), "opacities[7]: expected 0 to 1"),
+    ("opacities", lambda x: planted(x, np.nan), "opacities[7]: expected 0 to 1"),
+    ("sh", lambda x: planted(x, -np.inf), "sh[7]: expected finite numbers"),
+])
+def test_what_is_no_gaussian_is_named(arrays, name, change, words):
+    with pytest.raises(binosplat.InputError) as raised:
+        binosplat.Model(**dict(arrays, **{name: change(arrays[name])}))
+    assert words in str(raised.value)
+
+
+def test_what_is_no_array_of_floats_is_refused(arrays):
+    for wrong in (None, "means", np.zeros((300, 3), int), np.zeros((300, 3), complex), [["a"] * 3] * 300):
+        with pytest.raises(TypeError, match="means: expected an array of floats"):
+            binosplat.Model(**dict(arrays, means=wrong))
+    empty = {name: array[:0] for name, array in arrays.items()}
+    with pytest.raises(binosplat.InputError, match="means: no Gaussians"):
+        binosplat.Model(**empty)
+    with pytest.raises(binosplat.InputError, match="axes 'XYZ'"):
+        binosplat.Model(**arrays, axes="XYZ")
