@@ -39,6 +39,6 @@ for ((i = 0; i < ${#files[@]}; ++i)); do
     fi
     patchelf --replace-needed "$name" "$(basename "$copy")" "$file"
   done
-  where=$(realpath --relative-to "$(dirname "$file")" "$folder")
-  patchelf --set-rpath "\$ORIGIN${where:+/$where}" "$file"
+  where=/$(realpath --relative-to "$(dirname "$file")" "$folder")
+  patchelf --set-rpath "\$ORIGIN${where%/.}" "$file"
 done

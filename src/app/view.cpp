@@ -1,5 +1,6 @@
 // binosplat view: starts the preview, a program beside this one. This one needs no window system.
 
+#include <dlfcn.h>
 #include <unistd.h>
 #include <CLI/CLI.hpp>
 
@@ -28,6 +29,13 @@ ExitCode view(std::vector<std::string> arguments) {
             "{} is not there: this binosplat was built without its preview. `./demo --view` builds it (on "
             "another system than Debian, GLFW and Dear ImGui first); `binosplat render` needs no window",
             program.string()));
+  }
+  // What the preview is linked to and servers lack: the loader would say no more than that it is not there.
+  if (const char* const library = BINOSPLAT_PREVIEW_NEEDS; *library != 0 && !dlopen(library, RTLD_LAZY)) {
+    throw Error(ExitCode::no_gl,
+                fmt::format("{}: the window needs it (on Debian: apt install libx11-6); `binosplat render` "
+                            "needs no window",
+                            dlerror()));
   }
   arguments.insert(arguments.begin(), "binosplat-view");
   std::vector<char*> pointers;

@@ -33,7 +33,8 @@ std::unique_ptr<Context> attempt(const Open& open, std::string& reasons) {
     return open();
   } catch (const Error& error) {
     if (error.code() != ExitCode::no_gl) throw;
-    reasons += fmt::format("\n  {}", error.what());
+    const std::string reason = fmt::format("\n  {}", error.what());
+    if (!reasons.ends_with(reason)) reasons += reason;  // two ways may fail by one library
     return nullptr;
   }
 }
