@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "preview/keys.h"
 #include "preview/times.h"
@@ -66,7 +67,10 @@ bool draw_rig(Choices& choices) {
 bool draw_quality(render::FrameSettings& s) {
   constexpr float least = 25.0f, exact = 60.0f;
   float db = s.quality > 0.0f ? s.quality : exact;
-  const char* const format = s.quality > 0.0f ? "%.0f dB" : render::is_exact(s.th) ? "exact" : "by tolerance";
+  const char* const format = s.quality > 0.0f         ? "%.0f dB"
+                             : is_exact(s)            ? "exact"
+                             : render::is_exact(s.th) ? "by tiles"
+                                                      : "by tolerance";
   if (!ImGui::SliderFloat("quality", &db, least, exact, format, ImGuiSliderFlags_AlwaysClamp)) return false;
   choose_quality(s, db < exact ? std::optional(std::round(db)) : std::nullopt);
   return true;
@@ -125,7 +129,7 @@ bool Panel::draw_view(Session& session) {
   if (ImGui::Button("this is up")) session.set_up();
   ImGui::SameLine();
   if (ImGui::Button("save pose")) requests.save_pose();
-  ImGui::TextWrapped("camera: %s", session.camera_name().c_str());
+  ImGui::TextWrapped("camera: %s", session.place_name().c_str());
   ImGui::Checkbox("walk", &walking);
   ImGui::SameLine();
   changed |= ImGui::Checkbox("grid (B)", &c.grid);
@@ -141,6 +145,10 @@ bool Panel::draw_view(Session& session) {
   }
   changed |= factor_slider("near plane", c.rig.near_plane, 0.001, 10.0, "%.3f units");
   changed |= ImGui::ColorEdit3("background", &c.background.x, ImGuiColorEditFlags_NoInputs);
+  ImGui::InputInt("saved width", &c.saved_width, 100, 1000);
+  c.saved_width = std::clamp(c.saved_width, 0, 16384);
+  if (ImGui::IsItemHovered())
+    ImGui::SetTooltip("px of what F12 and F11 save; 0: as wide as the picture here");
   return changed;
 }
 
@@ -217,6 +225,7 @@ void Panel::draw(Session& session) {
   const ImVec2 size = ImGui::GetIO().DisplaySize;
   ImGui::SetNextWindowPos({size.x - width(size.x), 0.0f});
   ImGui::SetNextWindowSize({width(size.x), size.y});
+  if (std::exchange(takes_keys, false)) ImGui::SetNextWindowFocus();
   ImGui::Begin("panel", nullptr,
                ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoCollapse |
                    ImGuiWindowFlags_NoMove);
@@ -262,6 +271,11 @@ void draw_legend(int show, double most, float width) {
   ImGui::SameLine(style.WindowPadding.x + bar - ImGui::CalcTextSize(end.c_str()).x);
   ImGui::TextUnformatted(end.c_str());
   ImGui::End();
+}
+
+void enable_keys() {
+  // The window's keys hold, whatever widget was pressed last.
+  ImGui::GetIO().ConfigFlags |= ImGuiConfigFlags_NavEnableKeyboard | ImGuiConfigFlags_NavNoCaptureKeyboard;
 }
 
 void set_scale(float scale, float pixels) {

@@ -22,6 +22,7 @@ struct Panel {
   bool playing = false;
   bool recording = false;
   double budget_ms = 1000.0 / 60.0;  // that a frame may take: the display's
+  bool takes_keys = false;           // Tab and arrows go about in it, wherever the last click was
   bool stereo_window = false;        // LAYOUT_QUAD_BUFFER may be chosen
   Requests requests;
   std::optional<double> frames_a_second;  // as they were shown last while the head moved
@@ -47,6 +48,10 @@ struct Panel {
 
 /// What the colours of a map mean (stereo/debug_view.h), at the lower right of a picture of that width in px.
 void draw_legend(int show, double most, float width);
+
+/// Tab goes to the next number, to be typed; arrows go from widget to widget, and Space presses one. Once,
+/// after ImGui's context is made.
+void enable_keys();
 
 /// Fonts and widgets for a display of that scale, in a window whose framebuffer has `pixels` px for each of
 /// its own units. Between frames.

@@ -1,6 +1,7 @@
 #include "preview/session.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "base/error.h"
@@ -41,6 +42,17 @@ void choose_threshold(render::FrameSettings& settings, int th) {
   settings.th = th;
   settings.tolerance = static_cast<float>(render::threshold_rules[th].careful_tolerance);
   settings.quality = 0.0f;
+}
+
+bool is_exact(const render::FrameSettings& settings) {
+  return render::is_exact(settings.th) && settings.tiles != TILES_AABB && settings.tiles != TILES_OBB;
+}
+
+void next_tiles(render::FrameSettings& settings, int by) {
+  const int count = static_cast<int>(std::size(tiles_choices));
+  const bool stays_exact = is_exact(settings);
+  do settings.tiles = (settings.tiles + by + count) % count;
+  while (settings.tiles == TILES_ALL || (stays_exact && !is_exact(settings)));
 }
 
 void choose_quality(render::FrameSettings& settings, std::optional<float> db) {
@@ -111,6 +123,12 @@ void Session::step_camera(int by) {
   const int count = static_cast<int>(start_.cameras.size());
   camera_ = static_cast<std::size_t>(((static_cast<int>(camera_) + by) % count + count) % count);
   go_to(start_.cameras[camera_]);
+}
+
+std::string Session::place_name() const {
+  const Camera start = Navigator(start_.cameras[camera_], start_.up, 1.0).camera();
+  const bool is_there = start.position == head.camera().position && start.rotation == head.camera().rotation;
+  return is_there ? camera_name() : fmt::format("away from {} (R: back)", camera_name());
 }
 
 void Session::go_to(const Camera& camera) {
@@ -320,7 +338,22 @@ void Session::focus(const glm::ivec2& pixel) {
 }
 
 std::string Session::save_picture(bool exr) {
-  draw_at_rest();
+  const glm::ivec2 window = framebuffer_;
+  const double larger = choices.saved_width / static_cast<double>(std::max(1, window.x));
+  if (choices.saved_width > 0) resize({choices.saved_width, std::max(1l, std::lround(larger * window.y))});
+  try {
+    draw_at_rest();
+    if (!trouble_.empty()) fail("{}", trouble_);
+    std::string file = write_picture(exr);
+    resize(window);
+    return file;
+  } catch (...) {
+    resize(window);
+    throw;
+  }
+}
+
+std::string Session::write_picture(bool exr) {
   const std::vector<Picture> pictures = frame_.read_pictures();
   const auto path = free_name(folder_, "preview", exr ? ".exr" : ".png");
   if (exr) {

@@ -33,10 +33,17 @@ struct Choices {
   bool seeks_screen = false;  // rig.convergence is to suit what a model's first picture shows
   bool grid = false;          // on the ground
   bool cameras = false;       // are drawn where they stand
+  int saved_width = 0;        // px, of pictures that are saved; 0: the window's
 };
 
 /// Another rule, with the tolerance at which a search would begin.
 void choose_threshold(render::FrameSettings& settings, int th);
+
+/// Whether pictures are exact: no threshold, and tiles that leave nothing out.
+bool is_exact(const render::FrameSettings& settings);
+
+/// The next tile test, or the one before; of exact pictures the next exact one.
+void next_tiles(render::FrameSettings& settings, int by);
 
 /// So many dB against the exact pictures; none: exact.
 void choose_quality(render::FrameSettings& settings, std::optional<float> db);
@@ -109,6 +116,8 @@ class Session {
   /// Back to the camera, with its own field of view.
   void reset_view() { go_to(start_.cameras[camera_]); }
   const std::string& camera_name() const { return start_.cameras[camera_].name; }
+  /// That camera's name while the head is there; else that it has left it.
+  std::string place_name() const;
   /// Cameras that choices.cameras has drawn; none that were made up.
   bool has_cameras() const { return start_.listed; }
   /// Where choices.grid and choices.cameras have things drawn.
@@ -153,6 +162,7 @@ class Session {
   Camera head_camera(int divisor = 1) const;
   std::vector<shared::View> views_of(const Camera& camera);
   void draw_at_rest();
+  std::string write_picture(bool exr);
   render::FrameSettings settings() const;
   void find_screen();
   bool shows_marks() const;

@@ -60,6 +60,7 @@ Window::Window(const Choices& choices, const WindowSettings& settings,
       .open = [this](const std::string& file) { open_file(file); }};
   ImGui::CreateContext();
   ImGui::GetIO().IniFilename = nullptr;
+  enable_keys();
   ImGui_ImplGlfw_InitForOpenGL(window_, true);
   ImGui_ImplOpenGL3_Init("#version 450 core");
   rescale();

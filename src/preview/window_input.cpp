@@ -115,16 +115,20 @@ void Window::read_again() {
 
 namespace {
 
-// The next of a list's choices, without one of them.
-void next(int& value, int count, int left_out, int by) {
-  do value = (value + by + count) % count;
-  while (value == left_out);
+// The next of a list's choices.
+void next(int& value, int count, int by) { value = (value + by + count) % count; }
+
+// What goes about in the panel, once Tab or an arrow has begun that.
+bool is_for_widgets(int key) {
+  if (!ImGui::GetIO().NavVisible) return false;
+  return key == GLFW_KEY_SPACE || key == GLFW_KEY_ENTER || key == GLFW_KEY_ESCAPE;
 }
 
 }  // namespace
 
 void Window::key(int key, int mods) {
-  if (ImGui::GetIO().WantTextInput) return;
+  if (ImGui::GetIO().WantTextInput || is_for_widgets(key)) return;
+  if (key == GLFW_KEY_TAB) panel_.takes_keys = true;
   if (key == GLFW_KEY_ESCAPE && !full_screen_.leave(window_)) glfwSetWindowShouldClose(window_, GLFW_TRUE);
   if (key == GLFW_KEY_F && !full_screen_.leave(window_)) full_screen_.enter(window_);
   if (key == GLFW_KEY_F1) panel_.open = !panel_.open;
@@ -147,17 +151,17 @@ void Window::key_of_scene(int key, int by) {
     tell(fmt::format("layout {}: {}", layout_choices[c.layout].name, layout_choices[c.layout].help));
   }
   if (key == GLFW_KEY_V) {
-    next(c.show, static_cast<int>(std::size(show_choices)), -1, by);
+    next(c.show, static_cast<int>(std::size(show_choices)), by);
     session_->change_show();
     tell(fmt::format("{}: {}", show_choices[c.show].name, show_choices[c.show].help));
   }
   if (key == GLFW_KEY_T) {
-    next(c.settings.tiles, static_cast<int>(std::size(tiles_choices)), TILES_ALL, by);
+    next_tiles(c.settings, by);
     tell(fmt::format("tiles {}: {}", tiles_choices[c.settings.tiles].name,
                      tiles_choices[c.settings.tiles].help));
   }
   if (key == GLFW_KEY_H) {
-    next(c.settings.th, static_cast<int>(std::size(th_choices)), -1, by);
+    next(c.settings.th, static_cast<int>(std::size(th_choices)), by);
     choose_threshold(c.settings, c.settings.th);
     tell(fmt::format("threshold {}: {}", th_choices[c.settings.th].name, th_choices[c.settings.th].help));
   }

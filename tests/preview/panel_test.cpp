@@ -84,6 +84,40 @@ TEST_F(PanelTest, LiesBesideThePictureAndIsReachedByScrolling) {
   EXPECT_EQ(panel.width(640.0f), 0.0f);
 }
 
+TEST_F(PanelTest, TabAndArrowsGoAboutInItOnceTheyAreAskedFor) {
+  show(640.0f, 400.0f, 1.0f);
+  ImGuiIO& io = ImGui::GetIO();
+  const auto press = [&](ImGuiKey key) {
+    for (const bool down : {true, false}) {
+#if IMGUI_VERSION_NUM >= 18700
+      io.AddKeyEvent(key, down);
+#else
+      io.KeyMap[key] = key;
+      io.KeysDown[key] = down;
+#endif
+      show(640.0f, 400.0f, 1.0f);
+    }
+  };
+  panel.takes_keys = true;
+  press(ImGuiKey_DownArrow);
+  press(ImGuiKey_Space);
+  EXPECT_TRUE(panel.open) << "a key presses something where nobody enabled keys";
+  enable_keys();
+  panel.takes_keys = true;
+  press(ImGuiKey_Tab);
+  EXPECT_TRUE(io.WantTextInput) << "Tab goes to the next number, which is typed";
+  press(ImGuiKey_Escape);
+  EXPECT_FALSE(io.WantTextInput);
+  press(ImGuiKey_UpArrow);
+  EXPECT_TRUE(io.NavVisible);
+  EXPECT_FALSE(io.WantCaptureKeyboard) << "W A S D would end";
+  // The first widget hides the panel.
+  for (int k = 0; k < 60; ++k) press(ImGuiKey_UpArrow);
+  press(ImGuiKey_LeftArrow);
+  press(ImGuiKey_Space);
+  EXPECT_FALSE(panel.open);
+}
+
 TEST_F(PanelTest, TextsOverThePictureStayOnItAndApart) {
   const std::vector<Message> messages = {
       {"saved /home/somebody/with/a/rather/long/name/out/garden/preview_001.png", false, 1.0},

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <set>
 
 #include "formats/image_file.h"
 #include "formats/model_file.h"
@@ -197,6 +198,60 @@ TEST_F(SessionTest, AQualityAndAToleranceExcludeEachOther) {
   session.change();
   picture();
   EXPECT_TRUE(std::isinf(session.psnr_against_exact()));
+}
+
+TEST_F(SessionTest, TheNextTilesOfExactPicturesAreExact) {
+  render::FrameSettings settings;
+  ASSERT_TRUE(is_exact(settings));
+  std::set<int> met;
+  for (int k = 0; k < 6; ++k) {
+    next_tiles(settings, k < 3 ? 1 : -1);
+    EXPECT_TRUE(is_exact(settings)) << tiles_choices[settings.tiles].name;
+    met.insert(settings.tiles);
+  }
+  EXPECT_EQ(met, (std::set<int>{TILES_ELLIPSE, TILES_SNUG}));
+  choose_threshold(settings, TH_SQUARED);
+  met.clear();
+  for (int k = 0; k < 4; ++k) {
+    next_tiles(settings, 1);
+    met.insert(settings.tiles);
+  }
+  EXPECT_EQ(met, (std::set<int>{TILES_AABB, TILES_ELLIPSE, TILES_OBB, TILES_SNUG}));
+  choose_threshold(settings, TH_TAU);
+  settings.tiles = TILES_OBB;
+  EXPECT_FALSE(is_exact(settings)) << "tails that tiles clip count as exact";
+}
+
+TEST_F(SessionTest, TheCamerasNameIsSaidWhileTheHeadIsThere) {
+  Camera camera = test::front_camera(64, 40, 55.0);
+  camera.name = "DSC07956";
+  Session named{test::gl_context(),
+                test::random_model(9, 40, 0, 0.6),
+                {{camera}, glm::dvec3(0, -1, 0)},
+                {},
+                folder.path()};
+  EXPECT_EQ(named.place_name(), "DSC07956");
+  named.head.orbit(0.1, 0.0);
+  EXPECT_EQ(named.place_name(), "away from DSC07956 (R: back)");
+  named.reset_view();
+  EXPECT_EQ(named.place_name(), "DSC07956");
+  named.head.move(0.0, 0.0, 0.1, false);
+  EXPECT_NE(named.place_name(), "DSC07956");
+}
+
+TEST_F(SessionTest, PicturesAreSavedAtAnyWidth) {
+  const Image small = picture();
+  session.choices.saved_width = 384;
+  const Image large = picture();
+  EXPECT_EQ(glm::ivec2(large.width, large.height), glm::ivec2(384, 120));
+  session.choices.saved_width = 0;
+  EXPECT_EQ(apart(picture(), small), 0.0) << "the window keeps the other size";
+  session.resize({384, 120});
+  EXPECT_EQ(apart(picture(), large), 0.0) << "it is not drawn at that size, but enlarged";
+  session.choices.saved_width = 1000000000;
+  EXPECT_THROW(session.save_picture(false), Error);
+  session.choices.saved_width = 0;
+  EXPECT_EQ(apart(picture(), large), 0.0);
 }
 
 TEST_F(SessionTest, MapsHaveARangeAndGoAgain) {
