@@ -40,6 +40,7 @@ install(FILES ${PROJECT_BINARY_DIR}/binosplatConfig.cmake ${PROJECT_BINARY_DIR}/
 install(FILES README.md CHANGELOG.md LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(DIRECTORY tests/bench/results DESTINATION ${CMAKE_INSTALL_DOCDIR}/tests/bench)
+install(FILES packages/Dockerfile DESTINATION ${CMAKE_INSTALL_DOCDIR}/packages)
 install(FILES src/render/README.md DESTINATION ${CMAKE_INSTALL_DOCDIR}/src/render)
 install(FILES examples/embed.cpp examples/mesh.cpp examples/openxr.cpp examples/CMakeLists.txt DESTINATION ${CMAKE_INSTALL_DOCDIR}/examples)
 
