@@ -69,7 +69,7 @@ void check(const std::string& place, const BenchSettings& s) {
 
 bool is_exact(const BenchSettings& s) {
   return !s.foveation && s.precision == PRECISION_FULL && render::is_exact(s.th) &&
-         (s.tiles == TILES_ELLIPSE || s.tiles == TILES_SNUG || s.tiles == TILES_ALL);
+         render::has_every_pair(s.tiles);
 }
 
 }  // namespace binosplat::lab

@@ -45,7 +45,7 @@ void choose_threshold(render::FrameSettings& settings, int th) {
 }
 
 bool is_exact(const render::FrameSettings& settings) {
-  return render::is_exact(settings.th) && settings.tiles != TILES_AABB && settings.tiles != TILES_OBB;
+  return render::is_exact(settings.th) && render::has_every_pair(settings.tiles);
 }
 
 void next_tiles(render::FrameSettings& settings, int by) {

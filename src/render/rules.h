@@ -28,6 +28,11 @@ static_assert(std::size(threshold_rules) == std::size(th_choices));
 
 constexpr bool is_exact(int th) { return threshold_rules[th].exact; }
 
+/// Whether a tile test makes every pair that can be seen.
+constexpr bool has_every_pair(int tiles) {
+  return tiles == TILES_ELLIPSE || tiles == TILES_SNUG || tiles == TILES_ALL;
+}
+
 /// Whether a rule can use a transmittance bound from there.
 constexpr bool takes(int th, int transmittance) {
   return transmittance == TRANSMITTANCE_ONE || threshold_rules[th].uses_bound;
