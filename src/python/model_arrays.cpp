@@ -48,7 +48,7 @@ Floats floats_of(const py::object& given, const char* name, std::initializer_lis
     fail("{}: an array of shape {}: expected ({}{})", name, std::string(py::str(array.attr("shape"))),
          expected, shape.size() == 1 ? "," : "");
   }
-  const auto dense = Floats::ensure(array);
+  auto dense = Floats::ensure(array);
   if (!dense) throw py::error_already_set();
   return dense;
 }

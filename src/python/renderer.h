@@ -79,9 +79,10 @@ class Renderer {
     if (is_here && !(Unlocked::ends_by_interrupt() && thread_->is_busy())) {
       close();
     } else {
+      // What the thread may still use is left to it.
       static_cast<void>(thread_.release());
       static_cast<void>(on_gpu_.release());
-      static_cast<void>(new std::shared_ptr<const Model>(model_));
+      static_cast<void>(std::make_unique<std::shared_ptr<const Model>>(model_).release());
     }
   }
   Renderer(const Renderer&) = delete;
