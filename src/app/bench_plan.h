@@ -22,11 +22,11 @@ struct BenchOptions : MeasuredOptions {
   std::vector<std::string> scenes;
   std::string axes = "quick";
   std::string output = "out/bench";
-  Shard shard;                     // of the points
-  std::vector<std::string> merge;  // folders, instead of scenes
-  std::string compare;             // results.json of an older run
+  Shard shard;                           // of the points
+  std::vector<std::string> merge;        // folders, instead of scenes
+  std::string compare;                   // results.json of an older run
   std::optional<double> fail_if_slower;  // percent
-  std::string calibration;         // a file whose settings are measured, too
+  std::string calibration;               // a file whose settings are measured, too
   double ppd = 67.0;
   bool profile = false;
 };

@@ -38,7 +38,7 @@ class ProfileDrawer {
   /// The left eye's picture of a frame, small, as the levels are now.
   Image picture(std::size_t frame);
 
-  /// What the frame would take less at `quality_db`, if it is drawn exactly; nothing where that takes long.
+  /// What the frame would save at `quality_db`, if it is drawn exactly; nothing where that takes long.
   std::optional<Saving> saving(std::size_t frame, double quality_db);
 
  private:

@@ -57,10 +57,10 @@ std::string bound_of(const Profile& profile, const ProfileSummary& summary) {
 
 std::string advice_of(const Profile& profile, const ProfileSummary& summary) {
   const double all = all_stages(summary);
-  if (profile.saving && profile.saving->ms > 0.02 * summary.gpu.median)
+  if (profile.saving && profile.saving->share > 0.02)
     return fmt::format(
-        "--quality {:g} would save {:.2g} ms a frame: binosplat bench {} --axes headset compares settings",
-        profile.saving->quality_db, profile.saving->ms, profile.facts.scene);
+        "--quality {:g} would save {:.0f} % of a frame: binosplat bench {} --axes headset compares settings",
+        profile.saving->quality_db, 100.0 * profile.saving->share, profile.facts.scene);
   if (summary.slow_clock > 0 && summary.missed > 0)
     return "keep the GPU's clock up (nvidia-smi --lock-gpu-clocks), and look at what is left";
   const std::size_t gaussians = profile.recording.frames.back().gaussians;
@@ -114,7 +114,7 @@ nlohmann::ordered_json profile_json(const Profile& profile, const ProfileSummary
              bound_of(profile, summary), "gpu_bound", summary.gpu_bound, "clock", clock_of(profile, summary),
              "slow_clock", summary.slow_clock, "worst", worst, "advice", advice_of(profile, summary));
   if (profile.saving)
-    json["saving"] = object("quality_db", profile.saving->quality_db, "ms", profile.saving->ms);
+    json["saving"] = object("quality_db", profile.saving->quality_db, "share", profile.saving->share);
   return json;
 }
 

@@ -11,8 +11,8 @@ void decode(gl::Dispatcher& dispatcher, const FramePlan& plan, const ModelBuffer
             const FrameBuffers& buffers);
 
 /// Finds the Gaussians that an order group draws, in index order, and makes them as each of its views sees
-/// them: splats and tile counts by slot, depths. Of that only the Gaussians and their depths are there when it
-/// returns; the rest runs beside order() (gl::Dispatcher::add_beside), whose sort does not fill a GPU.
+/// them: splats and tile counts by slot, depths. Of that only the Gaussians and their depths are there when
+/// it returns; the rest runs beside order() (gl::Dispatcher::add_beside), whose sort does not fill a GPU.
 void project(gl::Dispatcher& dispatcher, const FramePlan& plan, std::uint32_t group, bool measures,
              const ModelBuffers& model, FrameBuffers& buffers);
 

@@ -95,9 +95,8 @@ TEST(Profile, TellsOfRepeatsCutsAndClocks) {
     return texts;
   };
   EXPECT_EQ(names(0), (std::vector<std::string>{"display missed: 2 times"}));
-  EXPECT_EQ(names(1),
-            (std::vector<std::string>{"drawn again: 2 times, until it kept its quality: 39.2 dB",
-                                      "measured its error"}));
+  EXPECT_EQ(names(1), (std::vector<std::string>{"drawn again: 2 times, until it kept its quality: 39.2 dB",
+                                                "measured its error"}));
   EXPECT_EQ(names(2), (std::vector<std::string>{"camera cut: it goes by nothing that earlier frames measured",
                                                 "low clock: 1200 MHz"}));
   EXPECT_TRUE(is_missed(profile.recording, 0));
