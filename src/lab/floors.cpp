@@ -89,13 +89,13 @@ std::vector<StageFloor> profile(const FrameWork& work, const Peaks& peaks) {
   const double gaussian_bytes = half ? sizeof(render::Halves) : sizeof(shared::Gaussian);
   const double splat_bytes = half ? sizeof(render::Halves) : sizeof(shared::Splat);
   std::map<std::string, Least> least;
-  // Every Gaussian once, and its key; of what is in view the harmonics, and its splats with their counts.
-  least["project"] = {
-      work.gaussians * (gaussian_bytes + 4) + work.in_view * (half ? 2 : 4) * harmonics +
-          work.splats * (splat_bytes + 4),
-      (work.gaussians + work.splats) * projection_fmas + work.splats * (basis_fmas + harmonics)};
-  least["project"].seconds = least["project"].operations / peaks.fmas;
-  least["order"] = {sort_bytes(work.in_view, work.order_passes)};
+  // Every Gaussian once, and its key.
+  least["project"] = {work.gaussians * (gaussian_bytes + 4), work.gaussians * projection_fmas};
+  // Beside the sort, of what is in view the harmonics, and its splats with their counts.
+  least["order"] = {sort_bytes(work.in_view, work.order_passes) + work.in_view * (half ? 2 : 4) * harmonics +
+                        work.splats * (splat_bytes + 4),
+                    work.splats * (projection_fmas + basis_fmas + harmonics)};
+  for (const char* stage : {"project", "order"}) least[stage].seconds = least[stage].operations / peaks.fmas;
   // A word of each small splat tells its pairs.
   least["pairs"] = {work.in_view * 4 + work.splats * 4 + work.supertile_pairs * 8};
   least["tile_sort"] = {sort_bytes(work.supertile_pairs, work.tile_sort_passes)};
