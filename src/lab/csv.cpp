@@ -80,10 +80,11 @@ Table read_csv(std::string_view text, const std::string& place) {
     text.remove_prefix(std::min(length + 1, text.size()));
     const std::string at = fmt::format("{}:{}", place, number);
     if (number == 1) {
-      for (std::size_t comma = 0; comma != line.npos; line.remove_prefix(std::min(comma + 1, line.size()))) {
+      for (std::size_t comma = 0; comma != std::string_view::npos;
+           line.remove_prefix(std::min(comma + 1, line.size()))) {
         comma = line.find(',');
         table.columns.emplace_back(line.substr(0, comma));
-        if (comma == line.npos) break;
+        if (comma == std::string_view::npos) break;
       }
       continue;
     }

@@ -1,5 +1,7 @@
 // frames.csv and trace.json of a profile.
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <map>
 #include <nlohmann/json.hpp>

@@ -79,7 +79,7 @@ struct Outcome {
 
 /// The program that was built; in a bundle for a GPU server (tests/bench/bundle), the one beside the tests.
 inline std::filesystem::path built_program() {
-  const std::filesystem::path built = BINOSPLAT_PROGRAM;
+  std::filesystem::path built = BINOSPLAT_PROGRAM;
   if (exists(built)) return built;
   return std::filesystem::read_symlink("/proc/self/exe").parent_path() / built.filename();
 }
