@@ -252,7 +252,7 @@ function show(page) {
   if (!page.sections.length) main.append(problem("There are no results."));
   for (const section of page.sections) {
     const holder = element("section", { id: section.id }, element("h2", {}, section.title),
-      element("p", {}, section.sentence));
+      section.sentence ? element("p", {}, section.sentence) : "");
     main.append(holder);
     try {
       holder.append(...sectionParts(section));
