@@ -2,8 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cstdlib>
-
 #include "formats/gzip.h"
 #include "scene/scaffold.h"
 #include "support/errors.h"
@@ -76,45 +74,6 @@ TEST(ModelOutputFiles, SpzGivesTheSameBytes) {
     EXPECT_TRUE(before[i] == after[i] || rotation) << i;
   }
   EXPECT_LT(different, model.count() / 20);
-}
-
-// PlayCanvas' program, where BINOSPLAT_SPLAT_TRANSFORM names it (npm's @playcanvas/splat-transform, 2.7.1),
-// finds in our files what we find in them. It writes a ply, turned as a ply's axes are.
-TEST(ModelOutputFiles, SplatTransformReadsTheSame) {
-  const char* program = std::getenv("BINOSPLAT_SPLAT_TRANSFORM");
-  if (program == nullptr) GTEST_SKIP() << "BINOSPLAT_SPLAT_TRANSFORM does not name the program";
-  for (int degree = 0; degree <= 3; ++degree) {
-    // It clips no logits, of which opacities of 0 and 1 have none.
-    Model original = hard_model(degree, 700);
-    for (float& a : original.opacity) a = std::clamp(a, 0.01f, 0.99f);
-    for (const ModelFormat format : formats) {
-      const test::TempFolder folder;
-      const std::string name = format == ModelFormat::compressed_ply ? "m.compressed.ply"
-                               : format == ModelFormat::ply          ? "m.ply"
-                                                                     : "m." + name_of(format);
-      OutputFile file(folder / name);
-      write_model(file, in_axes_of(original, format), format);
-      file.commit();
-      const std::string command = fmt::format("'{}' '{}' '{}' > '{}' 2>&1", program, (folder / name).string(),
-                                              (folder / "their.ply").string(), (folder / "log").string());
-      ASSERT_EQ(std::system(command.c_str()), 0) << test::read_text(folder / "log");
-      const Model ours = in_axes_of(load_model(folder / name), ModelFormat::ply);
-      const Model theirs = load_model(folder / "their.ply");
-      ASSERT_EQ(ours.count(), theirs.count());
-      ASSERT_EQ(ours.degree, theirs.degree);
-      for (std::size_t i = 0; i < ours.count(); ++i) {
-        test::Expected e = test::exact(ours, i);
-        // Rounding of fp32; .splat's bytes are read as b / 255 * 2 - 1 there.
-        e.position_error = 1e-5 * (1.0 + glm::abs(e.position));
-        e.log_scale_error = glm::dvec3(1e-5);
-        e.rotation_error = format == ModelFormat::splat ? 2e-2 : 2e-5;
-        e.opacity_error = 1e-6;
-        e.sh_error.assign(e.sh.size(), 1e-5);
-        ASSERT_EQ(test::difference(e, ours.rotation[i], theirs, i), "")
-            << name << ", degree " << degree << ", " << i;
-      }
-    }
-  }
 }
 
 TEST(ModelOutputFiles, TagsAreKeptOrSaid) {
