@@ -144,8 +144,9 @@ void tell_how_long(double frame_ms, std::size_t frames) {
              spoken_time(seconds));
 }
 
-lab::Profile record(const ProfileOptions& o) {
+lab::Profile record(const ProfileOptions& o, const std::optional<lab::Table>& before) {
   Profiled all = open_profiled(o);
+  if (before) lab::check_comparable(*before, all.run.frames.size(), o.compare);
   const auto model =
       all.stream ? all.stream->gpu_model(*all.context, all.run.settings.precision)
                  : std::make_shared<render::GpuModel>(*all.context, all.loaded, all.run.settings.precision);
@@ -167,10 +168,10 @@ ExitCode profile(const ProfileOptions& o) {
   for (const char* const name : profile_files) check_output(fs::path(o.folder) / name);
   std::optional<lab::Table> before;
   if (!o.compare.empty()) before = lab::read_csv(as_text(MappedFile(o.compare).bytes()), o.compare);
-  const lab::Profile profile = record(o);
+  const lab::Profile profile = record(o, before);
   const lab::ProfileSummary summary = lab::summary_of(profile);
   std::vector<std::string> changes;
-  if (before) changes = lab::compare_frames(*before, lab::frames_table(profile.recording), o.compare);
+  if (before) changes = lab::compare_frames(*before, lab::frames_table(profile.recording));
   save_profile(o.folder, profile, changes);
   for (const std::string& line : lab::lines_of(profile, summary)) fmt::print("{}\n", line);
   if (before) fmt::print("\nSince {}:\n{}\n", o.compare, fmt::join(changes, "\n"));

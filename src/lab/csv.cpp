@@ -41,7 +41,9 @@ std::vector<Cell> cells_of(std::string_view line, const std::string& place) {
   std::vector<Cell> cells;
   for (;;) {
     std::optional<Cell> cell = take_cell(line);
-    if (!cell) fail("{}: expected a number or a text in quotes in column {}", place, cells.size() + 1);
+    if (!cell)
+      fail("{}: expected a number or a text in quotes in column {}; is it the frames.csv of a profile?",
+           place, cells.size() + 1);
     cells.push_back(*std::move(cell));
     if (line.empty()) return cells;
     line.remove_prefix(1);

@@ -78,9 +78,13 @@ Page profile_page(const Profile& profile, const ProfileSummary& summary,
                   const std::vector<std::string>& changes);
 
 /// What changed beyond noise since an earlier frames.csv of the same frames, a line each; the last one
-/// counts. `before` is its table, called `place` in errors. Frames of a run are compared with the same ones
-/// of the other, by stretches, whose differences tell the noise. Throws Error for another number of frames.
-std::vector<std::string> compare_frames(const Table& before, const Table& now, const std::string& place);
+/// counts. Frames of a run are compared with the same ones of the other, by stretches, whose differences tell
+/// the noise. The tables must be comparable.
+std::vector<std::string> compare_frames(const Table& before, const Table& now);
+
+/// Throws Error, naming `place`, where the table is no profile's, or of another number of frames than a run
+/// has or will have, or of too few.
+void check_comparable(const Table& before, std::size_t frames, const std::string& place);
 
 /// The facts and the summary as JSON.
 nlohmann::ordered_json profile_json(const Profile& profile, const ProfileSummary& summary);

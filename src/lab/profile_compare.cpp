@@ -76,14 +76,18 @@ std::pair<double, double> bounds_of(std::vector<double> values, double share) {
 
 }  // namespace
 
-std::vector<std::string> compare_frames(const Table& before, const Table& now, const std::string& place) {
-  if (before.rows.size() != now.rows.size()) {
+void check_comparable(const Table& before, std::size_t frames, const std::string& place) {
+  if (column_of(before, "wall_ms").empty())
+    fail("--compare {}: no column wall_ms: expected the frames.csv of a profile", place);
+  if (before.rows.size() != frames) {
     fail("--compare {}: {} frames, and this run has {}: compare runs of the same options", place,
-         before.rows.size(), now.rows.size());
+         before.rows.size(), frames);
   }
-  if (now.rows.size() < 3 * stretch_least)
-    fail("--compare {}: {} frames do not tell noise: expected {} or more", place, now.rows.size(),
-         3 * stretch_least);
+  if (frames < 3 * stretch_least)
+    fail("--compare {}: {} frames do not tell noise: expected {} or more", place, frames, 3 * stretch_least);
+}
+
+std::vector<std::string> compare_frames(const Table& before, const Table& now) {
   std::vector<std::string> names;
   for (const std::string& name : now.columns) {
     const bool is_time =
@@ -91,8 +95,6 @@ std::vector<std::string> compare_frames(const Table& before, const Table& now, c
     if ((is_time || name == "pairs" || name == "visible") && !column_of(before, name).empty())
       names.push_back(name);
   }
-  if (std::ranges::find(names, "wall_ms") == names.end())
-    fail("--compare {}: no column wall_ms: expected the frames.csv of a profile", place);
   std::vector<std::string> lines;
   for (const std::string& name : names) {
     const std::string line = change_of(name, column_of(before, name), column_of(now, name),

@@ -95,6 +95,7 @@ TEST_F(ProfileCommand, StandsAtAViewAndComparesWithTheRunBefore) {
 TEST_F(ProfileCommand, WhatMakesNoSenseIsNamedAndLeavesNothing) {
   const auto before = folder.files();
   test::write_text(folder / "old.csv", "frame,wall_ms\n0,x\n");
+  test::write_text(folder / "other.csv", "frame,name\n0,\"x\"\n");
   const std::vector<std::pair<std::vector<std::string>, std::string>> wrong = {
       {{"--tour", "calm", "--view", "view1"}, "ways of their own: choose one of them"},
       {{"--view", "all"}, "--view stands at one camera: name one"},
@@ -104,6 +105,7 @@ TEST_F(ProfileCommand, WhatMakesNoSenseIsNamedAndLeavesNothing) {
       {{"--fps", "-1"}, "frames a second from 0 to 1000"},
       {{"--compare", folder / "none.csv"}, "none.csv"},
       {{"--compare", folder / "old.csv"}, "old.csv:2: expected a number or a text in quotes in column 2"},
+      {{"--compare", folder / "other.csv"}, "no column wall_ms: expected the frames.csv of a profile"},
       {{"-o", model}, "model.ply"},
       {{"--eye", "0,0,0"}, "--eye and --at go together"}};
   std::filesystem::remove(folder / "old.csv");
@@ -115,6 +117,7 @@ TEST_F(ProfileCommand, WhatMakesNoSenseIsNamedAndLeavesNothing) {
     EXPECT_TRUE(test::ended(test::run_program(all), 2, message)) << options[0];
     std::filesystem::remove(folder / "old.csv");
   }
+  std::filesystem::remove(folder / "other.csv");
   EXPECT_EQ(folder.files(), before);
   // The table is small, the page is not: neither is left.
   const test::Outcome full =

@@ -183,14 +183,12 @@ TEST(Profile, ComparesRunsOfTheSameFrames) {
   int changed = 0;
   std::string found;
   for (unsigned pair = 0; pair < 40; ++pair) {
-    const auto lines =
-        compare_frames(timed_again(0.3, 1.0, 2 * pair), timed_again(0.3, 1.0, 2 * pair + 1), "old");
+    const auto lines = compare_frames(timed_again(0.3, 1.0, 2 * pair), timed_again(0.3, 1.0, 2 * pair + 1));
     changed += lines.size() > 1;
     if (lines.size() > 1) found += lines.front() + "\n";
   }
   EXPECT_LE(changed, 2) << "of 40 pairs in which nothing changed:\n" << found;
-  const std::vector<std::string> slower =
-      compare_frames(timed_again(0.3, 1.0, 1), timed_again(0.3, 1.15, 2), "old");
+  const std::vector<std::string> slower = compare_frames(timed_again(0.3, 1.0, 1), timed_again(0.3, 1.15, 2));
   const auto of_wall = std::ranges::find_if(
       slower, [](const std::string& line) { return line.starts_with("wall_ms: median"); });
   EXPECT_NE(of_wall, slower.end()) << "15 % slower goes unnoticed";
@@ -199,16 +197,22 @@ TEST(Profile, ComparesRunsOfTheSameFrames) {
     return table;
   };
   const Table many = timed_again(0.3, 1.0, 1, 1200), other = timed_again(0.3, 1.0, 2, 1200);
-  EXPECT_EQ(compare_frames(many, with_peaks(other, 40), "old").front(), "wall_ms: p99 6.884 -> 50");
-  Table fewer = timed_again(0.0, 1.0, 1);
-  fewer.rows.pop_back();
-  EXPECT_TRUE(test::fails_saying([&] { compare_frames(fewer, timed_again(0.0, 1.0, 1), "old.csv"); },
-                                 {"--compare old.csv: 59 frames, and this run has 60"}));
+  EXPECT_EQ(compare_frames(many, with_peaks(other, 40)).front(), "wall_ms: p99 6.884 -> 50");
+}
+
+TEST(Profile, SaysBeforehandWhatCannotBeCompared) {
+  const Table old = timed_again(0.0, 1.0, 1);
+  check_comparable(old, 60, "old.csv");
+  EXPECT_TRUE(test::fails_saying([&] { check_comparable(old, 59, "old.csv"); },
+                                 {"--compare old.csv: 60 frames, and this run has 59"}));
+  const Table few{old.columns, {old.rows.begin(), old.rows.begin() + 9}};
+  EXPECT_TRUE(
+      test::fails_saying([&] { check_comparable(few, 9, "old.csv"); }, {"9 frames do not tell noise"}));
   EXPECT_TRUE(test::fails_saying(
-      [&] {
-        compare_frames({{"a"}, std::vector(60, row(1.0))}, timed_again(0.0, 1.0, 1), "old.csv");
+      [] {
+        check_comparable({{"a"}, std::vector(60, row(1.0))}, 60, "old.csv");
       },
-      {"no column wall_ms"}));
+      {"no column wall_ms: expected the frames.csv of a profile"}));
 }
 
 TEST(Profile, ThePageHasTheBudgetTheReasonsAndThePictures) {
