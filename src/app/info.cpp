@@ -120,7 +120,8 @@ void print_info(const Model& model, const ModelSummary& s, const render::MemoryN
              model.left_out > 0
                  ? fmt::format(" ({} more left out: values not finite, or no rotation)", model.left_out)
                  : "");
-  fmt::print("{:<14} degree {}\n", "harmonics", model.degree);
+  fmt::print("{:<14} degree {}{}\n", "harmonics", model.degree,
+             model.cut_db ? fmt::format(" of 4, which costs about {}", cut_in_words(model)) : "");
   fmt::print("{:<14} {} ({})\n", "axes", model.axes, axes_in_words(model));
   fmt::print("{:<14} {:.4g} px^2{}\n", "low-pass", model.kernel_px2,
              model.antialiased ? ", trained with anti-aliasing" : "");

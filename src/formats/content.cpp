@@ -25,6 +25,8 @@ constexpr Signature signatures[] = {
     {"\x28\xb5\x2f\xfd"sv, Content::zstd},
     {"\xfd\x37zXZ\0"sv, Content::xz},
     {"glTF"sv, Content::glb},
+    {"#usda "sv, Content::usda},
+    {"PXR-USDC"sv, Content::usdc},
     {"version https://git-lfs"sv, Content::git_lfs},
 };
 
@@ -87,6 +89,10 @@ std::string_view describe(Content content) {
       return "an xz-compressed file (unpack it first)";
     case Content::glb:
       return "a binary glTF file";
+    case Content::usda:
+      return "an OpenUSD scene in text";
+    case Content::usdc:
+      return "a binary OpenUSD scene";
     case Content::git_lfs:
       return "a git-LFS pointer, not the file itself (fetch that with: git lfs pull)";
     case Content::html:

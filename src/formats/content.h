@@ -21,6 +21,8 @@ enum class Content {
   zstd,
   xz,
   glb,
+  usda,
+  usdc,
   git_lfs,
   html,
   json,

@@ -12,6 +12,7 @@
 #include "base/numbers.h"
 #include "formats/gltf_document.h"
 #include "formats/gltf_nodes.h"
+#include "formats/join.h"
 #include "formats/perspective.h"
 #include "formats/plausible.h"
 #include "formats/spz.h"
@@ -67,37 +68,6 @@ void check_asset(const JsonValue& root) {
 void move(const JsonValue& node, const glm::dmat4& matrix, Model& model) {
   if (!transform(model, matrix))
     node.fail_here("its transform, or one above it, moves Gaussians beyond the largest number");
-}
-
-/// Adds the Gaussians of `part`; harmonics that one of the two does not have are 0.
-void append(Model& all, Model&& part) {
-  if (all.count() == 0) {
-    const std::size_t left_out = all.left_out;
-    all = std::move(part);
-    all.left_out += left_out;
-    return;
-  }
-  const int degree = std::max(all.degree, part.degree);
-  for (Model* model : {&all, &part}) {
-    if (model->degree == degree) continue;
-    const std::size_t from = 3 * static_cast<std::size_t>(sh_count(model->degree));
-    const std::size_t to = 3 * static_cast<std::size_t>(sh_count(degree));
-    std::vector<float> wide(model->count() * to);
-    for (std::size_t i = 0; i < model->count(); ++i) std::copy_n(&model->sh[i * from], from, &wide[i * to]);
-    model->sh = std::move(wide);
-    model->degree = degree;
-  }
-  const auto add = [](auto& to, const auto& from) { to.insert(to.end(), from.begin(), from.end()); };
-  add(all.position, part.position);
-  add(all.scale, part.scale);
-  add(all.rotation, part.rotation);
-  add(all.opacity, part.opacity);
-  add(all.sh, part.sh);
-  all.left_out += part.left_out;
-  all.antialiased = all.antialiased || part.antialiased;
-  if (all.perspective != part.perspective)
-    log_warning("{}: its primitives are sorted or projected differently; all are drawn as the first is",
-                all.name);
 }
 
 /// An extension that is not known, which may have numbers of its own in place of attributes.
@@ -182,7 +152,7 @@ class GltfReader {
       const bool is_last = mesh.left == 0 && i + 1 == places.count();
       Model part = is_last ? std::move(mesh.model) : mesh.model;
       move(shown.node, matrix, part);
-      append(model_, std::move(part));
+      join(model_, std::move(part));
     }
   }
 
@@ -217,7 +187,7 @@ class GltfReader {
       part.perspective = read_perspective(splatting, {.order = ORDER_DISTANCE});  // glTF's default
       packed_ = packed_ || packed.has_value();
       check_copies(shown.node, mesh.model.count() + mesh.model.left_out + part.count() + part.left_out, 1);
-      append(mesh.model, std::move(part));
+      join(mesh.model, std::move(part));
     }
     mesh.known = true;
   }

@@ -18,6 +18,7 @@
 #include "formats/splat.h"
 #include "formats/spz.h"
 #include "formats/streamed_sog.h"
+#include "formats/usd.h"
 
 namespace binosplat {
 
@@ -26,7 +27,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* known_formats =
-    "a ply, spz, .splat, .ksplat, glTF, or a SOG (meta.json, lod-meta.json or .sog)";
+    "a ply, spz, .splat, .ksplat, glTF, OpenUSD, or a SOG (meta.json, lod-meta.json or .sog)";
 
 /// Of the files folder/BEFORE N AFTER, or of those of the name `inside` in such folders, the one of the
 /// largest N.
@@ -55,7 +56,8 @@ bool is_named_as_model(const fs::path& path) {
   for (const char* points : {"input.ply", "points3d.ply", "sparse_pc.ply", "sparse.ply"}) {
     if (name == points) return false;
   }
-  for (const char* of_model : {".ply", ".spz", ".splat", ".ksplat", ".sog", ".glb", ".gltf"}) {
+  for (const char* of_model :
+       {".ply", ".spz", ".splat", ".ksplat", ".sog", ".glb", ".gltf", ".usda", ".usd", ".usdc", ".usdz"}) {
     if (ending == of_model) return true;
   }
   return false;
@@ -102,7 +104,11 @@ Model load_content(const fs::path& path, const ModelOptions& options) {
       if (is_scaffold(read_ply_header(path, file.bytes()))) return load_scaffold_model(path, options);
       return load_ply(path);
     case Content::zip:
-      return load_sog(path);
+      return is_usdz(path, file.bytes()) ? load_usdz(path, file.bytes()) : load_sog(path);
+    case Content::usda:
+      return load_usda(path, as_text(file.bytes()));
+    case Content::usdc:
+      refuse_usd_crate(path);
     case Content::json:
       return load_json_model(path, as_text(file.bytes()), options);
     case Content::glb:
@@ -161,6 +167,10 @@ fs::path file_of(const fs::path& path) {
   fail("{} is a folder with {} models; name one of them:{}", path.string(), found.size(), names);
 }
 
+std::string cut_in_words(const Model& model) {
+  return fmt::format("{:.1f} dB (estimated by the coefficients left out)", *model.cut_db);
+}
+
 Model load_model(const fs::path& path, const ModelOptions& options) {
   const fs::path file = file_of(path);
   Model model = load_content(file, options);
@@ -171,6 +181,10 @@ Model load_model(const fs::path& path, const ModelOptions& options) {
   if (model.count() == 0) {
     fail("{}: all of its {} Gaussians have values that are not finite or zero quaternions", file.string(),
          model.left_out);
+  }
+  if (model.cut_db) {
+    log_warning("{}: harmonics of degree 4 are drawn up to degree 3, which costs about {}", file.string(),
+                cut_in_words(model));
   }
   if (model.left_out > 0) {
     log_warning("{}: {} of {} Gaussians left out (values not finite, or a zero quaternion)", file.string(),

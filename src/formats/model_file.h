@@ -20,10 +20,13 @@ std::filesystem::path file_of(const std::filesystem::path& path);
 
 /// Reads a trained model: INRIA's ply and PlayCanvas' compressed one (formats/ply.h), Scaffold-GS's with the
 /// networks beside it (formats/scaffold_file.h), SOG as a folder, a .sog archive, or streamed
-/// (formats/sog.h), spz, .splat, .ksplat, and glTF with Gaussians. `path` may be a folder
-/// with one of models_in(). Says on standard error how many Gaussians were left out because a value is not
-/// finite or the quaternion is zero. Throws Error for anything that is not such a
-/// model; the text says what the file looks like instead.
+/// (formats/sog.h), spz, .splat, .ksplat, and glTF or OpenUSD (formats/usd.h) with Gaussians. `path` may be a
+/// folder with one of models_in(). Says on standard error how many Gaussians were left out because a value is
+/// not finite or the quaternion is zero. Throws Error for anything that is not such a model; the text says
+/// what the file looks like instead.
 Model load_model(const std::filesystem::path& path, const ModelOptions& options = {});
+
+/// Model::cut_db for people: "38.1 dB (...)".
+std::string cut_in_words(const Model& model);
 
 }  // namespace binosplat

@@ -49,6 +49,15 @@ Perspective read_perspective(const JsonValue& holder, const Perspective& unless_
   return read;
 }
 
+Perspective read_perspective(const std::string& place, const std::string& order,
+                             const std::string& projection) {
+  Perspective read;
+  if (!order.empty()) read.order = number_of(order_key, order, order_words, read.order, place);
+  if (!projection.empty())
+    read.projection = number_of(projection_key, projection, projection_words, read.projection, place);
+  return read;
+}
+
 void write_perspective(const Perspective& perspective, nlohmann::ordered_json& holder) {
   for (const auto& [key, word] : words_of_perspective(perspective)) holder[key] = word;
 }

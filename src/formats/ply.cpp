@@ -121,7 +121,7 @@ class PlyReader {
 
   Model read() {
     model_.name = path_.filename().string();
-    model_.format = "ply";
+    model_.format = layout_.flat ? "ply, flat Gaussians of 2DGS" : "ply";
     model_.degree = layout_.degree;
     model_.antialiased = layout_.antialiased;
     model_.perspective = read_perspective(header_.comments);
@@ -139,6 +139,11 @@ class PlyReader {
     if (header_.format != PlyFormat::ascii && at_ < bytes_.size()) {
       log_warning("{}: {} bytes after the last element are ignored", path_.string(), bytes_.size() - at_);
     }
+    if (layout_.flat) {
+      log_info("{}: its Gaussians are flat (2D Gaussian Splatting) and drawn as 3D ones without thickness",
+               path_.string());
+    }
+    model_.cut_db = cut_harmonics_db(model_, cut_);
     keep_only(model_, kept_);
     return std::move(model_);
   }
@@ -148,9 +153,14 @@ class PlyReader {
   void make_room() {
     model_.resize(layout_.vertices->count);
     kept_.assign(layout_.vertices->count, 0);
+    if (layout_.cut_at > 0) cut_.assign(layout_.vertices->count, 0.0f);
   }
 
-  void keep(std::size_t i, const RawGaussian& raw) { kept_[i] = decode(layout_, model_, i, raw) ? 1 : 0; }
+  void keep(std::size_t i, const RawGaussian& raw) {
+    kept_[i] = decode(layout_, model_, i, raw) ? 1 : 0;
+    if (layout_.cut_at > 0)
+      cut_[i] = square_sum(std::span<const float, cut_values>(&raw[layout_.cut_at], cut_values));
+  }
 
   [[noreturn]] void fail_cut(const PlyElement& element, std::uint64_t row) const {
     fail(
@@ -273,6 +283,7 @@ class PlyReader {
   Progress progress_;
   Model model_;
   std::vector<std::uint8_t> kept_;
+  std::vector<float> cut_;  // square sums of degree 4, where there is one
 };
 
 }  // namespace

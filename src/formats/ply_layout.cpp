@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
 
 #include "base/error.h"
 #include "base/log.h"
@@ -11,6 +12,13 @@
 namespace binosplat {
 
 namespace {
+
+/// What trainers of other shapes write beside the properties of Gaussians, and what it is the mark of.
+constexpr std::pair<const char*, const char*> other_kernels[] = {
+    {"beta", "Beta kernels (Deformable Beta Splatting)"},
+    {"sb_params_0", "colours of spherical Betas (Deformable Beta Splatting)"},
+    {"trbf_center", "Gaussians that come and go with time (Spacetime Gaussians)"},
+};
 
 /// Refuses files that are well-formed but hold something else.
 void refuse_relatives(const std::filesystem::path& path, const PlyHeader& header) {
@@ -30,9 +38,16 @@ void refuse_relatives(const std::filesystem::path& path, const PlyHeader& header
         "point_cloud/iteration_N/point_cloud.ply; input.ply holds the points that training began with",
         name, vertices->count);
   }
-  if (has("scale_1") && !has("scale_2")) {
-    fail("{} holds flat Gaussians (2D Gaussian Splatting): scale_2 is missing; only 3D ones can be drawn",
-         name);
+  for (const auto& [property, kind] : other_kernels) {
+    if (has(property))
+      fail("{} holds {}, told by its property '{}'; only Gaussians that stay as they are can be drawn", name,
+           kind, property);
+  }
+  if (!has("f_dc_0") && !has("red")) {
+    fail(
+        "{}: its {} vertices have no colours that are known: neither f_dc_0 to f_dc_2 nor red, green and "
+        "blue",
+        name, vertices->count);
   }
   if (vertices->count == 0) fail("{} holds no Gaussians: its header says 'element vertex 0'", name);
 }
@@ -95,14 +110,18 @@ PlyLayout find_layout(const std::filesystem::path& path, const PlyHeader& header
   PlyLayout layout;
   layout.vertices = header.find("vertex");
   const std::size_t in_file = count_rest(path, *layout.vertices) / 3;
-  if (in_file == 24)
-    log_warning("{}: spherical harmonics of degree 4 are truncated to degree 3", path.string());
   const std::size_t higher = std::min<std::size_t>(in_file, 15);
   layout.degree = static_cast<int>(std::lround(std::sqrt(static_cast<double>(higher + 1)))) - 1;
 
   Finder finder(path, layout);
-  for (const char* name :
-       {"x", "y", "z", "scale_0", "scale_1", "scale_2", "rot_0", "rot_1", "rot_2", "rot_3", "opacity"}) {
+  layout.flat =
+      (layout.vertices->find("scale_1") != nullptr && layout.vertices->find("scale_2") == nullptr) ||
+      std::ranges::any_of(header.comments, [](const std::string& comment) {
+        return lowered(comment).find("splatrendermode: 2dgs") != std::string::npos;
+      });
+  // The third scale of a flat one is the second until decode() knows better.
+  for (const char* name : {"x", "y", "z", "scale_0", "scale_1", layout.flat ? "scale_1" : "scale_2", "rot_0",
+                           "rot_1", "rot_2", "rot_3", "opacity"}) {
     finder.add(name);
   }
   layout.rgb = layout.vertices->find("f_dc_0") == nullptr && has_bytes(*layout.vertices, "red") &&
@@ -117,6 +136,11 @@ PlyLayout find_layout(const std::filesystem::path& path, const PlyHeader& header
   }
   layout.filter_3d = layout.vertices->find("filter_3D") != nullptr;
   if (layout.filter_3d) finder.add("filter_3D");
+  if (in_file > higher) layout.cut_at = layout.sources.size();
+  for (std::size_t k = higher; k < in_file; ++k) {
+    for (std::size_t channel = 0; channel < 3; ++channel)
+      finder.add(fmt::format("f_rest_{}", channel * in_file + k));
+  }
   layout.antialiased = is_antialiased(header, layout.filter_3d);
   if (std::ranges::any_of(layout.sources, &PlyLayout::Source::as_bits))
     log_info("{}: its properties of type ushort are taken as halves (16-bit floats)", path.string());
@@ -132,7 +156,7 @@ bool decode(const PlyLayout& layout, Model& model, std::size_t i, const RawGauss
     for (int c = 0; c < 3; ++c) sh[c] = static_cast<float>((sh[c] / 255.0 - 0.5) / sh_c0);
   }
   const bool good = decode_raw(model, i,
-                               {position, glm::vec3(raw[3], raw[4], raw[5]),
+                               {position, glm::vec3(raw[3], raw[4], layout.flat ? -INFINITY : raw[5]),
                                 glm::vec4(raw[6], raw[7], raw[8], raw[9]), raw[10], sh.data()});
   if (!layout.filter_3d) return good;
 

@@ -5,14 +5,15 @@
 #include <filesystem>
 #include <vector>
 
+#include "formats/harmonics_cut.h"
 #include "formats/ply_header.h"
 #include "scene/model.h"
 
 namespace binosplat {
 
 /// The numbers of one Gaussian as stored: position, log-scales, quaternion, opacity logit, then the
-/// coefficients in the order of Model::sh, then filter_3D where there is one.
-using RawGaussian = std::array<float, 11 + 3 * sh_count(3) + 1>;
+/// coefficients in the order of Model::sh, then filter_3D where there is one, then coefficients of degree 4.
+using RawGaussian = std::array<float, 11 + 3 * sh_count(3) + 1 + cut_values>;
 
 struct PlyLayout {
   /// Where a number of a RawGaussian comes from.
@@ -28,6 +29,8 @@ struct PlyLayout {
   bool rgb = false;             // the first three coefficients are base colours of 0 to 255 (Nerfstudio)
   bool filter_3d = false;       // the last number is Mip-Splatting's filter (world units)
   bool antialiased = false;
+  bool flat = false;       // a Gaussian has two scales (2D Gaussian Splatting)
+  std::size_t cut_at = 0;  // where the coefficients of degree 4 begin; 0: there are none
 };
 
 /// The low-pass that Mip-Splatting trains with, px^2; a ply with filter_3D is drawn with it.

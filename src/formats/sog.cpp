@@ -86,7 +86,7 @@ class Archive {
 Model load_whole(const std::filesystem::path& path, const SogSource& source) {
   Model model;
   model.name = path.filename().string();
-  model.format = "SOG";
+  model.format = source.flat() ? "SOG, flat Gaussians of 2DGS" : "SOG";
   model.degree = source.degree();
   model.antialiased = source.antialiased();
   model.perspective = source.perspective();

@@ -71,8 +71,7 @@ SogSource::SogSource(std::string source, const nlohmann::json& json, ReadFile re
   if (count_ == 0) fail("{} holds no Gaussians: its count is 0", source_);
   if (meta.has("model")) {
     const std::string kind = meta.at("model").text();
-    if (kind == "2dgs")
-      fail("{} holds flat Gaussians (2D Gaussian Splatting); only 3D ones can be drawn", source_);
+    flat_ = kind == "2dgs";
     antialiased_ = kind == "antialiased";
   }
   perspective_ = read_perspective(meta);
@@ -212,7 +211,8 @@ bool SogSource::decode_one(const Textures& textures, std::size_t i, Model& model
       for (std::size_t c = 0; c < 3; ++c) sh[3 + 3 * k + c] = sh_[rgb[c]];
     }
   }
-  return place(model, slot, {position, scale, rotation, opacity_[texel(sh0)[3]], sh.data()});
+  const glm::vec3 drawn(scale.x, scale.y, flat_ ? 0.0f : scale.z);
+  return place(model, slot, {position, drawn, rotation, opacity_[texel(sh0)[3]], sh.data()});
 }
 
 void SogSource::decode(Model& model, std::span<const Range> ranges, std::vector<std::uint8_t>& kept,

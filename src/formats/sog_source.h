@@ -39,6 +39,7 @@ class SogSource {
   std::uint64_t bytes() const { return bytes_; }
   int degree() const { return degree_; }
   bool antialiased() const { return antialiased_; }
+  bool flat() const { return flat_; }  // 2D Gaussian Splatting: the third scale is 0
   const Perspective& perspective() const { return perspective_; }
 
   /// All of its pictures, decoded, four bytes a texel: most of what reading takes, however little is taken.
@@ -77,7 +78,7 @@ class SogSource {
   std::size_t count_ = 0;
   std::uint64_t bytes_ = 0;
   int degree_ = 0;
-  bool antialiased_ = false;
+  bool antialiased_ = false, flat_ = false;
   Perspective perspective_;
   std::array<std::string, 5> files_;  // means_l, means_u, quats, scales, sh0
   std::string labels_file_;           // empty without higher harmonics

@@ -5,9 +5,9 @@
 #include <cmath>
 
 #include <fmt/core.h>
-#include "base/log.h"
 #include "base/parallel.h"
 #include "formats/bytes.h"
+#include "formats/harmonics_cut.h"
 #include "formats/spz_container.h"
 
 namespace binosplat {
@@ -36,13 +36,23 @@ class SpzDecoder {
       scale[static_cast<int>(c)] = static_cast<float>(std::exp(byte(scales_, 3 * i + c) / 16.0 - 10.0));
     }
     const std::size_t kept = std::min<std::size_t>(sizes_.harmonics, sh.size() - 3);
-    for (std::size_t k = 0; k < kept; ++k)
-      sh[3 + k] = static_cast<float>(byte(harmonics_, sizes_.harmonics * i + k) - 128) / 128.0f;
+    for (std::size_t k = 0; k < kept; ++k) sh[3 + k] = harmonic(i, k);
     const float opacity = static_cast<float>(byte(opacities_, i) / 255.0);
     return place(model, i, {position(i), scale, rotation(i), opacity, sh.data()});
   }
 
+  /// Of a file of degree 4.
+  float cut_square_sum(std::size_t i) const {
+    std::array<float, cut_values> cut;
+    for (std::size_t k = 0; k < cut_values; ++k) cut[k] = harmonic(i, 3 * (sh_count(3) - 1) + k);
+    return square_sum(cut);
+  }
+
  private:
+  float harmonic(std::size_t i, std::size_t k) const {
+    return static_cast<float>(byte(harmonics_, sizes_.harmonics * i + k) - 128) / 128.0f;
+  }
+
   static int byte(const std::byte* from, std::size_t i) { return std::to_integer<int>(from[i]); }
 
   glm::vec3 position(std::size_t i) const {
@@ -89,8 +99,6 @@ class SpzDecoder {
 
 Model load_spz(const std::string& source, std::span<const std::byte> bytes) {
   const SpzContents contents = unpack_spz(source, bytes);
-  if (contents.degree == 4)
-    log_warning("{}: spherical harmonics of degree 4 are truncated to degree 3", source);
   Model model;
   model.format = fmt::format("spz {}{}", contents.version, contents.axes ? "" : axes_not_said);
   model.degree = std::min(contents.degree, 3);
@@ -101,6 +109,11 @@ Model load_spz(const std::string& source, std::span<const std::byte> bytes) {
   std::vector<std::uint8_t> kept(contents.count);
   parallel_for(
       contents.count, [&](std::size_t i) { kept[i] = decoder.decode(model, i) ? 1 : 0; }, 2048);
+  if (contents.degree == 4) {
+    std::vector<float> cut(contents.count);
+    for (std::size_t i = 0; i < cut.size(); ++i) cut[i] = decoder.cut_square_sum(i);
+    model.cut_db = cut_harmonics_db(model, cut);
+  }
   keep_only(model, kept);
   return model;
 }

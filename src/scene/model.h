@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -48,6 +49,8 @@ struct Model {
   double kernel_px2 = KERNEL_PX2;   // variance of the low-pass it was trained with, px^2
   bool antialiased = false;  // trained with the opacity that the low-pass takes away (Mip-Splatting, Yu 2024)
   Perspective perspective;   // that it was trained with
+  /// What harmonics beyond degree 3 that its file has are worth, an estimate in dB (formats/harmonics_cut.h).
+  std::optional<double> cut_db;
   std::string axes = "RDF";  // where the model's x, y and z point in the cameras' world (scene/axes.h)
   /// Gaussians that it may come to have while it is drawn (scene/model_chunks.h): whoever draws it makes room
   /// for all of them at once, since no frame should wait for that.

@@ -13,6 +13,7 @@
 #include "support/ply.h"
 #include "support/program.h"
 #include "support/scenes.h"
+#include "support/usd.h"
 
 namespace binosplat {
 namespace {
@@ -98,6 +99,15 @@ TEST(DamagedFiles, Ply) {
     files.push_back(to_bytes(file));
   }
   try_damaged(files, [](const auto& path) { load_model(path); });
+}
+
+TEST(DamagedFiles, Usd) {
+  Model model;
+  test::add(model, {1, 2, 3}, glm::vec3(0.1f), 0.5f);
+  try_damaged({test::usd_file("def Xform \"World\" (active = true) {\nfloat3 xformOp:rotateXYZ = (1, 2, 3)\n"
+                              "uniform token[] xformOpOrder = [\"xformOp:rotateXYZ\"]\n" +
+                              test::usd_prim(model) + "}\n")},
+              [](const auto& path) { load_model(path); });
 }
 
 TEST(DamagedFiles, Cameras) {

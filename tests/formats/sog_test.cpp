@@ -165,7 +165,6 @@ TEST(SogErrors, Meta) {
                      {"shN_centroids.webp", "no palette of 1024 entries", "degree 3"}));
   EXPECT_TRUE(edited([](json& m) { m["shN"]["bands"] = 4; }, {"key 'shN.bands'"}));
   EXPECT_TRUE(edited([](json& m) { m["shN"]["count"] = 65536; }, {"no palette of 65536 entries"}));
-  EXPECT_TRUE(edited([](json& m) { m["model"] = "2dgs"; }, {"2D Gaussian Splatting"}));
   EXPECT_TRUE(
       refuses_damaged(folder / "sog/playbot-lod6",
                       [](const Copy& c) { c.write(c.read("meta.json").substr(0, 7000), "meta.json"); },
@@ -181,6 +180,14 @@ TEST(SogErrors, WhatIsOddButLoads) {
     book[0] = nullptr;  // as old tools wrote it
   });
   EXPECT_EQ(load_model(copy.path()).count(), good.count());
+
+  // Flat Gaussians.
+  const Copy flat(folder / "sog/playbot-lod6");
+  flat.edit("meta.json", [](json& m) { m["model"] = "2dgs"; });
+  const Model flattened = load_model(flat.path());
+  EXPECT_EQ(flattened.format, "SOG, flat Gaussians of 2DGS");
+  for (std::size_t i = 0; i < good.count(); ++i)
+    ASSERT_EQ(flattened.scale[i], glm::vec3(good.scale[i].x, good.scale[i].y, 0.0f));
 
   // A label beyond the palette: no harmonics.
   copy.write(test::webp(44, 44, std::vector<std::uint8_t>(std::size_t{4} * 44 * 44, 255)), "shN_labels.webp");

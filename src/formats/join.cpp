@@ -1,0 +1,40 @@
+#include "formats/join.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "base/log.h"
+
+namespace binosplat {
+
+void join(Model& all, Model&& part) {
+  if (all.count() == 0) {
+    const std::size_t left_out = all.left_out;
+    all = std::move(part);
+    all.left_out += left_out;
+    return;
+  }
+  const int degree = std::max(all.degree, part.degree);
+  for (Model* model : {&all, &part}) {
+    if (model->degree == degree) continue;
+    const std::size_t from = 3 * static_cast<std::size_t>(sh_count(model->degree));
+    const std::size_t to = 3 * static_cast<std::size_t>(sh_count(degree));
+    std::vector<float> wide(model->count() * to);
+    for (std::size_t i = 0; i < model->count(); ++i) std::copy_n(&model->sh[i * from], from, &wide[i * to]);
+    model->sh = std::move(wide);
+    model->degree = degree;
+  }
+  const auto add = [](auto& to, const auto& from) { to.insert(to.end(), from.begin(), from.end()); };
+  add(all.position, part.position);
+  add(all.scale, part.scale);
+  add(all.rotation, part.rotation);
+  add(all.opacity, part.opacity);
+  add(all.sh, part.sh);
+  all.left_out += part.left_out;
+  if (part.cut_db) all.cut_db = std::min(*part.cut_db, all.cut_db.value_or(*part.cut_db));
+  all.antialiased = all.antialiased || part.antialiased;
+  if (all.perspective != part.perspective)
+    log_warning("{}: its parts are sorted or projected differently; all are drawn as the first is", all.name);
+}
+
+}  // namespace binosplat

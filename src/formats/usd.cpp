@@ -1,0 +1,232 @@
+#include "formats/usd.h"
+
+#include <algorithm>
+#include <glm/gtc/matrix_transform.hpp>
+#include <glm/gtc/type_ptr.hpp>
+#include <set>
+
+#include "base/log.h"
+#include "base/text.h"
+#include "formats/content.h"
+#include "formats/harmonics_cut.h"
+#include "formats/join.h"
+#include "formats/perspective.h"
+#include "formats/usd_transform.h"
+#include "formats/usda.h"
+#include "formats/zip_file.h"
+#include "scene/transform.h"
+
+namespace binosplat {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// How `usdcat` makes one text file of whatever a scene is made of.
+std::string flatten_command(const fs::path& path) {
+  fs::path text = path.filename();
+  return fmt::format("usdcat --flatten {} -o {}", path.filename().string(),
+                     text.replace_extension(".flat.usda").string());
+}
+
+bool is_scene_name(std::string_view name) {
+  const std::string ending = lowered_ending(name);
+  return ending == ".usda" || ending == ".usd" || ending == ".usdc";
+}
+
+bool has_schema(const UsdaPrim& prim, std::string_view schema) {
+  const auto found = prim.metadata.find("apiSchemas");
+  if (found == prim.metadata.end() || found->second.rest() == "None") return false;
+  return std::ranges::count(found->second.texts(), schema) > 0;
+}
+
+/// A token that a prim may have.
+std::string token_of(const UsdaPrim& prim, std::string_view name) {
+  const UsdaText* value = prim.attribute(name);
+  return value != nullptr ? value->text() : "";
+}
+
+class UsdReader {
+ public:
+  UsdReader(const fs::path& path, const std::string& source, std::string_view text)
+      : path_(path), source_(source), file_(read_usda(source, text)) {}
+
+  Model read() {
+    note_parts_elsewhere(file_);
+    for (const UsdaPrim& prim : file_.prims) show(prim, glm::dmat4(1.0), "");
+    if (model_.count() == 0 && model_.left_out == 0) fail_without_gaussians();
+    if (!elsewhere_.empty()) {
+      log_warning("{}: what its {} hold is not drawn; one file of all makes: {}", source_, elsewhere_,
+                  flatten_command(path_));
+    }
+    model_.format = flat_ ? "OpenUSD, flat Gaussians" : "OpenUSD";
+    model_.axes = axes();
+    return std::move(model_);
+  }
+
+ private:
+  [[noreturn]] void fail_without_gaussians() const {
+    if (!elsewhere_.empty()) {
+      fail("{} has no Gaussians of its own, but {}: put them into one file with: {}", source_, elsewhere_,
+           flatten_command(path_));
+    }
+    std::string names;
+    for (const std::string& type : others_) names += (names.empty() ? ": " : ", ") + type;
+    fail("{} is an OpenUSD scene without Gaussians (ParticleField3DGaussianSplat) that are to be seen{}{}",
+         source_, names,
+         nurec_ ? "; 3DGRUT's NuRec volumes are its own form: export them by its transcode as a ParticleField"
+                : "");
+  }
+
+  std::string axes() const {
+    const auto found = file_.metadata.find("upAxis");
+    const std::string up = found == file_.metadata.end() ? "Y" : found->second.text();
+    if (up != "Y" && up != "Z") found->second.fail_here("upAxis '{}': expected Y or Z", up);
+    return up == "Y" ? "RUB" : "RFU";
+  }
+
+  void note_parts_elsewhere(const UsdaPrim& prim) {
+    for (const char* key : {"subLayers", "references", "payload", "inherits", "specializes", "variantSet"}) {
+      if (elsewhere_.empty() && prim.metadata.contains(key)) elsewhere_ = key;
+    }
+  }
+
+  void show(const UsdaPrim& prim, const glm::dmat4& parent, const std::string& colours) {
+    const auto active = prim.metadata.find("active");
+    if (active != prim.metadata.end() && active->second.rest() == "false") return;
+    note_parts_elsewhere(prim);
+    if (prim.specifier != "def" || token_of(prim, "visibility") == "invisible") return;
+    const glm::dmat4 matrix = usd_transform(prim, parent);
+    const std::string space =
+        prim.attribute("colorSpace:name") != nullptr ? token_of(prim, "colorSpace:name") : colours;
+    if (prim.type == "ParticleField3DGaussianSplat") {
+      add(prim, matrix, space, false);
+    } else if (prim.type == "ParticleField" && has_schema(prim, "ParticleFieldKernelGaussianEllipsoidAPI")) {
+      add(prim, matrix, space, false);
+    } else if (prim.type == "ParticleField" && has_schema(prim, "ParticleFieldKernelGaussianSurfletAPI")) {
+      add(prim, matrix, space, true);
+    } else if (prim.type.starts_with("ParticleField")) {
+      prim.where.fail_here("'{}' is a {} with another kernel than a Gaussian's; only Gaussians can be drawn",
+                           prim.name, prim.type);
+    } else if (!prim.type.empty() && prim.type != "Xform" && prim.type != "Scope") {
+      others_.insert(prim.type);
+      nurec_ = nurec_ || prim.attribute("omni:nurec:isNuRecVolume") != nullptr;
+    }
+    for (const UsdaPrim& child : prim.prims) show(child, matrix, space);
+  }
+
+  void add(const UsdaPrim& prim, const glm::dmat4& matrix, const std::string& colours, bool flat) {
+    if (colours.starts_with("lin")) {
+      log_warning("{}: its colours are linear light, which is drawn as if it were display values: too dark",
+                  source_);
+    }
+    // So files hide things, by a scale of 0.
+    if (glm::dmat3(matrix) == glm::dmat3(0.0)) return;
+    Model part = gaussians_of(prim, flat);
+    if (!transform(part, matrix))
+      prim.where.fail_here("the transform of '{}' moves Gaussians beyond the largest number", prim.name);
+    flat_ = flat_ || flat;
+    join(model_, std::move(part));
+  }
+
+  /// The numbers of an attribute, of floats or, where there are none, of halves: `each` for each of `count`
+  /// Gaussians; none where it is not there.
+  std::vector<float> values(const UsdaPrim& prim, const std::string& name, std::size_t components,
+                            std::size_t each, std::size_t count) const {
+    const UsdaText* text = prim.attribute(name);
+    if (text == nullptr) text = prim.attribute(name + "h");
+    if (text == nullptr) {
+      for (const std::string& moving : {name + ".timeSamples", name + "h.timeSamples"}) {
+        if (prim.attribute(moving) != nullptr)
+          prim.attribute(moving)->fail_here("{} changes with time; only a still model can be drawn", name);
+      }
+      return {};
+    }
+    std::vector<float> numbers = text->tuples(components);
+    const std::size_t wanted = each * count * components;
+    if (numbers.size() < wanted) {
+      text->fail_here("{} has {} values; expected {}, {} for each of {} positions", name,
+                      numbers.size() / components, each * count, each, count);
+    }
+    if (numbers.size() > wanted && count > 0)
+      log_warning("{}: of the {} values of {} only the first {} are used, as OpenUSD has it", source_,
+                  numbers.size() / components, name, each * count);
+    return numbers;
+  }
+
+  Model gaussians_of(const UsdaPrim& prim, bool flat) const {
+    const std::vector<float> positions = values(prim, "positions", 3, 1, 0);
+    const std::size_t n = positions.size() / 3;
+    const std::vector<float> scales = values(prim, "scales", 3, 1, n);
+    const std::vector<float> rotations = values(prim, "orientations", 4, 1, n);
+    const std::vector<float> opacities = values(prim, "opacities", 1, 1, n);
+    const UsdaText* degree = prim.attribute("radiance:sphericalHarmonicsDegree");
+    const double said = degree != nullptr ? degree->numbers(1)[0] : 3.0;
+    if (!(said == 0.0 || said == 1.0 || said == 2.0 || said == 3.0 || said == 4.0))
+      degree->fail_here("harmonics of degree {}; expected 0 to 4", said);
+    const auto in_file = static_cast<std::size_t>(sh_count(static_cast<int>(said)));
+    const std::vector<float> harmonics =
+        values(prim, "radiance:sphericalHarmonicsCoefficients", 3, in_file, n);
+    Model model;
+    model.name = source_;
+    model.degree = harmonics.empty() ? 0 : std::min(static_cast<int>(said), 3);
+    model.perspective =
+        read_perspective(source_, token_of(prim, "sortingModeHint"), token_of(prim, "projectionModeHint"));
+    model.resize(n);
+    std::vector<std::uint8_t> kept(n);
+    const std::array<float, 3> grey{};
+    std::vector<float> cut;  // of degree 4
+    for (std::size_t i = 0; i < n; ++i) {
+      glm::vec3 scale = scales.empty() ? glm::vec3(1.0f) : glm::make_vec3(&scales[3 * i]);
+      if (flat) scale.z = 0.0f;
+      kept[i] = place(model, i,
+                      {glm::make_vec3(&positions[3 * i]), scale,
+                       rotations.empty() ? glm::vec4(1, 0, 0, 0) : glm::make_vec4(&rotations[4 * i]),
+                       opacities.empty() ? 1.0f : opacities[i],
+                       harmonics.empty() ? grey.data() : &harmonics[3 * in_file * i]});
+      if (said == 4.0 && !harmonics.empty())
+        cut.push_back(square_sum(
+            std::span<const float, cut_values>(&harmonics[3 * (in_file * i + sh_count(3))], cut_values)));
+    }
+    model.cut_db = cut_harmonics_db(model, cut);
+    keep_only(model, kept);
+    return model;
+  }
+
+  fs::path path_;
+  std::string source_;  // for errors: the path, and the file in an archive
+  UsdaPrim file_;
+  Model model_;
+  bool flat_ = false, nurec_ = false;
+  std::string elsewhere_;         // the word by which it has parts in other files or in variants
+  std::set<std::string> others_;  // types of prims that are no Gaussians
+};
+
+}  // namespace
+
+Model load_usda(const fs::path& path, std::string_view text) {
+  return UsdReader(path, path.string(), text).read();
+}
+
+bool is_usdz(const fs::path& path, std::span<const std::byte> archive) {
+  const std::vector<std::string> names = ZipFile(path.string(), archive).names();
+  return !names.empty() && is_scene_name(names[0]);
+}
+
+Model load_usdz(const fs::path& path, std::span<const std::byte> archive) {
+  const ZipFile zip(path.string(), archive);
+  const std::string first = zip.names()[0];
+  const std::vector<std::byte> bytes = zip.read(first);
+  if (content_of(bytes) == Content::usda)
+    return UsdReader(path, fmt::format("{}: its file {}", path.string(), first), as_text(bytes)).read();
+  if (content_of(bytes) == Content::usdc) refuse_usd_crate(path);
+  fail("{}: its file {} is no OpenUSD scene, but looks like {}", path.string(), binosplat::quoted(first),
+       describe(content_of(bytes)));
+}
+
+void refuse_usd_crate(const fs::path& path) {
+  fail("{} holds a binary OpenUSD scene, and only text can be read; OpenUSD's tools make it with: {}",
+       path.string(), flatten_command(path));
+}
+
+}  // namespace binosplat

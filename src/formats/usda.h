@@ -1,0 +1,98 @@
+#pragma once
+// OpenUSD's text files (.usda): which prims there are, and their values, each as the text it is written in.
+// What other files hold, and variants, are not put together, as `usdcat --flatten` does.
+
+#include <map>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/error.h"
+
+namespace binosplat {
+
+/// A stretch of a file's text, read from its start on. What it is asked for and is not, ends in an Error that
+/// names the file and the line.
+class UsdaText {
+ public:
+  /// `text` outlives this.
+  UsdaText(const std::string& source, std::string_view text)
+      : source_(std::make_shared<std::string>(source)), all_(text), end_(text.size()) {}
+
+  /// The next mark that is no blank and no comment, or 0 at the end.
+  char next();
+  bool take(char mark);
+  void expect(char mark);
+
+  /// A name, with the colons, points and brackets that are part of it; empty where there is none.
+  std::string_view word();
+  std::string_view quoted();
+  /// Any value, without the blanks around it.
+  UsdaText value();
+  /// A number, or `count` in parentheses; each is handed to `put`.
+  template <typename Put>
+  void tuple(std::size_t count, const Put& put) {
+    if (count == 1) return put(number());
+    expect('(');
+    for (std::size_t k = 0; k < count; ++k) {
+      if (k > 0) expect(',');
+      put(number());
+    }
+    take(',');
+    expect(')');
+  }
+  /// Calls item() for each item of a list in these marks.
+  template <typename Item>
+  void list(char open, char close, const Item& item) {
+    expect(open);
+    while (!take(close)) {
+      item();
+      if (!take(',') && next() != close) expect(close);
+    }
+  }
+
+  /// All of a value as one thing. Throws where more follows.
+  std::vector<double> numbers(std::size_t count) const;
+  std::vector<float> tuples(std::size_t count) const;  // a list of tuples, one after the other
+  std::vector<std::string> texts() const;              // a list
+  std::string text() const;
+
+  /// What is left of it, as it is written.
+  std::string_view rest() const { return all_.substr(at_, end_ - at_); }
+  const std::string& source() const { return *source_; }
+
+  /// Throws the Error of what is there in place of `wanted`.
+  [[noreturn]] void fail_to_find(const std::string& wanted) const;
+  template <typename... Args>
+  [[noreturn]] void fail_here(fmt::format_string<Args...> format, Args&&... args) const {
+    fail("{}, line {}: {}", *source_, line(), fmt::format(format, std::forward<Args>(args)...));
+  }
+
+ private:
+  double number();
+  void skip_string();
+  void skip_item();
+  std::size_t line() const;
+  void finish();
+
+  std::shared_ptr<const std::string> source_;
+  std::string_view all_;  // the file's, so that lines can be counted
+  std::size_t at_ = 0, end_;
+};
+
+using UsdaValues = std::map<std::string, UsdaText, std::less<>>;
+
+struct UsdaPrim {
+  std::string specifier, type, name;  // def, over or class; empty of the file itself
+  UsdaText where;                     // its beginning
+  UsdaValues metadata, attributes;    // attributes also as "positions.timeSamples"
+  std::vector<UsdaPrim> prims = {};
+
+  const UsdaText* attribute(std::string_view name) const;
+};
+
+/// The file, as a prim that has its metadata and its prims. `text` outlives it. Throws Error naming the line.
+UsdaPrim read_usda(const std::string& source, std::string_view text);
+
+}  // namespace binosplat

@@ -1,0 +1,82 @@
+// Flat Gaussians (2D Gaussian Splatting), and shapes that are no Gaussians.
+
+#include <gtest/gtest.h>
+
+#include "support/broken.h"
+#include "support/ply.h"
+#include "support/ply_models.h"
+#include "support/round_trip.h"
+
+namespace binosplat {
+namespace {
+
+/// As the trainer of 2D Gaussian Splatting writes it.
+test::PlyFile flat_file(const std::string& format = "binary_little_endian") {
+  test::PlyFile file = test::inria_file(1, 5);
+  file.format = format;
+  const std::size_t third = file.column("scale_2");
+  file.columns.erase(file.columns.begin() + static_cast<std::ptrdiff_t>(third));
+  for (auto& row : file.rows) row.erase(row.begin() + static_cast<std::ptrdiff_t>(third));
+  return file;
+}
+
+Model load_file(const test::PlyFile& file) {
+  const test::TempFolder folder;
+  test::write_text(folder / "a.ply", to_bytes(file));
+  return load_model(folder / "a.ply");
+}
+
+TEST(FlatGaussians, AreReadAsWhatTheyAre) {
+  Model expected = load_file(test::inria_file(1, 5));
+  EXPECT_FALSE(test::equal(load_file(flat_file()), expected));
+  for (glm::vec3& scale : expected.scale) scale.z = 0.0f;
+  for (const char* format : {"binary_little_endian", "binary_big_endian", "ascii"}) {
+    testing::internal::CaptureStderr();
+    const Model read = load_file(flat_file(format));
+    EXPECT_NE(testing::internal::GetCapturedStderr().find("flat (2D Gaussian Splatting)"), std::string::npos);
+    EXPECT_TRUE(test::equal(read, expected)) << format;
+    EXPECT_EQ(read.format, "ply, flat Gaussians of 2DGS");
+  }
+  test::PlyFile named = test::inria_file(1, 5);
+  named.comments = "comment SplatRenderMode: 2dgs\n";
+  EXPECT_TRUE(test::equal(load_file(named), expected));
+}
+
+TEST(FlatGaussians, StayDrawableInEveryFormat) {
+  const Model flat = load_file(flat_file());
+  for (const ModelFormat format : test::formats) {
+    const Model model = test::in_axes_of(flat, format);
+    const test::Written written = test::round_trip(model, format);
+    ASSERT_EQ(written.model.count(), flat.count()) << test::name_of(format);
+    for (const glm::vec3& scale : written.model.scale) {
+      // No format has a scale of 0 but ply and .splat; what they have is far below the others.
+      EXPECT_LE(std::min({scale.x, scale.y, scale.z}), 1e-4f) << test::name_of(format);
+      EXPECT_GT(std::max({scale.x, scale.y, scale.z}), 1e-3f) << test::name_of(format);
+    }
+    if (format == ModelFormat::ply || format == ModelFormat::splat) {
+      EXPECT_EQ(written.model.scale[0].z, 0.0f) << test::name_of(format);
+    }
+  }
+}
+
+TEST(OtherShapes, AreRefusedByTheirNames) {
+  const auto refuses = [](const test::PlyFile& file, std::initializer_list<std::string> parts) {
+    return test::refuses_file(to_bytes(file), "bad.ply", parts, [](const auto& path) { load_model(path); });
+  };
+  for (const auto& [property, kind] :
+       {std::pair("beta", "Beta kernels (Deformable Beta Splatting)"),
+        std::pair("sb_params_0", "spherical Betas"), std::pair("trbf_center", "Spacetime Gaussians")}) {
+    test::PlyFile file = test::inria_file(0, 2);
+    file.columns.emplace_back(property);
+    for (auto& row : file.rows) row.push_back(1);
+    EXPECT_TRUE(refuses(file, {kind, property}));
+    file.columns[file.column("f_dc_0")] = "sh0_0";  // as their trainers call it
+    EXPECT_TRUE(refuses(file, {kind, property}));
+  }
+  test::PlyFile colourless = test::inria_file(0, 2);
+  colourless.columns[colourless.column("f_dc_0")] = "feature_0";
+  EXPECT_TRUE(refuses(colourless, {"no colours that are known", "neither f_dc_0 to f_dc_2 nor red"}));
+}
+
+}  // namespace
+}  // namespace binosplat

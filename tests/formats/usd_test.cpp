@@ -1,0 +1,274 @@
+// OpenUSD's text files with Gaussians: what they hold, where it is, and what is wrong with others.
+
+#include <gtest/gtest.h>
+
+#include <glm/gtc/matrix_transform.hpp>
+
+#include "scene/axes.h"
+#include "scene/transform.h"
+#include "support/broken.h"
+#include "support/models.h"
+#include "support/ply_models.h"
+#include "support/round_trip.h"
+#include "support/usd.h"
+#include "support/zip.h"
+
+namespace binosplat {
+namespace {
+
+using test::load_usd_text;
+using test::usd_file;
+using test::usd_prim;
+
+testing::AssertionResult refuses_usd(const std::string& text, std::initializer_list<std::string> parts,
+                                     const std::string& name = "bad.usda") {
+  return test::refuses_file(text, name, parts, [](const auto& path) { load_model(path); });
+}
+
+Model some_model(int degree = 3, std::size_t count = 20) { return test::hard_model(degree, count); }
+
+/// One small Gaussian at (1, 2, 3), in prims whose bodies begin with `outer` and `inner`.
+std::string placed(const std::string& outer, const std::string& inner = "") {
+  Model one;
+  test::add(one, {1, 2, 3}, glm::vec3(0.1f), 0.5f);
+  return usd_file("def Xform \"World\"\n{\n" + outer + "\n" + usd_prim(one, inner) + "}\n");
+}
+
+testing::AssertionResult lies_at(const std::string& text, const glm::vec3& expected) {
+  const glm::vec3 at = load_usd_text(text).position.at(0);
+  if (glm::distance(at, expected) < 1e-5f) return testing::AssertionSuccess();
+  return testing::AssertionFailure() << at.x << " " << at.y << " " << at.z;
+}
+
+TEST(Usd, ReadsWhatAPlyReads) {
+  for (const int degree : {0, 1, 2, 3}) {
+    const Model model = some_model(degree);
+    const Model read = load_usd_text(usd_file(usd_prim(model)));
+    EXPECT_TRUE(test::equal(read, model)) << degree;
+    EXPECT_EQ(read.format, "OpenUSD");
+    EXPECT_EQ(read.axes, "RUB");
+    EXPECT_EQ(read.perspective, Perspective{});
+  }
+  // Planted fault: x y z w in place of w x y z.
+  const Model model = some_model();
+  Model turned = model;
+  for (glm::vec4& q : turned.rotation) q = {q.y, q.z, q.w, q.x};
+  EXPECT_FALSE(test::equal(load_usd_text(usd_file(usd_prim(turned))), model));
+}
+
+TEST(Usd, LooksAsTheSamePlyInTheFrameOfItsAxes) {
+  const Model model = some_model(2);
+  for (const std::string up : {"Y", "Z"}) {
+    Model moved = model;
+    bring_into_axes(moved, up == "Y" ? "RUB" : "RFU");
+    Model read =
+        load_usd_text(test::replaced(usd_file(usd_prim(moved)), "upAxis = \"Y\"", "upAxis = \"" + up + "\""));
+    EXPECT_EQ(read.axes, moved.axes);
+    bring_into_axes(read, "RDF");
+    for (std::size_t i = 0; i < model.count(); ++i) EXPECT_EQ(read.position[i], model.position[i]);
+    for (std::size_t k = 0; k < model.sh.size(); ++k) EXPECT_NEAR(read.sh[k], model.sh[k], 1e-5f);
+  }
+}
+
+TEST(Usd, HalvesAndWhatIsNotThere) {
+  std::string text = usd_prim(some_model(0, 2));
+  for (const char* name : {"positions", "orientations", "scales", "opacities", "Coefficients"})
+    text = test::replaced(text, std::string(name) + " =", std::string(name) + "h =");
+  EXPECT_TRUE(test::equal(load_usd_text(usd_file(text)), some_model(0, 2)));
+  const Model bare = load_usd_text(
+      usd_file("def ParticleField3DGaussianSplat \"a\" { point3f[] positions = [(1, 2, 3),] }"));
+  Model expected;
+  test::add(expected, {1, 2, 3}, glm::vec3(1.0f), 1.0f, glm::vec3(0.5f));
+  EXPECT_TRUE(test::equal(bare, expected));
+}
+
+TEST(Usd, SaysHowItIsSeen) {
+  const auto seen = [](const std::string& more) {
+    return load_usd_text(usd_file(usd_prim(some_model(0, 1), more))).perspective;
+  };
+  EXPECT_EQ(seen("uniform token sortingModeHint = \"cameraDistance\"\n"),
+            (Perspective{.order = ORDER_DISTANCE}));
+  EXPECT_EQ(seen("uniform token projectionModeHint = \"tangential\"\n"),
+            (Perspective{.projection = PROJECTION_TANGENT}));
+  testing::internal::CaptureStderr();
+  EXPECT_EQ(seen("uniform token sortingModeHint = \"rayHitDistance\"\n"), Perspective{});
+  EXPECT_NE(testing::internal::GetCapturedStderr().find("'rayHitDistance' is not known"), std::string::npos);
+}
+
+TEST(Usd, FlatGaussiansOf3dgrut) {
+  const std::string text =
+      "def ParticleField \"surfels\" (\n  prepend apiSchemas = [\"ParticleFieldPositionAttributeAPI\", "
+      "\"ParticleFieldKernelGaussianSurfletAPI\"]\n)\n{\n" +
+      test::usd_attributes(some_model(1)) + "}\n";
+  Model expected = some_model(1);
+  for (glm::vec3& scale : expected.scale) scale.z = 0.0f;
+  const Model read = load_usd_text(usd_file(text));
+  EXPECT_TRUE(test::equal(read, expected));
+  EXPECT_EQ(read.format, "OpenUSD, flat Gaussians");
+  EXPECT_TRUE(refuses_usd(usd_file(test::replaced(text, "GaussianSurfletAPI", "ConstantSurfletAPI")),
+                          {"line 8", "'surfels' is a ParticleField with another kernel"}));
+}
+
+TEST(Usd, Transforms) {
+  EXPECT_TRUE(lies_at(placed(""), {1, 2, 3}));
+  // The last of the order moves first.
+  EXPECT_TRUE(lies_at(placed("double3 xformOp:translate = (10, 0, 0)\nfloat3 xformOp:scale = (2, 2, 2)\n"
+                             "uniform token[] xformOpOrder = [\"xformOp:translate\", \"xformOp:scale\"]"),
+                      {12, 4, 6}));
+  EXPECT_TRUE(lies_at(placed("double3 xformOp:translate = (10, 0, 0)\nfloat3 xformOp:scale = (2, 2, 2)\n"
+                             "uniform token[] xformOpOrder = [\"xformOp:scale\", \"xformOp:translate\"]"),
+                      {22, 4, 6}));
+  // Not in the order: not moved.
+  EXPECT_TRUE(lies_at(placed("double3 xformOp:translate = (10, 0, 0)"), {1, 2, 3}));
+  // A quarter turn around x, then one around y.
+  EXPECT_TRUE(lies_at(placed("float3 xformOp:rotateXYZ = (90, 90, 0)\n"
+                             "uniform token[] xformOpOrder = [\"xformOp:rotateXYZ\"]"),
+                      {2, -3, -1}));
+  EXPECT_TRUE(lies_at(placed("float3 xformOp:rotateYXZ = (90, 90, 0)\n"
+                             "uniform token[] xformOpOrder = [\"xformOp:rotateYXZ\"]"),
+                      {3, 1, 2}));
+  EXPECT_TRUE(lies_at(placed("float xformOp:rotateZ:a = 90\nuniform token[] xformOpOrder = "
+                             "[\"xformOp:rotateZ:a\"]"),
+                      {-2, 1, 3}));
+  EXPECT_TRUE(lies_at(placed("quatf xformOp:orient = (0.70710678, 0, 0, 0.70710678)\n"
+                             "uniform token[] xformOpOrder = [\"xformOp:orient\"]"),
+                      {-2, 1, 3}));
+  // Rows: the translation is the last one.
+  EXPECT_TRUE(lies_at(placed("matrix4d xformOp:transform = ( (0, 1, 0, 0), (-1, 0, 0, 0), (0, 0, 1, 0), "
+                             "(5, 6, 7, 1) )\nuniform token[] xformOpOrder = [\"xformOp:transform\"]"),
+                      {3, 7, 10}));
+  // Around a pivot.
+  EXPECT_TRUE(lies_at(placed("float3 xformOp:translate:pivot = (1, 2, 0)\nfloat xformOp:rotateZ = 90\n"
+                             "uniform token[] xformOpOrder = [\"xformOp:translate:pivot\", "
+                             "\"xformOp:rotateZ\", \"!invert!xformOp:translate:pivot\"]"),
+                      {1, 2, 3}));
+  // Of its own, in the parent's, and without the parent's.
+  const std::string parent =
+      "float3 xformOp:scale = (2, 2, 2)\nuniform token[] xformOpOrder = [\"xformOp:scale\"]";
+  const std::string own = "float3 xformOp:translate = (1, 1, 1)\n";
+  EXPECT_TRUE(
+      lies_at(placed(parent, own + "uniform token[] xformOpOrder = [\"xformOp:translate\"]\n"), {4, 6, 8}));
+  EXPECT_TRUE(lies_at(placed(parent, own + "uniform token[] xformOpOrder = [\"!resetXformStack!\", "
+                                           "\"xformOp:translate\"]\n"),
+                      {2, 3, 4}));
+}
+
+TEST(Usd, TransformsTurnScaleAndHarmonics) {
+  const Model model = some_model();
+  Model expected = model;
+  const glm::dmat4 map = glm::rotate(glm::dmat4(1.0), glm::radians(30.0), glm::dvec3(0, 0, 1)) *
+                         glm::scale(glm::dmat4(1.0), glm::dvec3(2, 2, 2));
+  ASSERT_TRUE(transform(expected, map));
+  EXPECT_TRUE(test::equal(
+      load_usd_text(usd_file(usd_prim(model,
+                                      "float xformOp:rotateZ = 30\nfloat3 xformOp:scale = (2, 2, 2)\n"
+                                      "uniform token[] xformOpOrder = [\"xformOp:rotateZ\", "
+                                      "\"xformOp:scale\"]\n"))),
+      expected));
+}
+
+TEST(Usd, OnlyWhatIsToBeSeen) {
+  const Model one = some_model(0, 1), two = some_model(1, 2);
+  const std::string hidden[] = {
+      "def Xform \"a\" { token visibility = \"invisible\"\n" + usd_prim(one) + "}\n",
+      "def Xform \"a\" ( active = false ) {\n" + usd_prim(one) + "}\n",
+      "class \"a\" {\n" + usd_prim(one) + "}\n", "over \"a\" {\n" + usd_prim(one) + "}\n",
+      test::replaced(usd_prim(one), "def ", "class ")};
+  for (const std::string& text : hidden) {
+    EXPECT_EQ(load_usd_text(usd_file(text + usd_prim(two))).count(), 2u) << text;
+    EXPECT_TRUE(refuses_usd(usd_file(text), {"without Gaussians"}));
+  }
+  // Those of all prims, whatever their degrees.
+  const Model both = load_usd_text(usd_file(usd_prim(one) + usd_prim(two)));
+  EXPECT_EQ(both.count(), 3u);
+  EXPECT_EQ(both.degree, 1);
+}
+
+TEST(Usd, OtherThingsInAFileAreSkipped) {
+  const std::string text = usd_file(
+      "# a comment { ( \"\ndef Mesh \"m\" (\n  kind = \"component\"\n  customData = {\n    string a = \"} ) "
+      "\\\" \"\n"
+      "  }\n)\n{\n  custom rel material:binding = </a/b{>\n  asset file = @./tex(ture.png@\n  token s = "
+      "None\n"
+      "  float x.timeSamples = { 0: 1, 1: 2, }\n  append rel other = [</a>, </b>]\n  string d = '''two\n"
+      "lines ' of \"text\"'''; int i = 3\n  reorder nameChildren = [\"a\"]\n}\n" +
+      usd_prim(some_model(0, 1)));
+  EXPECT_EQ(load_usd_text(text).count(), 1u);
+  EXPECT_EQ(load_usd_text(test::replaced(text, "\ndef Mesh", ";\r\n\tdef Mesh")).count(), 1u);
+}
+
+TEST(Usd, SaysWhatHasToBePutTogether) {
+  const std::string world =
+      "def Xform \"World\" (\n  prepend references = @gauss.usdc@</a> (offset = 1)\n) {}\n";
+  EXPECT_TRUE(refuses_usd(usd_file(world), {"no Gaussians of its own, but references",
+                                            "usdcat --flatten bad.usda -o bad.flat.usda"}));
+  EXPECT_TRUE(refuses_usd(usd_file("", "subLayers = [@a.usd@]\n"), {"but subLayers"}));
+  EXPECT_TRUE(refuses_usd(usd_file("def Xform \"a\" {\n variantSet \"v\" = {\n \"x\" {\n" +
+                                   usd_prim(some_model(0, 1)) + "}\n}\n}\n"),
+                          {"but variantSet"}));
+  testing::internal::CaptureStderr();
+  EXPECT_EQ(load_usd_text(usd_file(world + usd_prim(some_model(0, 1)))).count(), 1u);
+  EXPECT_NE(testing::internal::GetCapturedStderr().find("what its references hold is not drawn"),
+            std::string::npos);
+}
+
+TEST(Usd, ErrorsNameTheLine) {
+  const std::string good =
+      usd_file("def ParticleField3DGaussianSplat \"a\"\n{\n  point3f[] positions = [(1, 2, 3)]\n}\n");
+  ASSERT_EQ(load_usd_text(good).count(), 1u);
+  const auto refuses = [&](const std::string& from, const std::string& to,
+                           std::initializer_list<std::string> parts) {
+    return refuses_usd(test::replaced(good, from, to), parts);
+  };
+  EXPECT_TRUE(refuses("(1, 2, 3)", "(1, 2)", {"line 10", "expected ',', found ')]'"}));
+  EXPECT_TRUE(refuses("(1, 2, 3)", "(1, two, 3)", {"line 10", "expected a number, found 'two, 3)]'"}));
+  EXPECT_TRUE(refuses("(1, 2, 3)", "1, 2", {"line 10", "expected '('"}));
+  EXPECT_TRUE(refuses("(1, 2, 3)]", "(1, 2, 3)", {"line 11", "expected ']', found '}'"}));
+  EXPECT_TRUE(refuses("]\n}\n", "", {"line 10", "this value does not end: the file is cut short"}));
+  EXPECT_TRUE(refuses(
+      "}\n", "", {"line 11", "expected a prim or an attribute, found the end of the file: it is cut short"}));
+  EXPECT_TRUE(refuses("positions =", "= ", {"line 10", "the type and the name of an attribute"}));
+  EXPECT_TRUE(refuses("def Part", "define Part", {"line 8", "expected def, over or class"}));
+  EXPECT_TRUE(refuses("\"a\"", "\"a", {"line 8", "text in quotes does not end"}));
+  EXPECT_TRUE(refuses("\"Y\"", "\"X\"", {"line 4", "upAxis 'X'"}));
+  EXPECT_TRUE(refuses("}\n", "float[] opacities = []}\n",
+                      {"line 11", "opacities has 0 values; expected 1, 1 for each of 1 positions"}));
+  EXPECT_TRUE(refuses("}\n", "float3[] radiance:sphericalHarmonicsCoefficients = [(1, 1, 1)]}\n",
+                      {"has 1 values; expected 16"}));
+  EXPECT_TRUE(refuses("}\n", "uniform int radiance:sphericalHarmonicsDegree = 7}\n",
+                      {"line 11", "harmonics of degree 7"}));
+  EXPECT_TRUE(refuses("positions =", "positions.timeSamples =", {"line 10", "positions changes with time"}));
+  EXPECT_TRUE(refuses("}\n", "uniform token[] xformOpOrder = [\"xformOp:shear\"]}\n",
+                      {"line 11", "'xformOp:shear' of 'a' is not there"}));
+  EXPECT_TRUE(refuses("}\n", "float xformOp:shear = 1\nuniform token[] xformOpOrder = [\"xformOp:shear\"]}\n",
+                      {"line 11", "xformOp:shear is not known"}));
+  EXPECT_TRUE(refuses(
+      "}\n", "float3 xformOp:scale = (1e300, 1, 1)\nuniform token[] xformOpOrder = [\"xformOp:scale\"]}\n",
+      {"line 8", "beyond the largest number"}));
+  EXPECT_TRUE(refuses("Field3DGaussianSplat", "s", {"is an OpenUSD scene without Gaussians", "Particles"}));
+  std::string deep = "#usda 1.0\n";
+  for (int k = 0; k < 100000; ++k) deep += "def \"a\" {\n";
+  EXPECT_TRUE(refuses_usd(deep, {"line 502", "nested more than 500 deep"}));
+}
+
+TEST(Usd, Archives) {
+  const test::TempFolder folder;
+  const std::string text = usd_file(usd_prim(some_model()));
+  test::write_zip(folder / "a.usdz", {{"default.usda", text}, {"picture.png", "x"}});
+  EXPECT_TRUE(test::equal(load_model(folder / "a.usdz"), some_model()));
+  const auto refuses = [&](const std::string& name, const std::string& content,
+                           std::initializer_list<std::string> parts) {
+    test::write_zip(folder / "b.usdz", {{name, content}});
+    return test::fails_saying([&] { load_model(folder / "b.usdz"); }, parts);
+  };
+  EXPECT_TRUE(refuses("a.usdc", "PXR-USDC and more",
+                      {"b.usdz", "a binary OpenUSD scene", "usdcat --flatten b.usdz -o b.flat.usda"}));
+  EXPECT_TRUE(refuses("a.usda", "#usda 1.0\ndef X", {"b.usdz: its file a.usda, line 2"}));
+  EXPECT_TRUE(refuses("a.usda", "words", {"a.usda", "looks like a text file"}));
+  EXPECT_TRUE(refuses("a.usda", usd_file("def \"a\" (references = @b.usdc@) {}"),
+                      {"usdcat --flatten b.usdz -o b.flat.usda"}));
+  EXPECT_TRUE(refuses_usd("PXR-USDC and more", {"usdcat --flatten bad.usd -o bad.flat.usda"}, "bad.usd"));
+}
+
+}  // namespace
+}  // namespace binosplat
