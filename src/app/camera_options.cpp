@@ -23,8 +23,8 @@ void add_camera_options(CLI::App& sub, CameraOptions& o) {
       ->type_name("NAME...");
   sub.add_option(
          "--path", o.path,
-         "cameras.json or nerfstudio's camera_path.json of one path: of keys, as\n`view` saves them, or "
-         "of its frames; each frame goes by what the last\none measured")
+         "cameras.json, or nerfstudio's or LichtFeld Studio's JSON of one path: of\nkeys, as `view` saves "
+         "them, or of its frames; each frame goes by what the last\none measured")
       ->type_name("FILE");
   three("--eye", o.eye, "Camera position instead, in world units");
   three("--at", o.at, "What it looks at");

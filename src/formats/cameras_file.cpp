@@ -15,6 +15,7 @@
 #include "formats/distortion.h"
 #include "formats/json_file.h"
 #include "formats/lens.h"
+#include "formats/lichtfeld.h"
 #include "formats/model_file.h"
 #include "formats/nerfstudio.h"
 #include "formats/ply_camera.h"
@@ -143,12 +144,14 @@ std::vector<Camera> load_any(const std::filesystem::path& named, const std::opti
   if (content_of(file.bytes()) == Content::ply) return {load_ply_camera(path, file.bytes())};
   const nlohmann::json root = parse_json(path.string(), as_text(file.bytes()));
   if (is_transforms(root)) return load_transforms(path, root);
+  if (is_lichtfeld_path(root)) return load_lichtfeld_path(path, root);
   if (is_camera_path(root)) return load_camera_path(path, root);
   if (is_pose_list(root)) return load_pose_list(path, root, fov_degrees.value_or(default_fov_degrees));
   if (root.is_array()) return load_list(path, root);
   fail(
       "{}: expected a list of cameras as INRIA's cameras.json, or an object with 'frames' as transforms.json "
-      "or 'camera_path' as nerfstudio's paths, but its root is of type {}",
+      "or 'camera_path' as nerfstudio's paths or 'keyframes' as LichtFeld Studio's, but its root is of type "
+      "{}",
       path.string(), root.type_name());
 }
 

@@ -1,7 +1,7 @@
 #pragma once
 // Cameras from files: INRIA's cameras.json, COLMAP's reconstructions (formats/colmap.h), transforms.json
-// (formats/transforms.h), nerfstudio's paths and poses (formats/nerfstudio.h), and the camera in a model's
-// ply (formats/ply_camera.h).
+// (formats/transforms.h), nerfstudio's paths and poses (formats/nerfstudio.h), LichtFeld Studio's paths
+// (formats/lichtfeld.h), and the camera in a model's ply (formats/ply_camera.h).
 //
 // cameras.json is a list of objects: img_name, width, height (px), position (x, y, z), rotation (three rows
 // of three; its COLUMNS are the camera's axes x right, y down, z forward in the world, so it is

@@ -1,0 +1,80 @@
+#include "formats/lichtfeld.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/gtc/quaternion.hpp>
+
+#include "base/log.h"
+#include "formats/json_file.h"
+#include "formats/lens.h"
+#include "formats/nerfstudio.h"
+#include "formats/transforms.h"
+
+namespace binosplat {
+
+namespace {
+
+constexpr double sensor_height_mm = 24.0;
+
+glm::dvec4 four_numbers(const JsonValue& list) {
+  glm::dvec4 numbers;
+  for (int i = 0; i < 4; ++i) numbers[i] = list.list_of(4).at(static_cast<std::size_t>(i)).number();
+  return numbers;
+}
+
+Camera key_of(const std::filesystem::path& path, const JsonValue& key) {
+  Camera camera;
+  camera.width = pose_width;
+  camera.height = pose_height;
+  camera.fx = camera.fy = camera.height * key.at("focal_length_mm").above_zero() / sensor_height_mm;
+  camera.cx = 0.5 * camera.width;
+  camera.cy = 0.5 * camera.height;
+  check_lens(path.string(), camera);
+  camera.time = key.at("time").number();
+  const glm::dvec4 q = four_numbers(key.at("rotation"));  // w x y z
+  if (!(glm::length(q) > 0.0)) key.at("rotation").fail_here("a rotation is a quaternion of length 0");
+  const JsonValue position = key.at("position").list_of(3);
+  glm::dvec3 place;
+  for (int i = 0; i < 3; ++i) place[i] = position.at(static_cast<std::size_t>(i)).number();
+  const glm::dmat3 to_world(1, 0, 0, 0, -1, 0, 0, 0, -1);
+  const glm::dvec4 unit = glm::normalize(q);
+  place_as_opengl(camera,
+                  {to_world * glm::mat3_cast(glm::dquat(unit.x, unit.y, unit.z, unit.w)), to_world * place});
+  return camera;
+}
+
+}  // namespace
+
+bool is_lichtfeld_path(const nlohmann::json& root) {
+  if (!root.is_object() || !root.contains("keyframes")) return false;
+  const nlohmann::json& keys = root["keyframes"];
+  return keys.is_array() && !keys.empty() && keys[0].is_object() && keys[0].contains("focal_length_mm");
+}
+
+std::vector<Camera> load_lichtfeld_path(const std::filesystem::path& path, const nlohmann::json& json) {
+  const JsonValue root(path.string(), json);
+  constexpr std::uint64_t newest = 4;
+  if (root.has("version") && root.at("version").whole(1000) > newest)
+    root.at("version").fail_here("paths of LichtFeld Studio up to version {} are known", newest);
+  const JsonValue keys = root.at("keyframes");
+  std::vector<Camera> cameras;
+  bool eases = false;
+  for (std::size_t i = 0; i < keys.size(); ++i) {
+    cameras.push_back(key_of(path, keys.at(i)));
+    eases = eases || (keys.at(i).has("easing") && keys.at(i).at("easing").number() != 0.0);
+  }
+  std::ranges::stable_sort(cameras, {}, [](const Camera& camera) { return *camera.time; });
+  const double start = *cameras[0].time;
+  for (std::size_t i = 0; i < cameras.size(); ++i) {
+    cameras[i].name = fmt::format("key_{:03}", i);
+    *cameras[i].time -= start;
+  }
+  if (eases)
+    log_info("{}: its keys ease in and out, which is not followed: the way is as smooth as by other files",
+             path.string());
+  if (root.has("animation_clip"))
+    log_warning("{}: its animation_clip moves more than the camera, which is not drawn", path.string());
+  return cameras;
+}
+
+}  // namespace binosplat

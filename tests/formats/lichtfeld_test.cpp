@@ -1,0 +1,91 @@
+// The camera paths of LichtFeld Studio.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "formats/cameras_file.h"
+#include "scene/key_path.h"
+#include "support/broken.h"
+#include "support/program.h"
+
+namespace binosplat {
+namespace {
+
+using nlohmann::json;
+
+/// As its sequencer saves it: a key that looks ahead, and, first in the file, a later one that is turned by a
+/// quarter to its left.
+json path_json() {
+  const double half = std::sqrt(0.5);
+  return {{"version", 4},
+          {"clip_duration", 30.0},
+          {"keyframes",
+           {{{"time", 7.0},
+             {"position", {1, 2, 3}},
+             {"rotation", {half, 0, half, 0}},
+             {"focal_length_mm", 24.0},
+             {"easing", 0}},
+            {{"time", 5.0},
+             {"position", {0, 0, 0}},
+             {"rotation", {1, 0, 0, 0}},
+             {"focal_length_mm", 12.0},
+             {"easing", 0}}}}};
+}
+
+std::vector<Camera> load(const json& root) {
+  const test::TempFolder folder;
+  test::write_text(folder / "path.json", root.dump());
+  return load_cameras(folder / "path.json");
+}
+
+bool is_near(const glm::dvec3& a, const glm::dvec3& b) { return glm::distance(a, b) < 1e-12; }
+
+TEST(LichtFeld, KeysAreWhereItsWorldHasThem) {
+  const std::vector<Camera> keys = load(path_json());
+  ASSERT_EQ(keys.size(), 2u);
+  EXPECT_EQ(keys[0].name, "key_000");
+  EXPECT_EQ(*keys[0].time, 0.0);
+  EXPECT_EQ(*keys[1].time, 2.0);
+  // Its world is the model's with y up and z backwards, as its cameras are: ahead stays ahead.
+  EXPECT_EQ(keys[0].rotation, glm::dmat3(1.0));
+  EXPECT_EQ(keys[1].position, glm::dvec3(1, -2, -3));
+  EXPECT_TRUE(is_near(keys[1].rotation[2], {-1, 0, 0}));  // forward
+  EXPECT_TRUE(is_near(keys[1].rotation[1], {0, 1, 0}));   // down
+  // 24 mm high: as far as it is wide, and half of that.
+  EXPECT_DOUBLE_EQ(keys[1].fy, keys[1].height);
+  EXPECT_DOUBLE_EQ(keys[0].fy, 0.5 * keys[0].height);
+  EXPECT_TRUE(are_keys(keys));
+}
+
+TEST(LichtFeld, SaysWhatIsLeftOut) {
+  json path = path_json();
+  path["keyframes"][0]["easing"] = 3;
+  path["animation_clip"] = {{"name", "default"}};
+  testing::internal::CaptureStderr();
+  load(path);
+  const std::string said = testing::internal::GetCapturedStderr();
+  EXPECT_NE(said.find("ease in and out, which is not followed"), std::string::npos);
+  EXPECT_NE(said.find("animation_clip moves more than the camera"), std::string::npos);
+}
+
+TEST(LichtFeld, BrokenOnesNameTheKey) {
+  const auto refuses = [](const auto& change, std::initializer_list<std::string> parts) {
+    json path = path_json();
+    change(path);
+    return test::refuses_file(path.dump(), "bad.json", parts, [](const auto& file) { load_cameras(file); });
+  };
+  EXPECT_TRUE(refuses([](json& p) { p["version"] = 5; }, {"key 'version'", "up to version 4 are known"}));
+  EXPECT_TRUE(refuses([](json& p) { p["keyframes"][1].erase("rotation"); }, {"keyframes[1]", "rotation"}));
+  EXPECT_TRUE(refuses(
+      [](json& p) {
+        p["keyframes"][1]["rotation"] = {0, 0, 0, 0};
+      },
+      {"key 'keyframes[1].rotation'", "length 0"}));
+  EXPECT_TRUE(refuses([](json& p) { p["keyframes"][1]["focal_length_mm"] = 0; },
+                      {"key 'keyframes[1].focal_length_mm'"}));
+  EXPECT_TRUE(refuses([](json& p) { p["keyframes"][1]["position"] = {1, 2}; }, {"keyframes[1].position"}));
+}
+
+}  // namespace
+}  // namespace binosplat
