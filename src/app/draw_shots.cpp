@@ -8,6 +8,7 @@
 #include "app/empty_view.h"
 #include "app/followed.h"
 #include "app/foveate_options.h"
+#include "app/sequence.h"
 #include "app/shot_files.h"
 #include "app/vr180.h"
 #include "base/clock.h"
@@ -61,7 +62,7 @@ std::optional<double> exact_frame_ms(render::Frame& frame, const Work& work, con
   const RenderOptions& o = report.options;
   if (!o.drawing.quality || !work.list.path ||
       report.drawn.size() < (report.context.software() ? some : many) || work.stream || o.foveate ||
-      work.plan.vr180)
+      work.plan.vr180 || !report.drawn[0].shot.model.empty())
     return std::nullopt;
   render::FrameSettings exact = render::exact_of(settings_of(o.drawing));
   exact.precision = o.drawing.precision;
@@ -72,8 +73,12 @@ std::optional<double> exact_frame_ms(render::Frame& frame, const Work& work, con
 
 /// What draws shots: the frame, or what the options want in its place.
 struct Drawer {
-  Drawer(gl::Context& of, const RenderReport& report, const std::shared_ptr<render::GpuModel>& model)
-      : context(of), options(report.options), frame(model), show(model) {}
+  Drawer(gl::Context& of, const RenderReport& report, const std::optional<int>& panorama_width,
+         const std::shared_ptr<render::GpuModel>& model)
+      : context(of), options(report.options), frame(model), show(model) {
+    if (panorama_width) panorama.emplace(model, *panorama_width);
+    if (options.foveate) foveated.emplace(model);
+  }
 
   gl::Context& context;
   const RenderOptions& options;
@@ -169,23 +174,26 @@ void draw_all(gl::Context& context, Work& work, RenderReport& report) {
   settings.background = output.backdrop();
   const render::Workings workings = workings_of(drawing);
   if (!work.list.path) settings.probe_tiles = std::numeric_limits<int>::max();  // single pictures: all
-  const auto gpu_model = work.stream
-                             ? work.stream->gpu_model(context, settings.precision)
-                             : std::make_shared<render::GpuModel>(context, report.model, settings.precision);
-  Drawer drawer(context, report, gpu_model);
-  render::Frame& frame = drawer.frame;
+  auto gpu_model = work.stream
+                       ? work.stream->gpu_model(context, settings.precision)
+                       : std::make_shared<render::GpuModel>(context, report.model, settings.precision);
+  std::optional<Model> shown;  // of a sequence, where it is not the report's
+  std::optional<int> panorama_width;
+  if (work.plan.vr180) panorama_width = work.shots[0].eyes[0].camera.width;
+  std::optional<Drawer> drawer(std::in_place, context, report, panorama_width, std::move(gpu_model));
   work.calibrated.check_model(report.model);
   if (settings.transmittance == TRANSMITTANCE_DEPTH && drawing.calibration.empty())
-    settings.depth_table = depth_table(frame, report.options.camera.lens, work.list, report.near_plane,
-                                       report.model.axes, settings);
-  if (work.plan.vr180) drawer.panorama.emplace(gpu_model, work.shots[0].eyes[0].camera.width);
-  if (report.options.foveate) drawer.foveated.emplace(gpu_model);
-  if (work.screen) report.convergence = find_screen(frame, settings, *work.screen);
+    settings.depth_table = depth_table(drawer->frame, report.options.camera.lens, work.list,
+                                       report.near_plane, report.model.axes, settings);
+  if (work.screen) report.convergence = find_screen(drawer->frame, settings, *work.screen);
   if (work.screen && report.convergence) {
     for (Shot& shot : work.shots) converge(shot, *report.convergence);
   }
   std::optional<glm::vec3> of_switches;  // the background, where they are reported
   if (output.detail_report && work.heads_turn) of_switches = settings.background;
+
+  std::optional<ModelsInTurn> in_turn;
+  if (!work.shots[0].model.empty()) in_turn.emplace(report.options.scene, report.model, work.shots);
 
   ShotPipeline pipeline(context, work, report);
   Progress progress("drawing", work.shots.size() * static_cast<std::size_t>(drawing.frames),
@@ -194,22 +202,30 @@ void draw_all(gl::Context& context, Work& work, RenderReport& report) {
   double gpu_ms = 0.0;
   report.drawn.reserve(work.shots.size());  // the pipeline refers to them
   for (Shot& shot : work.shots) {
+    if (in_turn) {
+      pipeline.hand_over();
+      drawer.reset();
+      shown = in_turn->take();
+      drawer.emplace(context, report, panorama_width,
+                     std::make_shared<render::GpuModel>(context, *shown, settings.precision));
+    }
+    render::Frame& frame = drawer->frame;
     // Single pictures do not depend on which were drawn before them.
-    if (!work.list.path) (drawer.foveated ? drawer.foveated->frame() : frame).start_over();
+    if (!work.list.path) (drawer->foveated ? drawer->foveated->frame() : frame).start_over();
     Drawn& drawn = report.drawn.emplace_back();
     drawn.shot = std::move(shot);
     const std::vector<shared::View> views = views_of(drawn.shot);
     render::FrameSettings of_shot = work.calibrated.of(drawn.shot, settings);
     of_shot.depth = output.exr_depth;
     if (work.stream) {
-      drawn.levels = settle_shot(*work.stream, frame, drawer.show, views, of_shot, of_switches);
+      drawn.levels = settle_shot(*work.stream, frame, drawer->show, views, of_shot, of_switches);
       of_shot.quality = static_cast<float>(drawn.levels->left);
     }
     for (int n = 0; n < drawing.frames; ++n) {
-      if (drawer.panorama) {
-        drawn.report = draw(*drawer.panorama, drawn.shot, report.model.axes, report.near_plane);
-      } else if (drawer.foveated) {
-        drawn.report = drawer.foveated->draw(views, *report.options.foveate, of_shot, workings);
+      if (drawer->panorama) {
+        drawn.report = draw(*drawer->panorama, drawn.shot, report.model.axes, report.near_plane);
+      } else if (drawer->foveated) {
+        drawn.report = drawer->foveated->draw(views, *report.options.foveate, of_shot, workings);
       } else {
         frame.submit(views, of_shot, workings);
         pipeline.hand_over();
@@ -219,17 +235,17 @@ void draw_all(gl::Context& context, Work& work, RenderReport& report) {
       gpu_ms += drawn.report.total_ms;
       progress.update(++done);
     }
-    if (drawer.foveated) drawn.foveated = drawer.foveated->parts();
-    if (drawer.reads_behind()) {
+    if (drawer->foveated) drawn.foveated = drawer->foveated->parts();
+    if (drawer->reads_behind()) {
       pipeline.read(drawn, frame);
     } else {
-      const auto read = std::make_shared<ShotPictures>(drawer.read(drawn, views, of_shot));
+      const auto read = std::make_shared<ShotPictures>(drawer->read(drawn, views, of_shot));
       pipeline.add(drawn, [read] { return std::move(*read); });
     }
   }
   report.run = pipeline.finish();
   report.run.gpu = gpu_ms;
-  report.exact_ms = exact_frame_ms(frame, work, report);
+  report.exact_ms = exact_frame_ms(drawer->frame, work, report);
   if (pipeline.all_empty() && !drawing.reference_until && !report.drawn.empty())
     log_warning("the pictures are empty: {}",
                 why_empty(report.model, report.drawn[0].shot, report.near_plane));

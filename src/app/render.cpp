@@ -21,6 +21,7 @@
 #include "app/render_outputs.h"
 #include "app/render_report.h"
 #include "app/resume.h"
+#include "app/sequence.h"
 #include "app/shots.h"
 #include "app/tour.h"
 #include "app/vr180.h"
@@ -133,9 +134,11 @@ std::optional<ordered_json> take_what_is_left(const RenderOptions& o, double nea
 
 ExitCode render(const RenderOptions& asked) {
   check(asked);
-  const RenderOptions o = with_eyes_of_demo(asked);
+  RenderOptions o = with_eyes_of_demo(asked);
   std::unique_ptr<gl::Context> context;  // outlives what draws with it
   Work work{.plan = plan_outputs(o), .calibrated = CalibratedSettings(o.drawing)};
+  const std::vector<fs::path> sequence = sequence_of(o);
+  if (!sequence.empty()) o.scene.name = sequence[0].string();
   work.list = find_list(o, work.plan);
   check_views(o.camera.views, o.rig.mono, work.list);
   work.photos = photos_folder(o.output.photos, work.list);
@@ -169,6 +172,7 @@ ExitCode render(const RenderOptions& asked) {
   if (work.plan.vr180) {
     for (Shot& shot : work.shots) level(shot, up_of(o.camera, work.list.known));
   }
+  if (!sequence.empty()) show_in_turn(sequence, work.shots);
   check_shots(work.plan, work.shots, o.output.json);
   if (!work.photos.empty() && !work.list.listed) check_any_photo(work.photos, work.list.cameras);
   if (seeks_screen(o, work.plan)) {
@@ -195,7 +199,7 @@ ExitCode render(const RenderOptions& asked) {
                       {},
                       {}};
   print_needs(report.needs);
-  if (o.output.output.empty()) claim_folder(work.plan.folder, o.scene.name);
+  if (o.output.output.empty()) claim_folder(work.plan.folder, asked.scene.name);
   draw_all(*context, work, report);
   check_alone(work.plan, run);
   print(report);
@@ -222,6 +226,7 @@ void add_render(CLI::App& program, Command& command) {
       "  binosplat render scan.ply --orbit 120 --layout half-width -o around.mp4\n"
       "  binosplat render garden.ply --tour walk --mono -o walk.mp4\n"
       "  binosplat render garden.ply --path out/garden/cameras.json --seconds 10 -o keys.mp4\n"
+      "  binosplat render frames/ --fps 30 --mono -o moving.mp4                  # a model a frame\n"
       "  binosplat render garden.ply --view all --shard $I/8 --resume -o out     # on 8 machines\n"
       "  binosplat render garden.ply --tour 0.5,30 --seconds 2 --preset headset --quality 40 -o frames");
   sub->callback([options, sub, &command] {

@@ -9,6 +9,7 @@
 #include <set>
 
 #include "app/command.h"
+#include "app/sequence.h"
 #include "app/tour.h"
 #include "app/vr180.h"
 #include "base/inputs.h"
@@ -222,8 +223,8 @@ OutputPlan plan_outputs(const RenderOptions& render) {
   plan.vr180 = render.camera.lens.vr180();
   if (video) return plan;
   plan.exr = options.exr_half.has_value();
-  if (options.fps && !along_path)
-    fail("--fps is for videos, --tour and --path: -o FILE.mp4, .mov, .mkv or .webm");
+  if (options.fps && !along_path && sequence_of(render).empty())
+    fail("--fps is for videos, --tour, --path and folders of models: -o FILE.mp4, .mov, .mkv or .webm");
   if (options.output == "-") fail("-o -: pictures are files: name one, or a folder");
   if (named && !file && names_a_file(output)) {
     fail(

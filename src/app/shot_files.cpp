@@ -103,7 +103,8 @@ void ShotFiles::write_files(Drawn& drawn, const ShotPictures& of) {
   std::vector<EncodedFile> files;
   {
     const Timed timed(encoding_ns_);
-    files = encode_outputs(options_.scene.name, options_.output, plan_, drawn.shot, *of.shown);
+    const std::string& model = drawn.shot.model.empty() ? options_.scene.name : drawn.shot.model;
+    files = encode_outputs(model, options_.output, plan_, drawn.shot, *of.shown);
   }
   const Timed timed(writing_ns_);
   for (const EncodedFile& file : files) {

@@ -27,8 +27,9 @@ struct Eye {
 
 /// What one frame draws.
 struct Shot {
-  std::string name;  // the view's, as the user knows it
-  std::string stem;  // of its files: stem_of() the name, unique among the shots
+  std::string name;   // the view's, as the user knows it
+  std::string stem;   // of its files: stem_of() the name, unique among the shots
+  std::string model;  // its file, where each shot has another one (app/sequence.h)
   std::vector<Eye> eyes;
   std::optional<double> ipd;     // m, where there is a rig
   double units_per_metre = 1.0;  // world units

@@ -24,6 +24,9 @@ inline std::string lowered_ending(const std::filesystem::path& path) {
   return lowered(path.extension().string());
 }
 
+/// Whether a name comes before another one, the numbers in them by their size: "x9" before "x10".
+bool comes_before(std::string_view a, std::string_view b);
+
 /// What stands between blanks; the last of `most` words is all that is left, with the blanks in it.
 std::vector<std::string_view> words_of(std::string_view line,
                                        std::size_t most = std::numeric_limits<std::size_t>::max());

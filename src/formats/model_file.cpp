@@ -142,7 +142,9 @@ std::vector<fs::path> models_in(const fs::path& folder) {
     if (is_named_as_model(entry.path()) && fs::is_regular_file(entry.path(), ignored))
       found.push_back(entry.path());
   }
-  std::sort(found.begin(), found.end());
+  std::ranges::sort(found, [](const fs::path& a, const fs::path& b) {
+    return comes_before(a.filename().string(), b.filename().string());
+  });
   const fs::path exported = folder / "exports/splat/splat.ply";
   if (found.empty() && fs::is_regular_file(exported, ignored)) return {exported};
   return found;
@@ -164,7 +166,8 @@ fs::path file_of(const fs::path& path) {
   constexpr std::size_t shown = 8;
   for (std::size_t i = 0; i < std::min(shown, found.size()); ++i) names += "\n  " + found[i].string();
   if (found.size() > shown) names += fmt::format("\n  and {} more", found.size() - shown);
-  fail("{} is a folder with {} models; name one of them:{}", path.string(), found.size(), names);
+  fail("{} is a folder with {} models; name one of them (render --fps N draws them one after the other):{}",
+       path.string(), found.size(), names);
 }
 
 std::string cut_in_words(const Model& model) {

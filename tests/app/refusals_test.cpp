@@ -181,7 +181,7 @@ TEST_F(Refusals, ToursAndPaths) {
       {{"--tour", "walk", "--seconds", "0"}, "above zero"},
       {{"--tour", "walk", "--fps", "-1"}, "above zero"},
       {{"--seconds", "1"}, "--seconds is for --tour, how much of it is drawn, and for --path"},
-      {{"--fps", "30"}, "--fps is for videos, --tour and --path"},
+      {{"--fps", "30"}, "--fps is for videos, --tour, --path"},
       {{"--tour", "walk", "--view", "front"}, "--tour goes through all cameras"},
       {{"--tour", "walk", "--path", "p.json"}, "leave --view, --path"},
       {{"--tour", "walk", "--orbit", "3"}, "--orbit"},
