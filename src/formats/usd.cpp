@@ -59,6 +59,9 @@ class UsdReader {
       log_warning("{}: what its {} hold is not drawn; one file of all makes: {}", source_, elsewhere_,
                   flatten_command(path_));
     }
+    for (const char* type : {"Mesh", "PointInstancer", "Points", "Volume"}) {
+      if (others_.contains(type)) log_warning("{}: only its Gaussians are drawn, and no {}", source_, type);
+    }
     model_.format = flat_ ? "OpenUSD, flat Gaussians" : "OpenUSD";
     model_.axes = axes();
     return std::move(model_);
@@ -112,6 +115,7 @@ class UsdReader {
       others_.insert(prim.type);
       nurec_ = nurec_ || prim.attribute("omni:nurec:isNuRecVolume") != nullptr;
     }
+    if (prim.type == "PointInstancer") return;  // what is in it is a pattern of what it shows
     for (const UsdaPrim& child : prim.prims) show(child, matrix, space);
   }
 

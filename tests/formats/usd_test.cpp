@@ -178,6 +178,13 @@ TEST(Usd, OnlyWhatIsToBeSeen) {
     EXPECT_EQ(load_usd_text(usd_file(text + usd_prim(two))).count(), 2u) << text;
     EXPECT_TRUE(refuses_usd(usd_file(text), {"without Gaussians"}));
   }
+  testing::internal::CaptureStderr();
+  EXPECT_EQ(
+      load_usd_text(usd_file("def PointInstancer \"a\" {\n" + usd_prim(one) + "}\n" + usd_prim(two))).count(),
+      2u);
+  EXPECT_NE(
+      testing::internal::GetCapturedStderr().find("only its Gaussians are drawn, and no PointInstancer"),
+      std::string::npos);
   // Those of all prims, whatever their degrees.
   const Model both = load_usd_text(usd_file(usd_prim(one) + usd_prim(two)));
   EXPECT_EQ(both.count(), 3u);
