@@ -8,6 +8,7 @@ layout(local_size_x = THREADS) in;
 layout(std430, binding = 0) readonly buffer Colours { vec4 colours[]; };  // C, and T left; over black
 layout(std430, binding = 1) readonly buffer Wanted { vec4 wanted[]; };    // C
 layout(std430, binding = 2) writeonly buffer Sums { float sums_of_groups[]; };
+layout(std430, binding = 3) readonly buffer Exposure { vec4 exposure[3]; };  // what becomes of a drawn (r, g, b, 1)
 uniform uint pixel_count;
 uniform uint group_count;
 uniform uint levels;  // 0: as they are; 255: both as 8 bits would keep them
@@ -19,12 +20,17 @@ vec3 kept(vec3 colour) {
   return levels == 0u ? shown : floor(shown * float(levels) + 0.5) / float(levels);
 }
 
+vec3 exposed(vec3 colour) {
+  vec4 c = vec4(colour, 1.0);
+  return vec3(dot(c, exposure[0]), dot(c, exposure[1]), dot(c, exposure[2]));
+}
+
 void main() {
   uint self = gl_LocalInvocationIndex, group = group_index();
   float sum = 0.0;
   if (group < group_count) {
     for (uint pixel = thread_index(); pixel < pixel_count; pixel += group_count * THREADS) {
-      vec3 d = kept(colours[pixel].rgb) - kept(wanted[pixel].rgb);
+      vec3 d = kept(exposed(colours[pixel].rgb)) - kept(wanted[pixel].rgb);
       sum += dot(d, d);
     }
   }

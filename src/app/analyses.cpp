@@ -29,13 +29,14 @@ void print_page(const lab::Page& page) {
 ExitCode analyse_scene(const MeasuredOptions& options, const std::vector<std::string>& test, int frames,
                        const fs::path& folder) {
   check_output(folder / "study.json");
+  const PhotoSource source = photos_of(options);
   const std::vector<std::string>& named = options.camera.views;
   const ViewChoice to_test{test, test_views, test.empty() ? named : std::vector<std::string>()};
   const OpenScene scene = open_scene(options.scene, options.camera, no_rig, [&](const CameraList& list) {
     check_photos(options.photos, photographed_cameras(to_test, options.photos, options.camera.lens, list));
   });
   const auto views_of = [&](const ViewChoice& choice) {
-    return photographed_views(choice, options.photos, options.camera.lens, scene.list);
+    return photographed_views(choice, source, options.camera.lens, scene.list);
   };
   // No view serves both: those named for the one are left out of all for the other.
   std::vector<lab::CalibrationView> tested = views_of(to_test);

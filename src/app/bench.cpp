@@ -57,8 +57,9 @@ lab::Bench open_case(gl::Context& context, const BenchOptions& options, const Be
   std::vector<lab::BenchView> views;
   for (const Shot& shot : shots) {
     lab::BenchView& view = views.emplace_back(lab::BenchView{shot.name, views_of(shot), {}});
-    if (photos)
-      view.photo = load_view_photo(*find_view_photo(options.photos, shot.name), shot.eyes.front().camera);
+    if (!photos) continue;
+    view.photo = load_view_photo(*find_view_photo(options.photos, shot.name), shot.eyes.front().camera);
+    view.exposure = exposure_of(plan.photos.exposures, shot.name);
   }
   const Camera& camera = shots.front().eyes.front().camera;
   const bool foveated = std::ranges::any_of(
@@ -264,7 +265,7 @@ void add_bench(CLI::App& program, Command& command) {
       ->type_name("FILE");
   sub->add_option("--view", o->camera.views, "Views by name, instead of the axes' number of them")
       ->type_name("NAME...");
-  add_photos_option(*sub, o->photos, "Compare with DIR/NAME.jpg or .png as well");
+  add_photos_options(*sub, *o, "Compare with DIR/NAME.jpg or .png as well");
   sub->add_option("--ppd", o->ppd, "For FLIP: pixels per degree that the viewer has (67)")
       ->check(between(1.0, 1000.0, "a number from 1 to 1000"))
       ->type_name("N");

@@ -33,7 +33,8 @@ BenchScene open_bench_scene(const BenchOptions& options, const std::string& file
 }
 
 // What tells a scene from another of the same name.
-ordered_json bench_scene_json(const BenchOptions& options, const BenchScene& scene) {
+ordered_json bench_scene_json(const BenchOptions& options, const Exposures& exposures,
+                              const BenchScene& scene) {
   ordered_json json = {{"name", scene.name}};
   if (scene.name == demo_city_name) {
     json["count"] = city_settings(scene.options).count;
@@ -48,6 +49,7 @@ ordered_json bench_scene_json(const BenchOptions& options, const BenchScene& sce
   if (options.camera.near_plane) json["near"] = *options.camera.near_plane;
   json["photos"] = !options.photos.empty();
   if (!options.photos.empty()) json["photos_content"] = pictures_key(options.photos);
+  if (exposures.change_any()) json["exposures_content"] = file_key(exposures.file());
   return json;
 }
 
@@ -101,7 +103,8 @@ BenchPlan make_plan(const BenchOptions& options) {
   for (const std::string& file : options.scenes) {
     const BenchScene& scene = plan.scenes.emplace_back(open_bench_scene(options, file));
     if (!names.insert(scene.name).second) fail("two scenes are called {}: bench them one by one", scene.name);
-    scenes.push_back(bench_scene_json(options, scene));
+    plan.photos = photo_source(scene.options.name, options.photos, options.exposure);
+    scenes.push_back(bench_scene_json(options, plan.photos.exposures, scene));
     add_cases(plan, plan.scenes.size() - 1);
   }
   plan.json = std::make_shared<ordered_json>(

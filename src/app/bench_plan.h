@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "app/measured_options.h"
+#include "app/photos.h"
 #include "app/rig_options.h"
 #include "app/shard.h"
 #include "app/shots.h"
@@ -49,6 +50,7 @@ struct BenchCase {
 struct BenchPlan {
   lab::Axes axes;
   std::vector<BenchScene> scenes;
+  PhotoSource photos;  // of the only scene
   std::vector<BenchCase> cases;
   std::vector<lab::BenchPoint> points;
   std::shared_ptr<const nlohmann::ordered_json> json;  // what two runs must have in common to be one

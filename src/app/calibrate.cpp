@@ -47,11 +47,12 @@ void print_calibration(const lab::Calibration& c, const CalibrateOptions& o) {
 ExitCode calibrate(const CalibrateOptions& o) {
   check_target("calibrate", "a target", o.target, o);
   check_output(o.output);
+  const PhotoSource photos = photos_of(o);
   const ViewChoice choice{o.camera.views, static_cast<std::size_t>(o.views)};
   const OpenScene scene = open_scene(o.scene, o.camera, no_rig, [&](const CameraList& list) {
     check_photos(o.photos, photographed_cameras(choice, o.photos, o.camera.lens, list));
   });
-  std::vector<lab::CalibrationView> views = photographed_views(choice, o.photos, o.camera.lens, scene.list);
+  std::vector<lab::CalibrationView> views = photographed_views(choice, photos, o.camera.lens, scene.list);
   const auto context = open_context_for_all("calibrate", false, o.context);
   leave_out_blind("calibrate", *context, scene.model, scene.near_plane, views);
   Progress progress("calibrating", lab::calibrated_settings().size());
@@ -84,7 +85,7 @@ void add_calibrate(CLI::App& program, Command& command) {
   sub->add_option("--max-drop", o->target.max_drop, "Target: dB lost against the photos, mean over the views")
       ->type_name("DB")
       ->check(positive);
-  add_photos_option(*sub, o->photos);
+  add_photos_options(*sub, *o);
   sub->add_option("--cameras", o->camera.file, "Cameras, where they are not beside the model")
       ->type_name("FILE");
   sub->add_option("--view", o->camera.views, "Views by name, instead of --views")->type_name("NAME...");

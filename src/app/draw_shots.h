@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "app/calibrated.h"
+#include "app/photos.h"
 #include "app/render_outputs.h"
 #include "app/render_report.h"
 #include "app/shots.h"
@@ -21,7 +22,7 @@ struct Work {
   CameraList list;
   std::vector<Shot> shots;
   std::optional<Shot> screen;  // what tells how far the screen is, where no option does
-  std::string photos;          // a folder; empty: none
+  PhotoSource photos;
   bool heads_turn = false;
   std::unique_ptr<Stream> stream;  // of a model whose levels follow the shots
 };

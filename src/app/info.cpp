@@ -16,6 +16,7 @@
 #include "app/render_report.h"
 #include "app/shots.h"
 #include "formats/cameras_file.h"
+#include "formats/exposures.h"
 #include "formats/model_file.h"
 #include "formats/model_output.h"
 #include "lab/fields.h"
@@ -30,6 +31,7 @@ namespace binosplat::app {
 
 namespace {
 
+namespace fs = std::filesystem;
 using lab::object;
 using nlohmann::ordered_json;
 
@@ -113,7 +115,60 @@ void print_info(const SeenOfViews& seen, std::size_t all) {
       "`binosplat trim` writes the smallest model that keeps them");
 }
 
-void print_info(const Model& model, const ModelSummary& s, const render::MemoryNeeds& needs) {
+/// How a model was trained, as far as the files beside it say.
+struct Trained {
+  std::optional<TrainingRun> run;
+  std::optional<Exposures> exposures;
+};
+
+Trained trained_as(const fs::path& file) {
+  Trained trained{run_of(file), {}};
+  if (const auto exposures = find_exposures(file)) trained.exposures.emplace(*exposures);
+  return trained;
+}
+
+std::string in_words(const Exposures& exposures) {
+  return fmt::format("{} of {} views, {}", exposures.file().string(), exposures.count(),
+                     exposures.change_any()
+                         ? "which --photos gives to pictures before it compares them with photos"
+                         : "none of which changes anything");
+}
+
+void print_info(const Trained& trained) {
+  if (trained.run) {
+    fmt::print("{:<14} by {}, says {}\n", "trained", trained.run->trainer, trained.run->file.string());
+    std::string said;
+    for (const auto& [key, value] : trained.run->said)
+      said += fmt::format("{}{} {}", said.empty() ? "" : ", ", key, value);
+    if (!said.empty()) fmt::print("{:<14} {}\n", "", said);
+    for (const std::string& sentence : trained.run->otherwise)
+      fmt::print("{:<14} {}\n", "  not drawn so", sentence);
+    for (const std::string& sentence : trained.run->advice)
+      fmt::print("{:<14} {}\n", "  to draw so", sentence);
+  }
+  if (trained.exposures) fmt::print("{:<14} {}\n", "exposures", in_words(*trained.exposures));
+}
+
+ordered_json info_json(const Trained& trained) {
+  ordered_json json;
+  if (trained.run) {
+    const TrainingRun& run = *trained.run;
+    json["by"] = run.trainer;
+    json["file"] = run.file.string();
+    for (const auto& [key, value] : run.said) json["says"][key] = value;
+    json["not_drawn_so"] = run.otherwise;
+    json["to_draw_so"] = run.advice;
+  }
+  if (trained.exposures) {
+    json["exposures"] =
+        object("file", trained.exposures->file().string(), "views", trained.exposures->count(),
+               "change_pictures", trained.exposures->change_any());
+  }
+  return json;
+}
+
+void print_info(const Model& model, const Trained& trained, const ModelSummary& s,
+                const render::MemoryNeeds& needs) {
   const std::size_t n = model.count();
   fmt::print("{} ({})\n", model.name, model.format);
   fmt::print("{:<14} {}{}\n", "Gaussians", n,
@@ -123,11 +178,15 @@ void print_info(const Model& model, const ModelSummary& s, const render::MemoryN
   fmt::print("{:<14} degree {}{}\n", "harmonics", model.degree,
              model.cut_db ? fmt::format(" of 4, which costs about {}", cut_in_words(model)) : "");
   fmt::print("{:<14} {} ({})\n", "axes", model.axes, axes_in_words(model));
-  fmt::print("{:<14} {:.4g} px^2{}\n", "low-pass", model.kernel_px2,
-             model.antialiased ? ", trained with anti-aliasing" : "");
+  fmt::print("{:<14} {:.4g} px^2, {}\n", "low-pass", model.kernel_px2,
+             model.antialiased_by.empty()
+                 ? "no file says whether it was trained with anti-aliasing"
+                 : fmt::format("trained {} anti-aliasing, says {}", model.antialiased ? "with" : "without",
+                               model.antialiased_by));
   fmt::print("{:<14} order by {}, {} projection\n", "perspective",
              order_choices[model.perspective.order].name,
              projection_choices[model.perspective.projection].name);
+  print_info(trained);
   print_bounds("bounds", s.all);
   print_bounds("98 % within", s.core);
   fmt::print("{:<14} {} for the model, at least {} for a frame of a headset's eyes\n", "GPU memory",
@@ -164,12 +223,13 @@ ordered_json info_json(const Model& model, const ModelSummary& s, const render::
   ordered_json scale;
   for (const auto& [decade, count] : s.scale)
     scale.push_back({{"from", std::pow(10.0, decade)}, {"count", count}});
-  ordered_json json = object(
-      "name", model.name, "format", model.format, "gaussians", model.count(), "left_out", model.left_out,
-      "degree", model.degree, "axes", model.axes, "kernel_px2", model.kernel_px2, "antialiased",
-      model.antialiased, "order", order_choices[model.perspective.order].name, "projection",
-      projection_choices[model.perspective.projection].name, "bounds", info_json(s.all), "core_bounds",
-      info_json(s.core), "gpu_bytes", object("model", needs.model, "headset_frame", needs.frame));
+  ordered_json json =
+      object("name", model.name, "format", model.format, "gaussians", model.count(), "left_out",
+             model.left_out, "degree", model.degree, "axes", model.axes, "kernel_px2", model.kernel_px2,
+             "antialiased", model.antialiased, "antialiased_by", model.antialiased_by, "order",
+             order_choices[model.perspective.order].name, "projection",
+             projection_choices[model.perspective.projection].name, "bounds", info_json(s.all), "core_bounds",
+             info_json(s.core), "gpu_bytes", object("model", needs.model, "headset_frame", needs.frame));
   if (model.scaffold) return json;  // the rest is made for each eye
   for (std::size_t k = 0; k < std::size(written_formats); ++k)
     json["file_bytes"][written_formats[k].name] =
@@ -204,17 +264,22 @@ ExitCode list_views(const InfoOptions& options) {
 ExitCode info(const InfoOptions& options) {
   if (!options.json.empty()) check_output(options.json);
   if (options.views) return list_views(options);
-  Model model = load_model(options.scene.name, {.lod = options.scene.lod});
+  // What the run beside it says is printed with the rest.
+  const fs::path file = file_of(options.scene.name);
+  Model model = load_model_alone(file, {.lod = options.scene.lod});
+  const Trained trained = trained_as(file);
+  if (trained.run) follow(*trained.run, file, model);
   const bool named = !options.camera.file.empty();
   settle_axes(options.scene,
               named ? listed_cameras(options.scene, options.camera).cameras : std::vector<Camera>{}, model);
   const ModelSummary summary = summarise(model);
   const render::MemoryNeeds needs = headset_needs(model);
   const std::optional<SeenOfViews> seen = see(options, model);
-  print_info(model, summary, needs);
+  print_info(model, trained, summary, needs);
   if (seen) print_info(*seen, model.count());
   if (options.json.empty()) return ExitCode::done;
   ordered_json json = info_json(model, summary, needs);
+  if (trained.run || trained.exposures) json["training"] = info_json(trained);
   if (seen)
     json["views"] =
         object("count", seen->views, "unseen", seen->unseen, "gaussians_of_99_percent", seen->most_of);

@@ -37,7 +37,8 @@ Model load_once(const SceneOptions& o, const std::optional<DetailBudget>& budget
   if (is_built_in(o.name)) fail_unknown(o.name);
   Model model = budget ? load_within(o.name, *budget) : load_model(o.name, {o.lod, o.appearance});
   if (model.antialiased && !o.antialias)
-    log_info("{} was trained with anti-aliasing and is drawn so (--no-antialias: as if not)", o.name);
+    log_info("{} was trained with anti-aliasing, says {}, and is drawn so (--no-antialias: as if not)",
+             o.name, model.antialiased_by);
   return model;
 }
 
@@ -52,7 +53,10 @@ CitySettings city_settings(const SceneOptions& o) {
 
 void set_as_asked(const SceneOptions& o, Model& model) {
   if (!o.axes.empty()) model.axes = o.axes;
-  model.antialiased = o.antialias.value_or(model.antialiased);
+  if (o.antialias) {
+    model.antialiased = *o.antialias;
+    model.antialiased_by = *o.antialias ? "--antialias" : "--no-antialias";
+  }
   model.kernel_px2 = o.kernel_px2.value_or(model.kernel_px2);
 }
 

@@ -13,7 +13,8 @@ struct MeasuredOptions {
   SceneOptions scene;
   CameraOptions camera;
   ContextOptions context;
-  std::string photos;  // a folder; empty: none
+  std::string photos;    // a folder; empty: none
+  std::string exposure;  // a file, or no_exposure; empty: the one beside the model
 };
 
 /// Adds --near, --count, --seed, --backend and --device; `options` must outlive the parsing.

@@ -71,11 +71,22 @@ void add_output_options(CLI::App& sub, OutputOptions& o) {
          "--mono. Those with alpha are put before\n--background")
       ->type_name(fmt::format("DIR|{}", photos_beside))
       ->check(folder() | CLI::IsMember({photos_beside}).description(""));
+  add_exposure_option(sub, o.exposure);
   sub.add_option("--json", o.json, "Write everything printed as JSON")->type_name("FILE");
 }
 
-CLI::Option* add_photos_option(CLI::App& sub, std::string& photos, const char* help) {
-  return sub.add_option("--photos", photos, help)->type_name("DIR")->check(folder());
+CLI::Option* add_exposure_option(CLI::App& sub, std::string& exposure) {
+  return sub
+      .add_option("--exposure", exposure,
+                  "The exposure of each photo, which pictures get before --photos\ncompares them: INRIA's "
+                  "exposure.json (the one of the model's training)")
+      ->type_name(fmt::format("FILE|{}", no_exposure))
+      ->check(CLI::ExistingFile.description("") | CLI::IsMember({no_exposure}).description(""));
+}
+
+void add_photos_options(CLI::App& sub, MeasuredOptions& o, const char* help) {
+  sub.add_option("--photos", o.photos, help)->type_name("DIR")->check(folder());
+  add_exposure_option(sub, o.exposure);
 }
 
 }  // namespace binosplat::app

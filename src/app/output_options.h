@@ -5,6 +5,7 @@
 #include <string>
 
 #include "app/cli.h"
+#include "app/measured_options.h"
 #include "base/image.h"
 #include "formats/exr.h"
 #include "shared/axes.h"
@@ -26,7 +27,8 @@ struct OutputOptions {
   std::optional<bool> exr_display;  // display values instead of light
   Depth exr_depth = Depth::mean;
   ExrCompression exr_compression = ExrCompression::rle;
-  std::string photos;  // a folder, or photos_beside
+  std::string photos;    // a folder, or photos_beside
+  std::string exposure;  // a file, or no_exposure; empty: the one beside the model
   std::string json;
   bool detail_report = false;
 
@@ -43,8 +45,12 @@ void add_output_options(CLI::App& sub, OutputOptions& options);
 /// Those of them that a window has, too: --layout, --show and --background. A window has no multi-view.
 void add_look_options(CLI::App& sub, OutputOptions& options, bool in_window);
 
-/// --photos of commands that look for none beside the cameras.
-CLI::Option* add_photos_option(CLI::App& sub, std::string& photos,
-                               const char* help = "DIR/NAME.jpg or .png of the views");
+/// In the place of a file: pictures are compared as they are drawn.
+constexpr const char* no_exposure = "none";
+CLI::Option* add_exposure_option(CLI::App& sub, std::string& exposure);
+
+/// --photos of commands that look for none beside the cameras, and --exposure.
+void add_photos_options(CLI::App& sub, MeasuredOptions& options,
+                        const char* help = "DIR/NAME.jpg or .png of the views");
 
 }  // namespace binosplat::app

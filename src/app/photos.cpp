@@ -3,9 +3,12 @@
 #include <algorithm>
 #include <atomic>
 
+#include "app/output_options.h"
 #include "base/error.h"
+#include "base/inputs.h"
 #include "base/log.h"
 #include "formats/image_file.h"
+#include "formats/model_file.h"
 #include "lab/bench.h"
 #include "measure/comparison.h"
 
@@ -22,6 +25,42 @@ void check_size(const fs::path& file, const glm::ivec2& size, const Camera& came
 }
 
 }  // namespace
+
+PhotoSource photo_source(const std::string& scene, const std::string& photos, const std::string& exposure) {
+  if (photos.empty()) {
+    if (!exposure.empty())
+      fail("--exposure {}: it is of pictures that --photos compares with photos", exposure);
+    return {};
+  }
+  PhotoSource source{photos};
+  if (exposure == no_exposure || (exposure.empty() && is_built_in(scene))) return source;
+  const auto file = exposure.empty() ? find_exposures(scene) : fs::path(exposure);
+  if (!file) return source;
+  note_input(*file);
+  try {
+    source.exposures = Exposures(*file);
+  } catch (const Error& error) {
+    fail("{}; --exposure none compares without it", error.what());
+  }
+  if (source.exposures.change_any()) {
+    log_info(
+        "{}: each picture gets the exposure that was trained for its photo before the two are compared "
+        "(--exposure none: as it is drawn)",
+        file->string());
+  }
+  return source;
+}
+
+PhotoSource photos_of(const MeasuredOptions& o) { return photo_source(o.scene.name, o.photos, o.exposure); }
+
+glm::mat4x3 exposure_of(const Exposures& exposures, const std::string& view) {
+  static std::atomic<bool> said = false;
+  if (exposures.change_any() && !exposures.has(view) && !said.exchange(true)) {
+    log_warning("{} has no exposure of view {}: it is compared as it is drawn, and so are others like it",
+                exposures.file().string(), view);
+  }
+  return exposures.of(view);
+}
 
 Image load_view_photo(const fs::path& file, const Camera& camera, const glm::vec3& background) {
   Image photo = load_image(file);
@@ -42,11 +81,19 @@ void check_photos(const std::string& photos, std::span<const Camera> cameras) {
   }
 }
 
-lab::PhotoOf photo_finder(const std::string& photos) {
-  if (photos.empty()) return {};
-  return [photos](const Camera& camera) {
-    const auto file = find_view_photo(photos, camera.name);
-    return file ? std::optional(load_view_photo(*file, camera)) : std::nullopt;
+lab::PhotoOf photo_finder(const PhotoSource& photos) {
+  if (photos.folder.empty()) return {};
+  return [photos](const Camera& camera) -> std::optional<Image> {
+    const auto file = find_view_photo(photos.folder, camera.name);
+    if (!file) return std::nullopt;
+    const auto back = inverse_exposure(exposure_of(photos.exposures, camera.name));
+    if (!back)
+      fail(
+          "{}: the exposure of {} mixes its colours into fewer than three, so nothing can be fitted to its "
+          "photo; "
+          "take it out, or give --exposure none",
+          photos.exposures.file().string(), camera.name);
+    return exposed(load_view_photo(*file, camera), *back);
   };
 }
 
@@ -66,12 +113,13 @@ void check_target(const std::string& command, const std::string& what, const Tar
     fail("--size with --photos: a drop is measured in the photos' own size");
 }
 
-lab::CalibrationView with_photo(const std::string& photos, const Camera& camera) {
+lab::CalibrationView with_photo(const PhotoSource& photos, const Camera& camera) {
   lab::CalibrationView view{camera, {}};
-  if (photos.empty()) return view;
-  const auto file = find_view_photo(photos, camera.name);
-  if (!file) fail("--photos {}: there is no photo of view {}", photos, camera.name);
+  if (photos.folder.empty()) return view;
+  const auto file = find_view_photo(photos.folder, camera.name);
+  if (!file) fail("--photos {}: there is no photo of view {}", photos.folder, camera.name);
   view.photo = load_view_photo(*file, camera);
+  view.exposure = exposure_of(photos.exposures, camera.name);
   return view;
 }
 
@@ -93,10 +141,10 @@ std::vector<Camera> photographed_cameras(const ViewChoice& choice, const std::st
   return spread;
 }
 
-std::vector<lab::CalibrationView> photographed_views(const ViewChoice& choice, const std::string& photos,
+std::vector<lab::CalibrationView> photographed_views(const ViewChoice& choice, const PhotoSource& photos,
                                                      const Lens& lens, const CameraList& list) {
   std::vector<lab::CalibrationView> views;
-  for (const Camera& camera : photographed_cameras(choice, photos, lens, list))
+  for (const Camera& camera : photographed_cameras(choice, photos.folder, lens, list))
     views.push_back(with_photo(photos, camera));
   return views;
 }

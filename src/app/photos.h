@@ -10,10 +10,26 @@
 #include "app/measured_options.h"
 #include "app/shots.h"
 #include "base/image.h"
+#include "formats/exposures.h"
 #include "lab/calibrate.h"
 #include "lab/refit.h"
 
 namespace binosplat::app {
+
+/// What views are compared with, and what becomes of their pictures before that.
+struct PhotoSource {
+  std::string folder;  // of photos; empty: none
+  Exposures exposures = {};
+};
+
+/// The photos of --photos, and the exposures of --exposure: of a file, none, or where the option is empty
+/// those of the exposure.json beside the model. Says whose are taken. Throws Error for a file that holds
+/// none, and for --exposure without photos.
+PhotoSource photo_source(const std::string& scene, const std::string& photos, const std::string& exposure);
+PhotoSource photos_of(const MeasuredOptions& options);
+
+/// The exposure of a view's picture; says once where there are exposures, and none for this view.
+glm::mat4x3 exposure_of(const Exposures& exposures, const std::string& view);
 
 /// Reads a view's photo as RGB: grey in three equal channels, and what has alpha before the background of the
 /// pictures that it is compared with, which is said once. Throws Error unless it has the camera's size.
@@ -25,8 +41,10 @@ Image load_view_photo(const std::filesystem::path& file, const Camera& camera,
 /// check.
 void check_photos(const std::string& photos, std::span<const Camera> cameras);
 
-/// The photos of a folder for a fit; none where `photos` is empty.
-lab::PhotoOf photo_finder(const std::string& photos);
+/// The photos of a folder for a fit, with their exposures taken back, so that a model fits all of them at
+/// once; none where there is no folder. Throws Error, when asked for a photo, for an exposure that cannot be
+/// taken back.
+lab::PhotoOf photo_finder(const PhotoSource& photos);
 
 /// What pictures may lose: --max-drop against the photos, or --quality against the exact pictures.
 struct TargetOptions {
@@ -39,8 +57,8 @@ struct TargetOptions {
 void check_target(const std::string& command, const std::string& what, const TargetOptions& target,
                   const MeasuredOptions& options);
 
-/// A camera; with a folder of photos its photo, too. Throws Error where there is none.
-lab::CalibrationView with_photo(const std::string& photos, const Camera& camera);
+/// A camera; with a folder of photos its photo and exposure, too. Throws Error where there is no photo.
+lab::CalibrationView with_photo(const PhotoSource& photos, const Camera& camera);
 
 /// Which views of a scene are taken.
 struct ViewChoice {
@@ -54,7 +72,7 @@ std::vector<Camera> photographed_cameras(const ViewChoice& choice, const std::st
                                          const Lens& lens, const CameraList& list);
 
 /// Each with its photo, where there is a folder of them.
-std::vector<lab::CalibrationView> photographed_views(const ViewChoice& choice, const std::string& photos,
+std::vector<lab::CalibrationView> photographed_views(const ViewChoice& choice, const PhotoSource& photos,
                                                      const Lens& lens, const CameraList& list);
 
 }  // namespace binosplat::app

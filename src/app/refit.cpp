@@ -127,16 +127,17 @@ ordered_json refit_json(const std::vector<Step>& steps, const RefitOptions& o, c
 
 ExitCode refit(const RefitOptions& o) {
   const ModelFormat format = check_refit(o);
+  const PhotoSource source = photos_of(o);
   const CameraList list = needed_cameras("refit", o);
   Model model = load_scene(o.scene, {}, list.cameras);
   refuse_scaffold(model, o.scene.name);
   bring_into_axes(model, axes_of(format));
-  lab::ViewSplit views = split_views("refit", o, o.split, list, near_plane_of(o.camera, list),
+  lab::ViewSplit views = split_views("refit", o, source, o.split, list,
                                      [](std::size_t can_judge, std::size_t) { return can_judge / 4; });
   const auto context = open_context(o.context);
   leave_out_blind("refit", *context, model, views);
   add_own_size(o, list, views);
-  const lab::RefitTargets targets{model, views.training, photo_finder(o.photos), views.near_plane};
+  const lab::RefitTargets targets{model, views.training, photo_finder(source), views.near_plane};
   const auto photos = static_cast<std::size_t>(std::count_if(
       views.training.begin(), views.training.end(),
       [&](const Camera& camera) { return !o.photos.empty() && find_view_photo(o.photos, camera.name); }));
@@ -188,9 +189,10 @@ void add_refit(CLI::App& program, Command& command) {
   sub->add_option("-o,--output", o->output, "The file to write: " + written_endings())
       ->type_name("FILE")
       ->required();
-  add_photos_option(*sub, o->photos,
-                    "Fit DIR/NAME.jpg or .png of the views; a view without one is\nfitted to the model's own "
-                    "picture");
+  add_photos_options(
+      *sub, *o,
+      "Fit DIR/NAME.jpg or .png of the views; a view without one is\nfitted to the model's own "
+      "picture");
   choose<bool>(*sub, "--against", o->against_exact,
                "Instead of photos: the model's own exact pictures, in the order and\nprojection that it was "
                "trained with",

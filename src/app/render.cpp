@@ -73,12 +73,12 @@ bool seeks_screen(const RenderOptions& o, const OutputPlan& plan) {
 
 // Of those that are drawn, before the model is read; and that each has a photo of its own.
 void check_photos_drawn(const RenderOptions& o, const Work& work) {
-  if (work.photos.empty() || !work.list.listed) return;
-  check_photos_apart(work.photos, work.list.cameras);
+  if (work.photos.folder.empty() || !work.list.listed) return;
+  check_photos_apart(work.photos.folder, work.list.cameras);
   std::vector<Camera> cameras = chosen_cameras(o.camera.views, o.camera.lens, work.list);
   if (o.camera.views.empty() && !work.list.path) cameras.resize(1);
-  check_any_photo(work.photos, cameras);
-  check_photos(work.photos, cameras);
+  check_any_photo(work.photos.folder, cameras);
+  check_photos(work.photos.folder, cameras);
 }
 
 void log_model(const std::string& scene, const std::optional<int>& decode, const Model& model,
@@ -141,8 +141,8 @@ ExitCode render(const RenderOptions& asked) {
   if (!sequence.empty()) o.scene.name = sequence[0].string();
   work.list = find_list(o, work.plan);
   check_views(o.camera.views, o.rig.mono, work.list);
-  work.photos = photos_folder(o.output.photos, work.list);
-  note_photos(work.photos);
+  work.photos = photo_source(o.scene.name, photos_folder(o.output.photos, work.list), o.output.exposure);
+  note_photos(work.photos.folder);
   check_photos_drawn(o, work);
   const render::FrameSettings settings = settings_of(o.drawing);
   std::optional<DetailBudget> budget;
@@ -174,7 +174,8 @@ ExitCode render(const RenderOptions& asked) {
   }
   if (!sequence.empty()) show_in_turn(sequence, work.shots);
   check_shots(work.plan, work.shots, o.output.json);
-  if (!work.photos.empty() && !work.list.listed) check_any_photo(work.photos, work.list.cameras);
+  if (!work.photos.folder.empty() && !work.list.listed)
+    check_any_photo(work.photos.folder, work.list.cameras);
   if (seeks_screen(o, work.plan)) {
     const auto head =
         std::find_if(work.shots.begin(), work.shots.end(), [](const Shot& shot) { return !shot.given_eyes; });

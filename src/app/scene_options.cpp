@@ -46,7 +46,7 @@ void add_scene_options(CLI::App& sub, SceneOptions& o) {
   auto* antialias = sub.add_flag_callback(
       "--antialias", [&o] { o.antialias = true; },
       "Draw as a model that was trained with anti-aliasing (gsplat's,\nMip-Splatting's); by default "
-      "what its file says");
+      "what its file, or the run beside it, says");
   sub.add_flag_callback(
          "--no-antialias", [&o] { o.antialias = false; }, "Draw as one that was not")
       ->excludes(antialias);

@@ -4,12 +4,11 @@
 #include <utility>
 
 #include "app/command_line.h"
-#include "app/photos.h"
 #include "base/clock.h"
 #include "base/log.h"
 #include "base/memory.h"
 #include "base/parallel.h"
-#include "measure/metrics.h"
+#include "measure/comparison.h"
 
 namespace binosplat::app {
 
@@ -21,16 +20,16 @@ bool is_empty(const Picture& picture) {
 }
 
 // PSNR of the picture as 8 bits would keep it against the photo, where there is a folder of them.
-std::optional<double> photo_psnr(const std::string& folder, const glm::vec3& background, const Shot& shot,
+std::optional<double> photo_psnr(const PhotoSource& photos, const glm::vec3& background, const Shot& shot,
                                  const Picture& picture) {
-  if (folder.empty()) return std::nullopt;
-  const auto file = find_view_photo(folder, shot.name);
+  if (photos.folder.empty()) return std::nullopt;
+  const auto file = find_view_photo(photos.folder, shot.name);
   if (!file) {
-    log_info("no photo of {} in {}", shot.name, folder);
+    log_info("no photo of {} in {}", shot.name, photos.folder);
     return std::nullopt;
   }
   const Image photo = load_view_photo(*file, shot.eyes.front().camera, background);
-  return measure::psnr(quantised(composite(picture, background)), photo);
+  return measure::photo_psnr(composite(picture, background), exposure_of(photos.exposures, shot.name), photo);
 }
 
 // Memory of a shot from the GPU to the file: twice its colours and depths, and what they are encoded to.
@@ -56,9 +55,9 @@ class Timed {
 
 }  // namespace
 
-ShotFiles::ShotFiles(const RenderOptions& options, const OutputPlan& plan, std::string photos,
+ShotFiles::ShotFiles(const RenderOptions& options, const OutputPlan& plan, const PhotoSource& photos,
                      const std::vector<Shot>& shots)
-    : options_(options), plan_(plan), photos_(std::move(photos)), video_(open_video(plan, shots)) {
+    : options_(options), plan_(plan), photos_(photos), video_(open_video(plan, shots)) {
   double most = 1.0;
   for (const Shot& shot : shots) most = std::max(most, bytes_of(shot));
   const double budget = std::min(0.25 * memory_bytes(), picture_memory_allowed.load());

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "app/photos.h"
 #include "app/render_outputs.h"
 #include "app/render_report.h"
 #include "base/job_queue.h"
@@ -23,11 +24,11 @@ struct ShotPictures {
 
 class ShotFiles {
  public:
-  /// `photos`: a folder to compare with, or empty. `shots`: those to come. Pictures that are drawn and not
-  /// written yet take a quarter of the machine's memory at most, or what --max-memory allows if that is less;
-  /// those of three shots in any case. There are as many threads as cores where memory allows that. A video
-  /// gets its frames one by one, in order.
-  ShotFiles(const RenderOptions& options, const OutputPlan& plan, std::string photos,
+  /// `photos`: to compare with, where there is a folder of them. `shots`: those to come. Pictures that are
+  /// drawn and not written yet take a quarter of the machine's memory at most, or what --max-memory allows if
+  /// that is less; those of three shots in any case. There are as many threads as cores where memory allows
+  /// that. A video gets its frames one by one, in order.
+  ShotFiles(const RenderOptions& options, const OutputPlan& plan, const PhotoSource& photos,
             const std::vector<Shot>& shots);
 
   /// Takes a shot, whose pictures `take` hands out on another thread; until finish() its files, comfort and
@@ -55,7 +56,7 @@ class ShotFiles {
 
   const RenderOptions& options_;
   const OutputPlan& plan_;
-  std::string photos_;
+  const PhotoSource& photos_;
   std::unique_ptr<Video> video_;
   std::atomic<bool> all_empty_ = true;
   std::atomic<std::int64_t> encoding_ns_ = 0, writing_ns_ = 0;

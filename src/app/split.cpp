@@ -43,16 +43,16 @@ CameraList needed_cameras(const std::string& command, const MeasuredOptions& o) 
   return list;
 }
 
-lab::ViewSplit split_views(const std::string& command, const MeasuredOptions& o, const SplitOptions& split,
-                           const CameraList& list, double near_plane, const MostHeldBack& most) {
+lab::ViewSplit split_views(const std::string& command, const MeasuredOptions& o, const PhotoSource& photos,
+                           const SplitOptions& split, const CameraList& list, const MostHeldBack& most) {
   lab::ViewSplit views;
-  views.near_plane = near_plane;
+  views.near_plane = near_plane_of(o.camera, list);
   std::vector<Camera> cameras = chosen_cameras({}, o.camera.lens, list);
   const auto take = [&](const std::vector<std::string>& names, const char* option,
                         std::vector<lab::CalibrationView>& into) {
     if (names.empty()) return;
     for (const Camera& camera : chosen_cameras(names, o.camera.lens, list, option)) {
-      into.push_back(with_photo(o.photos, camera));
+      into.push_back(with_photo(photos, camera));
       if (std::erase_if(cameras, [&](const Camera& other) { return other.name == camera.name; }) == 0)
         fail("{} {}: named twice: a view has one task", option, camera.name);
     }
@@ -77,7 +77,7 @@ lab::ViewSplit split_views(const std::string& command, const MeasuredOptions& o,
   for (const std::size_t k : lab::spread_evenly(judging.size(), wanted)) held_back[judging[k]] = true;
   for (std::size_t i = 0; i < cameras.size(); ++i) {
     if (held_back[i]) {
-      views.held_back.push_back(with_photo(o.photos, cameras[i]));
+      views.held_back.push_back(with_photo(photos, cameras[i]));
     } else {
       views.training.push_back(cameras[i]);
     }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "app/measured_options.h"
+#include "app/photos.h"
 #include "app/shots.h"
 #include "lab/calibrate.h"
 
@@ -32,7 +33,7 @@ using MostHeldBack = std::function<std::size_t(std::size_t can_judge, std::size_
 /// spread among those that have a photo where there are photos; the rest is for training. The test views are
 /// neither. Throws Error for views that are not there or have two tasks.
 lab::ViewSplit split_views(const std::string& command, const MeasuredOptions& options,
-                           const SplitOptions& split, const CameraList& list, double near_plane,
+                           const PhotoSource& photos, const SplitOptions& split, const CameraList& list,
                            const MostHeldBack& most);
 
 /// Where --size makes the views smaller than their cameras are: those held back and of test in the cameras'

@@ -31,6 +31,7 @@ const struct {
   std::vector<Study> studies;
 } options_of_some[] = {{"--test", {Study::analyses}},
                        {"--photos", {Study::analyses, Study::turn}},
+                       {"--exposure", {Study::analyses, Study::turn}},
                        {"--view", {Study::analyses, Study::turn, Study::levels}},
                        {"--frames", {Study::analyses, Study::motion, Study::levels}},
                        {"--mono", {Study::motion, Study::turn, Study::levels}},
@@ -139,9 +140,10 @@ void add_studied_options(CLI::App& sub, StudyOptions& o) {
                  "default: 8, evenly spread")
       ->type_name("NAME...");
   sub.add_option("--test", o.test, "Views to test on; default: 8, evenly spread")->type_name("NAME...");
-  add_photos_option(sub, o.photos,
-                    "DIR/NAME.jpg or .png of the views: tolerances for 0.1 to 0.5 dB;\nwith --turn what each "
-                    "order and projection loses");
+  add_photos_options(
+      sub, o,
+      "DIR/NAME.jpg or .png of the views: tolerances for 0.1 to 0.5 dB;\nwith --turn what each "
+      "order and projection loses");
   sub.add_option("-o,--output", o.output,
                  "Folder for report.html and study.json (out/study; of other studies none)")
       ->type_name("DIR");

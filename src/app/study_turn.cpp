@@ -57,8 +57,9 @@ lab::PerspectiveViews views_for(const gl::Context& context, const StudyOptions& 
     views.eyes.assign(eyes.views.begin(), eyes.views.end());
   }
   if (options.photos.empty()) return views;
-  for (const lab::CalibrationView& one : photographed_views(photos_of_a_turn, options.photos, {}, list))
-    views.photos.emplace_back(make_view(into_axes(one.camera, axes), studied.near_plane), *one.photo);
+  for (const lab::CalibrationView& one : photographed_views(photos_of_a_turn, photos_of(options), {}, list))
+    views.photos.push_back(
+        {make_view(into_axes(one.camera, axes), studied.near_plane), *one.photo, one.exposure});
   return views;
 }
 

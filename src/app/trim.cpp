@@ -148,15 +148,16 @@ std::vector<std::string> write_trimmed(const TrimOptions& o, const lab::Trimmed&
 
 ExitCode trim(const TrimOptions& o) {
   const ModelFormat format = check_trim(o);
+  const PhotoSource photos = photos_of(o);
   const CameraList list = needed_cameras("trim", o);
   Model model = load_scene(o.scene, {}, list.cameras);
   refuse_scaffold(model, o.scene.name);
   const std::optional<fs::path> original = same_format(o, model.format, format);
   bring_into_axes(model, axes_of(format));
-  lab::ViewSplit views = split_views("trim", o, o.split, list, near_plane_of(o.camera, list),
+  lab::ViewSplit views = split_views("trim", o, photos, o.split, list,
                                      [](std::size_t, std::size_t cameras) { return cameras / 2; });
   lab::TrimSettings settings{o.bound.target(), format, trial_writer(o.output, format), {}};
-  if (o.refit) settings.refit = photo_finder(o.photos);
+  if (o.refit) settings.refit = photo_finder(photos);
   const auto context = open_context(o.context);
   leave_out_blind("trim", *context, model, views);
   add_own_size(o, list, views);
@@ -203,7 +204,7 @@ void add_trim(CLI::App& program, Command& command) {
   sub->add_option("--quality", o->bound.quality, "Bound: PSNR against the exact pictures, likewise")
       ->type_name("DB")
       ->check(quality_range);
-  add_photos_option(*sub, o->photos);
+  add_photos_options(*sub, *o);
   add_split_options(
       *sub, *o, o->split,
       "So many views (that have a photo) are held back to judge by, spread\nevenly, at most half "

@@ -62,4 +62,22 @@ Image quantised(const Image& image, float top) {
   return out;
 }
 
+Image exposed(const Image& rgb, const glm::mat4x3& exposure) {
+  Image image(rgb.width, rgb.height, 3);
+  for (std::size_t i = 0; i < rgb.data.size(); i += 3) {
+    const glm::vec3 colour = exposure * glm::vec4(rgb.data[i], rgb.data[i + 1], rgb.data[i + 2], 1.0f);
+    for (int c = 0; c < 3; ++c) image.data[i + static_cast<std::size_t>(c)] = colour[c];
+  }
+  return image;
+}
+
+std::optional<glm::mat4x3> inverse_exposure(const glm::mat4x3& exposure) {
+  const glm::dmat3 mixed{glm::dmat4x3(exposure)};
+  // Of an exposure that is of use, each channel keeps much of itself.
+  constexpr double least = 1e-3;
+  if (!(std::abs(glm::determinant(mixed)) >= least)) return std::nullopt;
+  const glm::dmat3 back = glm::inverse(mixed);
+  return glm::mat4x3(glm::dmat4x3(back[0], back[1], back[2], -(back * glm::dvec3(exposure[3]))));
+}
+
 }  // namespace binosplat

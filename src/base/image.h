@@ -60,6 +60,13 @@ Image composite(const Picture& picture, const Background& background);
 /// The same over black.
 Image on_black(const Picture& picture);
 
+/// A picture of three channels with each colour changed: its red, green and blue times the first three
+/// columns, and the last one added. Not clamped.
+Image exposed(const Image& rgb, const glm::mat4x3& exposure);
+
+/// What takes an exposure back; nothing where that is lost, as where all becomes grey.
+std::optional<glm::mat4x3> inverse_exposure(const glm::mat4x3& exposure);
+
 /// Depth Z/A where A > 0.5, +infinity elsewhere; view-space z in world units; one channel.
 Image depth_map(const Picture& picture);
 

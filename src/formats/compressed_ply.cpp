@@ -70,7 +70,9 @@ class CompressedPlyReader {
     model.name = path_.filename().string();
     model.format = "compressed ply";
     model.degree = degree_;
-    model.antialiased = is_antialiased(header_, false);
+    const std::optional<bool> said = said_antialiased(header_);
+    model.antialiased = said.value_or(false);
+    if (said) model.antialiased_by = by_comment;
     model.perspective = read_perspective(header_.comments);
     model.resize(count_);
     std::vector<std::uint8_t> kept(count_);

@@ -59,7 +59,7 @@ class CompressedPlyWriter {
       header += fmt::format("property uint {}\n", field);
     if (higher > 0) header += fmt::format("element sh {}\n", n);
     for (std::size_t k = 0; k < higher; ++k) header += fmt::format("property uchar f_rest_{}\n", k);
-    if (model_.antialiased) header += "comment SplatRenderMode: mip\n";
+    header += antialias_comment(model_);
     header += perspective_comments(model_.perspective);
     file_.write(header + "end_header\n");
 

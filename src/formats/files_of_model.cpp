@@ -76,6 +76,7 @@ Files files_of_model(const fs::path& path) {
       if (fs::is_regular_file(file, ignored) && found.insert(file).second) open.push_back(file);
     }
   }
+  if (const auto run = run_of(file_of(path))) found.insert(run->file);
   return {found.begin(), found.end()};
 }
 

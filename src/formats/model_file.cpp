@@ -174,7 +174,7 @@ std::string cut_in_words(const Model& model) {
   return fmt::format("{:.1f} dB (estimated by the coefficients left out)", *model.cut_db);
 }
 
-Model load_model(const fs::path& path, const ModelOptions& options) {
+Model load_model_alone(const fs::path& path, const ModelOptions& options) {
   const fs::path file = file_of(path);
   Model model = load_content(file, options);
   if (options.appearance && !model.scaffold) {
@@ -193,7 +193,40 @@ Model load_model(const fs::path& path, const ModelOptions& options) {
     log_warning("{}: {} of {} Gaussians left out (values not finite, or a zero quaternion)", file.string(),
                 model.left_out, model.left_out + model.count());
   }
+  if (model.antialiased && model.antialiased_by.empty()) model.antialiased_by = "its file";
   return model;
+}
+
+Model load_model(const fs::path& path, const ModelOptions& options) {
+  const fs::path file = file_of(path);
+  Model model = load_model_alone(file, options);
+  if (const auto run = run_of(file)) {
+    for (const std::string& sentence : run->otherwise) log_warning("{}: {}", run->file.string(), sentence);
+    for (const std::string& sentence : run->advice) log_info("{}: {}", run->file.string(), sentence);
+    follow(*run, file, model);
+  }
+  return model;
+}
+
+void follow(const TrainingRun& run, const fs::path& file, Model& model) {
+  if (!run.antialiased || model.scaffold) return;  // Scaffold-GS trains without
+  if (model.antialiased_by.empty()) {
+    model.antialiased = *run.antialiased;
+    model.antialiased_by = run.file.string();
+  } else if (model.antialiased != *run.antialiased) {
+    log_warning("{}: {} says that it was trained {} anti-aliasing, and {} {}: the former counts",
+                file.string(), model.antialiased_by, model.antialiased ? "with" : "without",
+                run.file.string(), *run.antialiased ? "with" : "without");
+  }
+}
+
+std::optional<fs::path> find_exposures(const fs::path& path) {
+  return find_above(file_of(path), exposures_name);
+}
+
+std::optional<TrainingRun> run_of(const fs::path& file) {
+  // The levels of a streamed SOG were made of a model, and say what that was.
+  return is_streamed_sog(file) ? std::nullopt : find_training_run(file);
 }
 
 }  // namespace binosplat

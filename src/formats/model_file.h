@@ -3,8 +3,10 @@
 
 #include <binosplat/model.h>
 #include <filesystem>
+#include <optional>
 #include <vector>
 
+#include "formats/training_run.h"
 #include "scene/model.h"
 
 namespace binosplat {
@@ -23,8 +25,21 @@ std::filesystem::path file_of(const std::filesystem::path& path);
 /// (formats/sog.h), spz, .splat, .ksplat, and glTF or OpenUSD (formats/usd.h) with Gaussians. `path` may be a
 /// folder with one of models_in(). Says on standard error how many Gaussians were left out because a value is
 /// not finite or the quaternion is zero. Throws Error for anything that is not such a model; the text says
-/// what the file looks like instead.
+/// what the file looks like instead. Whether a model was trained with anti-aliasing its file says, or else the
+/// run beside it (run_of). Warns of what the run did and is not drawn.
 Model load_model(const std::filesystem::path& path, const ModelOptions& options = {});
+
+/// The same by the model's file alone, whatever lies beside it: for files that binosplat has just written.
+Model load_model_alone(const std::filesystem::path& path, const ModelOptions& options = {});
+
+/// The training that a model's file comes from, if its files are there (formats/training_run.h).
+std::optional<TrainingRun> run_of(const std::filesystem::path& file);
+
+/// Takes from a run what the model's own file does not say; warns where the two contradict each other.
+void follow(const TrainingRun& run, const std::filesystem::path& file, Model& model);
+
+/// The exposure.json of that training (formats/exposures.h), for a model's file or a folder with one.
+std::optional<std::filesystem::path> find_exposures(const std::filesystem::path& path);
 
 /// Model::cut_db for people: "38.1 dB (...)".
 std::string cut_in_words(const Model& model);

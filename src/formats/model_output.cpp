@@ -36,7 +36,7 @@ void read_back(OutputFile& file, const Model& model, ModelFormat format) {
   file.flush();
   std::size_t count = 0;
   try {
-    count = load_model(file.path()).count();
+    count = load_model_alone(file.path()).count();
   } catch (const Error& error) {
     throw Error(
         error.code(),

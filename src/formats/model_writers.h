@@ -62,4 +62,11 @@ inline bool is_mip_splatting(const Model& model) {
   return model.antialiased && model.kernel_px2 == mip_splatting_kernel_px2;
 }
 
+/// What a ply's header says of a model's training: that it was without anti-aliasing only where a file or an
+/// option said so, since the run beside it may say otherwise.
+inline std::string antialias_comment(const Model& model) {
+  if (model.antialiased) return "comment SplatRenderMode: mip\n";
+  return model.antialiased_by.empty() ? "" : "comment SplatRenderMode: default\n";
+}
+
 }  // namespace binosplat

@@ -124,6 +124,7 @@ class PlyReader {
     model_.format = layout_.flat ? "ply, flat Gaussians of 2DGS" : "ply";
     model_.degree = layout_.degree;
     model_.antialiased = layout_.antialiased;
+    model_.antialiased_by = layout_.antialiased_by;
     model_.perspective = read_perspective(header_.comments);
     if (layout_.filter_3d) model_.kernel_px2 = mip_splatting_kernel_px2;
     for (const PlyElement& element : header_.elements) {

@@ -93,8 +93,8 @@ bool has_bytes(const PlyElement& vertices, std::string_view name) {
 
 }  // namespace
 
-bool is_antialiased(const PlyHeader& header, bool unless_said) {
-  bool antialiased = unless_said;
+std::optional<bool> said_antialiased(const PlyHeader& header) {
+  std::optional<bool> antialiased;
   for (const std::string& line : header.comments) {
     const std::string comment = lowered(line);
     if (comment.find("splatrendermode:") != std::string::npos)
@@ -141,7 +141,9 @@ PlyLayout find_layout(const std::filesystem::path& path, const PlyHeader& header
     for (std::size_t channel = 0; channel < 3; ++channel)
       finder.add(fmt::format("f_rest_{}", channel * in_file + k));
   }
-  layout.antialiased = is_antialiased(header, layout.filter_3d);
+  const std::optional<bool> said = said_antialiased(header);
+  layout.antialiased = said.value_or(layout.filter_3d);
+  layout.antialiased_by = said ? by_comment : layout.filter_3d ? "its filter_3D" : "";
   if (std::ranges::any_of(layout.sources, &PlyLayout::Source::as_bits))
     log_info("{}: its properties of type ushort are taken as halves (16-bit floats)", path.string());
   return layout;

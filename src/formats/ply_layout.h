@@ -3,6 +3,8 @@
 
 #include <array>
 #include <filesystem>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "formats/harmonics_cut.h"
@@ -29,6 +31,7 @@ struct PlyLayout {
   bool rgb = false;             // the first three coefficients are base colours of 0 to 255 (Nerfstudio)
   bool filter_3d = false;       // the last number is Mip-Splatting's filter (world units)
   bool antialiased = false;
+  std::string antialiased_by;  // as Model has it
   bool flat = false;       // a Gaussian has two scales (2D Gaussian Splatting)
   std::size_t cut_at = 0;  // where the coefficients of degree 4 begin; 0: there are none
 };
@@ -37,8 +40,11 @@ struct PlyLayout {
 constexpr double mip_splatting_kernel_px2 = 0.1;
 
 /// Whether a model was trained with anti-aliasing, by the last comment that says so or not (Brush's and
-/// Postshot's).
-bool is_antialiased(const PlyHeader& header, bool unless_said);
+/// Postshot's); nothing where none does.
+std::optional<bool> said_antialiased(const PlyHeader& header);
+
+/// What says so where a comment does, for people.
+constexpr const char* by_comment = "a comment of the ply";
 
 /// Finds the Gaussians in a file by the names of properties. Throws Error naming `path` if there are none or
 /// something is missing, saying what the file looks like instead. `header` must outlive the layout.

@@ -55,7 +55,7 @@ Losses write_ply(OutputFile& file, const Model& model) {
     add(name);
   if (is_mip_splatting(model)) add("filter_3D");
   // Not before the elements: INRIA's viewer takes the third line for the count.
-  if (model.antialiased) header += "comment SplatRenderMode: mip\n";
+  header += antialias_comment(model);
   header += perspective_comments(model.perspective);
   file.write(header + "end_header\n");
 

@@ -67,7 +67,7 @@ std::vector<std::string> names_of(const std::vector<CalibrationView>& views) {
 std::vector<ContributionView> some_of(const std::vector<CalibrationView>& views, const Calibrator& tester) {
   std::vector<ContributionView> some;
   for (const std::size_t i : spread_evenly(views.size(), contribution_views))
-    some.push_back({views[i].camera.name, tester.views()[i], views[i].photo});
+    some.push_back({views[i].camera.name, tester.views()[i], views[i].photo, views[i].exposure});
   return some;
 }
 

@@ -11,9 +11,9 @@
 #include "base/statistics.h"
 #include "lab/settings.h"
 #include "lab/timed_rounds.h"
+#include "measure/comparison.h"
 #include "measure/depth_table.h"
 #include "measure/foveated.h"
-#include "measure/metrics.h"
 #include "reference/render.h"
 #include "render/frame.h"
 #include "stereo/disagreement.h"
@@ -205,7 +205,7 @@ const std::vector<Bench::Exact>& Bench::exact() {
     one.pictures = frame.read_pictures();
     for (const Picture& picture : one.pictures) one.eyes.push_back(composite(picture, black));
     if (one.pictures.size() < 2) one.pictures.clear();
-    if (view.photo) one.photo_psnr = measure::psnr(quantised(one.eyes.front()), quantised(*view.photo));
+    if (view.photo) one.photo_psnr = measure::photo_psnr(one.eyes.front(), view.exposure, *view.photo);
   }
   return exact_;
 }
@@ -287,7 +287,7 @@ ViewNumbers Bench::compare(const BenchView& view, const Exact& exact,
     v.disagreement_db = stereo::disagreement(eyes_of_view, exact.pictures, drawn).db;
   }
   if (view.photo) {
-    const Image image = composite(drawn.front(), black);
+    const Image image = exposed(composite(drawn.front(), black), view.exposure);
     v.photo_psnr_db = measure::psnr(quantised(image), quantised(*view.photo));
     v.drop_db = *exact.photo_psnr - *v.photo_psnr_db;
     v.photo_ssim = measure::ssim(quantised(image), quantised(*view.photo));

@@ -23,6 +23,7 @@ struct BenchView {
   std::string name;
   std::vector<shared::View> eyes;
   std::optional<Image> photo;  // of the only eye, in its size
+  glm::mat4x3 exposure{1.0f};  // of pictures, before they are compared with it
 };
 
 struct BenchEffort {

@@ -34,9 +34,10 @@ Picture as_picture(const Image& photo) {
 
 /// The picture that a view is compared with, on the GPU, and the dB of its exact picture.
 struct Calibrator::Reference {
-  Reference(gl::Context& context, std::span<const Picture> pictures, std::uint32_t levels,
-            std::uint64_t pairs)
-      : error(context, pictures, levels), exact_pairs(pairs) {}
+  Reference(gl::Context& context, std::span<const Picture> pictures, std::uint64_t pairs)
+      : error(context, pictures), exact_pairs(pairs) {}
+  Reference(gl::Context& context, const Picture& photo, const glm::mat4x3& exposure, std::uint64_t pairs)
+      : error(context, std::span(&photo, 1), 255, exposure), exact_pairs(pairs) {}
 
   render::SquaredError error;  // against the exact picture, or the photo
   std::uint64_t exact_pairs;
@@ -56,9 +57,9 @@ Calibrator::Calibrator(gl::Context& context, const Model& model, const std::vect
     names_.push_back(view.camera.name);
     views_.push_back(make_view(into_axes(view.camera, model.axes), near_plane));
     const std::uint64_t pairs = frame_.draw(std::span(&views_.back(), 1)).pairs;
-    const std::vector<Picture> reference =
-        drop ? std::vector{as_picture(*view.photo)} : frame_.read_pictures();
-    references_.push_back(std::make_unique<Reference>(context, reference, drop ? 255u : 0u, pairs));
+    references_.push_back(
+        drop ? std::make_unique<Reference>(context, as_picture(*view.photo), view.exposure, pairs)
+             : std::make_unique<Reference>(context, frame_.read_pictures(), pairs));
     references_.back()->exact_db = psnr_of(references_.back()->error.mean(frame_.colours()));
   }
 }

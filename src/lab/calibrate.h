@@ -21,6 +21,7 @@ namespace binosplat::lab {
 struct CalibrationView {
   Camera camera;               // of the world (scene/axes.h)
   std::optional<Image> photo;  // RGB in the camera's size
+  glm::mat4x3 exposure{1.0f};  // of pictures, before they are compared with it (exposed() of base/image.h)
 };
 
 /// Views of three tasks. A model that was fitted to some views has to be judged in others, or its error would

@@ -6,7 +6,7 @@
 
 #include "base/statistics.h"
 #include "lab/settings.h"
-#include "measure/metrics.h"
+#include "measure/comparison.h"
 #include "reference/render.h"
 #include "reference/skipping.h"
 
@@ -103,10 +103,9 @@ Contributions contributions(const Model& model, std::span<const ContributionView
         mean.share += skipped[k].share / count;
         mean.psnr_db += capped(measure::psnr(image, exact)) / count;
         if (photos)
-          mean.drop_db =
-              mean.drop_db.value_or(0.0) + (measure::psnr(quantised(exact), quantised(*one.photo)) -
-                                            measure::psnr(quantised(image), quantised(*one.photo))) /
-                                               count;
+          mean.drop_db = mean.drop_db.value_or(0.0) + (measure::photo_psnr(exact, one.exposure, *one.photo) -
+                                                       measure::photo_psnr(image, one.exposure, *one.photo)) /
+                                                          count;
       }
     }
     progress();

@@ -20,6 +20,7 @@ struct ContributionView {
   std::string name;
   shared::View view;
   std::optional<Image> photo;  // RGB in the view's size
+  glm::mat4x3 exposure{1.0f};  // of pictures, before they are compared with it
 };
 
 /// What the pictures keep without the lowest contributions, by what is known of the transmittance; means over

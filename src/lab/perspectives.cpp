@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "lab/fields.h"
+#include "measure/comparison.h"
 #include "measure/flip.h"
-#include "measure/metrics.h"
 #include "stereo/disagreement.h"
 
 namespace binosplat::lab {
@@ -33,9 +33,9 @@ Picture uncoloured(Picture picture) {
 double against_photos(render::Frame& frame, const PerspectiveViews& views, const Perspective& seen,
                       const std::function<void()>& progress) {
   double sum = 0.0;
-  for (const auto& [view, photo] : views.photos) {
+  for (const auto& [view, photo, exposure] : views.photos) {
     const Image drawn = on_black(draw(frame, std::span(&view, 1), seen).front());
-    sum += measure::psnr(quantised(drawn), quantised(photo));
+    sum += measure::photo_psnr(drawn, exposure, photo);
     progress();
   }
   return sum / static_cast<double>(views.photos.size());

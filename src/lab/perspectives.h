@@ -40,9 +40,14 @@ struct PerspectiveNumbers {
 };
 
 struct PerspectiveViews {
-  std::vector<shared::View> path;                      // frames that follow one another; none: no popping
-  std::vector<shared::View> eyes;                      // left and right, or none
-  std::vector<std::pair<shared::View, Image>> photos;  // RGB in the view's size
+  std::vector<shared::View> path;  // frames that follow one another; none: no popping
+  std::vector<shared::View> eyes;  // left and right, or none
+  struct Photographed {
+    shared::View view;
+    Image photo;                 // RGB in the view's size
+    glm::mat4x3 exposure{1.0f};  // of pictures, before they are compared with it
+  };
+  std::vector<Photographed> photos;
 };
 
 /// Each of `perspectives`. `progress` is called as often as perspective_steps() says.

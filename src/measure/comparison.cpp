@@ -37,6 +37,10 @@ bool make_shown(Image& a, Image& b, const Background& background) {
   return see_through && !keeps_alpha;
 }
 
+double photo_psnr(const Image& picture, const glm::mat4x3& exposure, const Image& photo) {
+  return psnr(quantised(exposed(picture, exposure)), quantised(photo));
+}
+
 Comparison compare(const Image& a, const Image& b, double pixels_per_degree) {
   return {psnr(a, b), ssim(a, b), flip(a, b, pixels_per_degree), largest_difference(a, b)};
 }

@@ -26,6 +26,10 @@ Image before(const glm::vec3& background, const Image& image);
 /// alpha stays, and counts. Returns whether something that is seen through was put before a background.
 bool make_shown(Image& a, Image& b, const Background& background = {});
 
+/// PSNR against a photo of what a picture becomes by its exposure (exposed() of base/image.h), both as 8 bits
+/// keep them; in dB.
+double photo_psnr(const Image& picture, const glm::mat4x3& exposure, const Image& photo);
+
 /// Compares two such pictures. Throws Error where they cannot be compared (measure/comparable.h).
 Comparison compare(const Image& a, const Image& b, double pixels_per_degree = flip_pixels_per_degree);
 

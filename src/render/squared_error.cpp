@@ -15,15 +15,19 @@ constexpr std::uint32_t groups_most = 2048;  // of more pixels each sums up seve
 
 }  // namespace
 
-SquaredError::SquaredError(gl::Context& context, std::span<const Picture> wanted, std::uint32_t levels)
+SquaredError::SquaredError(gl::Context& context, std::span<const Picture> wanted, std::uint32_t levels,
+                           const glm::mat4x3& exposure)
     : dispatcher_(context),
       wanted_(context, "wanted colours"),
       sums_(context, "squared errors"),
+      exposure_(context, "exposure"),
       levels_(levels) {
   std::vector<glm::vec4> colours;
   for (const Picture& picture : wanted)
     colours.insert(colours.end(), picture.colour.begin(), picture.colour.end());
   wanted_.upload(colours);
+  const glm::mat3x4 rows = glm::transpose(exposure);
+  exposure_.upload(std::vector<glm::vec4>{rows[0], rows[1], rows[2]});
   pixels_ = static_cast<std::uint32_t>(colours.size());
 }
 
@@ -52,7 +56,7 @@ double SquaredError::mean(const gl::Buffer& colours) {
   dispatcher_.begin_frame();
   dispatcher_.begin_stage("squared error");
   dispatcher_.run(dispatcher_.context().program("squared_error.comp"), gl::DispatchSize::of_groups(groups),
-                  {{"Colours", colours}, {"Wanted", wanted_}, {"Sums", sums_}},
+                  {{"Colours", colours}, {"Wanted", wanted_}, {"Sums", sums_}, {"Exposure", exposure_}},
                   {{"pixel_count", pixels_}, {"group_count", groups}, {"levels", levels_}});
   dispatcher_.end_frame();
   const auto parts = sums_.read<float>(groups);

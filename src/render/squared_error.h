@@ -15,8 +15,10 @@ namespace binosplat::render {
 class SquaredError {
  public:
   /// `wanted` is what should be drawn, in the order of a frame's views. `levels`: 0 compares values as they
-  /// are, 255 as 8 bits would keep them.
-  SquaredError(gl::Context& context, std::span<const Picture> wanted, std::uint32_t levels = 0);
+  /// are, 255 as 8 bits would keep them. `exposure` changes what is drawn before it is compared (exposed() of
+  /// base/image.h).
+  SquaredError(gl::Context& context, std::span<const Picture> wanted, std::uint32_t levels = 0,
+               const glm::mat4x3& exposure = glm::mat4x3(1.0f));
 
   /// Wants nothing yet: add() says what should be drawn.
   explicit SquaredError(gl::Context& context);
@@ -37,8 +39,9 @@ class SquaredError {
 
  private:
   gl::Dispatcher dispatcher_;
-  gl::Buffer wanted_;  // vec4 by pixel
-  gl::Buffer sums_;    // float by work group
+  gl::Buffer wanted_;    // vec4 by pixel
+  gl::Buffer sums_;      // float by work group
+  gl::Buffer exposure_;  // three rows
   std::uint32_t pixels_ = 0;
   std::uint32_t levels_ = 0;
 };

@@ -48,7 +48,8 @@ struct Model {
   std::size_t left_out = 0;         // Gaussians of the source with values not finite or a zero quaternion
   double kernel_px2 = KERNEL_PX2;   // variance of the low-pass it was trained with, px^2
   bool antialiased = false;  // trained with the opacity that the low-pass takes away (Mip-Splatting, Yu 2024)
-  Perspective perspective;   // that it was trained with
+  std::string antialiased_by;  // what says so, or that it was not; empty: nothing does
+  Perspective perspective;     // that it was trained with
   /// What harmonics beyond degree 3 that its file has are worth, an estimate in dB (formats/harmonics_cut.h).
   std::optional<double> cut_db;
   std::string axes = "RDF";  // where the model's x, y and z point in the cameras' world (scene/axes.h)

@@ -25,6 +25,7 @@ Model without_gaussians(const Model& model) {
   none.degree = model.degree;
   none.kernel_px2 = model.kernel_px2;
   none.antialiased = model.antialiased;
+  none.antialiased_by = model.antialiased_by;
   none.perspective = model.perspective;
   none.axes = model.axes;
   return none;

@@ -77,6 +77,7 @@ Model repeat(Model model, int nx, int nz, double spacing) {
     Model repeated = stand_in(repeat(*model.scaffold, grid));
     repeated.kernel_px2 = model.kernel_px2;
     repeated.antialiased = model.antialiased;
+    repeated.antialiased_by = model.antialiased_by;
     repeated.perspective = model.perspective;
     repeated.axes = model.axes;
     return repeated;

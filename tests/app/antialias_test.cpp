@@ -45,7 +45,7 @@ TEST_F(Antialias, TagsAndOptionsMeanTheSame) {
   EXPECT_LT(sum(forced), 0.5 * sum(plain));
   file.comments = "comment SplatRenderMode: mip\n";
   EXPECT_EQ(drawn().data, forced.data);
-  EXPECT_TRUE(has(said, "was trained with anti-aliasing and is drawn so"));
+  EXPECT_TRUE(has(said, "was trained with anti-aliasing, says a comment of the ply, and is drawn so"));
   EXPECT_EQ(drawn({"--no-antialias"}).data, plain.data);
   const Image narrow = drawn({"--kernel-px2", "0.1"});
   EXPECT_NE(narrow.data, forced.data);
@@ -55,6 +55,28 @@ TEST_F(Antialias, TagsAndOptionsMeanTheSame) {
   for (auto& row : file.rows) row.push_back(0.0);
   EXPECT_EQ(drawn().data, narrow.data);
   EXPECT_EQ(drawn({"--kernel-px2", "0.3"}).data, forced.data);
+}
+
+TEST_F(Antialias, OfAFileThatSaysNothingIsThatOfTheRunBesideIt) {
+  const Image plain = drawn(), forced = drawn({"--antialias"});
+  const std::string run = folder / "cfg.yml";
+  const auto trained = [&](const char* how) {
+    test::write_text(run, std::string("antialiased: ") + how + "\nresult_dir: results\nwith_eval3d: true\n");
+  };
+  trained("true");
+  EXPECT_EQ(drawn().data, forced.data);
+  EXPECT_TRUE(has(said, "was trained with anti-aliasing, says " + run));
+  EXPECT_TRUE(has(said, "warning: " + run + ": it was trained by 3DGUT"));
+  EXPECT_EQ(drawn({"--no-antialias"}).data, plain.data);
+  file.comments = "comment SplatRenderMode: default\n";
+  EXPECT_EQ(drawn().data, plain.data);
+  EXPECT_TRUE(has(said, "a comment of the ply says that it was trained without anti-aliasing"));
+  file.comments = "";
+  trained("false");
+  EXPECT_EQ(drawn().data, plain.data);
+  EXPECT_EQ(drawn({"--antialias"}).data, forced.data);
+  test::write_text(run, "antialiased: true\n");  // of another program
+  EXPECT_EQ(drawn().data, plain.data);
 }
 
 }  // namespace

@@ -47,7 +47,9 @@ TEST(Perspectives, AreMeasuredAgainstPhotosForTwoEyesAndInMotion) {
   Image photo(96, 64, 3);
   frame.draw(std::span(&of.path[0], 1), {.order = ORDER_DISTANCE, .projection = PROJECTION_TANGENT});
   photo = composite(frame.read_pictures().front(), glm::vec3(0.0f));
-  of.photos.emplace_back(of.path[0], photo);
+  glm::mat4x3 exposure(0.8f);
+  exposure[0][1] = 0.1f;
+  of.photos.push_back({of.path[0], exposed(photo, exposure), exposure});
   std::size_t steps = 0;
   const auto numbers = measure_perspectives(frame, of, [&] { ++steps; });
   EXPECT_EQ(steps, perspective_steps(of));

@@ -50,6 +50,33 @@ TEST(SquaredError, OfLargePicturesIsTheMean) {
   EXPECT_NEAR(SquaredError(test::gl_context(), std::vector{wanted}).mean(drawn), mean, 1e-6 * mean);
 }
 
+TEST(SquaredError, IsOfWhatAnExposureMakesOfThePicture) {
+  glm::mat4x3 exposure(1.0f), transposed(1.0f);
+  exposure[0] = {0.9f, 0.2f, 0.0f};
+  exposure[3] = {0.02f, 0.0f, -0.05f};
+  transposed[0][0] = 0.9f;
+  transposed[1][0] = 0.2f;
+  transposed[3] = exposure[3];
+  Image drawn(20, 30, 3);
+  Picture wanted(20, 30);
+  std::vector<glm::vec4> colours;
+  for (std::size_t i = 0; i < wanted.colour.size(); ++i) {
+    colours.emplace_back(0.01f * static_cast<float>(i % 90), 0.5f, 0.02f * static_cast<float>(i % 40), 0.0f);
+    for (std::size_t c = 0; c < 3; ++c) drawn.data[3 * i + c] = colours.back()[static_cast<int>(c)];
+  }
+  const Image photo = exposed(drawn, exposure);
+  for (std::size_t i = 0; i < wanted.colour.size(); ++i)
+    wanted.colour[i] = {photo.data[3 * i], photo.data[3 * i + 1], photo.data[3 * i + 2], 0.0f};
+  gl::Buffer buffer(test::gl_context(), "drawn");
+  buffer.upload(colours);
+  const auto mean = [&](const glm::mat4x3& by) {
+    return SquaredError(test::gl_context(), std::span(&wanted, 1), 255, by).mean(buffer);
+  };
+  EXPECT_LT(mean(exposure), 1e-6);
+  EXPECT_GT(mean(transposed), 1e-4) << "planted: a column in the place of the row";
+  EXPECT_GT(mean(glm::mat4x3(1.0f)), 1e-4);
+}
+
 TEST(SquaredError, OfWindowsIsThatOfTheWholePictures) {
   const std::vector<shared::View> views(2, make_view(look_at({0, 0, -4}, {0, 0, 0}, {0, -1, 0}, 60, 80, 48)));
   const Model model = test::random_model(1, 300, 1), other = test::random_model(2, 300, 1);

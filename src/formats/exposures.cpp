@@ -1,0 +1,60 @@
+#include "formats/exposures.h"
+
+#include <algorithm>
+
+#include "base/mapped_file.h"
+#include "base/text.h"
+#include "formats/json_file.h"
+#include "formats/view_files.h"
+
+namespace binosplat {
+
+namespace {
+
+const glm::mat4x3 no_change(1.0f);
+
+glm::mat4x3 read_exposure(const JsonValue& rows) {
+  glm::mat4x3 exposure;
+  rows.list_of(3);
+  for (int i = 0; i < 3; ++i) {
+    const JsonValue row = rows.at(static_cast<std::size_t>(i)).list_of(4);
+    const auto number = [&](std::size_t k) { return static_cast<float>(row.at(k).number()); };
+    for (int j = 0; j < 3; ++j) exposure[i][j] = number(static_cast<std::size_t>(j));
+    exposure[3][i] = number(3);
+  }
+  return exposure;
+}
+
+}  // namespace
+
+Exposures::Exposures(const std::filesystem::path& file) : file_(file) {
+  const MappedFile mapped(file);
+  const nlohmann::json root = parse_json(file.string(), as_text(mapped.bytes()));
+  const JsonValue value(file.string(), root);
+  if (!root.is_object()) value.fail_here("expected an object with three rows of four numbers for each view");
+  for (const auto& [name, rows] : root.items()) {
+    by_name_.emplace(name, read_exposure(value.at(name)));
+    const auto [stem, is_new] = by_stem_.emplace(stem_of(name), name);
+    if (!is_new) stem->second.clear();
+  }
+}
+
+const glm::mat4x3* Exposures::find(const std::string& view) const {
+  auto found = by_name_.find(view);
+  if (found == by_name_.end()) {
+    const auto stem = by_stem_.find(stem_of(view));
+    if (stem != by_stem_.end()) found = by_name_.find(stem->second);
+  }
+  return found == by_name_.end() ? nullptr : &found->second;
+}
+
+glm::mat4x3 Exposures::of(const std::string& view) const {
+  const glm::mat4x3* const found = find(view);
+  return found == nullptr ? no_change : *found;
+}
+
+bool Exposures::change_any() const {
+  return std::ranges::any_of(by_name_, [](const auto& one) { return one.second != no_change; });
+}
+
+}  // namespace binosplat

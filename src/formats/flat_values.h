@@ -1,0 +1,23 @@
+#pragma once
+// Settings as trainers leave them, in three kinds of text: each becomes one list of keys and values.
+
+#include <map>
+#include <string>
+#include <string_view>
+
+namespace binosplat {
+
+/// Values as words, without quotes, by the keys that lead to them: "pipeline.model.sh_degree".
+using FlatValues = std::map<std::string, std::string, std::less<>>;
+
+/// Of YAML what trainers write with one value a line, in mappings that may be nested. Tags, anchors, lists
+/// and values of several lines are passed over, since no setting that matters to a picture is one.
+FlatValues yaml_values(std::string_view text);
+
+/// Of what Python prints of an argparse.Namespace: Namespace(eval=True, images='images').
+FlatValues namespace_values(std::string_view text);
+
+/// Of JSON. Throws Error as parse_json() does; `source` is the file.
+FlatValues json_values(const std::string& source, std::string_view text);
+
+}  // namespace binosplat

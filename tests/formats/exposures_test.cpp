@@ -1,0 +1,92 @@
+// INRIA's exposure.json.
+
+#include "formats/exposures.h"
+
+#include <gtest/gtest.h>
+
+#include "base/image.h"
+#include "formats/model_file.h"
+#include "support/fixtures.h"
+#include "support/models.h"
+
+namespace binosplat {
+namespace {
+
+namespace fs = std::filesystem;
+
+const char* const two_views = R"({
+  "0001.png": [[0.9, 0.2, 0, 0.01], [0.1, 0.8, 0, 0.02], [0, 0, 1.1, -0.03]],
+  "b": [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0]]})";
+
+TEST(Exposures, MixColoursAsInriasRendererDoes) {
+  const test::TempFolder folder;
+  test::write_text(folder / "exposure.json", two_views);
+  const Exposures exposures(folder / "exposure.json");
+  EXPECT_EQ(exposures.count(), 2u);
+  EXPECT_TRUE(exposures.change_any());
+  Image picture(1, 1, 3);
+  picture.data = {0.5f, 0.25f, 0.75f};
+  const Image changed = exposed(picture, exposures.of("0001.png"));
+  // A row before the matrix: red gives 0.2 of itself to green, and gets 0.1 of green.
+  EXPECT_NEAR(changed.data[0], 0.9 * 0.5 + 0.1 * 0.25 + 0.01, 1e-6);
+  EXPECT_NEAR(changed.data[1], 0.2 * 0.5 + 0.8 * 0.25 + 0.02, 1e-6);
+  EXPECT_NEAR(changed.data[2], 1.1 * 0.75 - 0.03, 1e-6);
+  const Image back = exposed(changed, inverse_exposure(exposures.of("0001.png")).value());
+  for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(back.data[i], picture.data[i], 1e-6);
+  EXPECT_FALSE(inverse_exposure(glm::mat4x3(0.0f)));
+}
+
+TEST(Exposures, GoByNamesWithOrWithoutEndings) {
+  const test::TempFolder folder;
+  test::write_text(folder / "e.json", two_views);
+  const Exposures exposures(folder / "e.json");
+  EXPECT_EQ(exposures.of("0001"), exposures.of("0001.png"));
+  EXPECT_EQ(exposures.of("0001.JPG"), exposures.of("0001.png"));
+  EXPECT_TRUE(exposures.has("b.jpg"));
+  EXPECT_FALSE(exposures.has("c"));
+  EXPECT_EQ(exposures.of("c"), glm::mat4x3(1.0f));
+  // Two of one stem: only their whole names tell them apart.
+  const char* const same =
+      R"({"a.png": [[2,0,0,0],[0,1,0,0],[0,0,1,0]], "a.jpg": [[3,0,0,0],[0,1,0,0],[0,0,1,0]]})";
+  test::write_text(folder / "e.json", same);
+  const Exposures apart(folder / "e.json");
+  EXPECT_EQ(apart.of("a.jpg")[0][0], 3.0f);
+  EXPECT_FALSE(apart.has("a"));
+}
+
+TEST(Exposures, WithoutAnyChangeNothing) {
+  EXPECT_FALSE(Exposures().change_any());
+  const test::TempFolder folder;
+  test::write_text(folder / "e.json", R"({"b": [[1,0,0,0],[0,1,0,0],[0,0,1,0]]})");
+  EXPECT_FALSE(Exposures(folder / "e.json").change_any());
+}
+
+TEST(Exposures, ThatAreNoneAreErrors) {
+  const test::TempFolder folder;
+  const std::pair<const char*, const char*> broken[] = {
+      {"[1]", "expected an object"},
+      {"{\"a\": 1}", "key 'a'"},
+      {"{\"a\": [[1,0,0,0],[0,1,0,0]]}", "key 'a'"},
+      {"{\"a\": [[1,0,0],[0,1,0],[0,0,1]]}", "key 'a[0]'"},
+      {"{\"a\": [[1,0,0,0],[0,\"x\",0,0],[0,0,1,0]]}", "key 'a[1][1]'"},
+      {"{\"a\": [[1,0,0,0],[0,1e999,0,0],[0,0,1,0]]}", "e.json"},
+      {"{\"a\": ", "not valid JSON"}};
+  for (const auto& [text, said] : broken) {
+    test::write_text(folder / "e.json", text);
+    EXPECT_TRUE(test::fails_saying([&] { Exposures(folder / "e.json"); }, {"e.json", said})) << text;
+  }
+}
+
+TEST(Exposures, LieInTheFolderOfTheTraining) {
+  const test::TempFolder folder;
+  const fs::path ply = folder / "run/point_cloud/iteration_7/point_cloud.ply";
+  fs::create_directories(ply.parent_path());
+  test::write_text(ply, "a model");
+  EXPECT_FALSE(find_exposures(ply));
+  test::write_text(folder / "run/exposure.json", "{}");
+  EXPECT_EQ(find_exposures(ply), folder / "run/exposure.json");
+  EXPECT_EQ(find_exposures(folder / "run"), folder / "run/exposure.json");
+}
+
+}  // namespace
+}  // namespace binosplat

@@ -1,0 +1,229 @@
+// What the files beside a model say of its training: each trainer's as it writes them, and what is none.
+
+#include "formats/training_run.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "base/output_file.h"
+#include "formats/flat_values.h"
+#include "formats/model_file.h"
+#include "formats/model_output.h"
+#include "support/fixtures.h"
+#include "support/models.h"
+#include "support/ply.h"
+
+namespace binosplat {
+namespace {
+
+namespace fs = std::filesystem;
+
+TEST(FlatValues, OfYamlAreTheLinesWithOneValue) {
+  const FlatValues values = yaml_values(
+      "!!python/object:nerfstudio.engine.trainer.TrainerConfig\r\n"
+      "steps:\n- 7000\n- name: x\n"
+      "pipeline: &id001 !!python/object:nerfstudio.Pipeline\n"
+      "  _target: !!python/name:nerfstudio.Pipeline ''\n"
+      "  model: !!python/object:nerfstudio.Model\n"
+      "    camera_optimizer: !!python/object:nerfstudio.Optimizer\n"
+      "      mode: 'off'   # for now\n"
+      "    sh_degree: 3   # at most\n"
+      "    grid: [1, 2]\n"
+      "    other: *id001\n"
+      "  after: \"a: b # c\"\n"
+      "last: !!str true\n");
+  const FlatValues expected = {{"pipeline._target", ""},
+                               {"pipeline.model.camera_optimizer.mode", "off"},
+                               {"pipeline.model.sh_degree", "3"},
+                               {"pipeline.after", "a: b # c"},
+                               {"last", "true"}};
+  EXPECT_EQ(values, expected);
+  EXPECT_TRUE(yaml_values("").empty());
+  EXPECT_TRUE(yaml_values("no pairs\n: \n- a\n#b: c").size() <= 1);
+}
+
+TEST(FlatValues, OfANamespaceMayHoldCommasInQuotesAndBrackets) {
+  const FlatValues values =
+      namespace_values("Namespace(eval=True, path='a, b=c\\'d', steps=[1, (2, 3)], odd=\"x)\", none=None)\n");
+  const FlatValues expected = {
+      {"eval", "True"}, {"path", "a, b=c\\'d"}, {"steps", "[1, (2, 3)]"}, {"odd", "x)"}, {"none", "None"}};
+  EXPECT_EQ(values, expected);
+  for (const char* other : {"", "namespace", "Namespace(", "Namespace(a", "Namespace(a='"})
+    EXPECT_LE(namespace_values(other).size(), 1u) << other;
+}
+
+TEST(FlatValues, OfJsonAreByTheirKeys) {
+  const FlatValues values = json_values("f.json", R"({"a": {"b": true, "c": "x"}, "d": [1.5, null]})");
+  const FlatValues expected = {{"a.b", "true"}, {"a.c", "x"}, {"d.0", "1.5"}, {"d.1", "null"}};
+  EXPECT_EQ(values, expected);
+}
+
+/// A model in a folder as trainers leave it, and the file of a run.
+struct TrainingRunTest : testing::Test {
+  /// Writes the model and the run; what is found of it.
+  std::optional<TrainingRun> found(const std::string& model, const std::string& name,
+                                   const std::string& text) {
+    fs::remove_all(folder / "run");
+    fs::create_directories((folder / model).parent_path());
+    test::write_text(folder / model, test::to_bytes(test::inria_file(0, 5)));
+    test::write_text(folder / name, text);
+    return find_training_run(folder / model);
+  }
+
+  static std::string otherwise(const std::optional<TrainingRun>& run) {
+    std::string all;
+    for (const std::string& sentence : run->otherwise) all += sentence + "\n";
+    return all;
+  }
+
+  test::TempFolder folder;
+};
+
+bool says(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+
+const std::string gsplat_ply = "run/ply/point_cloud_29999.ply";
+
+std::string gsplat_with(const std::string& more) {
+  return "absgrad: false\nantialiased: false\napp_opt: false\ncamera_model: pinhole\npost_processing: null\n"
+         "pose_opt: false\nresult_dir: results/garden\nsh_degree: 3\n"
+         "strategy: !!python/object:gsplat.strategy.default.DefaultStrategy\n  absgrad: true\n" +
+         more;
+}
+
+TEST_F(TrainingRunTest, OfGsplatSaysWhatIsDrawnOtherwise) {
+  const auto plain = found(gsplat_ply, "run/cfg.yml", gsplat_with("with_eval3d: false\nwith_ut: false\n"));
+  ASSERT_TRUE(plain);
+  EXPECT_EQ(plain->trainer, "gsplat");
+  EXPECT_EQ(plain->file, folder / "run/cfg.yml");
+  EXPECT_EQ(plain->antialiased, false);
+  EXPECT_TRUE(plain->otherwise.empty()) << otherwise(plain);
+  const std::pair<std::string, std::string> degree("sh_degree", "3");
+  EXPECT_EQ(std::ranges::count(plain->said, degree), 1);
+  const std::pair<const char*, const char*> expected[] = {
+      {"with_eval3d: true\nwith_ut: true\n", "3DGUT"},
+      {"with_ut: true\n", "unscented transform"},
+      {"use_bilateral_grid: true\n", "bilateral grid"},
+  };
+  for (const auto& [more, part] : expected) {
+    const auto run = found(gsplat_ply, "run/cfg.yml", gsplat_with(more));
+    ASSERT_EQ(run->otherwise.size(), 1u) << more << otherwise(run);
+    EXPECT_TRUE(says(run->otherwise[0], part)) << run->otherwise[0];
+  }
+  const std::pair<const char*, const char*> changed[] = {
+      {"camera_model: fisheye", "another lens"},
+      {"app_opt: true", "app_opt"},
+      {"post_processing: ppisp", "ppisp"},
+      {"post_processing: bilateral_grid", "bilateral grid"},
+      {"pose_opt: true", "cameras were moved"}};
+  for (const auto& [line, part] : changed) {
+    const auto run = found(gsplat_ply, "run/cfg.yml", std::string(line) + "\n" + gsplat_with(""));
+    ASSERT_EQ(run->otherwise.size(), 1u) << line << otherwise(run);
+    EXPECT_TRUE(says(run->otherwise[0], part)) << run->otherwise[0];
+  }
+  EXPECT_EQ(found(gsplat_ply, "run/cfg.yml", "antialiased: true\n" + gsplat_with(""))->antialiased, true);
+}
+
+TEST_F(TrainingRunTest, OfNerfstudioIsNested) {
+  const auto config = [](const std::string& mode, const std::string& more) {
+    return "!!python/object:nerfstudio.engine.trainer.TrainerConfig\n"
+           "method_name: splatfacto\n"
+           "pipeline: !!python/object:nerfstudio.pipelines.base_pipeline.VanillaPipelineConfig\n"
+           "  datamanager: !!python/object:nerfstudio.data.X\n    camera_optimizer: null\n"
+           "  model: !!python/object:nerfstudio.models.splatfacto.SplatfactoModelConfig\n"
+           "    camera_optimizer: !!python/object:nerfstudio.cameras.CameraOptimizerConfig\n"
+           "      mode: '" +
+           mode + "'\n    cull_alpha_thresh: 0.1\n" + more;
+  };
+  const std::string ply = "run/exports/splat/splat.ply";
+  const auto plain = found(ply, "run/config.yml", config("off", "    rasterize_mode: classic\n"));
+  ASSERT_TRUE(plain);
+  EXPECT_EQ(plain->antialiased, false);
+  EXPECT_TRUE(plain->otherwise.empty()) << otherwise(plain);
+  const auto all = found(ply, "run/config.yml",
+                         config("SO3xR3",
+                                "    rasterize_mode: antialiased\n    use_bilateral_grid: true\n"
+                                "    background_color: white\n"));
+  EXPECT_EQ(all->antialiased, true);
+  EXPECT_TRUE(says(otherwise(all), "bilateral grid") && says(otherwise(all), "cameras were moved"));
+  ASSERT_EQ(all->advice.size(), 1u);
+  EXPECT_TRUE(says(all->advice[0], "--background 1,1,1"));
+  // Another program's config.yml, and one too far above.
+  EXPECT_FALSE(found(ply, "run/config.yml", "model:\n  rasterize_mode: antialiased\n"));
+  EXPECT_FALSE(found("run/a/b/c/splat.ply", "run/config.yml", config("off", "")));
+}
+
+TEST_F(TrainingRunTest, OfOthers) {
+  const std::string inria = "run/point_cloud/iteration_30000/point_cloud.ply";
+  const auto args = found(inria, "run/cfg_args",
+                          "Namespace(data_device='cuda', eval=True, images='images', sh_degree=3, "
+                          "source_path='/a, b', train_test_exp=True, white_background=True)");
+  ASSERT_TRUE(args);
+  EXPECT_FALSE(args->antialiased) << "INRIA's trainer does not write it";
+  EXPECT_EQ(args->advice.size(), 1u);
+  EXPECT_TRUE(says(otherwise(args), "exposure.json with them is not there"));
+  test::write_text(folder / "run/exposure.json", "{}");
+  EXPECT_TRUE(find_training_run(folder / inria)->otherwise.empty());
+  EXPECT_EQ(found(inria, "run/cfg_args", "Namespace(antialiasing=True, sh_degree=3)")->antialiased, true);
+  const auto lichtfeld = found("run/splat_30000.ply", "run/training_config.json",
+                               R"({"dataset": {}, "optimization": {"antialiasing": true, "gut": true,
+                                   "pose_optimization": "none", "sh_degree": 3}})");
+  ASSERT_TRUE(lichtfeld);
+  EXPECT_EQ(lichtfeld->antialiased, true);
+  EXPECT_EQ(lichtfeld->otherwise.size(), 1u) << otherwise(lichtfeld);
+  const std::string grut = "model:\n  background:\n    color: black\nrender:\n  method: ";
+  const auto traced =
+      found("run/export_last.ply", "run/parsed.yaml", grut + "3dgrt\n  particle_kernel_degree: 4\n");
+  ASSERT_TRUE(traced);
+  EXPECT_FALSE(traced->antialiased);
+  EXPECT_TRUE(says(otherwise(traced), "3DGRT"));
+  const auto splatted =
+      found("run/export_last.ply", "run/parsed.yaml", grut + "3dgut\n  splat:\n    global_z_order: false\n");
+  EXPECT_TRUE(says(otherwise(splatted), "3DGUT") && says(otherwise(splatted), "--order distance"));
+}
+
+TEST_F(TrainingRunTest, IsTheNearestThatCanBeRead) {
+  ASSERT_TRUE(found(gsplat_ply, "run/cfg.yml", gsplat_with("")));
+  test::write_text(folder / "run/ply/cfg_args", "Namespace(sh_degree=3)");
+  EXPECT_EQ(find_training_run(folder / gsplat_ply)->file, folder / "run/ply/cfg_args");
+  // Broken, another's and a folder: as if it were not there.
+  for (const char* other : {"", "\xff\xfe", "a list", "Namespace(a=1)"}) {
+    test::write_text(folder / "run/ply/cfg_args", other);
+    EXPECT_EQ(find_training_run(folder / gsplat_ply)->file, folder / "run/cfg.yml") << other;
+  }
+  fs::remove(folder / "run/ply/cfg_args");
+  test::write_text(folder / "run/ply/training_config.json", "{\"optimization\": ");
+  fs::create_directory(folder / "run/ply/parsed.yaml");
+  EXPECT_EQ(find_training_run(folder / gsplat_ply)->file, folder / "run/cfg.yml");
+  EXPECT_FALSE(find_training_run(folder / "none/model.ply"));
+}
+
+TEST_F(TrainingRunTest, DecidesOnlyWhatTheModelDoesNotSay) {
+  ASSERT_TRUE(found(gsplat_ply, "run/cfg.yml", "antialiased: true\n" + gsplat_with("")));
+  const fs::path ply = folder / gsplat_ply;
+  const auto loaded = [&](const std::string& comments) {
+    test::PlyFile file = test::inria_file(0, 5);
+    file.comments = comments;
+    test::write_text(ply, test::to_bytes(file));
+    return load_model(ply);
+  };
+  EXPECT_TRUE(loaded("").antialiased);
+  EXPECT_EQ(loaded("").antialiased_by, (folder / "run/cfg.yml").string());
+  EXPECT_FALSE(load_model_alone(ply).antialiased);
+  EXPECT_FALSE(loaded("comment SplatRenderMode: default\n").antialiased);
+  EXPECT_EQ(loaded("comment antialiased 0\n").antialiased_by, "a comment of the ply");
+  // What is written beside a run says what it is, in both ways.
+  for (const bool antialiased : {true, false}) {
+    Model model = loaded(antialiased ? "" : "comment antialiased 0\n");
+    for (const char* name : {"a.ply", "a.compressed.ply"}) {
+      OutputFile file(ply.parent_path() / name);
+      write_model(file, model, *model_format_of(name));
+      file.commit();
+      EXPECT_EQ(load_model_alone(ply.parent_path() / name).antialiased, antialiased) << name;
+      EXPECT_EQ(load_model(ply.parent_path() / name).antialiased, antialiased) << name;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace binosplat
