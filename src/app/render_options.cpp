@@ -119,6 +119,12 @@ void add_view_options(CLI::App& sub, RenderOptions& o) {
   add_look_options(sub, o.output, true);
   sub.add_option("-o,--output", o.output.output, "A folder for pictures and paths (out/SCENE)")
       ->type_name("DIR");
+  sub.add_option(
+         "--fps", o.output.fps,
+         "Of a folder with the models of a moving scene: show so many a second, or\nas many as can be "
+         "read")
+      ->type_name("N")
+      ->check(positive);
   add_headset_options(sub, o.headset);
   add_foveate_option(sub, o.foveate);
   sub.get_option("--foveate")->group("Headset");

@@ -28,7 +28,7 @@ inline constexpr KeyHelp key_help[] = {
     {"F9", "save the pose beside the model"},
     {"F11, F12", "save an OpenEXR of both eyes, a PNG"},
     {"Tab, arrows", "to the next number in the panel, go about in it; Space presses"},
-    {"K, Space", "add a key to the path, play the path"},
+    {"K, Space", "add a key to the path, play the path (of a moving scene: hold it, let it go on)"},
     {"Escape", "leave full screen, or end"},
 };
 

@@ -89,6 +89,7 @@ void Window::run() {
     wait();
     take_loaded();
     reload_shaders();
+    take_turn();
     if (session_ && announced_) {
       go();
       play();
@@ -109,6 +110,7 @@ void Window::run() {
     log_info("left while {} was being read", loading_.loaded.valid() ? loading_.scene.name : scene_.name);
     std::quick_exit(0);
   }
+  if (turn_.next.valid()) turn_.next.wait();
   log_info("{} frames were drawn, {} shown", session_ ? session_->frames_drawn() : 0, shown_);
 }
 
@@ -122,6 +124,7 @@ void Window::wait() {
   if (loading_.loaded.valid()) at_most(0.05);
   if (levels_.moved || levels_move()) at_most(0.02);
   if (session_ && session_->moving()) at_most(seconds_to_rest);
+  if (turns()) at_most(std::max(0.005, turn_.due - glfwGetTime()));
   if (recording_) at_most(std::max(0.0, recording_->until - glfwGetTime()));
   if (!settings_.shader_folder.empty()) at_most(0.5);
   if (!seconds) return glfwWaitEvents();
@@ -140,36 +143,56 @@ void Window::take_loaded() {
     return;
   }
   try {
-    Loaded loaded = loading_.loaded.get();
-    Choices choices = session_ ? session_->choices : choices_;
-    Start start = loading_.scene.start(loaded.shown(), choices);
-    std::optional<Navigator> head;
-    std::optional<KeyList> keys;
-    if (session_ && loading_.is_same) {
-      head = session_->head;
-      keys = session_->keys;
-      choices = session_->choices;
-      choices.seeks_screen = choices.seeks_screen && !choices.rig.convergence;  // it stays where it is
-    }
-    recording_.reset();
-    session_.reset();  // its memory first
-    levels_.follow = loaded.stream != nullptr;
-    levels_.moved = false;
-    levels_.gaussians = loaded.gaussians();
-    log_info("{}: {} Gaussians", loading_.scene.name, loaded.gaussians());
+    show_model(loading_.scene, loading_.loaded.get(), loading_.is_same);
     scene_ = std::move(loading_.scene);
-    session_ =
-        std::make_unique<Session>(*context_, std::move(loaded), std::move(start), choices, scene_.folder);
-    announced_ = false;
+    turn_ = {};
+    recording_.reset();
     playing_.reset();
-    if (head) session_->head = *head;
-    if (keys) session_->keys = *keys;
+    announced_ = false;
+    log_info("{}: {} Gaussians", scene_.name, levels_.gaussians);
     glfwSetWindowTitle(window_, ("binosplat - " + scene_.name).c_str());
   } catch (const Error& error) {
     if (!session_) throw;
     tell(error.what(), true);
   }
   ui_frames_ = 3;
+}
+
+// `is_same`: the scene that is shown, whose head and choices stay.
+void Window::show_model(const Opened& scene, Loaded loaded, bool is_same) {
+  Choices choices = session_ ? session_->choices : choices_;
+  Start start = scene.start(loaded.shown(), choices);
+  std::optional<Navigator> head;
+  std::optional<KeyList> keys;
+  if (session_ && is_same) {
+    head = session_->head;
+    keys = session_->keys;
+    choices = session_->choices;
+    choices.seeks_screen = choices.seeks_screen && !choices.rig.convergence;  // it stays where it is
+  }
+  session_.reset();  // its memory first
+  levels_ = {loaded.stream != nullptr, false, loaded.gaussians()};
+  session_ = std::make_unique<Session>(*context_, std::move(loaded), std::move(start), choices, scene.folder);
+  if (head) session_->head = *head;
+  if (keys) session_->keys = *keys;
+}
+
+// While a model of a moving scene is shown, the next one is read.
+void Window::take_turn() {
+  if (!turns()) return;
+  const std::size_t next = (turn_.shown + 1) % (scene_.more.size() + 1);
+  if (!turn_.next.valid())
+    turn_.next = std::async(std::launch::async, next == 0 ? scene_.load : scene_.more[next - 1]);
+  const double now = glfwGetTime();
+  if (now < turn_.due || turn_.next.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return;
+  turn_.shown = next;
+  turn_.due = std::max(now, turn_.due + 1.0 / scene_.fps);
+  try {
+    show_model(scene_, turn_.next.get(), true);
+  } catch (const Error& error) {
+    turn_.is_held = true;
+    tell(error.what(), true);
+  }
 }
 
 bool Window::levels_move() const { return levels_.follow && !session_->stream()->settled(); }

@@ -22,6 +22,10 @@ struct Opened {
   std::function<Loaded()> load;
   /// Sets what of the choices follows from the model, too, such as the near plane.
   std::function<Start(const Model& model, Choices& choices)> start;
+  /// Of a moving scene the models after that of `load`: so many a second, again and again, or as fast as they
+  /// can be read.
+  std::vector<std::function<Loaded()>> more;
+  double fps = 0.0;
 };
 
 /// Writes frames of a scene, that were recorded with this context, into a new folder.

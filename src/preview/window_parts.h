@@ -35,6 +35,9 @@ class Window {
   void listen();
   void wait();
   void take_loaded();
+  void show_model(const Opened& scene, Loaded loaded, bool is_same);
+  bool turns() const { return session_ && announced_ && !scene_.more.empty() && !turn_.is_held; }
+  void take_turn();
   bool levels_move() const;
   void follow_levels();
   void reload_shaders();
@@ -87,6 +90,14 @@ class Window {
     double since = 0.0;
   };
   Loading loading_;
+  /// Models of a moving scene.
+  struct Turn {
+    std::size_t shown = 0;     // 0: that of scene_.load, and so on
+    std::future<Loaded> next;  // is read meanwhile
+    double due = 0.0;
+    bool is_held = false;
+  };
+  Turn turn_;
   /// Levels of detail of the scene that is shown.
   struct Levels {
     bool follow = false;        // until they cannot be read

@@ -80,7 +80,8 @@ TEST_F(Sequence, SaysWhatDoesNotGoTogether) {
   const auto refused = [&](const Words& words, const std::string& said) {
     return ended(render(joined(common, words)), 2, said);
   };
-  EXPECT_TRUE(refused({"-o", out}, "is a folder with 3 models; name one of them (render --fps N draws them"));
+  EXPECT_TRUE(
+      refused({"-o", out}, "is a folder with 3 models; name one of them, or give render or view --fps N"));
   EXPECT_TRUE(refused({"-o", out, "--fps", "10", "--resume"}, "--resume is for one model"));
   EXPECT_TRUE(refused({"-o", folder / "a.png", "--fps", "10"}, "a.png is one file, and 3 views"));
   write_text(frames + "/f_11.ply", "ply");

@@ -15,6 +15,7 @@
 #include "support/display.h"
 #include "support/fixtures.h"
 #include "support/level_errors.h"
+#include "support/ply_models.h"
 
 namespace binosplat {
 namespace {
@@ -56,6 +57,7 @@ TEST(View, BadOptionsEndBeforeAnyWindow) {
   EXPECT_TRUE(refused({"--show", "colour"}, "--show"));
   EXPECT_TRUE(refused({"--th", "squared"}, "--tolerance"));
   EXPECT_TRUE(refused({"--no-such-option"}, "--no-such-option"));
+  EXPECT_TRUE(refused({"--fps", "10"}, "--fps is for a folder with several models, and demo:room is none"));
 }
 
 TEST(View, HelpHasKeysAndNoOptionThatIsRefused) {
@@ -84,9 +86,10 @@ struct ViewOnADisplay : test::SceneTest {
     ASSERT_NE(display, "") << "Xvfb did not start";
   }
 
-  Program view(std::vector<std::string> more = {}) {
+  Program view(std::vector<std::string> more = {}) { return view(model, std::move(more)); }
+  Program view(const std::string& scene, std::vector<std::string> more) {
     std::vector<std::string> arguments = {
-        "view",    model,           "-o", out, "--size",
+        "view",    scene,           "-o", out, "--size",
         "600x400", "--convergence", "inf"};  // none that goes by what is seen
     arguments.insert(arguments.end(), more.begin(), more.end());
     return Program(arguments, {.variables = {{"DISPLAY", display}}});
@@ -101,7 +104,10 @@ struct ViewOnADisplay : test::SceneTest {
     const std::string keys = "search --name binosplat windowfocus --sync key " + name;
     if (std::system(fmt::format("DISPLAY={} xdotool {} 2> /dev/null", display, keys).c_str()) < 0)
       ADD_FAILURE() << "no shell";
-    return program.wait();
+    Outcome outcome = program.wait();
+    // Else the next window is told of a key that is held.
+    hands("keyup " + name);
+    return outcome;
   }
   Outcome leave(Program& program) const { return ended_by("Escape", program); }
 
@@ -207,6 +213,34 @@ TEST_F(ViewOnADisplay, AGridAndCamerasAreShownByKeys) {
   key("c");
   EXPECT_TRUE(says(without, "comes without cameras"));
   EXPECT_EQ(leave(without).code, 0);
+}
+
+TEST_F(ViewOnADisplay, AMovingSceneGoesOnUntilItIsHeld) {
+  const std::string frames = folder / "frames";
+  fs::create_directory(frames);
+  fs::copy_file(model, frames + "/f_1.ply");
+  test::PlyFile brighter = test::small_model();
+  for (auto& row : brighter.rows) row[brighter.column("f_dc_0")] += 1.0;
+  test::write_text(frames + "/f_2.ply", to_bytes(brighter));
+  Program program = view(frames, {"--fps", "4", "--cameras", folder / "cameras.json"});
+  ASSERT_TRUE(says(program, "Gaussians"));
+  int saved = 0;
+  const auto now = [&] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(300));
+    key("F12");
+    EXPECT_TRUE(says(program, "saved", ++saved));
+    return picture(saved);
+  };
+  const Image first = now();
+  Image other = now();
+  for (int tries = 0; tries < 20 && same(other, first); ++tries) other = now();
+  EXPECT_FALSE(same(other, first)) << "it does not go on";
+  for (int tries = 0; tries < 20 && !same(other, first); ++tries) other = now();
+  EXPECT_TRUE(same(other, first)) << "it does not begin again";
+  key("space");
+  const Image held = now();
+  for (int tries = 0; tries < 4; ++tries) EXPECT_TRUE(same(now(), held));
+  EXPECT_EQ(leave(program).code, 0);
 }
 
 TEST_F(ViewOnADisplay, FramesAreRecordedByAKey) {

@@ -14,6 +14,7 @@
 #include "app/profile.h"
 #include "app/render_options.h"
 #include "app/render_outputs.h"
+#include "app/sequence.h"
 #include "app/shots.h"
 #include "app/viewer/headset.h"
 #include "base/log.h"
@@ -36,8 +37,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-void check_view(const RenderOptions& o) {
+void check_view(const RenderOptions& o, bool is_sequence) {
   check(o);
+  if (o.output.fps && !is_sequence)
+    fail("--fps is for a folder with several models, and {} is none", o.scene.name);
+  if (is_sequence && o.headset.xr) fail("--fps: a headset shows one model: name one of the folder");
   if (o.camera.views.size() > 1)
     fail("--view {}: the window starts at one camera, and goes on to the next with N: name one",
          fmt::join(o.camera.views, " "));
@@ -110,10 +114,27 @@ preview::Opened open(const Wanted& wanted) {
   return opened;
 }
 
+/// The same of a folder with the models of a moving scene, which is called after the folder.
+preview::Opened open_sequence(Wanted wanted, const std::vector<fs::path>& files, double fps) {
+  const std::string folder = std::exchange(wanted.scene.name, files[0].string());
+  preview::Opened opened = open(wanted);
+  opened.name = folder;
+  opened.fps = fps;
+  for (std::size_t k = 1; k < files.size(); ++k) {
+    SceneOptions scene = wanted.scene;
+    scene.name = files[k].string();
+    opened.more.emplace_back([scene] { return preview::Loaded(load_scene(scene)); });
+  }
+  return opened;
+}
+
 void view(const RenderOptions& o) {
-  check_view(o);
+  const std::vector<fs::path> sequence = sequence_of(o);
+  check_view(o, !sequence.empty());
   const fs::path folder = o.output.output;
-  const preview::Opened opened = open({folder, o.scene, o.camera, o.rig, settings_of(o.drawing)});
+  const Wanted wanted{folder, o.scene, o.camera, o.rig, settings_of(o.drawing)};
+  const preview::Opened opened =
+      sequence.empty() ? open(wanted) : open_sequence(wanted, sequence, *o.output.fps);
   if (o.headset.xr) return view_in_headset(o, opened, choices_of(o));
   preview::WindowSettings window;
   window.size = o.camera.lens.size;
