@@ -2,6 +2,7 @@
 // OpenXR as the runtime, its client and the tests use it.
 
 #include <EGL/egl.h>
+#include <cstdint>
 #define XR_USE_GRAPHICS_API_OPENGL
 #define XR_USE_PLATFORM_EGL
 #include <openxr/openxr.h>
