@@ -134,6 +134,14 @@ class ShotPipeline {
     add(*of_, [taken = std::exchange(pictures_, nullptr)] { return ShotPictures{taken->take(), {}}; });
   }
 
+  /// Takes the pictures of a shot that was drawn: while the next one is, or at once.
+  void take(Drawer& drawer, Drawn& drawn, const std::vector<shared::View>& views,
+            const render::FrameSettings& settings) {
+    if (drawer.reads_behind()) return read(drawn, drawer.frame);
+    const auto pictures = std::make_shared<ShotPictures>(drawer.read(drawn, views, settings));
+    add(drawn, [pictures] { return std::move(*pictures); });
+  }
+
   void add(Drawn& drawn, std::function<ShotPictures()> take) {
     const auto begin = Clock::now();
     files_.add(drawn, std::move(take));
@@ -236,12 +244,7 @@ void draw_all(gl::Context& context, Work& work, RenderReport& report) {
       progress.update(++done);
     }
     if (drawer->foveated) drawn.foveated = drawer->foveated->parts();
-    if (drawer->reads_behind()) {
-      pipeline.read(drawn, frame);
-    } else {
-      const auto read = std::make_shared<ShotPictures>(drawer->read(drawn, views, of_shot));
-      pipeline.add(drawn, [read] { return std::move(*read); });
-    }
+    pipeline.take(*drawer, drawn, views, of_shot);
   }
   report.run = pipeline.finish();
   report.run.gpu = gpu_ms;

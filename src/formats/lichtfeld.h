@@ -16,6 +16,6 @@ bool is_lichtfeld_path(const nlohmann::json& root);
 /// millimetres of a picture 24 mm high, and pictures have no size: pose_width by pose_height. Its world is
 /// the model's with y and z the other way. How a key eases into the next one, and moving anything but the
 /// camera, is left out and said. Throws Error naming the key.
-std::vector<Camera> load_lichtfeld_path(const std::filesystem::path& path, const nlohmann::json& root);
+std::vector<Camera> load_lichtfeld_path(const std::filesystem::path& path, const nlohmann::json& json);
 
 }  // namespace binosplat

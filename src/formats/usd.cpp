@@ -102,12 +102,11 @@ class UsdReader {
     const glm::dmat4 matrix = usd_transform(prim, parent);
     const std::string space =
         prim.attribute("colorSpace:name") != nullptr ? token_of(prim, "colorSpace:name") : colours;
-    if (prim.type == "ParticleField3DGaussianSplat") {
-      add(prim, matrix, space, false);
-    } else if (prim.type == "ParticleField" && has_schema(prim, "ParticleFieldKernelGaussianEllipsoidAPI")) {
-      add(prim, matrix, space, false);
-    } else if (prim.type == "ParticleField" && has_schema(prim, "ParticleFieldKernelGaussianSurfletAPI")) {
-      add(prim, matrix, space, true);
+    const bool flat =
+        prim.type == "ParticleField" && has_schema(prim, "ParticleFieldKernelGaussianSurfletAPI");
+    if (flat || prim.type == "ParticleField3DGaussianSplat" ||
+        (prim.type == "ParticleField" && has_schema(prim, "ParticleFieldKernelGaussianEllipsoidAPI"))) {
+      add(prim, matrix, space, flat);
     } else if (prim.type.starts_with("ParticleField")) {
       prim.where.fail_here("'{}' is a {} with another kernel than a Gaussian's; only Gaussians can be drawn",
                            prim.name, prim.type);

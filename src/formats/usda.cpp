@@ -241,13 +241,13 @@ std::vector<std::string> UsdaText::texts() const {
 
 std::string UsdaText::text() const {
   UsdaText left = *this;
-  const std::string value(left.quoted());
+  std::string value(left.quoted());
   left.finish();
   return value;
 }
 
-const UsdaText* UsdaPrim::attribute(std::string_view name) const {
-  const auto found = attributes.find(name);
+const UsdaText* UsdaPrim::attribute(std::string_view named) const {
+  const auto found = attributes.find(named);
   return found == attributes.end() ? nullptr : &found->second;
 }
 

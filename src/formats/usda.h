@@ -89,7 +89,7 @@ struct UsdaPrim {
   UsdaValues metadata, attributes;    // attributes also as "positions.timeSamples"
   std::vector<UsdaPrim> prims = {};
 
-  const UsdaText* attribute(std::string_view name) const;
+  const UsdaText* attribute(std::string_view named) const;
 };
 
 /// The file, as a prim that has its metadata and its prims. `text` outlives it. Throws Error naming the line.

@@ -73,7 +73,8 @@ Picture traced(const Model& model, const Camera& camera) {
         colour += left * alpha * s.colour;
         left *= 1.0 - alpha;
       }
-      picture.colour[static_cast<std::size_t>(y * camera.width + x)] = glm::vec4(glm::dvec4(colour, left));
+      picture.colour[static_cast<std::size_t>(y) * static_cast<std::size_t>(camera.width) +
+                     static_cast<std::size_t>(x)] = glm::vec4(glm::dvec4(colour, left));
     }
   }
   return picture;
