@@ -209,6 +209,7 @@ Model load_model(const fs::path& path, const ModelOptions& options) {
 }
 
 void follow(const TrainingRun& run, const fs::path& file, Model& model) {
+  model.kernel_px2 = run.kernel_px2.value_or(model.kernel_px2);
   if (!run.antialiased || model.scaffold) return;  // Scaffold-GS trains without
   if (model.antialiased_by.empty()) {
     model.antialiased = *run.antialiased;

@@ -27,8 +27,10 @@ struct Clue {
 constexpr const char* no_eval3d =
     "it was trained by 3DGUT, which evaluates Gaussians along each ray and has no low-pass. They are drawn "
     "as "
-    "splats with one: thin Gaussians look wider, large ones near the eye look otherwise. `--kernel-px2 0.01` "
-    "takes the low-pass away";
+    "splats with hardly any (--kernel-px2 0.001), which comes to some 45 dB: large ones near the eye look "
+    "otherwise";
+/// For it, by tests/judges/rays.py.
+constexpr double along_rays_kernel_px2 = 0.001;
 constexpr const char* no_sigma_points =
     "it was trained with the unscented transform, and is drawn by a linear projection: large Gaussians near "
     "the eye or far from the middle of a wide picture look otherwise. Narrower views differ less";
@@ -186,6 +188,7 @@ void tell(const FlatValues& values, const RunKind& kind, TrainingRun& run) {
     // 3DGUT's evaluation along rays goes with its transform, and says more.
     if (clue.sentence == no_sigma_points && !run.otherwise.empty()) continue;
     if (clue.sentence == no_exposures && find_above(run.file, exposures_name)) continue;
+    if (clue.sentence == no_eval3d) run.kernel_px2 = along_rays_kernel_px2;
     (clue.sentence == white ? run.advice : run.otherwise).emplace_back(clue.sentence);
   }
   if (const auto value = value_of(values, kind, kind.antialiasing))
@@ -198,7 +201,7 @@ std::optional<TrainingRun> read_run(const fs::path& file, const RunKind& kind) {
     if (mapped.bytes().size() > largest_run_file) return std::nullopt;
     const FlatValues values = kind.read(file.string(), as_text(mapped.bytes()));
     if (!value_of(values, kind, kind.mark)) return std::nullopt;
-    TrainingRun run{file, kind.trainer, {}, {}, {}, {}};
+    TrainingRun run{file, kind.trainer, {}, {}, {}, {}, {}};
     tell(values, kind, run);
     return run;
   } catch (const Error& error) {

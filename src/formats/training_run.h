@@ -12,8 +12,9 @@ namespace binosplat {
 /// What a run's file says.
 struct TrainingRun {
   std::filesystem::path file;
-  std::string trainer;              // for people
-  std::optional<bool> antialiased;  // trained with the opacity that the low-pass takes away
+  std::string trainer;               // for people
+  std::optional<bool> antialiased;   // trained with the opacity that the low-pass takes away
+  std::optional<double> kernel_px2;  // that comes nearest to it, where it had no usual low-pass, px^2
   std::vector<std::pair<std::string, std::string>> said;  // what may matter to pictures, in the file's words
   /// What this program draws otherwise than the training did, what of that is seen, and what to do.
   std::vector<std::string> otherwise;

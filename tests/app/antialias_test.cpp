@@ -61,12 +61,11 @@ TEST_F(Antialias, OfAFileThatSaysNothingIsThatOfTheRunBesideIt) {
   const Image plain = drawn(), forced = drawn({"--antialias"});
   const std::string run = folder / "cfg.yml";
   const auto trained = [&](const char* how) {
-    test::write_text(run, std::string("antialiased: ") + how + "\nresult_dir: results\nwith_eval3d: true\n");
+    test::write_text(run, std::string("antialiased: ") + how + "\nresult_dir: results\n");
   };
   trained("true");
   EXPECT_EQ(drawn().data, forced.data);
   EXPECT_TRUE(has(said, "was trained with anti-aliasing, says " + run));
-  EXPECT_TRUE(has(said, "warning: " + run + ": it was trained by 3DGUT"));
   EXPECT_EQ(drawn({"--no-antialias"}).data, plain.data);
   file.comments = "comment SplatRenderMode: default\n";
   EXPECT_EQ(drawn().data, plain.data);
@@ -77,6 +76,16 @@ TEST_F(Antialias, OfAFileThatSaysNothingIsThatOfTheRunBesideIt) {
   EXPECT_EQ(drawn({"--antialias"}).data, forced.data);
   test::write_text(run, "antialiased: true\n");  // of another program
   EXPECT_EQ(drawn().data, plain.data);
+}
+
+TEST_F(Antialias, WhatWasTrainedAlongRaysHasHardlyALowPass) {
+  const Image plain = drawn(), narrow = drawn({"--kernel-px2", "0.001"});
+  EXPECT_NE(plain.data, narrow.data);
+  const std::string run = folder / "cfg.yml";
+  test::write_text(run, "antialiased: false\nresult_dir: results\nwith_eval3d: true\n");
+  EXPECT_EQ(drawn().data, narrow.data);
+  EXPECT_TRUE(has(said, "warning: " + run + ": it was trained by 3DGUT"));
+  EXPECT_EQ(drawn({"--kernel-px2", "0.3"}).data, plain.data);
 }
 
 }  // namespace
