@@ -8,6 +8,7 @@
 #include <glm/gtc/constants.hpp>
 
 #include "formats/model_file.h"
+#include "support/gltf.h"
 #include "support/models.h"
 #include "support/ply.h"
 #include "support/program.h"
@@ -86,7 +87,7 @@ TEST_F(HarmonicsCut, OfNothingIsNothing) {
   EXPECT_TRUE(std::isfinite(*cut_harmonics_db(model, squares)));
 }
 
-/// The same Gaussians in a ply and in OpenUSD, whose coefficients are in another order.
+/// The same Gaussians in a ply, in OpenUSD and in glTF, which have the coefficients in different orders.
 TEST_F(HarmonicsCut, IsTheSameOfEachFormat) {
   test::PlyFile ply = test::inria_file(0, 10);
   for (std::size_t k = 0; k < 72; ++k) ply.columns.push_back(fmt::format("f_rest_{}", k));
@@ -117,6 +118,17 @@ TEST_F(HarmonicsCut, IsTheSameOfEachFormat) {
   const Model of_usd = test::load_usd_text(test::usd_file(usd));
   EXPECT_EQ(of_usd.sh, of_ply.sh);
   EXPECT_NEAR(of_usd.cut_db.value(), *of_ply.cut_db, 1e-4);
+
+  test::Glb glb = test::gltf_of(of_ply);
+  for (std::size_t m = 0; m < 9; ++m) {
+    std::vector<float> numbers;
+    for (std::size_t i = 0; i < 10; ++i) numbers.insert(numbers.end(), &cut[i][3 * m], &cut[i][3 * m] + 3);
+    glb.attributes()[fmt::format("{}:SH_DEGREE_4_COEF_{}", test::splatting, m)] =
+        glb.add_accessor(test::packed<float>(numbers), 10, "VEC3");
+  }
+  const Model of_gltf = test::load_gltf_bytes(glb.bytes());
+  EXPECT_EQ(of_gltf.sh, of_ply.sh);
+  EXPECT_NEAR(of_gltf.cut_db.value(), *of_ply.cut_db, 1e-4);
 }
 
 }  // namespace
