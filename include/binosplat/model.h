@@ -34,8 +34,10 @@ class SplatModel {
   /// Reads a file, or a folder that holds a model. What it is, is decided by its content, never by its name:
   /// INRIA's .ply and PlayCanvas' compressed one, .spz, .splat, .ksplat, SOG (a folder, .sog, or streamed by
   /// a lod-meta.json), glTF and OpenUSD's text with Gaussians, and Scaffold-GS's .ply with the networks
-  /// beside it. Gaussians whose numbers are not finite are left out, and counted on standard error. Throws
-  /// Error(bad_input) for a path that is no such model; the text says what it looks like instead.
+  /// beside it. Gaussians whose numbers are not finite are left out, and counted on standard error. The
+  /// anti-aliasing and the low-pass are those of the file, or else of the trainer's file beside it; standard
+  /// error has what the training did and is not drawn. Throws Error(bad_input) for a path that is no such
+  /// model; the text says what it looks like instead.
   explicit SplatModel(const std::filesystem::path& path, const ModelOptions& options = {});
 
   /// For the library's own code, which has models in memory. Not null.

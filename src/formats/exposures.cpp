@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "base/mapped_file.h"
-#include "base/text.h"
+#include "formats/content.h"
 #include "formats/json_file.h"
 #include "formats/view_files.h"
 

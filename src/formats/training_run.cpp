@@ -9,6 +9,7 @@
 #include "base/log.h"
 #include "base/mapped_file.h"
 #include "base/text.h"
+#include "formats/content.h"
 #include "formats/flat_values.h"
 
 namespace binosplat {

@@ -301,6 +301,38 @@ Returns
 numpy.ndarray of float32
 )";
 
+constexpr const char* load_exposures = R"(Reads the exposure.json of INRIA's training (train_test_exp).
+
+Returns
+-------
+Exposures
+    By the names of views, with or without a picture's ending.
+
+Raises
+------
+InputError
+)";
+
+constexpr const char* exposed = R"(A picture as a training made it before it was compared with the photo.
+
+Parameters
+----------
+picture : array
+    (height, width, 3): float with white 1, uint8 or uint16.
+exposure : (3, 4) floats
+    As in exposure.json: a colour is a row before the first three columns, and the last column is added.
+
+Returns
+-------
+numpy.ndarray of float32
+    Not clamped; quantised() and compare() clamp.
+
+Raises
+------
+InputError
+    For pictures of other shapes, and for floats that count to 255.
+)";
+
 constexpr const char* compare = R"(What ``binosplat compare`` says of two pictures of one size.
 
 Values are clamped to 0 to 1 and not rounded (see quantised); grey counts as colour beside colour.

@@ -1,4 +1,4 @@
-// Pictures as arrays: from files, and how far two are apart.
+// Pictures as arrays: from files, with the exposures of photos, and how far two are apart.
 
 #include <algorithm>
 #include <array>
@@ -9,7 +9,9 @@
 #include <utility>
 
 #include "base/error.h"
+#include "formats/exposures.h"
 #include "formats/image_file.h"
+#include "formats/model_file.h"
 #include "measure/comparison.h"
 #include "python/help.h"
 #include "python/module.h"
@@ -91,6 +93,51 @@ Comparison compare(const py::object& a, const py::object& b, double pixels_per_d
   return measure::compare(first, second, pixels_per_degree);
 }
 
+using ExposureRows = std::array<std::array<float, 4>, 3>;
+
+/// As exposure.json has them, and as exposed() of base/image.h takes them.
+glm::mat4x3 exposure_of(const ExposureRows& rows) {
+  glm::mat4x3 exposure;
+  for (int i = 0; i < 3; ++i) {
+    const auto& row = rows[static_cast<std::size_t>(i)];
+    exposure[i] = {row[0], row[1], row[2]};
+    exposure[3][i] = row[3];
+  }
+  return exposure;
+}
+
+py::array rows_of(const glm::mat4x3& exposure) {
+  py::array_t<float> rows({3, 4});
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) rows.mutable_at(i, j) = exposure[i][j];
+    rows.mutable_at(i, 3) = exposure[3][i];
+  }
+  return rows;
+}
+
+py::array exposed_picture(const py::object& picture, const ExposureRows& exposure) {
+  const Image image = image_of(picture, "picture");
+  if (image.channels != 3) fail("picture: an exposure is of RGB, and this has {} channels", image.channels);
+  return array_of(exposed(image, exposure_of(exposure)));
+}
+
+void add_exposures(py::module_& module) {
+  py::class_<Exposures>(module, "Exposures", "What a training made of each picture before it saw the photo.")
+      .def_property_readonly(
+          "source", [](const Exposures& e) { return e.file().string(); }, "The file.")
+      .def("__len__", &Exposures::count)
+      .def(
+          "of", [](const Exposures& e, const std::string& view) { return rows_of(e.of(view)); },
+          py::arg("view"),
+          "Three rows of four numbers, for exposed(); those that change nothing for a view without one.");
+  module.def(
+      "load_exposures", [](const std::filesystem::path& path) { return Exposures(path); }, py::arg("path"),
+      help::load_exposures);
+  module.def("find_exposures", &find_exposures, py::arg("model"),
+             "The exposure.json of a model's training, beside the model's path; None without.");
+  module.def("exposed", &exposed_picture, py::arg("picture"), py::arg("exposure"), help::exposed);
+}
+
 std::string describe_comparison(const Comparison& found) {
   return fmt::format("Comparison(psnr={:.4f}, ssim={:.6f}, flip={:.6f}, largest_error={:.6f})", found.psnr,
                      found.ssim, found.flip, found.largest.max);
@@ -154,6 +201,7 @@ void add_images(py::module_& module) {
       [](const py::object& picture) { return array_of(quantised(image_of(picture, "picture"))); },
       py::arg("picture"), help::quantised);
 
+  add_exposures(module);
   py::class_<Comparison>(module, "Comparison", "By how much two pictures differ.")
       .def_readonly("psnr", &Comparison::psnr, "dB; inf for equal pictures, -inf where one holds a NaN.")
       .def_readonly("ssim", &Comparison::ssim,

@@ -21,7 +21,10 @@ std::shared_ptr<Model> load(const std::filesystem::path& path, const std::option
   const Unlocked unlocked;
   auto model = std::make_shared<Model>(load_model(path, {lod, appearance}));
   model->axes = axes.value_or(model->axes);
-  model->antialiased = antialiased.value_or(model->antialiased);
+  if (antialiased) {
+    model->antialiased = *antialiased;
+    model->antialiased_by = "antialiased=";
+  }
   return model;
 }
 
@@ -37,6 +40,8 @@ void add_models(py::module_& module) {
       .def_readonly("left_out", &Model::left_out, "Gaussians of the file that are not finite.")
       .def_readonly("axes", &Model::axes, "Where its x, y and z point: R or L, U or D, F or B.")
       .def_readonly("antialiased", &Model::antialiased, "Whether it was trained with anti-aliasing.")
+      .def_readonly("antialiased_by", &Model::antialiased_by,
+                    "What says so: a comment of its file, a file of the training's run; empty: nothing does.")
       .def_property_readonly(
           "order", [](const Model& m) { return order_choices[m.perspective.order].name; },
           "What it was trained to be sorted by, and is unless draw() is told otherwise.")

@@ -6,8 +6,8 @@
 
 #include "base/image.h"
 #include "formats/model_file.h"
-#include "support/fixtures.h"
-#include "support/models.h"
+#include "support/broken.h"
+#include "support/program.h"
 
 namespace binosplat {
 namespace {

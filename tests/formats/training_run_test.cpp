@@ -7,12 +7,12 @@
 #include <algorithm>
 
 #include "base/output_file.h"
+#include "formats/files_of_model.h"
 #include "formats/flat_values.h"
 #include "formats/model_file.h"
 #include "formats/model_output.h"
-#include "support/fixtures.h"
-#include "support/models.h"
 #include "support/ply.h"
+#include "support/program.h"
 
 namespace binosplat {
 namespace {
@@ -210,6 +210,8 @@ TEST_F(TrainingRunTest, DecidesOnlyWhatTheModelDoesNotSay) {
   EXPECT_TRUE(loaded("").antialiased);
   EXPECT_EQ(loaded("").antialiased_by, (folder / "run/cfg.yml").string());
   EXPECT_FALSE(load_model_alone(ply).antialiased);
+  const std::vector<fs::path> files = files_of_model(ply);
+  EXPECT_EQ(std::ranges::count(files, folder / "run/cfg.yml"), 1) << "a run with another is another";
   EXPECT_FALSE(loaded("comment SplatRenderMode: default\n").antialiased);
   EXPECT_EQ(loaded("comment antialiased 0\n").antialiased_by, "a comment of the ply");
   // What is written beside a run says what it is, in both ways.

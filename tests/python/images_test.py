@@ -134,6 +134,44 @@ def test_files_hold_what_was_saved(pictures, tmp_path):
             binosplat.load_image(tmp_path / name)
 
 
+def test_exposures_are_those_of_the_program(scene, renderer, cameras, tmp_path, program):
+    run = tmp_path / "run"
+    ply = run / "point_cloud/iteration_7/point_cloud.ply"
+    ply.parent.mkdir(parents=True)
+    ply.write_bytes((scene / "model.ply").read_bytes())
+    (run / "cameras.json").write_bytes((scene / "cameras.json").read_bytes())
+    assert binosplat.find_exposures(ply) is None
+    rows = [[0.8, 0.1, 0, 0.02], [0.05, 0.9, 0, 0], [0, 0.2, 0.7, 0.1]]
+    (run / "exposure.json").write_text(json.dumps({"front.png": rows}))
+    assert binosplat.find_exposures(ply) == run / "exposure.json"
+    exposures = binosplat.load_exposures(run / "exposure.json")
+    assert len(exposures) == 1 and exposures.source == str(run / "exposure.json")
+    np.testing.assert_allclose(exposures.of("front"), rows, rtol=1e-6)
+    np.testing.assert_array_equal(exposures.of("side"), np.eye(3, 4))
+
+    drawn = renderer.draw(cameras["front"]).colour
+    changed = binosplat.exposed(drawn, exposures.of("front"))
+    matrix = np.asarray(rows, np.float32)
+    np.testing.assert_allclose(changed, drawn @ matrix[:, :3] + matrix[:, 3], atol=1e-6)
+    assert np.abs(changed - (drawn @ matrix[:, :3].T + matrix[:, 3])).max() > 0.01  # planted: transposed
+
+    photo = np.clip(drawn + 0.1, 0, 1)
+    (tmp_path / "photos").mkdir()
+    binosplat.save_png(tmp_path / "photos/front.png", photo)
+    program("render", ply, "--mono", "--view", "front", "--photos", tmp_path / "photos", "-o", tmp_path / "out",
+            "--json", tmp_path / "r.json")
+    said = json.loads((tmp_path / "r.json").read_text())["views"][0]["photo_psnr_db"]
+    found = binosplat.compare(binosplat.quantised(changed), binosplat.quantised(photo)).psnr
+    assert found == pytest.approx(said, abs=1e-3)
+
+    for wrong in (drawn[..., :1], np.dstack([drawn, drawn[..., 0]])):
+        with pytest.raises(binosplat.InputError, match="an exposure is of RGB"):
+            binosplat.exposed(wrong, rows)
+    (run / "exposure.json").write_text('{"front.png": [[1]]}')
+    with pytest.raises(binosplat.InputError, match="key 'front.png'"):
+        binosplat.load_exposures(run / "exposure.json")
+
+
 def test_the_example_of_the_document(scene, renderer, cameras, tmp_path, capsys, monkeypatch):
     text = Path(os.environ["BINOSPLAT_SOURCE_DIR"], "docs/python.md").read_text()
     example = re.search(r"```python\n# evaluate\.py.*?\n(.*?)```", text, re.S).group(1)
