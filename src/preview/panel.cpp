@@ -6,6 +6,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
+#include <system_error>
 #include <utility>
 
 #include "preview/keys.h"
@@ -278,12 +280,31 @@ void enable_keys() {
   ImGui::GetIO().ConfigFlags |= ImGuiConfigFlags_NavEnableKeyboard | ImGuiConfigFlags_NavNoCaptureKeyboard;
 }
 
+namespace {
+
+// DejaVu Sans where desktops have it (Debian's place, Fedora's, Arch's), else Dear ImGui's own font of 13 px,
+// made larger.
+void choose_font(float scale) {
+  ImFontAtlas& fonts = *ImGui::GetIO().Fonts;
+  fonts.Clear();
+  for (const char* file :
+       {"/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf",
+        "/usr/share/fonts/dejavu-sans-fonts/DejaVuSans.ttf", "/usr/share/fonts/TTF/DejaVuSans.ttf"}) {
+    std::error_code ignored;
+    if (!std::filesystem::is_regular_file(file, ignored)) continue;
+    fonts.AddFontFromFileTTF(file, std::floor(15.0f * scale));
+    return;
+  }
+  ImFontConfig config;
+  config.SizePixels = std::floor(13.0f * scale);
+  fonts.AddFontDefault(&config);
+}
+
+}  // namespace
+
 void set_scale(float scale, float pixels) {
   ImGuiIO& io = ImGui::GetIO();
-  ImFontConfig config;
-  config.SizePixels = std::floor(13.0f * scale);  // Dear ImGui's own, larger
-  io.Fonts->Clear();
-  io.Fonts->AddFontDefault(&config);
+  choose_font(scale);
   io.FontGlobalScale = 1.0f / pixels;
   ImGui::GetStyle() = ImGuiStyle();
   ImGui::StyleColorsDark();

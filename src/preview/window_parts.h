@@ -105,7 +105,12 @@ class Window {
     std::size_t gaussians = 0;  // that the log reported last
   };
   Levels levels_;
-  double last_time_ = 0.0, last_click_ = 0.0, moved_at_ = 0.0;
+  /// When hands did what, in s.
+  struct Hands {
+    double went = 0.0, clicked = 0.0, moved = 0.0;
+    glm::dvec2 cursor{0.0};
+  };
+  Hands hands_;
   /// The path that the head is taken along; it ends where somebody moves the head.
   struct Playing {
     KeyPath path;
@@ -121,7 +126,6 @@ class Window {
   std::optional<Recording> recording_;
   std::optional<double> drawn_at_;    // the last frame, where the next may follow at once
   std::deque<double> frame_seconds_;  // between the last frames that did
-  glm::dvec2 cursor_{0.0};
   std::filesystem::file_time_type shaders_changed_;
   bool scale_changed_ = false;
   int ui_frames_ = 3;  // still to show: widgets take some frames to settle after an event
