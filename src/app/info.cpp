@@ -144,7 +144,7 @@ void print_info(const Trained& trained) {
     for (const std::string& sentence : trained.run->otherwise)
       fmt::print("{:<14} {}\n", "  not drawn so", sentence);
     for (const std::string& sentence : trained.run->advice)
-      fmt::print("{:<14} {}\n", "  to draw so", sentence);
+      fmt::print("{:<14} {}\n", "  to know", sentence);
   }
   if (trained.exposures) fmt::print("{:<14} {}\n", "exposures", in_words(*trained.exposures));
 }
@@ -157,7 +157,7 @@ ordered_json info_json(const Trained& trained) {
     json["file"] = run.file.string();
     for (const auto& [key, value] : run.said) json["says"][key] = value;
     json["not_drawn_so"] = run.otherwise;
-    json["to_draw_so"] = run.advice;
+    json["to_know"] = run.advice;
   }
   if (trained.exposures) {
     json["exposures"] =

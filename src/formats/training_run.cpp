@@ -55,6 +55,9 @@ constexpr const char* other_poses =
 constexpr const char* no_exposures =
     "it was trained with an exposure for each photo (train_test_exp), and the exposure.json with them is not "
     "there: pictures are further from the photos. `--exposure FILE` names it";
+constexpr const char* moved_world =
+    "its world was moved, turned and scaled before training (normalize_world_space): COLMAP's cameras of the "
+    "photos do not fit it";
 constexpr const char* white = "it was trained before a white background: `--background 1,1,1` draws it so";
 
 constexpr Clue of_gsplat[] = {{"with_eval3d", "true", no_eval3d},
@@ -64,7 +67,8 @@ constexpr Clue of_gsplat[] = {{"with_eval3d", "true", no_eval3d},
                               {"post_processing", "bilateral_grid", no_grid},
                               {"use_bilateral_grid", "true", no_grid},
                               {"post_processing", "ppisp", no_isp},
-                              {"pose_opt", "true", other_poses}};
+                              {"pose_opt", "true", other_poses},
+                              {"normalize_world_space", "true", moved_world}};
 constexpr Clue of_nerfstudio[] = {{"use_bilateral_grid", "true", no_grid},
                                   {"camera_optimizer.mode", "!off", other_poses},
                                   {"background_color", "white", white}};
@@ -104,53 +108,52 @@ std::vector<Clue> all_of(const Clue (&clues)[N]) {
 const std::vector<RunKind>& run_kinds() {
   const auto yaml = [](const std::string&, std::string_view text) { return yaml_values(text); };
   const auto python = [](const std::string&, std::string_view text) { return namespace_values(text); };
-  static const std::vector<RunKind> kinds = {
-      {"cfg.yml",
-       "gsplat",
-       yaml,
-       "",
-       "result_dir",
-       "antialiased",
-       "true",
-       {"antialiased", "sh_degree", "normalize_world_space", "random_bkgd"},
-       all_of(of_gsplat)},
-      {"config.yml",
-       "nerfstudio",
-       yaml,
-       "pipeline.model.",
-       "cull_alpha_thresh",
-       "rasterize_mode",
-       "antialiased",
-       {"rasterize_mode", "sh_degree", "color_corrected_metrics"},
-       all_of(of_nerfstudio)},
-      {"cfg_args",
-       "INRIA's trainer or one like it",
-       python,
-       "",
-       "sh_degree",
-       "antialiasing",
-       "true",
-       {"antialiasing", "sh_degree", "resolution", "eval"},
-       all_of(of_inria)},
-      {"training_config.json",
-       "LichtFeld Studio",
-       json_values,
-       "optimization.",
-       "sh_degree",
-       "antialiasing",
-       "true",
-       {"antialiasing", "sh_degree", "strategy"},
-       all_of(of_lichtfeld)},
-      {"parsed.yaml",
-       "3DGRUT",
-       yaml,
-       "",
-       "render.method",
-       "",
-       "",
-       {"model.progressive_training.max_n_features", "render.particle_kernel_degree",
-        "render.splat.k_buffer_size"},
-       all_of(of_3dgrut)}};
+  static const std::vector<RunKind> kinds = {{"cfg.yml",
+                                              "gsplat",
+                                              yaml,
+                                              "",
+                                              "result_dir",
+                                              "antialiased",
+                                              "true",
+                                              {"antialiased", "sh_degree", "random_bkgd"},
+                                              all_of(of_gsplat)},
+                                             {"config.yml",
+                                              "nerfstudio",
+                                              yaml,
+                                              "pipeline.model.",
+                                              "cull_alpha_thresh",
+                                              "rasterize_mode",
+                                              "antialiased",
+                                              {"rasterize_mode", "sh_degree", "color_corrected_metrics"},
+                                              all_of(of_nerfstudio)},
+                                             {"cfg_args",
+                                              "INRIA's trainer or one like it",
+                                              python,
+                                              "",
+                                              "sh_degree",
+                                              "antialiasing",
+                                              "true",
+                                              {"antialiasing", "sh_degree", "resolution", "eval"},
+                                              all_of(of_inria)},
+                                             {"training_config.json",
+                                              "LichtFeld Studio",
+                                              json_values,
+                                              "optimization.",
+                                              "sh_degree",
+                                              "antialiasing",
+                                              "true",
+                                              {"antialiasing", "sh_degree", "strategy"},
+                                              all_of(of_lichtfeld)},
+                                             {"parsed.yaml",
+                                              "3DGRUT",
+                                              yaml,
+                                              "",
+                                              "render.method",
+                                              "",
+                                              "",
+                                              {"model.progressive_training.max_n_features",
+                                               "render.particle_kernel_degree", "render.splat.k_buffer_size"},
+                                              all_of(of_3dgrut)}};
   return kinds;
 }
 
@@ -190,7 +193,8 @@ void tell(const FlatValues& values, const RunKind& kind, TrainingRun& run) {
     if (clue.sentence == no_sigma_points && !run.otherwise.empty()) continue;
     if (clue.sentence == no_exposures && find_above(run.file, exposures_name)) continue;
     if (clue.sentence == no_eval3d) run.kernel_px2 = along_rays_kernel_px2;
-    (clue.sentence == white ? run.advice : run.otherwise).emplace_back(clue.sentence);
+    const bool is_advice = clue.sentence == white || clue.sentence == moved_world;
+    (is_advice ? run.advice : run.otherwise).emplace_back(clue.sentence);
   }
   if (const auto value = value_of(values, kind, kind.antialiasing))
     run.antialiased = *value == kind.word_for_it;

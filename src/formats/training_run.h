@@ -18,7 +18,7 @@ struct TrainingRun {
   std::vector<std::pair<std::string, std::string>> said;  // what may matter to pictures, in the file's words
   /// What this program draws otherwise than the training did, what of that is seen, and what to do.
   std::vector<std::string> otherwise;
-  std::vector<std::string> advice;  // options with which it is drawn as it was trained
+  std::vector<std::string> advice;  // what to give, or not to give, so that it is drawn as it was trained
 };
 
 constexpr const char* exposures_name = "exposure.json";

@@ -110,6 +110,10 @@ TEST_F(TrainingRunTest, OfGsplatSaysWhatIsDrawnOtherwise) {
     ASSERT_EQ(run->otherwise.size(), 1u) << more << otherwise(run);
     EXPECT_TRUE(says(run->otherwise[0], part)) << run->otherwise[0];
   }
+  EXPECT_TRUE(plain->advice.empty());
+  const auto moved = found(gsplat_ply, "run/cfg.yml", gsplat_with("normalize_world_space: true\n"));
+  ASSERT_EQ(moved->advice.size(), 1u);
+  EXPECT_TRUE(says(moved->advice[0], "COLMAP's cameras"));
   const std::pair<const char*, const char*> changed[] = {
       {"camera_model: fisheye", "another lens"},
       {"app_opt: true", "app_opt"},
