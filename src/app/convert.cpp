@@ -172,7 +172,7 @@ ExitCode convert(const ConvertOptions& o) {
 
   const std::string axes = model.axes, wanted(axes_of(done.format));
   if (axes != wanted)
-    log_info("its axes are turned from {} to {}, the ones of {}", axes, wanted,
+    log_info("{}: its axes are turned from {} to {}, the ones of {}", o.output, axes, wanted,
              written_format(done.format).name);
   if (done.format == ModelFormat::spz)
     log_info(

@@ -143,8 +143,7 @@ void print_info(const Trained& trained) {
     if (!said.empty()) fmt::print("{:<14} {}\n", "", said);
     for (const std::string& sentence : trained.run->otherwise)
       fmt::print("{:<14} {}\n", "  not drawn so", sentence);
-    for (const std::string& sentence : trained.run->advice)
-      fmt::print("{:<14} {}\n", "  to know", sentence);
+    for (const std::string& sentence : trained.run->advice) fmt::print("{:<14} {}\n", "  to know", sentence);
   }
   if (trained.exposures) fmt::print("{:<14} {}\n", "exposures", in_words(*trained.exposures));
 }
@@ -264,11 +263,18 @@ ExitCode list_views(const InfoOptions& options) {
 ExitCode info(const InfoOptions& options) {
   if (!options.json.empty()) check_output(options.json);
   if (options.views) return list_views(options);
-  // What the run beside it says is printed with the rest.
-  const fs::path file = file_of(options.scene.name);
-  Model model = load_model_alone(file, {.lod = options.scene.lod});
-  const Trained trained = trained_as(file);
-  if (trained.run) follow(*trained.run, file, model);
+  Model model;
+  Trained trained;
+  if (is_built_in(options.scene.name)) {
+    model = load_scene(options.scene);
+    model.format = "built in";
+  } else {
+    // What the run beside it says is printed with the rest.
+    const fs::path file = file_of(options.scene.name);
+    model = load_model_alone(file, {.lod = options.scene.lod});
+    trained = trained_as(file);
+    if (trained.run) follow(*trained.run, file, model);
+  }
   const bool named = !options.camera.file.empty();
   settle_axes(options.scene,
               named ? listed_cameras(options.scene, options.camera).cameras : std::vector<Camera>{}, model);
@@ -292,7 +298,7 @@ ExitCode info(const InfoOptions& options) {
 void add_info(CLI::App& program, Command& command) {
   CLI::App* sub = program.add_subcommand("info", "Say what a model is made of");
   const auto options = std::make_shared<InfoOptions>();
-  sub->add_option("MODEL", options->scene.name, "A model file, or the folder of a SOG or of Scaffold-GS")
+  sub->add_option("MODEL", options->scene.name, "A model file or folder, or demo:room or demo:city")
       ->required();
   add_lod_option(*sub, options->scene);
   sub->add_option("--cameras", options->camera.file,

@@ -82,14 +82,16 @@ void check_photos_drawn(const RenderOptions& o, const Work& work) {
 }
 
 void log_model(const std::string& scene, const std::optional<int>& decode, const Model& model,
-               std::size_t gaussians) {
+               const Stream* stream) {
   if (model.scaffold) {
     log_info("{}: {}", scene, describe(*model.scaffold));
   } else if (decode) {
     fail("--decode {}: {} is no Scaffold-GS model, whose Gaussians are made for each eye",
          decode_choices[*decode].name, scene);
   } else {
-    log_info("{}: {} Gaussians, harmonics of degree {}", scene, gaussians, model.degree);
+    log_info("{}: {} Gaussians{}, harmonics of degree {}", scene,
+             stream != nullptr ? stream->gaussians() : model.count(), stream != nullptr ? " at first" : "",
+             model.degree);
   }
 }
 
@@ -164,7 +166,7 @@ ExitCode render(const RenderOptions& asked) {
     loaded = loading.get();
   }
   const Model& model = work.stream ? work.stream->model() : loaded;
-  log_model(o.scene.name, o.drawing.decode, model, work.stream ? work.stream->gaussians() : model.count());
+  log_model(o.scene.name, o.drawing.decode, model, work.stream.get());
   if (!work.list.listed) work.list = made_up_cameras(o.scene, o.camera, work.list.known, model);
 
   const double near_plane = near_plane_of(o.camera, work.list);

@@ -50,6 +50,12 @@ TEST_F(Info, TreesTakeNoMoreThanTheirNodes) {
 #endif
 }
 
+TEST_F(Info, OfABuiltInScene) {
+  const test::Outcome outcome = test::run_program({"info", "demo:room"});
+  ASSERT_TRUE(good(outcome));
+  EXPECT_TRUE(test::has(outcome.out, "demo:room (built in)\nGaussians      99464\n"));
+}
+
 TEST(InfoOfFixtures, KnowsTheirFormats) {
   REQUIRE_FIXTURES(folder);
   const std::vector<std::pair<std::string, std::string>> expected = {
