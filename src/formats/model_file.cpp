@@ -166,8 +166,10 @@ fs::path file_of(const fs::path& path) {
   constexpr std::size_t shown = 8;
   for (std::size_t i = 0; i < std::min(shown, found.size()); ++i) names += "\n  " + found[i].string();
   if (found.size() > shown) names += fmt::format("\n  and {} more", found.size() - shown);
-  fail("{} is a folder with {} models; name one of them, or give render or view --fps N, for one after the other:{}",
-       path.string(), found.size(), names);
+  fail(
+      "{} is a folder with {} models; name one of them, or give render or view --fps N, for one after the "
+      "other:{}",
+      path.string(), found.size(), names);
 }
 
 std::string cut_in_words(const Model& model) {

@@ -25,8 +25,8 @@ std::filesystem::path file_of(const std::filesystem::path& path);
 /// (formats/sog.h), spz, .splat, .ksplat, and glTF or OpenUSD (formats/usd.h) with Gaussians. `path` may be a
 /// folder with one of models_in(). Says on standard error how many Gaussians were left out because a value is
 /// not finite or the quaternion is zero. Throws Error for anything that is not such a model; the text says
-/// what the file looks like instead. Whether a model was trained with anti-aliasing its file says, or else the
-/// run beside it (run_of). Warns of what the run did and is not drawn.
+/// what the file looks like instead. Whether a model was trained with anti-aliasing its file says, or else
+/// the run beside it (run_of). Warns of what the run did and is not drawn.
 Model load_model(const std::filesystem::path& path, const ModelOptions& options = {});
 
 /// The same by the model's file alone, whatever lies beside it: for files that binosplat has just written.

@@ -32,8 +32,8 @@ struct PlyLayout {
   bool filter_3d = false;       // the last number is Mip-Splatting's filter (world units)
   bool antialiased = false;
   std::string antialiased_by;  // as Model has it
-  bool flat = false;       // a Gaussian has two scales (2D Gaussian Splatting)
-  std::size_t cut_at = 0;  // where the coefficients of degree 4 begin; 0: there are none
+  bool flat = false;           // a Gaussian has two scales (2D Gaussian Splatting)
+  std::size_t cut_at = 0;      // where the coefficients of degree 4 begin; 0: there are none
 };
 
 /// The low-pass that Mip-Splatting trains with, px^2; a ply with filter_3D is drawn with it.
