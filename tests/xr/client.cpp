@@ -59,7 +59,7 @@ struct Client {
     if (has("floor") && !has("floor_unasked")) extensions.push_back(XR_LOCAL_FLOOR_NAME);
     if (has("mask")) extensions.push_back(XR_KHR_VISIBILITY_MASK_EXTENSION_NAME);
     XrInstanceCreateInfo info = {XR_TYPE_INSTANCE_CREATE_INFO};
-    info.applicationInfo = {"client", 1, "", 0, XR_CURRENT_API_VERSION};
+    info.applicationInfo = {"client", 1, "", 0, XR_MAKE_VERSION(1, 0, 0)};
     if (has("no_name")) info.applicationInfo.applicationName[0] = '\0';
     info.enabledExtensionCount = static_cast<std::uint32_t>(extensions.size());
     info.enabledExtensionNames = extensions.data();

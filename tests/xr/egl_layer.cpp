@@ -72,7 +72,7 @@ extern "C" __attribute__((visibility("default"))) XrResult
 xrNegotiateLoaderApiLayerInterface(  // NOLINT(readability-identifier-naming): the loader's own name
     const LoaderInfo*, const char*, LayerRequest* request) {
   request->interface_version = 1;
-  request->api_version = XR_CURRENT_API_VERSION;
+  request->api_version = XR_MAKE_VERSION(1, 0, 0);
   request->get = get;
   request->create = create_instance;
   return XR_SUCCESS;

@@ -85,7 +85,7 @@ xrNegotiateLoaderRuntimeInterface(  // NOLINT(readability-identifier-naming)
     return XR_ERROR_INITIALIZATION_FAILED;
   }
   request->interface_version = interface_version;
-  request->api_version = XR_CURRENT_API_VERSION;
+  request->api_version = XR_MAKE_VERSION(1, 0, 0);
   request->get = &get_instance_proc_addr;
   return XR_SUCCESS;
 }
