@@ -124,7 +124,7 @@ class XrStage {
     std::string found;
     std::istringstream said(read_text(folder_ / "validation.txt"));
     for (std::string line; std::getline(said, line);)
-      if (line.find("VALID_DEBUG") == line.npos) found += line + "\n";
+      if (line.find("VALID_DEBUG") == std::string::npos) found += line + "\n";
     return found;
   }
 

@@ -55,6 +55,7 @@
 
 namespace binosplat::xr_test::api {
 
+// NOLINTNEXTLINE(bugprone-macro-parentheses): the name of what is declared
 #define BINOSPLAT_XR_TEST_DECLARE(name, function) std::remove_pointer_t<PFN_xr##name> function;
 BINOSPLAT_XR_TEST_FUNCTIONS(BINOSPLAT_XR_TEST_DECLARE)
 #undef BINOSPLAT_XR_TEST_DECLARE
