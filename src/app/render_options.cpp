@@ -1,3 +1,4 @@
+#include "app/option_checks.h"
 #include "app/render_options.h"
 
 #include <fmt/format.h>
