@@ -1,4 +1,3 @@
-#include "app/option_checks.h"
 #include "app/render_options.h"
 
 #include <fmt/format.h>
@@ -6,6 +5,7 @@
 #include <array>
 
 #include "app/foveate_options.h"
+#include "app/option_checks.h"
 #include "app/tour.h"
 #include "app/vr180.h"
 #include "base/error.h"
