@@ -176,9 +176,8 @@ ExitCode convert(const ConvertOptions& o) {
              written_format(done.format).name);
   if (done.format == ModelFormat::spz)
     log_info(
-        "{}: its axes are RUB, as the format has them and as the file says; programs that take them for a "
-        "ply's "
-        "(RDF), such as splat-transform 3.7, show it upside down",
+        "{}: its axes are RUB, as the format has them and as the file says; programs that take them for "
+        "a ply's (RDF), such as splat-transform 3.7, show it upside down",
         o.output);
   bring_into_axes(model, wanted);
   done.count = model.count();

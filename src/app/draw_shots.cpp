@@ -210,7 +210,7 @@ void draw_all(gl::Context& context, Work& work, RenderReport& report) {
   double gpu_ms = 0.0;
   report.drawn.reserve(work.shots.size());  // the pipeline refers to them
   for (Shot& shot : work.shots) {
-    if (in_turn) {
+    if (in_turn && !report.drawn.empty()) {
       pipeline.hand_over();
       drawer.reset();
       shown = in_turn->take();

@@ -46,8 +46,7 @@ void add_output_options(CLI::App& sub, OutputOptions& o) {
   add_look_options(sub, o, false);
   sub.add_option("--fps", o.fps,
                  "Frames a second of a tour, of a way through keys (30), or of a video\n(by the path's "
-                 "times, or 30); a "
-                 "folder of models is drawn one after\nthe other, a model a frame")
+                 "times, or 30); a folder of models is drawn one after\nthe other, a model a frame")
       ->type_name("N")
       ->check(positive);
   choose<int>(sub, "--bits", o.bits, "Bits a channel of PNG (8)", {{"8", 8}, {"16", 16}});

@@ -89,9 +89,8 @@ lab::PhotoOf photo_finder(const PhotoSource& photos) {
     const auto back = inverse_exposure(exposure_of(photos.exposures, camera.name));
     if (!back)
       fail(
-          "{}: the exposure of {} mixes its colours into fewer than three, so nothing can be fitted to its "
-          "photo; "
-          "take it out, or give --exposure none",
+          "{}: the exposure of {} mixes its colours into fewer than three, so nothing can be fitted to "
+          "its photo; take it out, or give --exposure none",
           photos.exposures.file().string(), camera.name);
     return exposed(load_view_photo(*file, camera), *back);
   };

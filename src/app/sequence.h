@@ -19,13 +19,14 @@ std::vector<std::filesystem::path> sequence_of(const RenderOptions& options);
 /// models. Those beyond the shorter of the two are left out, which is said.
 void show_in_turn(const std::vector<std::filesystem::path>& files, std::vector<Shot>& shots);
 
-/// The models of shots. While one is drawn, the next one is read.
+/// The models of the shots after the first, which is there. While one is drawn, the next one is read.
 class ModelsInTurn {
  public:
-  /// `first` is a model of the sequence that is there, with its axes and format all others must have.
+  /// The others take the axes of `first`, and must have its format.
   ModelsInTurn(const SceneOptions& scene, const Model& first, const std::vector<Shot>& shots);
 
-  /// That of the next shot. Throws Error as load_scene() does, and for a file of another kind.
+  /// That of the next shot, beginning with the second. Throws Error as load_scene() does, and for a file of
+  /// another kind.
   Model take();
 
  private:
@@ -34,7 +35,7 @@ class ModelsInTurn {
   SceneOptions scene_;
   std::string format_;
   std::vector<std::string> files_;
-  std::size_t next_ = 0;
+  std::size_t next_ = 1;
   std::future<Model> reading_;
 };
 

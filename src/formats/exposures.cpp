@@ -17,10 +17,9 @@ glm::mat4x3 read_exposure(const JsonValue& rows) {
   glm::mat4x3 exposure;
   rows.list_of(3);
   for (int i = 0; i < 3; ++i) {
-    const JsonValue row = rows.at(static_cast<std::size_t>(i)).list_of(4);
-    const auto number = [&](std::size_t k) { return static_cast<float>(row.at(k).number()); };
-    for (int j = 0; j < 3; ++j) exposure[i][j] = number(static_cast<std::size_t>(j));
-    exposure[3][i] = number(3);
+    const glm::vec4 row(rows.at(static_cast<std::size_t>(i)).vector<4>());
+    exposure[i] = glm::vec3(row);
+    exposure[3][i] = row[3];
   }
   return exposure;
 }

@@ -2,6 +2,7 @@
 // JSON from files: values that know where they stand, so that every error can say so.
 
 #include <cstdint>
+#include <glm/glm.hpp>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -36,6 +37,14 @@ class JsonValue {
   double above_zero() const;                      // finite, too
   std::uint64_t whole(std::uint64_t most) const;  // from 0 to `most`, at most 2^53; 5.0 is whole, too
   std::string text() const;
+  /// The numbers of a list of n.
+  template <int n>
+  glm::vec<n, double> vector() const {
+    glm::vec<n, double> numbers;
+    const JsonValue list = list_of(n);
+    for (int i = 0; i < n; ++i) numbers[i] = list.at(static_cast<std::size_t>(i)).number();
+    return numbers;
+  }
 
   template <typename... Args>
   [[noreturn]] void fail_here(fmt::format_string<Args...> format, Args&&... args) const {

@@ -16,12 +16,6 @@ namespace {
 
 constexpr double sensor_height_mm = 24.0;
 
-glm::dvec4 four_numbers(const JsonValue& list) {
-  glm::dvec4 numbers;
-  for (int i = 0; i < 4; ++i) numbers[i] = list.list_of(4).at(static_cast<std::size_t>(i)).number();
-  return numbers;
-}
-
 Camera key_of(const std::filesystem::path& path, const JsonValue& key) {
   Camera camera;
   camera.width = pose_width;
@@ -31,15 +25,12 @@ Camera key_of(const std::filesystem::path& path, const JsonValue& key) {
   camera.cy = 0.5 * camera.height;
   check_lens(path.string(), camera);
   camera.time = key.at("time").number();
-  const glm::dvec4 q = four_numbers(key.at("rotation"));  // w x y z
+  const glm::dvec4 q = key.at("rotation").vector<4>();  // w x y z
   if (!(glm::length(q) > 0.0)) key.at("rotation").fail_here("a rotation is a quaternion of length 0");
-  const JsonValue position = key.at("position").list_of(3);
-  glm::dvec3 place;
-  for (int i = 0; i < 3; ++i) place[i] = position.at(static_cast<std::size_t>(i)).number();
   const glm::dmat3 to_world(1, 0, 0, 0, -1, 0, 0, 0, -1);
   const glm::dvec4 unit = glm::normalize(q);
-  place_as_opengl(camera,
-                  {to_world * glm::mat3_cast(glm::dquat(unit.x, unit.y, unit.z, unit.w)), to_world * place});
+  place_as_opengl(camera, {to_world * glm::mat3_cast(glm::dquat(unit.x, unit.y, unit.z, unit.w)),
+                           to_world * key.at("position").vector<3>()});
   return camera;
 }
 

@@ -25,8 +25,8 @@ SavedPose load_pose(const std::filesystem::path& path) {
   const MappedFile file(path);
   const nlohmann::json root = parse_json(path.string(), as_text(file.bytes()));
   const JsonValue saved = JsonValue(path.string(), root).at(std::size_t{0});
-  const JsonValue up = saved.at("up").list_of(3);
-  for (int k = 0; k < 3; ++k) pose.up[k] = up.at(static_cast<std::size_t>(k)).number();
+  const JsonValue up = saved.at("up");
+  pose.up = up.vector<3>();
   const double length = glm::length(pose.up);
   if (!(length > 0.0 && std::isfinite(length))) up.fail_here("expected a direction");
   pose.units_per_metre = saved.at("units_per_metre").above_zero();

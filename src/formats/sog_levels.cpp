@@ -18,11 +18,6 @@ constexpr std::uint64_t most_gaussians = std::uint64_t{1} << 32;
 // Of what levels lose and of pixels' widths: products of such numbers are still finite.
 constexpr double most_lost = 1e20;
 
-glm::dvec3 corner(const JsonValue& value) {
-  const JsonValue three = value.list_of(3);
-  return {three.at(0).number(), three.at(1).number(), three.at(2).number()};
-}
-
 std::vector<double> widths_of(const JsonValue& value) {
   if (value.size() == 0) value.fail_here("expected one width at least");
   std::vector<double> widths;
@@ -131,7 +126,7 @@ std::vector<LodChunk> SogLevels::leaves(const nlohmann::json& json) const {
   std::vector<LodChunk> result;
   walk(JsonValue(path_.string(), json), [&](const JsonValue& node) {
     const JsonValue bound = node.at("bound");
-    LodChunk leaf{corner(bound.at("min")), corner(bound.at("max")), {}};
+    LodChunk leaf{bound.at("min").vector<3>(), bound.at("max").vector<3>(), {}};
     if (node.has("pixels")) {
       leaf.pixels = widths_of(node.at("pixels"));
       leaf.seen = by_direction(node.at("seen"), leaf.pixels.size());

@@ -97,11 +97,8 @@ SogSource::SogSource(std::string source, const nlohmann::json& json, ReadFile re
 }
 
 void SogSource::read_means(const JsonValue& meta) {
-  const JsonValue low = meta.at("means").at("mins").list_of(3), high = meta.at("means").at("maxs").list_of(3);
-  for (int c = 0; c < 3; ++c) {
-    mean_low_[c] = low.at(static_cast<std::size_t>(c)).number();
-    mean_span_[c] = high.at(static_cast<std::size_t>(c)).number() - mean_low_[c];
-  }
+  mean_low_ = meta.at("means").at("mins").vector<3>();
+  mean_span_ = meta.at("means").at("maxs").vector<3>() - mean_low_;
 }
 
 void SogSource::read_tables(const JsonValue& meta) {

@@ -26,10 +26,10 @@ struct Clue {
 };
 
 constexpr const char* no_eval3d =
-    "it was trained by 3DGUT, which evaluates Gaussians along each ray and has no low-pass. They are drawn "
-    "as "
-    "splats with hardly any (--kernel-px2 0.001), which comes to some 45 dB: large ones near the eye look "
-    "otherwise";
+    "it was trained by 3DGUT, which evaluates Gaussians along each ray and has no low-pass. They are "
+    "drawn as splats with hardly any (--kernel-px2 0.001), which comes to some 45 dB: large ones near the "
+    "eye "
+    "look otherwise";
 /// For it, by tests/judges/rays.py.
 constexpr double along_rays_kernel_px2 = 0.001;
 constexpr const char* no_sigma_points =
@@ -40,8 +40,7 @@ constexpr const char* no_such_lens =
     "with undistorted photos";
 constexpr const char* no_embedding =
     "it was trained with an appearance for each photo (app_opt), by a network that the file lacks: it has "
-    "the "
-    "colours of no photo, the same from all sides. `refit --photos` fits them to the photos";
+    "the colours of no photo, the same from all sides. `refit --photos` fits them to the photos";
 constexpr const char* no_grid =
     "it was trained with a colour correction for each photo (bilateral grid), which the file lacks: pictures "
     "have the colours before it, and are further from the photos. `refit --photos` fits them to the photos";

@@ -94,10 +94,10 @@ RigidTransform read_rows(const JsonValue& rows) {
     rows.fail_here("expected 3 or 4 rows of 4 numbers, found {} rows", rows.size());
   RigidTransform to;
   for (std::size_t i = 0; i < 3; ++i) {
-    const JsonValue row = rows.at(i).list_of(4);
+    const glm::dvec4 row = rows.at(i).vector<4>();
     const int r = static_cast<int>(i);
-    for (std::size_t j = 0; j < 3; ++j) to.rotation[static_cast<int>(j)][r] = row.at(j).number();
-    to.shift[r] = row.at(3).number();
+    for (int j = 0; j < 3; ++j) to.rotation[j][r] = row[j];
+    to.shift[r] = row[3];
   }
   if (const std::string fault = rotation_fault(to.rotation); !fault.empty()) rows.fail_here("{}", fault);
   return to;

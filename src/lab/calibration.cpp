@@ -87,8 +87,7 @@ CalibrationEntry parse_entry(const JsonValue& entry) {
 }
 
 CalibratedView parse_view(const JsonValue& view) {
-  const JsonValue p = view.at("position").list_of(3);
-  return {view.at("name").text(), {p.at(0).number(), p.at(1).number(), p.at(2).number()}};
+  return {view.at("name").text(), view.at("position").vector<3>()};
 }
 
 }  // namespace
