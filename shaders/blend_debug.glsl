@@ -49,7 +49,7 @@ void debug_blended(uint at, uint p, float weight) {
   debug_value[p] += weight * batch_transmittance[at];
 #elif DEBUG_VIEW == SHOW_MEDIAN_DEPTH
   if (debug_value[p] < 0.0 && weight > 0.0 && transmittance[p] < 1.0 - float(COVERAGE_FOR_DEPTH))
-    debug_value[p] = batch_colour[at].a;
+    debug_value[p] = depth_of(at);
 #endif
 }
 

@@ -11,10 +11,10 @@ const float half_left = 1.0 - float(COVERAGE_FOR_DEPTH);
 float median_depth(uint at[AHEAD], float weights[AHEAD], float before) {
   for (uint k = 0u; k < AHEAD; ++k) {
     precise float left = before - weights[k];
-    if (left < half_left) return batch_colour[at[k]].a;
+    if (left < half_left) return depth_of(at[k]);
     before = left;
   }
-  return batch_colour[at[AHEAD - 1u]].a;
+  return depth_of(at[AHEAD - 1u]);
 }
 
 void add_depth(uint p, float weight, float depth) {

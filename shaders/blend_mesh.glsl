@@ -75,7 +75,7 @@ float mesh_behind(uint p) {
 
 // Ends a pixel before a splat from which on all of the list lies behind its mesh.
 void end_behind_mesh(uint at, uint p, float farthest) {
-  if (batch_colour[at].a - frame.depth_slack > farthest && !is_done(p)) {
+  if (depth_of(at) - frame.depth_slack > farthest && !is_done(p)) {
     least[p] = -transmittance[p];
     transmittance[p] = 0.0;
   }

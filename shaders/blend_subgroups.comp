@@ -4,9 +4,12 @@
 #if MESH_DEPTH
 #extension GL_KHR_shader_subgroup_arithmetic : require
 #endif
+#if HALF && defined(GL_NV_gpu_shader5)
+#extension GL_NV_gpu_shader5 : require
+#endif
 // Stage 6 where subgroups have 32 invocations: one work group a tile, a subgroup a block of it. Together they take the list's
 // next splats to shared memory and ask which blocks each reaches; then each subgroup blends those that reach its own. The bits
-// are those of blend.comp.
+// are those of blend.comp, but in packed halves.
 #define BLOCK_WIDTH 8
 #define BLOCK_HEIGHT (4 * COLUMN)
 #if APPROXIMATE  // whose blocks are those of docs/method.md 5.2
@@ -19,6 +22,9 @@
 #define BATCH (ROUND + 1)  // and one that leaves no mark
 #define ANY(condition) subgroupAny(condition)
 #define MESH_ASKED MESH_DEPTH
+#if HALF && defined(GL_NV_gpu_shader5)
+#define MAY_PACK 1
+#endif
 #include "blending.glsl"
 #include "blocks.glsl"
 
@@ -50,7 +56,7 @@ uint list_own() {
     if (reaches) own_lists[gl_SubgroupID][count + bitCount(all & gl_SubgroupLtMask.x)] = word * 32u + lane;
 #if MESH_DEPTH
     if (nearest_mesh < NO_MESH) {
-      uint hidden = subgroupBallot(reaches && batch_colour[word * 32u + lane].a > nearest_mesh).x;
+      uint hidden = subgroupBallot(reaches && depth_of(word * 32u + lane) > nearest_mesh).x;
       if (hidden != 0u) sure = min(sure, count + bitCount(all & (hidden & -hidden) - 1u));
     }
 #endif
@@ -61,11 +67,16 @@ uint list_own() {
   return count;
 }
 
+#if PACKED
+uint own_at(uint i) { return own_lists[gl_SubgroupID][i]; }
+#include "blend_halves.glsl"
+#else
 void blend_own(uint from, const bool may_be_hidden) {
   uint at[AHEAD];
   for (uint k = 0u; k < AHEAD; ++k) at[k] = own_lists[gl_SubgroupID][from + k];
   blend(at, may_be_hidden);
 }
+#endif
 
 void main() {
   if (!find_tile()) return;
@@ -107,7 +118,9 @@ void main() {
     barrier();
     if (!ended) {
       uint own = list_own();
-#if MESH_DEPTH
+#if PACKED
+      blend_batch(own);
+#elif MESH_DEPTH
       uint i = 0u;
       for (; i < own && i + AHEAD <= sure; i += AHEAD) blend_own(i, false);
       for (; i < own && subgroupAny(!are_done()); i += AHEAD) blend_own(i, true);

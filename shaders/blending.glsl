@@ -25,6 +25,12 @@
 #define ANY(condition) (condition)
 #endif
 
+// Whether pixels are blended in packed halves (blend_halves.glsl), which are for the frames that most are.
+#ifndef MAY_PACK
+#define MAY_PACK 0
+#endif
+#define PACKED (MAY_PACK && COLUMN > 1 && PROJECTION == PROJECTION_AFFINE && DEPTH <= DEPTH_MEAN && MEASURE == MEASURE_NONE && !MESH_DEPTH)
+
 #ifndef REACHES
 #define REACHES(at) true
 #endif
@@ -42,7 +48,13 @@ layout(std430, binding = 9) readonly buffer LongLists { uint long_lists[]; };  /
 // projection that is divided by |d|^2, d being the pixel's ray, before -log2(sigma), which is no part of s, is added.
 shared vec4 batch_across[BATCH];  // a, u, 2 b, s
 shared vec4 batch_down[BATCH];    // v, c, with the tangent projection -log2(sigma), and 0: one address finds all three
+#if PACKED  // v, c, and as halves rg and b are in batch_down
+shared float batch_depth[BATCH];
+float depth_of(uint at) { return batch_depth[at]; }
+#else
 shared vec4 batch_colour[BATCH];  // rgb, depth
+float depth_of(uint at) { return batch_colour[at].a; }
+#endif
 
 // What holds for all of a tile: with the tangent projection there are too few registers for it. All write the same.
 #if PROJECTION == PROJECTION_TANGENT
@@ -80,6 +92,7 @@ float transmittance_left(uint p) { return is_done(p) ? -least[p] : transmittance
 #include "blend_depth.glsl"
 #include "blend_approximate.glsl"
 
+#if !PACKED
 // What is told of each splat in a pixel may need the transmittance in front of it.
 #define FOLLOWS_TRANSMITTANCE (MEASURE != MEASURE_NONE || DEPTH == DEPTH_VISIBILITY || DEBUG_VIEW == SHOW_MEDIAN_DEPTH)
 
@@ -107,7 +120,7 @@ void blend(uint at[AHEAD], const bool may_be_hidden) {
 #endif
       precise float a = exp2(-exponent);
       bool is_seen = a >= float(ALPHA_MIN) && REACHES(at[k]);  // not a number: no
-      if (may_be_hidden) is_seen = is_seen && batch_colour[at[k]].a <= farthest[p];
+      if (may_be_hidden) is_seen = is_seen && depth_of(at[k]) <= farthest[p];
       weights[p][k] = is_seen ? min(float(ALPHA_MAX), a) : 0.0;
       MEET(p, k, a);
     }
@@ -179,6 +192,8 @@ void blend_from(uint first) {
   blend(at);
 }
 
+#endif
+
 // A splat for the batch, and one that leaves no mark.
 //
 // alpha = sigma 2^-|L^T d|^2, d = pixel - mean, L the lower Cholesky factor of Q log2(e) / 2, as a polynomial of the pixel's
@@ -186,7 +201,11 @@ void blend_from(uint first) {
 // than a few of its widths: no term is large there, and their sum exact to 1e-4. Cells do not depend on the tiles' size.
 void stage(uint at, Splat splat) {
   const float scale = 0.72134752044448170;  // log2(e) / 2
+#if !PACKED
   batch_colour[at] = vec4(splat.colour.rgb, abs(splat.depth));
+#else
+  batch_depth[at] = abs(splat.depth);
+#endif
   precise vec2 mean = splat.mean - middle;
   precise float xx = sqrt(scale * splat.conic.x);
   precise float yx = scale * splat.conic.y / xx;
@@ -202,14 +221,22 @@ void stage(uint at, Splat splat) {
 #else
   precise float level = fma(v, v, -bits);
   batch_across[at] = vec4(xx, u, 2.0 * yx, level);
-  batch_down[at] = vec4(slope, bend, 0.0, 0.0);
+  vec2 rg_b = vec2(0.0);
+#if PACKED
+  rg_b = uintBitsToFloat(uvec2(packHalf2x16(splat.colour.rg), packHalf2x16(vec2(splat.colour.b, 0.0))));
+#endif
+  batch_down[at] = vec4(slope, bend, rg_b);
 #endif
 }
 
 void stage_nothing(uint at) {
   batch_across[at] = vec4(0.0, 0.0, 0.0, 1e30);
   batch_down[at] = vec4(0.0);
+#if !PACKED
   batch_colour[at] = vec4(0.0);
+#else
+  batch_depth[at] = 0.0;
+#endif
 }
 
 #include "pixels.glsl"

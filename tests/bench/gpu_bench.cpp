@@ -20,6 +20,7 @@
 #include "formats/cameras_file.h"
 #include "formats/model_file.h"
 #include "render/frame.h"
+#include "render/squared_error.h"
 #include "scene/repeat.h"
 #include "stereo/foveate.h"
 #include "stereo/present.h"
@@ -111,6 +112,19 @@ struct How {
 
 // A frame of views, foveated or not.
 using Draw = std::function<render::FrameReport()>;
+
+// Half precision may be no nearer to full than 60 dB. Returns how near it is.
+double check_half(render::Frame& frame, const Shot& shot, const How& how) {
+  render::FrameSettings full = how.settings;
+  full.precision = PRECISION_FULL;
+  frame.draw(shot.eyes, full);
+  render::SquaredError error(frame.model()->context(), frame.read_pictures());
+  frame.draw(shot.eyes, how.settings);
+  const double db = error.psnr(frame.colours());
+  if (!(db >= 60.0)) fail("{}: half precision is {:.1f} dB from full", shot.name, db);
+  fmt::print("  {}: {:.1f} dB from full precision\n", shot.name, db);
+  return db;
+}
 
 // Each eye must have the same bits drawn with the other and alone, and must not be empty.
 void check(render::Frame& frame, const Shot& shot, const How& how) {
@@ -270,8 +284,11 @@ Json run(const Case& c, const fs::path& scenes, const fs::path& views, const How
   json["upload_draw_read_ms"] = ms_since(phase);
   json["first_picture_ms"] = ms_since(start);
   for (const Shot& shot : loaded.shots) {
-    check(frame, shot, how);
     Json row = {{"view", shot.name}};
+    if (how.settings.precision == PRECISION_HALF)
+      row["psnr_db"] = check_half(frame, shot, how);
+    else
+      check(frame, shot, how);
     row["pair"] = time(frame, shot.eyes, how);
     row["left"] = time(frame, std::span(&shot.eyes[0], 1), how);
     row["right"] = time(frame, std::span(&shot.eyes[1], 1), how);

@@ -30,7 +30,22 @@ TEST(Half, IsOf60DbAndNotFull) {
   }
 }
 
+// Faint splats one before the other, hundreds in each pixel, and something bright behind: halves that are
+// summed over all of them lose what comes last.
+TEST(Half, IsOf60DbThroughHaze) {
+  Model model = test::random_model(47, 1200, 0);
+  for (std::size_t i = 0; i < model.opacity.size(); ++i) {
+    model.scale[i] = glm::vec3(0.5f);
+    model.opacity[i] = 0.02f;
+  }
+  const shared::View view = eyes_for_half()[0];
+  EXPECT_GE(test::psnr(test::draw(model, view, in_half), reference::render(model, view)), 60.0);
+}
+
+// NVIDIA's GPUs blend in halves in tiles of 16 px only, batch by batch, and other tests' lists have other
+// batches.
 TEST(Half, IsTheSameInEveryTileTestAndSize) {
+  const bool in_halves = gl::has_extension(test::gl_context().gl(), "GL_NV_gpu_shader5");
   const Model model = test::random_model(42, 2000, 2);
   const std::vector<Picture> expected = test::draw(model, eyes_for_half(), in_half);
   // Each test and each size at least once: all of them together hold in full precision (frame_test.cpp).
@@ -40,8 +55,11 @@ TEST(Half, IsTheSameInEveryTileTestAndSize) {
     settings.tiles = tiles;
     settings.tile_size = size;
     const std::vector<Picture> drawn = test::draw(model, eyes_for_half(), settings);
-    for (std::size_t eye = 0; eye < 2; ++eye)
-      EXPECT_TRUE(test::same_bits(drawn[eye], expected[eye])) << tiles << ", " << size;
+    for (std::size_t eye = 0; eye < 2; ++eye) {
+      const bool is_same = in_halves ? test::psnr(drawn[eye], expected[eye]) >= 60.0
+                                     : test::same_bits(drawn[eye], expected[eye]);
+      EXPECT_TRUE(is_same) << tiles << ", " << size;
+    }
   }
 }
 
