@@ -3,6 +3,7 @@
 
 #include <array>
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -17,8 +18,12 @@ inline constexpr std::array profile_files = {"report.html", "trace.json", "frame
 void save_profile(const std::filesystem::path& folder, const lab::Profile& profile,
                   const std::vector<std::string>& changes);
 
-/// The same of frames that were recorded while somebody looked: "in the window".
+/// Draws what a view of a frame showed once more.
+using DrawAgain = std::function<Image(const shared::View& view)>;
+
+/// The same of frames that were recorded while somebody looked: "in the window". Of the worst, worst first,
+/// it has as many pictures as `draw` makes in a second, for which somebody may wait.
 void save_recording(const std::filesystem::path& folder, const lab::ProfileFacts& facts,
-                    render::Recording recording);
+                    render::Recording recording, const DrawAgain& draw = {});
 
 }  // namespace binosplat::app

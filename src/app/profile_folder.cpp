@@ -5,6 +5,7 @@
 #include "app/command.h"
 #include "app/profile.h"
 #include "app/report.h"
+#include "base/clock.h"
 #include "base/log.h"
 #include "base/output_file.h"
 #include "lab/csv.h"
@@ -29,10 +30,18 @@ void save_profile(const std::filesystem::path& folder, const lab::Profile& profi
 }
 
 void save_recording(const std::filesystem::path& folder, const lab::ProfileFacts& facts,
-                    render::Recording recording) {
-  const lab::Profile profile{.facts = facts, .recording = std::move(recording)};
+                    render::Recording recording, const DrawAgain& draw) {
+  constexpr double wait_ms = 1000.0;
+  lab::Profile profile{.facts = facts, .recording = std::move(recording)};
+  const lab::ProfileSummary summary = lab::summary_of(profile);
+  const Clock::time_point begin = Clock::now();
+  for (const std::size_t n : summary.worst) {
+    if (!draw || ms_since(begin) > wait_ms) break;
+    profile.pictures.emplace_back(
+        lab::for_page(draw(profile.recording.frames[n].views.front()), lab::worst_picture_width));
+  }
   save_profile(folder, profile, {});
-  for (const std::string& line : lab::lines_of(profile, lab::summary_of(profile))) log_info("{}", line);
+  for (const std::string& line : lab::lines_of(profile, summary)) log_info("{}", line);
 }
 
 }  // namespace binosplat::app

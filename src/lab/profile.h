@@ -22,6 +22,8 @@ struct Saving {
   double quality_db = 0.0, share = 0.0;
 };
 
+constexpr int worst_picture_width = 320;  // px
+
 struct Profile {
   ProfileFacts facts;
   render::Recording recording;

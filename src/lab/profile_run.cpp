@@ -16,7 +16,6 @@ constexpr double busy_ms = 1000.0;           // until a GPU's clock is up
 constexpr double levels_wait_ms = 10'000.0;  // at most, for the levels of the first frame
 constexpr double usual_frame_ms = 1000.0 / 90.0;
 constexpr double slow_ms = 300.0;  // a frame that is too slow to be drawn for advice alone
-constexpr int picture_width = 320;
 
 /// Sleeps as long as that is exact, then looks at the clock again and again.
 void wait_until(Clock::time_point due) {
@@ -106,7 +105,7 @@ Image ProfileDrawer::picture(std::size_t frame) {
   draw(run_.frames[frame], settings_now());
   const std::vector<Picture> pictures =
       run_.foveation ? frame_.read_pictures() : frame_.frame().read_pictures();
-  return for_page(composite(pictures.front(), run_.settings.background), picture_width);
+  return for_page(composite(pictures.front(), run_.settings.background), worst_picture_width);
 }
 
 std::optional<Saving> ProfileDrawer::saving(std::size_t frame, double quality_db) {

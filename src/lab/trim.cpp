@@ -44,8 +44,9 @@ class TrimJudge {
   /// What the bound is on: the mean of the views held back, in the size that loses more.
   double judged(const Model& model) {
     const std::size_t views = held_back_->views().size();
-    Progress progress(fmt::format("judging {} Gaussians of degree {}", model.count(), model.degree),
-                      views + (held_back_own_ ? held_back_own_->views().size() : 0));
+    Progress progress(
+        fmt::format("judging model {}, {} Gaussians of degree {}", ++judged_, model.count(), model.degree),
+        views + (held_back_own_ ? held_back_own_->views().size() : 0));
     const double db = held_back_->cost(model, 1, [&](std::size_t done) { progress.update(done); }).mean_db;
     if (!held_back_own_) return db;
     const auto tell = [&](std::size_t done) { progress.update(views + done); };
@@ -87,6 +88,7 @@ class TrimJudge {
   }
 
   CalibrationTarget target_;
+  int judged_ = 0;      // models
   double start_ = 0.0;  // what the whole model loses, as a drop: below 0 where fitting gained
   std::unique_ptr<Calibrator> held_back_, held_back_own_;  // own: in the cameras' own size, or none
   std::unique_ptr<Calibrator> test_, test_own_;

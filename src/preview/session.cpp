@@ -38,38 +38,6 @@ double depth_ahead(const Model& model, const Camera& of_world) {
 
 }  // namespace
 
-void choose_threshold(render::FrameSettings& settings, int th) {
-  settings.th = th;
-  settings.tolerance = static_cast<float>(render::threshold_rules[th].careful_tolerance);
-  settings.quality = 0.0f;
-}
-
-bool is_exact(const render::FrameSettings& settings) {
-  return render::is_exact(settings.th) && render::has_every_pair(settings.tiles);
-}
-
-void next_tiles(render::FrameSettings& settings, int by) {
-  const int count = static_cast<int>(std::size(tiles_choices));
-  const bool stays_exact = is_exact(settings);
-  do settings.tiles = (settings.tiles + by + count) % count;
-  while (settings.tiles == TILES_ALL || (stays_exact && !is_exact(settings)));
-}
-
-void choose_quality(render::FrameSettings& settings, std::optional<float> db) {
-  // The rule that costs least at equal error (docs/method.md 8), unless one was chosen.
-  if (!db || render::is_exact(settings.th)) choose_threshold(settings, db ? TH_SQUARED : TH_TAU);
-  settings.quality = db.value_or(0.0f);
-}
-
-void make_consistent(Choices& choices) {
-  render::FrameSettings& s = choices.settings;
-  const render::ThresholdRule& rule = render::threshold_rules[s.th];
-  if (rule.exact) s.quality = 0.0f;
-  if (rule.exact || s.quality > 0.0f) s.tolerance = 0.0f;
-  if (!render::takes(s.th, s.transmittance)) s.transmittance = TRANSMITTANCE_ONE;
-  s.background = choices.background;
-}
-
 int next_divisor(int divisor, double ms) {
   constexpr int most = 4;
   // No picture is more than four times as large as the next smaller one.
@@ -394,6 +362,12 @@ double Session::psnr_against_exact() {
   const std::vector<Picture> shown = frame_.read_pictures();
   const std::vector<Picture> right = debug_view_.exact(views(), choices.settings);
   return measure::psnr(shown, right, choices.background);
+}
+
+Image Session::picture_of(const shared::View& view) {
+  frame_.draw({&view, 1}, settings());
+  change();
+  return composite(frame_.read_pictures().front(), choices.background);
 }
 
 }  // namespace binosplat::preview

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "gl/texture.h"
+#include "preview/choices.h"
 #include "preview/key_list.h"
 #include "preview/mark_drawing.h"
 #include "preview/navigator.h"
@@ -21,36 +22,6 @@
 #include "stream/stream.h"
 
 namespace binosplat::preview {
-
-/// What the user may change while looking.
-struct Choices {
-  int layout = LAYOUT_PARALLEL;  // LAYOUT_SEPARATE: the left eye alone
-  int show = SHOW_PICTURE;
-  double split = 0.5;  // with SHOW_SPLIT: the share of a picture's width that is shown as drawn
-  render::FrameSettings settings;
-  stereo::RigSettings rig;
-  glm::vec3 background{0.0f};
-  bool seeks_screen = false;  // rig.convergence is to suit what a model's first picture shows
-  bool grid = false;          // on the ground
-  bool cameras = false;       // are drawn where they stand
-  int saved_width = 0;        // px, of pictures that are saved; 0: the window's
-};
-
-/// Another rule, with the tolerance at which a search would begin.
-void choose_threshold(render::FrameSettings& settings, int th);
-
-/// Whether pictures are exact: no threshold, and tiles that leave nothing out.
-bool is_exact(const render::FrameSettings& settings);
-
-/// The next tile test, or the one before; of exact pictures the next exact one.
-void next_tiles(render::FrameSettings& settings, int by);
-
-/// So many dB against the exact pictures; none: exact.
-void choose_quality(render::FrameSettings& settings, std::optional<float> db);
-
-/// Changes what cannot be combined to what can, in favour of the threshold that is chosen: no tolerance
-/// without one, and so on (docs/method.md 5); and of a quality rather than a tolerance.
-void make_consistent(Choices& choices);
 
 /// While the head moves, pictures of a fraction of the size are drawn where a frame takes longer than this.
 constexpr double moving_ms = 30.0;
@@ -143,6 +114,8 @@ class Session {
   void save_pose(const std::filesystem::path& path) const;
   /// PSNR of what is drawn against the exact frame, dB, over both eyes.
   double psnr_against_exact();
+  /// What a view shows, as frames are drawn now.
+  Image picture_of(const shared::View& view);
 
   /// The last frames drawn, newest last.
   const std::deque<render::FrameRecord>& frames() const { return last_.frames; }

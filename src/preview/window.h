@@ -28,9 +28,11 @@ struct Opened {
   double fps = 0.0;
 };
 
-/// Writes frames of a scene, that were recorded with this context, into a new folder.
+/// Writes frames of a scene, that were recorded with this context, into a new folder. `draw` draws one of
+/// their views once more.
 using SaveRecording = std::function<void(const std::filesystem::path& folder, const std::string& scene,
-                                         const gl::Context& context, render::Recording recording)>;
+                                         const gl::Context& context, render::Recording recording,
+                                         const std::function<Image(const shared::View& view)>& draw)>;
 
 struct WindowSettings {
   std::optional<glm::ivec2> size;  // px; none: what suits the display

@@ -259,7 +259,8 @@ void Window::record_or_stop() {
     return tell("no frame was drawn meanwhile: move the head while recording", true);
   save_in_folder([&] {
     const std::filesystem::path folder = free_name(scene_.folder, "profile", "");
-    settings_.save_recording(folder, scene_.name, *context_, std::move(recording));
+    settings_.save_recording(folder, scene_.name, *context_, std::move(recording),
+                             [this](const shared::View& view) { return session_->picture_of(view); });
     return folder.string();
   });
 }

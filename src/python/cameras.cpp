@@ -216,11 +216,13 @@ void add_list(py::module_& module) {
       });
   module.def(
       "load_cameras",
-      [](const std::filesystem::path& path, const std::optional<std::filesystem::path>& model) {
+      [](const std::optional<std::filesystem::path>& path,
+         const std::optional<std::filesystem::path>& model) {
+        if (!path) fail("load_cameras: the path is None, as find_cameras() says where it finds none");
         const Unlocked unlocked;
-        Cameras cameras{path.string(), load_cameras(path)};
+        Cameras cameras{path->string(), load_cameras(*path)};
         const auto dataparser = model ? find_dataparser(*model) : std::nullopt;
-        if (dataparser) move_into_training(*dataparser, path, cameras.list);
+        if (dataparser) move_into_training(*dataparser, *path, cameras.list);
         return cameras;
       },
       py::arg("path"), py::arg("model") = py::none(), help::load_cameras);

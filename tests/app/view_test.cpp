@@ -262,6 +262,8 @@ TEST_F(ViewOnADisplay, FramesAreRecordedByAKey) {
   const lab::Table frames = lab::read_csv(test::read_text(out + "/profile_001/frames.csv"), "frames.csv");
   EXPECT_GT(frames.rows.size(), 3u) << "the head was under way for a second";
   EXPECT_EQ(test::differences_of(trace, frames), std::vector<std::string>());
+  const std::string page = test::read_text(out + "/profile_001/report.html");
+  EXPECT_NE(page.find(R"("png":"iVBORw0KGgo)"), std::string::npos) << "no picture of a bad frame";
 }
 
 TEST_F(ViewOnADisplay, KeysArePlayedAndGoneOnWith) {

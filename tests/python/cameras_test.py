@@ -69,7 +69,10 @@ def test_files_that_list_no_cameras_are_refused(tmp_path):
         with pytest.raises(binosplat.InputError) as raised:
             binosplat.load_cameras(tmp_path / name)
         assert words in str(raised.value)
-    assert binosplat.find_cameras(tmp_path / "model.ply") is None
+    nowhere = binosplat.find_cameras(tmp_path / "model.ply")
+    assert nowhere is None
+    with pytest.raises(binosplat.InputError, match="find_cameras"):
+        binosplat.load_cameras(nowhere)
 
 
 def test_a_camera_by_numbers_is_that_of_the_file(renderer, cameras, tmp_path):

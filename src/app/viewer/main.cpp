@@ -140,10 +140,10 @@ void view(const RenderOptions& o) {
   window.size = o.camera.lens.size;
   window.shader_folder = o.context.shader_dir;
   window.save_recording = [](const fs::path& to, const std::string& scene, const gl::Context& context,
-                             render::Recording recording) {
+                             render::Recording recording, const DrawAgain& draw) {
     save_recording(to,
                    {scene, "in the window", "as chosen there", lab::device_text(context), context.software()},
-                   std::move(recording));
+                   std::move(recording), draw);
   };
   // What is saved of another model lies apart.
   const auto open_other = [folder, metre = o.rig.units_per_metre](const std::string& file) {
