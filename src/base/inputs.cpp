@@ -2,8 +2,8 @@
 
 #include <sys/stat.h>
 
+#include <map>
 #include <mutex>
-#include <set>
 #include <utility>
 
 #include "base/error.h"
@@ -14,7 +14,7 @@ namespace {
 
 struct Inputs {
   std::mutex mutex;
-  std::set<std::pair<dev_t, ino_t>> files;
+  std::map<std::pair<dev_t, ino_t>, std::filesystem::path> files;
 };
 
 Inputs& inputs() {
@@ -28,14 +28,18 @@ void note_input(const std::filesystem::path& path) {
   struct stat found = {};
   if (stat(path.c_str(), &found) != 0 || !S_ISREG(found.st_mode)) return;
   const std::lock_guard<std::mutex> lock(inputs().mutex);
-  inputs().files.emplace(found.st_dev, found.st_ino);
+  inputs().files[{found.st_dev, found.st_ino}] = std::filesystem::absolute(path);
 }
 
 void check_no_input(const std::filesystem::path& path) {
   struct stat found = {};
   if (stat(path.c_str(), &found) != 0) return;
   const std::lock_guard<std::mutex> lock(inputs().mutex);
-  if (inputs().files.contains({found.st_dev, found.st_ino}))
+  const auto noted = inputs().files.find({found.st_dev, found.st_ino});
+  if (noted == inputs().files.end()) return;
+  // A new file may have the number of one that is gone: a model that was written anew meanwhile, say.
+  struct stat now = {};
+  if (stat(noted->second.c_str(), &now) == 0 && now.st_dev == found.st_dev && now.st_ino == found.st_ino)
     fail("cannot write {}: this run reads it, and it would be lost; name another file", path.string());
 }
 

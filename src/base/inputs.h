@@ -5,7 +5,8 @@
 
 namespace binosplat {
 
-/// From now on OutputFile refuses this file, under whatever name. One that there is not is ignored.
+/// From now on OutputFile refuses this file, under whatever name, as long as it is there under this one. One
+/// that there is not is ignored.
 void note_input(const std::filesystem::path& path);
 
 /// Throws Error if `path` is a file that was noted.
