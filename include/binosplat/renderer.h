@@ -83,10 +83,10 @@ class Renderer {
  public:
   /// Uploads the model into the context that is current, of OpenGL 4.5 core or later. Context, textures and
   /// framebuffers stay the caller's. Throws Error: no_gl where none is current and for what it lacks,
-  /// out_of_memory.
-  Renderer(GetProcAddress get_proc_address, const SplatModel& model);
+  /// out_of_memory; bad_input for a precision that there is not.
+  Renderer(GetProcAddress get_proc_address, const SplatModel& model, Precision precision = Precision::full);
   /// Draws the levels that a stream has read (binosplat/stream.h), which has one renderer at a time.
-  Renderer(GetProcAddress get_proc_address, SplatStream& stream);
+  Renderer(GetProcAddress get_proc_address, SplatStream& stream, Precision precision = Precision::full);
   ~Renderer();
   Renderer(Renderer&&) noexcept;
   Renderer& operator=(Renderer&&) noexcept;

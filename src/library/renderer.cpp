@@ -27,19 +27,22 @@ Impl& usable(const std::unique_ptr<Impl>& impl) {
 }  // namespace
 
 struct Renderer::Impl {
-  Impl(GetProcAddress get_proc_address, std::shared_ptr<const Model> drawn) : model(std::move(drawn)) {
+  Impl(GetProcAddress get_proc_address, std::shared_ptr<const Model> drawn, Precision kept_in)
+      : model(std::move(drawn)), precision(library::precision_of(kept_in)) {
     if (model == nullptr) fail("model: it was moved from: expected a SplatModel that holds one");
     context = gl::Context::adopt(get_proc_address);
     const gl::KeptState kept(*context);
-    draw_with(std::make_shared<render::GpuModel>(*context, *model));
+    draw_with(std::make_shared<render::GpuModel>(*context, *model, precision));
   }
-  Impl(GetProcAddress get_proc_address, std::shared_ptr<SplatStream::Impl> drawn) : stream(std::move(drawn)) {
+  Impl(GetProcAddress get_proc_address, std::shared_ptr<SplatStream::Impl> drawn, Precision kept_in)
+      : stream(std::move(drawn)), precision(library::precision_of(kept_in)) {
     if (stream == nullptr) fail("stream: it was moved from: expected a SplatStream that holds one");
     if (stream->context != nullptr) fail("a stream has one renderer at a time: destroy the other one first");
     context = gl::Context::adopt(get_proc_address);
     const gl::KeptState kept(*context);
-    draw_with(stream->stream.gpu_model(*context, PRECISION_FULL));
+    draw_with(stream->stream.gpu_model(*context, precision));
     stream->context = context.get();
+    stream->precision = precision;
   }
   void draw_with(std::shared_ptr<render::GpuModel> drawn) {
     frame = std::make_unique<stereo::FoveatedFrame>(std::move(drawn));
@@ -80,6 +83,7 @@ struct Renderer::Impl {
 
   std::shared_ptr<const Model> model;  // or
   std::shared_ptr<SplatStream::Impl> stream;
+  int precision;  // PRECISION_
   std::unique_ptr<gl::Context> context;
   std::optional<Submitted> submitted;
   std::unique_ptr<stereo::FoveatedFrame> frame;
@@ -87,10 +91,10 @@ struct Renderer::Impl {
   std::unique_ptr<library::Targets> checked;
 };
 
-Renderer::Renderer(GetProcAddress get_proc_address, const SplatModel& model)
-    : impl_(std::make_unique<Impl>(get_proc_address, model.model_)) {}
-Renderer::Renderer(GetProcAddress get_proc_address, SplatStream& stream)
-    : impl_(std::make_unique<Impl>(get_proc_address, stream.impl_)) {}
+Renderer::Renderer(GetProcAddress get_proc_address, const SplatModel& model, Precision precision)
+    : impl_(std::make_unique<Impl>(get_proc_address, model.model_, precision)) {}
+Renderer::Renderer(GetProcAddress get_proc_address, SplatStream& stream, Precision precision)
+    : impl_(std::make_unique<Impl>(get_proc_address, stream.impl_, precision)) {}
 Renderer::~Renderer() {
   // What has the same names in another context is not the renderer's to delete.
   if (impl_ == nullptr || !impl_->context->another_is_current()) return;
@@ -134,7 +138,7 @@ void Renderer::submit(std::span<const View> views, const Placement& placement, c
          settings.background ? "background" : "layout other than separate");
   }
   impl_->checked->check(views, settings);
-  const render::FrameSettings over = library::frame_settings(settings, views);
+  const render::FrameSettings over = library::frame_settings(settings, views, impl_->precision);
   to.is_foveated = settings.foveation.has_value();
   if (to.is_foveated && !to.depths.empty())
     fail("foveation with depth targets: composed pictures have no depths");

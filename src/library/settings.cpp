@@ -10,6 +10,7 @@ namespace binosplat::library {
 namespace {
 
 static_assert(ViewRegion::tile == TILE_SIZE_DEFAULT);
+static_assert(static_cast<int>(Precision::half) == PRECISION_HALF);
 static_assert(static_cast<int>(Order::distance) == ORDER_DISTANCE);
 static_assert(static_cast<int>(Projection::tangent) == PROJECTION_TANGENT);
 
@@ -46,10 +47,11 @@ render::ViewRegion region_of(const ViewRegion& region) {
 
 }  // namespace
 
-render::FrameSettings frame_settings(const Settings& from, std::span<const View> views) {
+render::FrameSettings frame_settings(const Settings& from, std::span<const View> views, int precision) {
   check_numbers(from);
   check_choices(from);
   render::FrameSettings to;
+  to.precision = precision;
   to.th = rule_of(from);
   to.transmittance = from.transmittance == Transmittance::measured ? TRANSMITTANCE_LAST : TRANSMITTANCE_ONE;
   if (from.quality && !(*from.quality > 0.0f))
@@ -70,6 +72,12 @@ render::FrameSettings frame_settings(const Settings& from, std::span<const View>
   }
   render::check_choice(to);
   return to;
+}
+
+int precision_of(Precision precision) {
+  const int number = static_cast<int>(precision);
+  if (number < 0 || number > PRECISION_HALF) fail("precision {}: there is none of this number", number);
+  return number;
 }
 
 int layout_of(Layout layout) {

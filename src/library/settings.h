@@ -8,9 +8,11 @@
 namespace binosplat::library {
 
 /// Throws Error(bad_input) for values and settings that no frame has; render::Frame checks the rest.
-render::FrameSettings frame_settings(const Settings& from, std::span<const View> views);
+render::FrameSettings frame_settings(const Settings& from, std::span<const View> views,
+                                     int precision = PRECISION_FULL);
 
-/// One of shared/axes.h. Throws Error(bad_input) for a number that names none.
+/// One of shared/axes.h. Throw Error(bad_input) for a number that names none.
+int precision_of(Precision precision);
 int layout_of(Layout layout);
 
 Report report_of(const render::FrameReport& frame);

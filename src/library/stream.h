@@ -13,6 +13,7 @@ struct SplatStream::Impl {
 
   Stream stream;
   gl::Context* context = nullptr;  // of its renderer; null: there is none
+  int precision = 0;               // its renderer's, PRECISION_
   bool is_drawn = false;           // by a frame that was submitted and is not finished
 };
 

@@ -49,8 +49,27 @@ TEST(LibrarySettings, ContradictionsAreRefused) {
   EXPECT_TRUE(refused({.tolerance = NAN}, "zero or more"));
   EXPECT_TRUE(refused({.transmittance = Transmittance::measured}, "no effect"));
   EXPECT_TRUE(test::fails_saying([] { library::layout_of(static_cast<Layout>(77)); }, {"layout 77"}));
+  EXPECT_TRUE(test::fails_saying([] { library::precision_of(static_cast<Precision>(2)); }, {"precision 2"}));
   EXPECT_TRUE(
       test::fails_saying([] { library::layout_of(static_cast<Layout>(LAYOUT_MULTI_VIEW)); }, {"layout 1"}));
+}
+
+TEST_F(Library, HalfPrecisionIsNearFullAndTakesLessMemory) {
+  const SplatModel model = in_memory(test::random_model(3, 4000, 3));
+  std::array<std::vector<float>, 2> pictures;
+  std::array<std::int64_t, 2> bytes{};
+  for (const Precision precision : {Precision::full, Precision::half}) {
+    Renderer renderer(caller.get_proc_address(), model, precision);
+    const auto k = static_cast<std::size_t>(precision);
+    bytes[k] = renderer.draw(views(), placement, over_black).gpu_bytes;
+    pictures[k] = read(0);
+  }
+  EXPECT_LT(bytes[1], bytes[0]);
+  double squares = 0.0;
+  for (std::size_t k = 0; k < pictures[0].size(); ++k)
+    squares += std::pow(pictures[0][k] - pictures[1][k], 2.0);
+  EXPECT_GT(squares, 0.0);
+  EXPECT_LT(squares / static_cast<double>(pictures[0].size()), 1e-6) << "60 dB";
 }
 
 TEST_F(Library, RegionsAndReportsAreAFramesOwn) {

@@ -35,11 +35,13 @@ struct Levels : Library {
   inline static std::unique_ptr<test::TempFolder> folder;
 };
 
-TEST_F(Levels, ComeAsFramesAreDrawn) {
+class LevelsIn : public Levels, public testing::WithParamInterface<Precision> {};
+
+TEST_P(LevelsIn, ComeAsFramesAreDrawn) {
   SplatStream stream(levels(), {.quality = 45.0});
   const Placement there = stream.placement({0.0, 1.6, 0.0});
   EXPECT_TRUE(test::fails_saying([&] { stream.begin_frame(views(), there, over_black, 2.5); }, {"Renderer"}));
-  Renderer renderer(caller.get_proc_address(), stream);
+  Renderer renderer(caller.get_proc_address(), stream, GetParam());
   const std::size_t at_first = stream.count();
   renderer.draw(views(), there, over_black);  // before any begin_frame(), which may already bring some
   const std::vector<float> coarse = read(0);
@@ -63,6 +65,8 @@ TEST_F(Levels, ComeAsFramesAreDrawn) {
   EXPECT_GT(10.0 * std::log10(static_cast<double>(finest.size()) / squared), 43.0);
   EXPECT_LT(squared, from_coarse);
 }
+
+INSTANTIATE_TEST_SUITE_P(Precision, LevelsIn, testing::Values(Precision::full, Precision::half));
 
 TEST_F(Levels, HaveOneRendererAtATimeAndItsContext) {
   std::optional<SplatStream> stream(std::in_place, levels());
