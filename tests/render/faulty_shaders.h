@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "gl/shader_source.h"
 #include "support/gl.h"
@@ -12,21 +13,29 @@
 
 namespace binosplat::test {
 
-/// While it lives, new programs of gl_context() are made of the built-in shaders with a fault in place of
-/// `sought`, which must stand in the shader `name` and in no other.
+/// A text that stands in the shader `name`, in no other, and what is in its place.
+struct ShaderFault {
+  std::string name, sought, fault;
+};
+
+/// While it lives, new programs of gl_context() are made of the built-in shaders with these faults.
 class FaultyShaders {
  public:
-  FaultyShaders(const std::string& name, const std::string& sought, const std::string& fault) {
-    for (const auto& [other, text] : gl::embedded_shaders()) {
+  explicit FaultyShaders(const std::vector<ShaderFault>& faults) {
+    for (const auto& [name, text] : gl::embedded_shaders()) {
       std::string faulty = text;
-      const std::size_t at = faulty.find(sought);
-      EXPECT_EQ(at != std::string::npos, other == name) << other;
-      if (at != std::string::npos) faulty.replace(at, sought.size(), fault);
-      std::filesystem::create_directories((folder_ / other).parent_path());
-      write_text(folder_ / other, faulty);
+      for (const ShaderFault& f : faults) {
+        const std::size_t at = faulty.find(f.sought);
+        EXPECT_EQ(at != std::string::npos, name == f.name) << name << ": " << f.sought;
+        if (at != std::string::npos) faulty.replace(at, f.sought.size(), f.fault);
+      }
+      std::filesystem::create_directories((folder_ / name).parent_path());
+      write_text(folder_ / name, faulty);
     }
     gl_context().set_shader_folder(folder_.path());
   }
+  FaultyShaders(const std::string& name, const std::string& sought, const std::string& fault)
+      : FaultyShaders(std::vector{ShaderFault{name, sought, fault}}) {}
   ~FaultyShaders() { gl_context().set_shader_folder({}); }
   FaultyShaders(const FaultyShaders&) = delete;
   FaultyShaders& operator=(const FaultyShaders&) = delete;

@@ -5,6 +5,7 @@
 #include <bit>
 #include <glm/gtc/packing.hpp>
 
+#include "render/faulty_shaders.h"
 #include "render/support.h"
 
 namespace binosplat {
@@ -61,6 +62,41 @@ TEST(Half, IsTheSameInEveryTileTestAndSize) {
       EXPECT_TRUE(is_same) << tiles << ", " << size;
     }
   }
+}
+
+// What NVIDIA's GPUs blend halves by (blend_halves.glsl), with floats for them, as llvmpipe's blend.
+std::vector<test::ShaderFault> with_floats() {
+  return {{"blend_blocks.comp", "#define BLOCK_HEIGHT COLUMN\n",
+           "#define BLOCK_HEIGHT COLUMN\n#define MAY_PACK 1\n#define f16vec2 vec2\n#define float16_t float\n"
+           "#define unpackFloat2x16 unpackHalf2x16\n#define blend(at)\n"},
+          {"blend_blocks.comp", "void list_own(uint block) {",
+           "uint own_at(uint i) { return own_lists[gl_LocalInvocationID.y][i]; }\n"
+           "#include \"blend_halves.glsl\"\nvoid list_own(uint block) {"},
+          {"blend_blocks.comp", "own_counts[own_block], next = 0u;\n",
+           "own_counts[own_block], next = 0u;\n    blend_batch(count);\n"}};
+}
+
+TEST(Half, PackedIsTheUsualBlendButForBits) {
+  if (!test::gl_context().software()) GTEST_SKIP() << "GPUs draw by other programs";
+  const Model model = test::random_model(48, 3000, 1);
+  const auto away = [&](const render::FrameSettings& settings, std::vector<test::ShaderFault> faults) {
+    const Picture usual = test::draw(model, eyes_for_half(), settings)[1];
+    for (const test::ShaderFault& f : with_floats()) faults.push_back(f);
+    const test::FaultyShaders shaders(faults);
+    return test::psnr(test::draw(model, eyes_for_half(), settings)[1], usual);
+  };
+  const double exact_db = away(in_half, {});
+  EXPECT_GE(exact_db, 80.0);
+  EXPECT_LT(exact_db, 150.0) << "the usual blend was drawn";
+  render::FrameSettings rough = in_half;
+  rough.th = TH_SQUARED;
+  rough.tolerance = 0.5f;
+  EXPECT_GE(away(rough, {}), 80.0);
+  // Planted, in what joins batches, and in what is seen.
+  const char* const file = "blend_halves.glsl";
+  EXPECT_LT(away(in_half, {{file, "colour[p] += before * sum", "colour[p] += sum"}}), 70.0);
+  EXPECT_LT(away(in_half, {{file, "is_done(p) ? 0.0 : after", "is_done(p) ? 0.0 : before"}}), 70.0);
+  EXPECT_LT(away(in_half, {{file, "exp2(exponent) * is_seen", "exp2(exponent)"}}), 70.0);
 }
 
 TEST(Half, TheBarCatchesScalesOfEightBits) {
