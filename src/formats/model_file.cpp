@@ -65,7 +65,7 @@ bool is_named_as_model(const fs::path& path) {
 
 void refuse_level(const fs::path& path, const ModelOptions& options) {
   if (options.lod) {
-    fail("--lod {}: {} has no levels of detail; a streamed SOG's lod-meta.json has", *options.lod,
+    fail("level of detail {}: {} has no levels of detail; a streamed SOG's lod-meta.json has", *options.lod,
          path.string());
   }
 }
@@ -180,7 +180,8 @@ Model load_model_alone(const fs::path& path, const ModelOptions& options) {
   const fs::path file = file_of(path);
   Model model = load_content(file, options);
   if (options.appearance && !model.scaffold) {
-    fail("--appearance: {} is no Scaffold-GS model, whose colours have appearances", file.string());
+    fail("appearance {}: {} is no Scaffold-GS model, whose colours have appearances", *options.appearance,
+         file.string());
   }
   model.name = file.filename().string();
   if (model.count() == 0) {

@@ -34,7 +34,7 @@ struct LoadedPart {
 int choose(const fs::path& path, const SogLevels& levels, std::optional<int> lod) {
   const auto range = [&] { return levels.count() == 1 ? "0" : fmt::format("0 to {}", levels.count() - 1); };
   if (lod && (*lod < 0 || *lod >= levels.count())) {
-    fail("--lod {}: {} has the levels {}, 0 being the finest", *lod, path.string(), range());
+    fail("level of detail {}: {} has the levels {}, 0 being the finest", *lod, path.string(), range());
   }
   std::set<int> there;
   std::optional<fs::path> missing;
@@ -48,7 +48,7 @@ int choose(const fs::path& path, const SogLevels& levels, std::optional<int> lod
     fail("{}: no level of detail is complete; {} is missing: fetch it", path.string(), missing->string());
   }
   if (lod && there.count(*lod) == 0) {
-    fail("--lod {}: {} is missing; the finest level that is there is {}", *lod, missing->string(),
+    fail("level of detail {}: {} is missing; the finest level that is there is {}", *lod, missing->string(),
          *there.begin());
   }
   const int level = lod.value_or(*there.begin());

@@ -54,12 +54,14 @@ render::FrameSettings frame_settings(const Settings& from, std::span<const View>
   to.precision = precision;
   to.th = rule_of(from);
   to.transmittance = from.transmittance == Transmittance::measured ? TRANSMITTANCE_LAST : TRANSMITTANCE_ONE;
-  if (from.quality && !(*from.quality > 0.0f))
-    fail("quality {}: expected decibels above zero", *from.quality);
+  if (from.quality && !(*from.quality >= render::quality_least && *from.quality <= render::quality_most)) {
+    fail("settings.quality {}: expected {} to {} dB", *from.quality, render::quality_least,
+         render::quality_most);
+  }
   to.quality = from.quality.value_or(0.0f);
   to.tolerance = from.tolerance.value_or(0.0f);
   if (!render::is_exact(to.th) && !from.quality && !from.tolerance)
-    fail("threshold {} needs a tolerance or a quality: what it may cost", th_choices[to.th].name);
+    fail("settings.threshold {} needs settings.tolerance or settings.quality", th_choices[to.th].name);
   if (from.order) to.order = static_cast<int>(*from.order);
   if (from.projection) to.projection = static_cast<int>(*from.projection);
   to.decode = from.cyclopean ? DECODE_CYCLOPEAN : DECODE_EYES;

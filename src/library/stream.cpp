@@ -48,7 +48,7 @@ bool SplatStream::begin_frame(std::span<const View> views, const Placement& plac
   if (impl_->context == nullptr) fail("a stream without a renderer: make a Renderer of it first");
   impl_->context->check_current();
   if (impl_->is_drawn) fail("a frame of the stream is under way: call finish() before begin_frame()");
-  if (!(ms >= 0.0)) fail("begin_frame of {} ms: expected none or more", ms);
+  if (!(ms >= 0.0)) fail("begin_frame of {} ms: expected zero or more", ms);
   library::check_numbers(views, placement);
   const render::FrameSettings of_frame = library::frame_settings(settings, views, impl_->precision);
   const gl::KeptState kept(*impl_->context);

@@ -42,8 +42,8 @@ std::string describe(const Scaffold& s) {
 
 void choose_appearance(Scaffold& scaffold, std::size_t id) {
   const std::size_t count = scaffold.appearance_count();
-  if (count == 0) fail("--appearance: {} was trained without appearances", scaffold.name);
-  if (id >= count) fail("--appearance {}: {} has appearances 0 to {}", id, scaffold.name, count - 1);
+  if (count == 0) fail("appearance {}: {} was trained without appearances", id, scaffold.name);
+  if (id >= count) fail("appearance {}: {} has appearances 0 to {}", id, scaffold.name, count - 1);
   scaffold.appearance = id;
 }
 

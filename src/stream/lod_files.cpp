@@ -31,7 +31,7 @@ constexpr std::size_t decoded_for_one = 8;
 nlohmann::json levels_json(const fs::path& path, const fs::path& asked) {
   auto json = read_lod_meta(path);
   if (!json)
-    fail("--detail: {} has no levels of detail to choose from; a streamed SOG's lod-meta.json has",
+    fail("{} has no levels of detail to choose from; `binosplat levels` makes a streamed SOG that has",
          asked.string());
   return std::move(*json);
 }

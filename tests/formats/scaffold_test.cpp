@@ -120,7 +120,7 @@ TEST(ScaffoldFile, AppearancesAreChosenByRow) {
   Scaffold scaffold = test::random_scaffold(1, {.appearances = 3});
   choose_appearance(scaffold, 2);
   EXPECT_EQ(scaffold.appearance, 2u);
-  EXPECT_TRUE(test::fails_saying([&] { choose_appearance(scaffold, 3); }, {"--appearance 3", "0 to 2"}));
+  EXPECT_TRUE(test::fails_saying([&] { choose_appearance(scaffold, 3); }, {"appearance 3", "0 to 2"}));
   Scaffold without = test::random_scaffold(1);
   EXPECT_TRUE(test::fails_saying([&] { choose_appearance(without, 0); }, {"without appearances"}));
 }

@@ -54,10 +54,10 @@ TEST(Sog, LevelsOfDetail) {
   const Model level = load_model(lod, {.lod = 1});
   ASSERT_EQ(level.count(), 250u);
   EXPECT_TRUE(equal_from(level, 0, coarse));
-  EXPECT_TRUE(
-      test::fails_saying([&] { load_model(lod, {.lod = 2}); }, {"--lod 2", "lod-meta.json", "0 to 1"}));
-  EXPECT_TRUE(
-      test::fails_saying([&] { load_model(lod / "0_0", {.lod = 0}); }, {"--lod 0", "no levels of detail"}));
+  EXPECT_TRUE(test::fails_saying([&] { load_model(lod, {.lod = 2}); },
+                                 {"level of detail 2", "lod-meta.json", "0 to 1"}));
+  EXPECT_TRUE(test::fails_saying([&] { load_model(lod / "0_0", {.lod = 0}); },
+                                 {"level of detail 0", "no levels of detail"}));
 }
 
 TEST(Sog, PartsOfLevelsAndTheEnvironment) {
@@ -122,8 +122,9 @@ TEST(Sog, LevelsThatAreNotThere) {
   const std::string said = testing::internal::GetCapturedStderr();
   EXPECT_NE(said.find("0_0/meta.json is missing); level 5 is drawn"), std::string::npos) << said;
   EXPECT_EQ(load_model(copy.path(), {.lod = 6}).count(), 1873u);
-  EXPECT_TRUE(test::fails_saying([&] { load_model(copy.path(), {.lod = 3}); },
-                                 {"--lod 3", "3_0/meta.json is missing", "finest level that is there is 5"}));
+  EXPECT_TRUE(test::fails_saying(
+      [&] { load_model(copy.path(), {.lod = 3}); },
+      {"level of detail 3", "3_0/meta.json is missing", "finest level that is there is 5"}));
   fs::remove_all(copy.path() / "5_0");
   fs::remove_all(copy.path() / "6_0");
   EXPECT_TRUE(test::fails_saying([&] { load_model(copy.path()); },

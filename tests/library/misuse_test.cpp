@@ -204,7 +204,7 @@ TEST_F(Misuse, NumbersThatAreNone) {
     EXPECT_TRUE(refused([&](View& v) { v.eye.position.y = bad; }, {"views[1].eye.position"}));
     EXPECT_TRUE(
         refused([&](View& v) { v.eye.orientation.z = bad; }, {"views[1].eye.orientation", "quaternion"}));
-    EXPECT_TRUE(refused([&](View& v) { v.eye.fov.up = bad; }, {"field of view of right"}));
+    EXPECT_TRUE(refused([&](View& v) { v.eye.fov.up = bad; }, {"views[1].eye.fov", "radians"}));
     const auto badly_placed = [&](Placement where, const char* part) {
       return refused(views(), where, over_black, {part});
     };
@@ -225,14 +225,16 @@ TEST_F(Misuse, NumbersThatAreNone) {
   for (const double units : {0.0, -1.0})
     EXPECT_TRUE(refused(views(), {.units_per_metre = units}, over_black, {"placement.units_per_metre"}));
   EXPECT_TRUE(refused(views(), {.axes = glm::dmat3(2.0)}, over_black, {"placement.axes", "length 1"}));
-  EXPECT_TRUE(refused([](View& v) { v.region.columns.resize(3); }, {"columns for 3 rows"}));
-  EXPECT_TRUE(refused([](View& v) { v.region.hole_end = {1000, 8}; }, {"a hole"}));
+  EXPECT_TRUE(
+      refused([](View& v) { v.region.columns.resize(3); }, {"views[1].region", "columns for 3 rows"}));
+  EXPECT_TRUE(refused([](View& v) { v.region.hole_end = {1000, 8}; }, {"views[1].region", "a hole"}));
   for (const glm::ivec2 none :
        {glm::ivec2(0), glm::ivec2(72, -1), glm::ivec2(std::numeric_limits<int>::max(), 1)}) {
     const std::string text = fmt::format("views[1].size: {} x {} px", none.x, none.y);
     EXPECT_TRUE(refused([&](View& v) { v.size = none; }, {text}));
   }
   EXPECT_TRUE(refused(std::vector<View>(9, views()[0]), placement, over_black, {"1 to 8 views"}));
+  EXPECT_TRUE(refused(std::vector<View>(), placement, over_black, {"1 to 8 views"}));
 }
 
 TEST_F(Misuse, SettingsThatContradictEachOther) {

@@ -144,7 +144,7 @@ TEST_F(Library, BadEyesAreRefused) {
   EXPECT_TRUE(refused(bad, "quaternion"));
   bad = views();
   std::swap(bad[1].eye.fov.left, bad[1].eye.fov.right);
-  EXPECT_TRUE(refused(bad, "field of view of right"));
+  EXPECT_TRUE(refused(bad, "views[1].eye.fov"));
   bad = views();
   bad[0].size = {0, 4};
   EXPECT_TRUE(refused(bad, "0 x 4"));
