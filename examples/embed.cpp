@@ -34,7 +34,7 @@ int main(int argc, char** argv) try {
 
   const binosplat::SplatModel model(argv[1]);
   binosplat::Renderer renderer(eglGetProcAddress, model);
-  // The floor lies 1.6 m below the origin of the model's world.
+  // As if the floor lay 1.6 m below the origin of the model's world. Yours may lie elsewhere: see bounds().
   const binosplat::Placement placement = model.placement({0.0, 1.6, 0.0});
   // Each frame: xrLocateViews' poses and angles, 49 degrees outwards and 37 inwards, into this frame's
   // textures.

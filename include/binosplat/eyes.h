@@ -10,15 +10,16 @@ namespace binosplat {
 
 // The library is compiled with GLM's types as they come. A program that has them aligned
 // (GLM_FORCE_DEFAULT_ALIGNED_GENTYPES) would see other structs than the library does.
-static_assert(sizeof(glm::vec3) == 3 * sizeof(float) && sizeof(glm::dvec3) == 3 * sizeof(double));
+static_assert(sizeof(glm::vec3) == 3 * sizeof(float) && sizeof(glm::dvec3) == 3 * sizeof(double),
+              "binosplat needs GLM without GLM_FORCE_DEFAULT_ALIGNED_GENTYPES");
 
 /// World units in front of an eye within which nothing is drawn, unless something else is asked for: what
 /// 3D Gaussian Splatting is trained with, for worlds that are measured in metres or so.
 constexpr double near_default = 0.2;
 
-/// A frustum by the angles of its four sides from the forward axis, in radians, as in XrFovf: left and down
-/// are negative where the axis lies inside. It may be asymmetric, as those of headsets are. Each angle is
-/// less than a quarter turn, left is below right and down below up.
+/// A frustum by the angles of its four sides from the forward axis, in radians, in the order of XrFovf: left
+/// and down are negative where the axis lies inside. It may be asymmetric, as those of headsets are. Each
+/// angle is less than a quarter turn, left is below right and down below up.
 struct Fov {
   double left = 0;
   double right = 0;

@@ -30,7 +30,8 @@ namespace binosplat {
 
 class SplatStream;
 
-/// How OpenGL's functions are found by name: eglGetProcAddress, glfwGetProcAddress and their like.
+/// How OpenGL's functions are found by name: eglGetProcAddress, glfwGetProcAddress and their like. Cast
+/// SDL_GL_GetProcAddress and glXGetProcAddress, which have other types, with reinterpret_cast.
 using GetProcAddress = void (*(*)(const char* name))();
 
 /// What is drawn of a view, and how exactly; by default all of it, as the settings say. Rows count from the

@@ -59,7 +59,8 @@ class SplatStream {
   std::size_t count() const;
 
   /// The PSNR in dB of the views against the finest levels as it is predicted for the levels that the model
-  /// has now; none until something was measured.
+  /// has now. None until something was measured, and none of a model of at most 2^19 Gaussians, which is
+  /// drawn whole as soon as it is read.
   std::optional<double> quality() const;
 
  private:

@@ -39,7 +39,8 @@ enum class Layout {
 ///
 /// Colours are display-referred, as models are trained: numbers as a screen takes them, which is what a
 /// texture of GL_SRGB8_ALPHA8 holds. GL_FRAMEBUFFER_SRGB, blending, masks and tests of the caller's do not
-/// touch them. All draw buffers of a framebuffer get the picture.
+/// touch them. All draw buffers of a framebuffer get the picture. Pictures of one frame must not overlap in a
+/// target: which of them is seen there is not defined, and it is no error.
 struct Target {
   std::uint32_t texture = 0;      // 2D, or 2D array with a layer; 0: the framebuffer below
   int level = 0;                  // of the texture

@@ -36,8 +36,7 @@ void check_frustum(const Fov& fov, std::size_t k) {
     return;
   fail(
       "views[{}].eye.fov: left {}, right {}, up {}, down {}: expected radians within a quarter turn, left "
-      "below "
-      "right and down below up",
+      "below right and down below up",
       k, fov.left, fov.right, fov.up, fov.down);
 }
 
