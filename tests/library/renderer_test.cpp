@@ -148,7 +148,7 @@ TEST_F(Library, BadEyesAreRefused) {
   bad = views();
   bad[0].size = {0, 4};
   EXPECT_TRUE(refused(bad, "0 x 4"));
-  EXPECT_TRUE(refused({}, "0 eyes"));
+  EXPECT_TRUE(refused({}, "1 to 8 views"));
 }
 
 TEST_F(Library, TheCallersErrorsAreTheCallers) {
