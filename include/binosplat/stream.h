@@ -52,6 +52,9 @@ class SplatStream {
   bool begin_frame(std::span<const View> views, const Placement& placement, const Settings& settings,
                    double ms);
 
+  /// As SplatModel::bounds(), of the levels that it has now.
+  Bounds bounds() const;
+
   /// Whether the model has all that the views of the last begin_frame() need.
   bool settled() const;
 

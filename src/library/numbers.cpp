@@ -99,9 +99,9 @@ void check_numbers(std::span<const View> views, const Placement& placement) {
 
 void check_numbers(const Settings& settings) {
   const glm::vec3 behind = settings.background.value_or(glm::vec3(0.0f));
-  if (!is_finite(behind)) {
-    fail("settings.background ({}, {}, {}): expected finite numbers, from 0 to 1", behind.r, behind.g,
-         behind.b);
+  if (!glm::all(glm::greaterThanEqual(behind, glm::vec3(0.0f))) ||
+      !glm::all(glm::lessThanEqual(behind, glm::vec3(1.0f)))) {
+    fail("settings.background ({}, {}, {}): expected numbers from 0 to 1", behind.r, behind.g, behind.b);
   }
   if (!(settings.near_plane > 0.0) || !std::isfinite(static_cast<float>(settings.near_plane)))
     fail("settings.near_plane {}: expected world units above zero", settings.near_plane);

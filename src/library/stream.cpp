@@ -55,6 +55,7 @@ bool SplatStream::begin_frame(std::span<const View> views, const Placement& plac
   return stream.begin_frame(library::views_of(views, placement, settings).views, of_frame, ms);
 }
 
+Bounds SplatStream::bounds() const { return core_bounds(stream_in(impl_).model()); }
 bool SplatStream::settled() const { return stream_in(impl_).settled(); }
 std::size_t SplatStream::count() const { return stream_in(impl_).gaussians(); }
 std::optional<double> SplatStream::quality() const { return stream_in(impl_).reported_db(); }

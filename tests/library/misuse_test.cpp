@@ -158,6 +158,7 @@ TEST_F(Misuse, PicturesOfBothEyes) {
   EXPECT_TRUE(
       refused(pair, placement, {.background = glm::vec3(0.0f), .layout = Layout::half_width}, {"71"}));
   EXPECT_TRUE(refused(pair, placement, {.layout = Layout::anaglyph}, {"settings.background"}));
+  EXPECT_TRUE(refused(pair, placement, {.background = glm::vec3(2.0f)}, {"settings.background", "0 to 1"}));
   EXPECT_TRUE(refused(pair, placement, {.layout = static_cast<Layout>(77)}, {"layout 77"}));
 }
 

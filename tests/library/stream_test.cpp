@@ -53,7 +53,10 @@ TEST_P(LevelsIn, ComeAsFramesAreDrawn) {
   EXPECT_GT(stream.count(), at_first);
   EXPECT_NE(read(0), coarse);
   // The same as all of the model, but for what was asked to be lost.
-  Renderer whole(caller.get_proc_address(), SplatModel(levels(), {.lod = 0}));
+  const SplatModel finest_level(levels(), {.lod = 0});
+  const Bounds seen = stream.bounds(), true_ones = finest_level.bounds();
+  EXPECT_LT(glm::distance(seen.low, true_ones.low), 0.1f * glm::distance(true_ones.low, true_ones.high));
+  Renderer whole(caller.get_proc_address(), finest_level);
   const std::vector<float> drawn = read(0);
   whole.draw(views(), there, over_black);
   const std::vector<float> finest = read(0);
