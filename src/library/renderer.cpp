@@ -139,7 +139,12 @@ void Renderer::submit(std::span<const View> views, const Placement& placement, c
   }
   impl_->checked->check(views, settings);
   const render::FrameSettings over = library::frame_settings(settings, views, impl_->precision);
+  if (settings.cyclopean && !(impl_->model && impl_->model->scaffold))
+    fail("settings.cyclopean has no effect on this model, which is no Scaffold-GS model: leave it out");
   to.is_foveated = settings.foveation.has_value();
+  const std::size_t gazes = to.is_foveated ? settings.foveation->gaze.size() : 0;
+  if (gazes > 1 && gazes != views.size())
+    fail("settings.foveation.gaze: {} for {} views: expected none, one or one a view", gazes, views.size());
   if (to.is_foveated && !to.depths.empty())
     fail("foveation with depth targets: composed pictures have no depths");
   const auto head = library::views_of(views, placement, settings);

@@ -91,6 +91,10 @@ void Targets::check_colour(const Target& target, const glm::ivec2& size, const A
     check_framebuffer(target.framebuffer, argument);
     return check_attached(target, size, argument);
   }
+  if (target.framebuffer != 0) {
+    fail("{}: texture {} and framebuffer {}: expected one of them", argument.name(), target.texture,
+         target.framebuffer);
+  }
   const TextureLevel level = texture_level(context_, {target.texture, target.level, target.layer}, argument);
   check_within(level.size, {target.x, target.y}, size, argument);
   // Other storage than an immutable one may have other faults than the format.

@@ -118,6 +118,7 @@ TEST_F(Misuse, TexturesThatCannotTakeAPicture) {
 
 TEST_F(Misuse, FramebuffersThatCannotTakeAPicture) {
   EXPECT_TRUE(target_refused({.framebuffer = 4711}, {"views[1].target", "no framebuffer 4711"}));
+  EXPECT_TRUE(target_refused({.texture = textures[1], .framebuffer = 3}, {"expected one of them"}));
   EXPECT_TRUE(target_refused({.framebuffer = framebuffer({})}, {"is not complete"}));
   EXPECT_TRUE(target_refused({}, {"views[1].target", "no default framebuffer"}));
   const std::uint32_t good = caller.texture(GL_RGBA8, size.x, size.y);
@@ -159,6 +160,10 @@ TEST_F(Misuse, PicturesOfBothEyes) {
       refused(pair, placement, {.background = glm::vec3(0.0f), .layout = Layout::half_width}, {"71"}));
   EXPECT_TRUE(refused(pair, placement, {.layout = Layout::anaglyph}, {"settings.background"}));
   EXPECT_TRUE(refused(pair, placement, {.background = glm::vec3(2.0f)}, {"settings.background", "0 to 1"}));
+  EXPECT_TRUE(refused(pair, placement, {.cyclopean = true}, {"settings.cyclopean", "Scaffold-GS"}));
+  Settings gazes = over_black;
+  gazes.foveation = Foveation{.gaze = std::vector<glm::dvec2>(3)};
+  EXPECT_TRUE(refused(pair, placement, gazes, {"settings.foveation.gaze", "3 for 2"}));
   EXPECT_TRUE(refused(pair, placement, {.layout = static_cast<Layout>(77)}, {"layout 77"}));
 }
 
