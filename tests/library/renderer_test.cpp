@@ -207,7 +207,9 @@ TEST_F(Library, FourViewsOfParallelEyesShareOneOrder) {
 TEST(LibraryModel, IsSharedAndTellsOfItself) {
   Model model = test::random_model(3, 200, 0);
   model.name = "small";
-  const SplatModel splats = in_memory(model), copy = splats;
+  auto first = std::make_unique<SplatModel>(in_memory(model));
+  const SplatModel copy = *first;
+  first.reset();
   EXPECT_EQ(copy.name(), "small");
   EXPECT_EQ(copy.count(), 200u);
   const Bounds bounds = copy.bounds(), expected = core_bounds(model);
