@@ -24,15 +24,7 @@ void to_json(ordered_json& json, const Cell& cell) {
 
 std::string json_text(double number) { return ordered_json(number).dump(); }
 
-static void fields(const auto& io, const Table& t) {
-  for (const std::vector<Cell>& row : t.rows) {
-    if (row.size() != t.columns.size()) {
-      throw std::logic_error(fmt::format("a table of {} columns has a row of {}: {}", t.columns.size(),
-                                         row.size(), ordered_json(row).dump()));
-    }
-  }
-  io("columns", t.columns, "rows", t.rows);
-}
+static void fields(const auto& io, const Table& t) { io("columns", t.columns, "rows", t.rows); }
 
 static void fields(const auto& io, const Figure& f) {
   io("caption", f.caption, "width", f.image.width, "height", f.image.height, "png",
@@ -46,20 +38,35 @@ static void fields(const auto& io, const Chart& c) {
 }
 
 static void fields(const auto& io, const Section& s) {
-  if (s.chart) {
-    const std::vector<std::string>& columns = (s.numbers ? s.numbers : s.table).value().columns;
-    std::vector<std::string> named = {s.chart->x, s.chart->by, s.chart->label, s.chart->filled};
-    named.insert(named.end(), s.chart->y.begin(), s.chart->y.end());
-    for (const std::string& name : named) {
-      if (!name.empty() && std::ranges::find(columns, name) == columns.end())
-        throw std::logic_error(fmt::format("{}: a chart of a column '{}', which is not there", s.id, name));
-    }
-  }
   io("id", s.id, "title", s.title, "sentence", s.sentence, "problem", s.problem, "chart", s.chart, "table",
      s.table, "numbers", s.numbers, "figures", s.figures, "compared", s.compared);
 }
 
 namespace {
+
+void check(const Table& t) {
+  for (const std::vector<Cell>& row : t.rows) {
+    if (row.size() != t.columns.size()) {
+      throw std::logic_error(fmt::format("a table of {} columns has a row of {}: {}", t.columns.size(),
+                                         row.size(), ordered_json(row).dump()));
+    }
+  }
+}
+
+// Before anything of it is JSON, which would leak what it has of a page whose conversion throws.
+void check(const Section& s) {
+  for (const auto* table : {&s.table, &s.numbers}) {
+    if (*table) check(**table);
+  }
+  if (!s.chart) return;
+  const std::vector<std::string>& columns = (s.numbers ? s.numbers : s.table).value().columns;
+  std::vector<std::string> named = {s.chart->x, s.chart->by, s.chart->label, s.chart->filled};
+  named.insert(named.end(), s.chart->y.begin(), s.chart->y.end());
+  for (const std::string& name : named) {
+    if (!name.empty() && std::ranges::find(columns, name) == columns.end())
+      throw std::logic_error(fmt::format("{}: a chart of a column '{}', which is not there", s.id, name));
+  }
+}
 
 // As text of a script element, which ends at the first "</script" whatever it is quoted in.
 std::string for_script(const ordered_json& json) {
@@ -107,6 +114,7 @@ std::string device_text(const gl::Context& context) {
 }
 
 std::string html(const Page& page, const ordered_json& data) {
+  for (const Section& section : page.sections) check(section);
   const auto& ours = page_files();
   const auto& others = third_party_files();
   std::string out = "<!doctype html>\n<html lang=\"en\">\n<meta charset=\"utf-8\">\n";
