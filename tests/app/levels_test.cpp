@@ -195,7 +195,7 @@ TEST_F(LevelsTest, OfACityAndOfCopies) {
 TEST_F(LevelsTest, SayWhatTheyCannotTake) {
   EXPECT_TRUE(ended(levels(out, {"--levels", "0"}), 2, "--levels"));
   EXPECT_TRUE(ended(run_program({"levels", model, "-o", out, "--leaf", "1"}), 2, "--leaf"));
-  EXPECT_TRUE(ended(levels(out, {"--lod", "1"}), 2, "--lod"));
+  EXPECT_TRUE(ended(levels(out, {"--lod", "1"}), 2, "level of detail 1: "));
   EXPECT_TRUE(ended(levels(out, {"--count", "10000"}), 2, "--count is for demo:city"));
   EXPECT_TRUE(ended(levels(out, {"--repeat", "2x2"}), 2, "--repeat and --spacing go together"));
   EXPECT_TRUE(ended(run_program({"levels", folder / "none.ply", "-o", out}), 2, "none.ply"));

@@ -169,8 +169,7 @@ TEST(LodFiles, SaysWhatItCannotOpen) {
   EXPECT_TRUE(is_streamed_sog(folder / "sog/st-lod"));
   for (const char* other : {"sog/st-lod/0_0", "sog/st-train-sh3.sog", "nothing"}) {
     EXPECT_FALSE(is_streamed_sog(folder / other));
-    EXPECT_TRUE(test::fails_saying([&] { LodFiles files(folder / other); },
-                                   {"--detail", "no levels of detail", other}));
+    EXPECT_TRUE(test::fails_saying([&] { LodFiles files(folder / other); }, {"no levels of detail", other}));
   }
   const Copy copy(folder / "sog/st-lod");  // what is not there is not chosen
   fs::remove_all(copy.path() / "0_0");
