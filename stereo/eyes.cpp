@@ -20,7 +20,7 @@ glm::dmat3 axes_of(const glm::dvec4& q) {
 
 Camera camera_of(const std::string& name, const Eye& eye, const Placement& placement,
                  const glm::ivec2& size) {
-  if (size.x < 1 || size.y < 1) fail("eye {}: a picture of {} x {} px", name, size.x, size.y);
+  if (size.x < 1 || size.y < 1) fail("{}: a picture of {} x {} px", name, size.x, size.y);
   glm::dmat3 rotation = placement.axes * axes_of(eye.orientation);
   rotation[1] = -rotation[1];
   rotation[2] = -rotation[2];
@@ -36,7 +36,7 @@ HeadViews views_from_xr(std::span<const Eye> eyes, const Placement& placement,
   if (eyes.empty() || eyes.size() != sizes.size()) fail("{} eyes and {} sizes", eyes.size(), sizes.size());
   std::vector<Camera> cameras;
   for (std::size_t k = 0; k < eyes.size(); ++k) {
-    const std::string name = eyes.size() > 2 ? fmt::format("{}", k) : k == 0 ? "left" : "right";
+    const std::string name = fmt::format("views[{}].eye", k);
     Camera& camera = cameras.emplace_back(camera_of(name, eyes[k], placement, sizes[k]));
     const double before = glm::dot(cameras[0].rotation[2], camera.position - cameras[0].position);
     const double reach = placement.units_per_metre * glm::length(eyes[0].position);

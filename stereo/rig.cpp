@@ -145,9 +145,8 @@ Camera camera_from_fov(std::string name, const glm::dvec3& position, const glm::
   if (!(inside(fov.left) && inside(fov.right) && inside(fov.up) && inside(fov.down) && fov.left < fov.right &&
         fov.down < fov.up)) {
     fail(
-        "field of view of {}: left {}, right {}, up {}, down {}: expected radians within a quarter turn, "
-        "left below "
-        "right and down below up",
+        "{}.fov: left {}, right {}, up {}, down {}: expected radians within a quarter turn, left below right "
+        "and down below up",
         name, fov.left, fov.right, fov.up, fov.down);
   }
   const double left = std::tan(fov.left), right = std::tan(fov.right);

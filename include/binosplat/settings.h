@@ -74,8 +74,8 @@ struct Settings {
   ///
   /// Quality: the PSNR in dB, from 10 to 100, that the view that errs most should have against the exact
   /// picture, both as 8 bits would keep them. The renderer finds the tolerance, measures the error of a part
-  /// of some frames, and draws those again that miss by far. Single frames
-  /// may miss by some tenths of a dB, in fast turns by more.
+  /// of some frames, and draws those again that miss by far. Single frames may miss by some tenths of a dB,
+  /// in fast turns by more.
   std::optional<float> quality = {};
   /// Tolerance: what leaving a Gaussian out of a tile may cost by the rule below, zero or more.
   std::optional<float> tolerance = {};

@@ -29,35 +29,6 @@ bool are_directions(const glm::dmat3& axes) {
   return true;
 }
 
-void check_frustum(const Fov& fov, std::size_t k) {
-  const auto inside = [](double angle) { return std::abs(angle) < glm::radians(90.0); };
-  if (inside(fov.left) && inside(fov.right) && inside(fov.up) && inside(fov.down) && fov.left < fov.right &&
-      fov.down < fov.up)
-    return;
-  fail(
-      "views[{}].eye.fov: left {}, right {}, up {}, down {}: expected radians within a quarter turn, left "
-      "below right and down below up",
-      k, fov.left, fov.right, fov.up, fov.down);
-}
-
-/// Of a view that has a size. render::region_rows checks the rest.
-void check_region(const View& view, std::size_t k) {
-  const glm::ivec2& size = view.size;
-  if (size.x < 1 || size.y < 1) return;
-  const std::size_t rows = view.region.columns.size();
-  const int expected = (size.y - 1) / ViewRegion::tile + 1;
-  if (rows != 0 && rows != static_cast<std::size_t>(expected)) {
-    fail("views[{}].region: columns for {} rows of tiles: the view has {} of {} px", k, rows, expected,
-         ViewRegion::tile);
-  }
-  const glm::uvec2 &begin = view.region.hole_begin, &end = view.region.hole_end;
-  if (begin.x > end.x || begin.y > end.y || end.x > static_cast<unsigned>(size.x) ||
-      end.y > static_cast<unsigned>(size.y)) {
-    fail("views[{}].region: a hole from {}, {} to {}, {}: expected one within the view of {} x {} px", k,
-         begin.x, begin.y, end.x, end.y, size.x, size.y);
-  }
-}
-
 /// An enumeration's number, of which 0 to `last` have names.
 template <typename Enum>
 void check_named(Enum value, Enum last, const char* argument) {
@@ -92,8 +63,6 @@ void check_numbers(std::span<const View> views, const Placement& placement) {
           "zero",
           k, q.x, q.y, q.z, q.w);
     }
-    check_frustum(eye.fov, k);
-    check_region(views[k], k);
   }
 }
 

@@ -54,10 +54,8 @@ render::FrameSettings frame_settings(const Settings& from, std::span<const View>
   to.precision = precision;
   to.th = rule_of(from);
   to.transmittance = from.transmittance == Transmittance::measured ? TRANSMITTANCE_LAST : TRANSMITTANCE_ONE;
-  if (from.quality && !(*from.quality >= render::quality_least && *from.quality <= render::quality_most)) {
-    fail("settings.quality {}: expected {} to {} dB", *from.quality, render::quality_least,
-         render::quality_most);
-  }
+  if (from.quality && !(*from.quality > 0.0f))
+    fail("settings.quality {}: expected decibels above zero", *from.quality);
   to.quality = from.quality.value_or(0.0f);
   to.tolerance = from.tolerance.value_or(0.0f);
   if (!render::is_exact(to.th) && !from.quality && !from.tolerance)
@@ -72,7 +70,7 @@ render::FrameSettings frame_settings(const Settings& from, std::span<const View>
   if (!std::all_of(views.begin(), views.end(), is_whole)) {
     for (const View& view : views) to.regions.push_back(region_of(view.region));
   }
-  render::check_choice(to);
+  render::check_choice(to, "settings.");
   return to;
 }
 

@@ -77,6 +77,7 @@ void add_view(FramePlan& plan, shared::View view, const ViewRegion& region,
   if (v == 0 || !same_order(view, plan.views.back(), plan.perspective.order)) plan.groups.push_back({v, v});
   plan.groups.back().end = v + 1;
   if (draws_some(plan.settings)) {
+    check_region(region, v, {view.width, view.height}, tile);
     const auto rows = region_rows(region, view, tile, static_cast<std::uint32_t>(plan.supertile_side),
                                   {tiles.column, tiles.row}, tiles.step);
     view.first_row = static_cast<std::uint32_t>(plan.region_rows.size());

@@ -38,8 +38,7 @@ void take_window(const ViewRegion& region, shared::View& view) {
         (end % BLEND_CELL != 0 && end != whole[k])) {
       fail(
           "a window of {} x {} px from ({}, {}) of {} x {} px: expected multiples of {} px within the "
-          "picture, "
-          "or up to its edge",
+          "picture, or up to its edge",
           region.size.x, region.size.y, region.corner.x, region.corner.y, whole.x, whole.y, BLEND_CELL);
     }
     (k == 0 ? view.left : view.top) = begin;
@@ -47,17 +46,27 @@ void take_window(const ViewRegion& region, shared::View& view) {
   }
 }
 
+void check_region(const ViewRegion& region, std::uint32_t nth, const glm::uvec2& size, std::uint32_t tile) {
+  const glm::uvec2 tiles = (size + tile - 1u) / tile;
+  if (!region.columns.empty() && region.columns.size() != tiles.y) {
+    fail("views[{}].region: columns for {} rows of tiles: the view has {} of {} px", nth,
+         region.columns.size(), tiles.y, tile);
+  }
+  for (const glm::uvec2& columns : region.columns) {
+    if (columns.x > columns.y || columns.y > tiles.x)
+      fail("views[{}].region: columns {} to {} of a row of tiles: the view has {}", nth, columns.x, columns.y,
+           tiles.x);
+  }
+  if (glm::any(glm::greaterThan(region.hole_begin, region.hole_end)) ||
+      glm::any(glm::greaterThan(region.hole_end, size)))
+    fail("views[{}].region: a hole that does not lie in its view of {} x {} px", nth, size.x, size.y);
+}
+
 std::vector<glm::uvec2> region_rows(const ViewRegion& region, const shared::View& view, std::uint32_t tile,
                                     std::uint32_t supertile_side, const glm::uvec2& first,
                                     std::uint32_t step) {
   const glm::uvec2 size(view.width, view.height);
   const glm::uvec2 tiles = (size + tile - 1u) / tile;
-  if (!region.columns.empty() && region.columns.size() != tiles.y) {
-    fail("columns for {} rows of tiles: the view has {} of {} px", region.columns.size(), tiles.y, tile);
-  }
-  if (glm::any(glm::greaterThan(region.hole_begin, region.hole_end)) ||
-      glm::any(glm::greaterThan(region.hole_end, size)))
-    fail("a hole that does not lie in its view of {} x {} px", size.x, size.y);
   // Whole tiles of the hole: the last ones may be clipped by the picture's edge.
   const glm::uvec2 hole_begin = (region.hole_begin + tile - 1u) / tile;
   const glm::uvec2 hole_end =
@@ -72,8 +81,6 @@ std::vector<glm::uvec2> region_rows(const ViewRegion& region, const shared::View
   for (std::uint32_t n = 0; n < view.tiles_y; ++n) {
     const std::uint32_t row = first.y + n * step;
     const glm::uvec2 columns = region.columns.empty() ? glm::uvec2(0, tiles.x) : region.columns[row];
-    if (columns.x > columns.y || columns.y > tiles.x)
-      fail("columns {} to {} of a row of tiles: the view has {}", columns.x, columns.y, tiles.x);
     const bool in_hole = row >= hole_begin.y && row < hole_end.y;
     rows[n] = {packed(columns), in_hole ? packed({hole_begin.x, hole_end.x}) : 0u};
   }

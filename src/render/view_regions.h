@@ -48,9 +48,12 @@ void check_regions(const FrameSettings& settings, std::size_t views, bool is_sca
 /// or ends between cells.
 void take_window(const ViewRegion& region, shared::View& view);
 
+/// Throws Error, which names the nth view, for rows, columns and a hole that a picture of `size` px does not
+/// have.
+void check_region(const ViewRegion& region, std::uint32_t nth, const glm::uvec2& size, std::uint32_t tile);
+
 /// The rows of a view's tiles as shaders read them (tiles/regions.glsl), filled up to whole supertiles;
-/// `first` and `step` are a probe's column and row, and its step. Throws Error for rows or columns that the
-/// view does not have.
+/// `first` and `step` are a probe's column and row, and its step. The region must be right.
 std::vector<glm::uvec2> region_rows(const ViewRegion& region, const shared::View& view, std::uint32_t tile,
                                     std::uint32_t supertile_side, const glm::uvec2& first = glm::uvec2(0),
                                     std::uint32_t step = 1);

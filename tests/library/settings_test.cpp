@@ -44,8 +44,8 @@ TEST(LibrarySettings, ContradictionsAreRefused) {
   EXPECT_TRUE(refused({.quality = 40.0f, .tolerance = 1.0f}, "leave one of them out"));
   EXPECT_TRUE(refused({.quality = 40.0f, .threshold = Threshold::exact}, "exact"));
   EXPECT_TRUE(refused({.threshold = Threshold::squared}, "settings.tolerance or settings.quality"));
-  EXPECT_TRUE(refused({.quality = 0.0f}, "10 to 100 dB"));
-  EXPECT_TRUE(refused({.quality = 400.0f}, "10 to 100 dB"));
+  EXPECT_TRUE(refused({.quality = 0.0f}, "settings.quality 0: expected decibels"));
+  EXPECT_TRUE(refused({.quality = 400.0f}, "settings.quality 400: expected decibels from 10 to 100"));
   EXPECT_TRUE(refused({.tolerance = NAN}, "zero or more"));
   EXPECT_TRUE(refused({.transmittance = Transmittance::measured}, "no effect"));
   EXPECT_TRUE(test::fails_saying([] { library::layout_of(static_cast<Layout>(77)); }, {"layout 77"}));
