@@ -32,7 +32,8 @@ namespace {
 std::vector<Shot> choose_shots(const BenchOptions& options, std::size_t wanted, bool photos,
                                std::vector<Shot> shots) {
   if (photos) {
-    std::erase_if(shots, [&](const Shot& shot) { return !find_view_photo(options.photos, shot.name); });
+    std::erase_if(shots,
+                  [&](const Shot& shot) { return !find_view_photo(options.photos, shot.eyes[0].camera); });
     if (shots.empty()) fail("--photos {}: there is no photo of any view", options.photos);
   }
   if (!options.camera.views.empty()) return shots;
@@ -58,7 +59,8 @@ lab::Bench open_case(gl::Context& context, const BenchOptions& options, const Be
   for (const Shot& shot : shots) {
     lab::BenchView& view = views.emplace_back(lab::BenchView{shot.name, views_of(shot), {}});
     if (!photos) continue;
-    view.photo = load_view_photo(*find_view_photo(options.photos, shot.name), shot.eyes.front().camera);
+    const Camera& of = shot.eyes.front().camera;
+    view.photo = load_view_photo(*find_view_photo(options.photos, of), of);
     view.exposure = exposure_of(plan.photos.exposures, shot.name);
   }
   const Camera& camera = shots.front().eyes.front().camera;
@@ -228,6 +230,7 @@ void check_photos_of(const BenchPlan& plan, const BenchOptions& options) {
   const ViewChoice choice{options.camera.views, static_cast<std::size_t>(plan.axes.views)};
   for (const BenchCase& which : plan.cases) {
     const CameraList& list = plan.scenes[which.scene].list;
+    check_cameras_of(options.photos, list);
     if (!options.photos.empty() && which.eyes == 1 && which.size == "own" && list.listed)
       check_photos(options.photos, photographed_cameras(choice, options.photos, {}, list));
   }

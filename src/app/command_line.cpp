@@ -1,6 +1,7 @@
 #include "app/command_line.h"
 
 #include <fmt/ranges.h>
+#include <unistd.h>
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
@@ -244,12 +245,14 @@ void settle_shader_caches() {
   const fs::path folder = folder_there(gl::ProgramCache::default_folder());
   std::error_code error;
   const fs::space_info space = fs::space(folder, error);
-  if (folder.empty() || error || space.available >= cache_room) return;
+  const bool writable = fs::is_directory(folder, error) && access(folder.c_str(), W_OK | X_OK) == 0;
+  if (folder.empty() || (writable && space.available >= cache_room)) return;
   // Mesa's, under its names of different years, and NVIDIA's.
   setenv("MESA_SHADER_CACHE_DISABLE", "1", 0);
   setenv("MESA_GLSL_CACHE_DISABLE", "1", 0);
   setenv("__GL_SHADER_DISK_CACHE", "0", 0);
-  log_warning("{}: the disk is full; drivers keep no shaders there in this run", folder.string());
+  log_warning("{}: {}; drivers keep no shaders there in this run", folder.string(),
+              writable ? "the disk is full" : "nothing can be written there");
 }
 
 void add_max_memory(CLI::App& sub) {

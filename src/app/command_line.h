@@ -34,7 +34,8 @@ std::string explain(const CLI::App& command, const std::string& name, const CLI:
 
 /// A relative XDG_CACHE_HOME is taken out of the environment: its specification has it ignored, and drivers
 /// make a folder below the working one instead. Where the disk of the user's caches is full, drivers are told
-/// to keep no shaders there: they write into mapped files, and SIGBUS would end the program; says so. Call it
+/// to keep no shaders there: they write into mapped files, and SIGBUS would end the program; warns of that.
+/// Likewise where nothing can be written there, which each driver reports in its own words. Call it
 /// before any context is made.
 void settle_shader_caches();
 

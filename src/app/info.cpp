@@ -243,9 +243,11 @@ ordered_json info_json(const Model& model, const ModelSummary& s, const render::
 
 // The names that --view takes.
 ExitCode list_views(const InfoOptions& options) {
-  const CameraList list = listed_cameras(options.scene, options.camera);
-  if (list.cameras.empty())
+  CameraList list = listed_cameras(options.scene, options.camera);
+  if (list.cameras.empty() && list.known.unusable.empty())
     fail("{}: there are no cameras beside it; name their file with --cameras", options.scene.name);
+  if (list.cameras.empty())  // as render draws it
+    list = made_up_cameras(options.scene, options.camera, list.known, load_scene(options.scene));
   std::size_t widest = 0;
   for (const Camera& camera : list.cameras) widest = std::max(widest, camera.name.size());
   fmt::print("{}: {} views\n", list.source, list.cameras.size());

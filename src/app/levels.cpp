@@ -121,17 +121,15 @@ bool has_run(const LevelsOptions& o, const nlohmann::ordered_json& run) {
 void write_cameras(const LevelsOptions& o) {
   const fs::path file = fs::path(o.output) / "cameras.json";
   if (is_whole(file)) return;
-  try {
-    const CameraList list = listed_cameras(o.scene, {});
-    auto json = nlohmann::ordered_json::array();
-    for (const Camera& camera : list.cameras) {
-      json.push_back(camera_json(camera));
-      if (!camera.time) json.back().erase("time");
-    }
-    if (!list.cameras.empty()) save_json(file, json);
-  } catch (const Error& error) {
-    log_warning("{}; no cameras are left beside the levels", error.what());
+  const CameraList list = listed_cameras(o.scene, {});
+  if (!list.known.unusable.empty())
+    log_warning("{}; no cameras are left beside the levels", list.known.unusable);
+  auto json = nlohmann::ordered_json::array();
+  for (const Camera& camera : list.cameras) {
+    json.push_back(camera_json(camera));
+    if (!camera.time) json.back().erase("time");
   }
+  if (!list.cameras.empty()) save_json(file, json);
 }
 
 ExitCode levels(const LevelsOptions& o) {

@@ -16,6 +16,7 @@
 #include "base/log.h"
 #include "base/mapped_file.h"
 #include "base/memory.h"
+#include "base/output_file.h"
 
 namespace {
 
@@ -60,7 +61,9 @@ int run(int argc, char** argv) {
     std::reverse(words.begin(), words.end());  // as CLI11 wants them
     program.parse(std::move(words));
     binosplat::app::note_inputs(program);
+    binosplat::watch_finished_files();
     const ExitCode code = command();
+    binosplat::check_finished_files();
     if (std::fflush(stdout) != 0) throw std::system_error(errno, std::generic_category());
     return static_cast<int>(code);
   } catch (const CLI::Success& asked) {

@@ -73,10 +73,16 @@ Image load_view_photo(const fs::path& file, const Camera& camera, const glm::vec
   return photo.channels == 3 ? photo : measure::before(background, photo);
 }
 
+void check_cameras_of(const std::string& photos, const CameraList& list) {
+  if (!photos.empty() && !list.known.unusable.empty())
+    fail("--photos {}: the cameras beside the model cannot be used: {}; name their file with --cameras",
+         photos, list.known.unusable);
+}
+
 void check_photos(const std::string& photos, std::span<const Camera> cameras) {
   if (photos.empty()) return;
   for (const Camera& camera : cameras) {
-    const auto file = find_view_photo(photos, camera.name);
+    const auto file = find_view_photo(photos, camera);
     if (file) check_size(*file, picture_size(*file), camera);
   }
 }
@@ -84,7 +90,7 @@ void check_photos(const std::string& photos, std::span<const Camera> cameras) {
 lab::PhotoOf photo_finder(const PhotoSource& photos) {
   if (photos.folder.empty()) return {};
   return [photos](const Camera& camera) -> std::optional<Image> {
-    const auto file = find_view_photo(photos.folder, camera.name);
+    const auto file = find_view_photo(photos.folder, camera);
     if (!file) return std::nullopt;
     const auto back = inverse_exposure(exposure_of(photos.exposures, camera.name));
     if (!back)
@@ -115,7 +121,7 @@ void check_target(const std::string& command, const std::string& what, const Tar
 lab::CalibrationView with_photo(const PhotoSource& photos, const Camera& camera) {
   lab::CalibrationView view{camera, {}};
   if (photos.folder.empty()) return view;
-  const auto file = find_view_photo(photos.folder, camera.name);
+  const auto file = find_view_photo(photos.folder, camera);
   if (!file) fail("--photos {}: there is no photo of view {}", photos.folder, camera.name);
   view.photo = load_view_photo(*file, camera);
   view.exposure = exposure_of(photos.exposures, camera.name);
@@ -126,11 +132,12 @@ std::vector<Camera> photographed_cameras(const ViewChoice& choice, const std::st
                                          const Lens& lens, const CameraList& list) {
   const std::vector<std::string>& without = choice.without;
   const bool named = !choice.views.empty();
+  check_cameras_of(photos, list);
   if (!photos.empty()) check_photos_apart(photos, list.cameras);
   std::vector<Camera> cameras = chosen_cameras(choice.views, lens, list);
   std::erase_if(cameras, [&](const Camera& camera) {
     return std::find(without.begin(), without.end(), camera.name) != without.end() ||
-           (!photos.empty() && !named && !find_view_photo(photos, camera.name));
+           (!photos.empty() && !named && !find_view_photo(photos, camera));
   });
   if (!photos.empty() && cameras.empty() && without.empty())
     fail("--photos {}: there is no photo of any view", photos);

@@ -36,6 +36,9 @@ glm::mat4x3 exposure_of(const Exposures& exposures, const std::string& view);
 Image load_view_photo(const std::filesystem::path& file, const Camera& camera,
                       const glm::vec3& background = glm::vec3(0.0f));
 
+/// Throws Error where there are photos, and the cameras that they should be of cannot be used.
+void check_cameras_of(const std::string& photos, const CameraList& list);
+
 /// Throws Error as load_view_photo() does, but as far as the headers and ends of the cameras' photos tell
 /// (picture_size): quick, before a model is read. Views without a photo are no error here; no folder, none to
 /// check.

@@ -140,7 +140,7 @@ ExitCode refit(const RefitOptions& o) {
   const lab::RefitTargets targets{model, views.training, photo_finder(source), views.near_plane};
   const auto photos = static_cast<std::size_t>(std::count_if(
       views.training.begin(), views.training.end(),
-      [&](const Camera& camera) { return !o.photos.empty() && find_view_photo(o.photos, camera.name); }));
+      [&](const Camera& camera) { return !o.photos.empty() && find_view_photo(o.photos, camera); }));
   if (!o.photos.empty() && photos == 0)
     fail("--photos {}: the only photo of a view is held back to judge by; add photos, or use --against exact",
          o.photos);

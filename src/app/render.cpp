@@ -40,7 +40,7 @@ namespace {
 
 void check_any_photo(const std::string& folder, const std::vector<Camera>& cameras) {
   for (const Camera& camera : cameras) {
-    if (find_view_photo(folder, camera.name)) return;
+    if (find_view_photo(folder, camera)) return;
   }
   fail("--photos {}: there is no photo of any view drawn, for one {}.jpg", folder, stem_of(cameras[0].name));
 }
@@ -97,6 +97,7 @@ void log_model(const std::string& scene, const std::optional<int>& decode, const
 
 // The folder of photos that --photos names, or the one found beside the cameras.
 std::string photos_folder(const std::string& asked, const CameraList& list) {
+  check_cameras_of(asked, list);
   if (asked != photos_beside) return asked;
   const auto found = list.listed ? find_photos(list.source) : std::nullopt;
   if (!found)

@@ -23,7 +23,7 @@ bool is_empty(const Picture& picture) {
 std::optional<double> photo_psnr(const PhotoSource& photos, const glm::vec3& background, const Shot& shot,
                                  const Picture& picture) {
   if (photos.folder.empty()) return std::nullopt;
-  const auto file = find_view_photo(photos.folder, shot.name);
+  const auto file = find_view_photo(photos.folder, shot.eyes.front().camera);
   if (!file) {
     log_info("no photo of {} in {}", shot.name, photos.folder);
     return std::nullopt;

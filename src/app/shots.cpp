@@ -11,7 +11,6 @@
 #include "base/log.h"
 #include "formats/cameras_file.h"
 #include "formats/dataparser.h"
-#include "formats/distortion.h"
 #include "scene/axes.h"
 #include "scene/framing.h"
 
@@ -150,8 +149,7 @@ void learn_beside(const std::string& scene, const CameraOptions& camera, Known& 
   }
 }
 
-// Those of the file that an option names or that lies beside the model, or the built-in ones. Where nothing
-// asks for those beside it, and none of their lenses can be drawn, there are none.
+// Those of the file that an option names or that lies beside the model, or the built-in ones.
 CameraList camera_list(const SceneOptions& scene, const CameraOptions& camera,
                        const std::vector<Camera>& built_in) {
   const std::string named = camera.path.empty() ? camera.file : camera.path;
@@ -161,10 +159,9 @@ CameraList camera_list(const SceneOptions& scene, const CameraOptions& camera,
   note_input(*found);
   try {
     return {found->string(), cameras_for(scene.name, found->string(), camera.fov)};
-  } catch (const UndrawableLens& error) {
-    if (!camera.views.empty() || camera.along_path()) throw;
-    log_warning("{}; a camera is made up instead", error.what());
-    return {scene.name, {}};
+  } catch (const Error& error) {
+    if (error.code() != ExitCode::bad_input) throw;
+    return {.source = scene.name, .known = {.unusable = error.what()}};
   }
 }
 
@@ -210,6 +207,7 @@ CameraList listed_cameras(const SceneOptions& scene, const CameraOptions& camera
   CameraList list = camera_list(scene, camera, built_in);
   list.listed = !list.cameras.empty();
   list.path = camera.along_path();
+  known.unusable = list.known.unusable;
   list.known = known;
   // Keys of a path may all lean the same way; of the many beside the model the mean does not.
   if (built_in.empty() && camera.lens.vr180() && !(camera.path + camera.file).empty())
@@ -223,8 +221,13 @@ CameraList listed_cameras(const SceneOptions& scene, const CameraOptions& camera
         list.source);
   }
   if (!list.listed && !camera.views.empty())
-    fail("--view {}: no cameras beside {}; name their file with --cameras", camera.views[0], scene.name);
+    fail("--view {}: {}; name their file with --cameras", camera.views[0], why_no_cameras(scene, known));
   return list;
+}
+
+std::string why_no_cameras(const SceneOptions& scene, const Known& known) {
+  if (known.unusable.empty()) return fmt::format("no cameras beside {}", scene.name);
+  return fmt::format("the cameras beside {} cannot be used: {}", scene.name, known.unusable);
 }
 
 std::optional<SavedPose> find_saved(const SceneOptions& scene) {
@@ -262,6 +265,7 @@ CameraList made_up_cameras(const SceneOptions& scene, const CameraOptions& camer
   const std::string how = learn_from(cored, scene, camera, known);
   const glm::dvec3 up = up_of(camera, known);
   CameraList list{.source = scene.name, .known = known};
+  if (!known.unusable.empty()) log_warning("{}; cameras are made up instead", known.unusable);
   if (camera.eye) {
     if (!how.empty()) log_info("looking at {} from --eye: {}", scene.name, how);
     list = eye_camera(camera, known);
@@ -270,7 +274,7 @@ CameraList made_up_cameras(const SceneOptions& scene, const CameraOptions& camer
     log_info("going around {}: {}", scene.name, how);
     list.cameras = orbit(cored, *camera.orbit, made_up_width, made_up_height, fov, {up, known.around});
   } else {
-    log_info("no cameras beside {}: {}", scene.name, how);
+    log_info("{} {}: {}", known.unusable.empty() ? "no cameras beside" : "one camera for", scene.name, how);
     list.cameras = {frame_model(cored, made_up_width, made_up_height, fov, {up, known.around})};
   }
   list.near_plane = near_for(cored);

@@ -42,6 +42,7 @@ struct Known {
   std::optional<double> ipd;              // m
   std::optional<glm::dvec3> up;           // the world's
   std::optional<Capture::Around> around;  // what to stand around
+  std::string unusable;                   // why the cameras beside the model cannot be used, if they cannot
 };
 
 /// Where cameras come from, for the log, and which they are.
@@ -54,11 +55,15 @@ struct CameraList {
   Known known;
 };
 
-/// The cameras that --cameras, a file beside the model, or the built-in scene gives; empty if none does or
-/// the options make up their own. Quick: comes before the model is read. `saved` as find_saved() has it. What
+/// The cameras that --cameras, a file beside the model, or the built-in scene gives; empty if none does, the
+/// options make up their own, or those beside the model, for which no option asks, cannot be used
+/// (Known::unusable). Quick: comes before the model is read. `saved` as find_saved() has it. What
 /// is known of metres is the rig's, where it says so: the list's cameras, and those made up, go by that.
 CameraList listed_cameras(const SceneOptions& scene, const CameraOptions& camera, const RigOptions& rig = {},
                           const std::optional<SavedPose>& saved = {});
+
+/// For errors of what needs cameras: that none lie beside the model, or why those cannot be used.
+std::string why_no_cameras(const SceneOptions& scene, const Known& known);
 
 /// What `binosplat view` saved beside the model, if it did; says so.
 std::optional<SavedPose> find_saved(const SceneOptions& scene);

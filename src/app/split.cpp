@@ -34,10 +34,8 @@ CameraList needed_cameras(const std::string& command, const MeasuredOptions& o) 
   if (!list.listed && !is_built_in(o.scene.name) && !std::filesystem::exists(o.scene.name))
     fail("cannot read {}: No such file or directory", o.scene.name);
   if (!list.listed)
-    fail(
-        "{} needs the cameras that the pictures are of, and there are none beside {}: name their file with "
-        "--cameras",
-        command, o.scene.name);
+    fail("{} needs the cameras that the pictures are of: {}; name their file with --cameras", command,
+         why_no_cameras(o.scene, list.known));
   if (!o.photos.empty()) check_photos_apart(o.photos, list.cameras);
   check_photos(o.photos, chosen_cameras({}, o.camera.lens, list));
   return list;
@@ -68,7 +66,7 @@ lab::ViewSplit split_views(const std::string& command, const MeasuredOptions& o,
   }
   std::vector<std::size_t> judging;
   for (std::size_t i = 0; i < cameras.size(); ++i) {
-    if (o.photos.empty() || find_view_photo(o.photos, cameras[i].name)) judging.push_back(i);
+    if (o.photos.empty() || find_view_photo(o.photos, cameras[i])) judging.push_back(i);
   }
   if (judging.empty()) fail("--photos {}: there is no photo of any view", o.photos);
   const std::size_t wanted = std::clamp<std::size_t>(most(judging.size(), cameras.size()), 1,

@@ -67,7 +67,8 @@ Listed listed(const StudyOptions& options, const std::string& name) {
   const LodFiles files(name);
   for (const DetailRequest& detail : options.details) files.check(detail);
   found.list = listed_cameras(found.scene, options.camera, options.rig);
-  if (!found.list.listed) fail("--levels: no cameras beside {}; name their file with --cameras", name);
+  if (!found.list.listed)
+    fail("--levels: {}; name their file with --cameras", why_no_cameras(found.scene, found.list.known));
   check_views(options.camera.views, options.rig.mono, found.list);
   return found;
 }

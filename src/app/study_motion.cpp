@@ -88,7 +88,8 @@ Driven open_driven(const StudyOptions& options) {
                 .lens = options.camera.lens,
                 .rig = options.rig};
   if (!driven.list.listed)
-    fail("--motion goes through the cameras of a model: name their file with --cameras, or a --path");
+    fail("--motion goes through the cameras of a model: {}; name their file with --cameras, or a --path",
+         why_no_cameras(options.scene, driven.list.known));
   if (!options.camera.path.empty())
     driven.list = go_along_path(options.camera, headset_fps, true, std::move(driven.list));
   driven.metre = metre(options);

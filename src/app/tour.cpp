@@ -68,9 +68,9 @@ CameraList go_on_tour(const SceneOptions& scene, const CameraOptions& camera, co
                       double fps, CameraList list) {
   if (list.cameras.empty()) {
     fail(
-        "--tour: no cameras beside {} to go through: name their file with --cameras, or go around the model "
-        "with --orbit",
-        scene.name);
+        "--tour goes through cameras: {}; name their file with --cameras, or go around the model with "
+        "--orbit",
+        why_no_cameras(scene, list.known));
   }
   if (!list.known.units_per_metre && !is_built_in(scene.name))
     log_info(

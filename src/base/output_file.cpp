@@ -36,6 +36,8 @@ bool is_on_disk(const fs::path& path) {
 struct Unfinished {
   std::mutex mutex;
   std::multiset<fs::path> paths;
+  bool watches = false;  // what is finished, too
+  std::set<fs::path> finished, folders;
 };
 
 Unfinished& unfinished() {
@@ -54,6 +56,35 @@ UnfinishedFile::~UnfinishedFile() {
   const std::lock_guard lock(unfinished().mutex);
   unfinished().paths.extract(path_);
 }
+
+void watch_finished_files() { unfinished().watches = true; }
+
+void check_finished_files() {
+  const std::lock_guard lock(unfinished().mutex);
+  std::error_code ignored;
+  for (const fs::path& path : unfinished().finished) {
+    if (!fs::is_regular_file(path, ignored))
+      fail("{} was written, and is gone before the end of the run: somebody else has removed it",
+           path.string());
+  }
+}
+
+namespace {
+
+void note_finished(const fs::path& file) {
+  const std::lock_guard lock(unfinished().mutex);
+  if (!unfinished().watches) return;
+  unfinished().finished.insert(file);
+  for (fs::path folder = file.parent_path(); unfinished().folders.insert(folder).second;)
+    folder = folder.parent_path();
+}
+
+bool held_finished_files(const fs::path& folder) {
+  const std::lock_guard lock(unfinished().mutex);
+  return unfinished().folders.contains(folder);
+}
+
+}  // namespace
 
 void remove_unfinished_files() {
   unfinished().mutex.lock();
@@ -78,6 +109,11 @@ OutputFile::OutputFile(const fs::path& path) : target_(path) {
   while (!fs::exists(folders_.back(), ignored) && folders_.back().has_relative_path()) {
     const fs::path above = folders_.back().parent_path();
     folders_.push_back(above.empty() ? "." : above);
+  }
+  for (const fs::path& one : folders_) {
+    if (!fs::exists(one, ignored) && held_finished_files(one))
+      fail("cannot write {}: the folder {} is gone, and the files of this run with it", path.string(),
+           one.string());
   }
   std::error_code error;
   if (!folder.empty()) fs::create_directories(folder, error);
@@ -112,13 +148,14 @@ void OutputFile::flush() {
   if (std::fflush(file_) != 0) fail_to_write();
 }
 
-void OutputFile::commit() {
+void OutputFile::commit(bool has_to_stay) {
   finish();
   {
     const std::lock_guard lock(unfinished().mutex);
     if (std::rename(temporary_->path().c_str(), target_.c_str()) != 0) fail_to_write();
   }
   temporary_.reset();
+  if (has_to_stay) note_finished(target_);
   sync_folders();
 }
 
@@ -134,6 +171,7 @@ bool OutputFile::commit_as_first() {
       first = renameat2(AT_FDCWD, from, AT_FDCWD, target_.c_str(), RENAME_NOREPLACE) == 0;
   }
   if (!first && errno != EEXIST) fail_to_write();
+  if (first) note_finished(target_);
   if (first) sync_folders();
   return first;  // the temporary name goes with this
 }

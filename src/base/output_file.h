@@ -27,6 +27,13 @@ class UnfinishedFile {
   std::filesystem::path path_;
 };
 
+/// From now on finished files have to stay. An OutputFile in a folder that held one, and is gone meanwhile,
+/// is an Error and no new folder. For `main`: who calls the library may do with files what they like.
+void watch_finished_files();
+
+/// Throws Error naming a file that was finished since then and is not there now.
+void check_finished_files();
+
 /// Removes all unfinished files of the process, which is to end now: threads that are about to begin another
 /// one, or to give one its name, wait for that end.
 void remove_unfinished_files();
@@ -57,8 +64,9 @@ class OutputFile {
   void flush();
 
   /// Flushes, closes and renames to the target, replacing what stood there; a loss of power from then on
-  /// leaves the file whole. Throws Error where any of it fails; then the target is as it was.
-  void commit();
+  /// leaves the file whole. Throws Error where any of it fails; then the target is as it was. A file of a
+  /// cache, which others may remove, need not stay.
+  void commit(bool has_to_stay = true);
 
   /// The same where nothing stands there; else false, and what stands there stays. Of several that do so at
   /// once, in whatever processes, one gets true.

@@ -2,12 +2,13 @@
 
 #include <algorithm>
 #include <cctype>
-#include <cmath>
 #include <limits>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <set>
 
 #include "base/error.h"
+#include "base/log.h"
 #include "base/mapped_file.h"
 #include "base/text.h"
 #include "formats/colmap.h"
@@ -20,87 +21,38 @@
 #include "formats/nerfstudio.h"
 #include "formats/ply_camera.h"
 #include "formats/transforms.h"
+#include "formats/view_files.h"
 #include "scene/framing.h"
 
 namespace binosplat {
 
 namespace {
 
-constexpr double most_pixels = 2147483648.0;
-
-/// One object of the list; every error names the file, the object's number and the key.
-class CameraReader {
- public:
-  CameraReader(const std::filesystem::path& path, std::size_t index, const nlohmann::json& object)
-      : path_(path), index_(index), object_(object) {}
-
-  Camera read() const {
-    if (!object_.is_object())
-      fail("{}, camera {} (counted from 0): expected an object", path_.string(), index_);
-    Camera camera;
-    if (!need("img_name").is_string()) fail_key("img_name", "expected a name in quotes");
-    camera.name = need("img_name").get<std::string>();
-    camera.width = size("width");
-    camera.height = size("height");
-    if (static_cast<double>(camera.width) * camera.height > most_pixels)
-      fail_key("width", "the picture is too large");
-    camera.fx = number(need("fx"), "fx");
-    camera.fy = number(need("fy"), "fy");
-    if (!(camera.fx > 0)) fail_key("fx", "expected a focal length above 0");
-    if (!(camera.fy > 0)) fail_key("fy", "expected a focal length above 0");
-    camera.cx = object_.contains("cx") ? number(object_["cx"], "cx") : camera.width / 2.0;
-    camera.cy = object_.contains("cy") ? number(object_["cy"], "cy") : camera.height / 2.0;
-    camera.position = vector(need("position"), "position");
-    camera.rotation = rotation();
-    if (object_.contains("time")) camera.time = number(object_["time"], "time");
-    return camera;
-  }
-
- private:
-  [[noreturn]] void fail_key(const char* key, const std::string& text) const {
-    fail("{}, camera {} (counted from 0), key '{}': {}", path_.string(), index_, key, text);
-  }
-
-  const nlohmann::json& need(const char* key) const {
-    const auto found = object_.find(key);
-    if (found == object_.end()) fail_key(key, "is missing");
-    return *found;
-  }
-
-  double number(const nlohmann::json& value, const char* key) const {
-    if (!value.is_number() || !std::isfinite(value.get<double>())) fail_key(key, "expected a finite number");
-    return value.get<double>();
-  }
-
-  int size(const char* key) const {
-    const double value = number(need(key), key);
-    if (!(value >= 1 && value <= std::numeric_limits<int>::max()) || value != std::floor(value)) {
-      fail_key(key, fmt::format("{} is no number of pixels", value));
-    }
-    return static_cast<int>(value);
-  }
-
-  glm::dvec3 vector(const nlohmann::json& value, const char* key) const {
-    if (!value.is_array() || value.size() != 3)
-      fail_key(key, "expected three numbers, or three rows of three");
-    return {number(value[0], key), number(value[1], key), number(value[2], key)};
-  }
-
-  glm::dmat3 rotation() const {
-    const char* key = "rotation";
-    const nlohmann::json& rows = need(key);
-    if (!rows.is_array() || rows.size() != 3) fail_key(key, "expected three rows of three numbers");
-    glm::dmat3 transposed;
-    for (int i = 0; i < 3; ++i) transposed[i] = vector(rows[static_cast<std::size_t>(i)], key);
-    const glm::dmat3 matrix = glm::transpose(transposed);
-    if (const std::string fault = rotation_fault(matrix); !fault.empty()) fail_key(key, fault);
-    return matrix;
-  }
-
-  const std::filesystem::path& path_;
-  std::size_t index_;
-  const nlohmann::json& object_;
-};
+/// One object of a cameras.json; every error names the file, the object's number and the key.
+Camera read_camera(const JsonValue& object) {
+  const auto pixels = [&](const char* key) {
+    return static_cast<int>(object.at(key).whole(std::numeric_limits<int>::max()));
+  };
+  const auto number = [&](const char* key, double otherwise) {
+    return object.has(key) ? object.at(key).number() : otherwise;
+  };
+  Camera camera;
+  camera.name = object.at("img_name").text();
+  camera.width = pixels("width");
+  camera.height = pixels("height");
+  camera.fx = object.at("fx").above_zero();
+  camera.fy = object.at("fy").above_zero();
+  camera.cx = number("cx", camera.width / 2.0);
+  camera.cy = number("cy", camera.height / 2.0);
+  check_lens(object.source(), camera);
+  camera.position = object.at("position").vector<3>();
+  const JsonValue rows = object.at("rotation").list_of(3);
+  for (int i = 0; i < 3; ++i) camera.rotation[i] = rows.at(static_cast<std::size_t>(i)).vector<3>();
+  camera.rotation = glm::transpose(camera.rotation);
+  if (const std::string fault = rotation_fault(camera.rotation); !fault.empty()) rows.fail_here("{}", fault);
+  if (object.has("time")) camera.time = object.at("time").number();
+  return camera;
+}
 
 /// INRIA's cameras.json.
 std::vector<Camera> load_list(const std::filesystem::path& path, const nlohmann::json& root) {
@@ -117,7 +69,7 @@ std::vector<Camera> load_list(const std::filesystem::path& path, const nlohmann:
       drawn.leave_out(fmt::format("{}, {}", where, fault));
       continue;
     }
-    cameras.push_back(CameraReader(path, i, root[i]).read());
+    cameras.push_back(read_camera(object));
     drawn.add(cameras.back(), read_distortion(key));
   }
   drawn.finish();
@@ -155,19 +107,42 @@ std::vector<Camera> load_any(const std::filesystem::path& named, const std::opti
       path.string(), root.type_name());
 }
 
-void check_names(const std::filesystem::path& path, const std::vector<Camera>& cameras) {
-  std::set<std::string> names;
+/// How a name ends that has a number before that: as a photo's, or as one of a pair's.
+std::string_view ending_of(std::string_view name) {
+  for (const std::string_view ending : {".png", ".jpg", ".jpeg", "_left", "_right"}) {
+    if (lowered(std::string(name)).ends_with(ending)) return name.substr(name.size() - ending.size());
+  }
+  return "";
+}
+
+/// Gives cameras whose name another one has before them a number, as in NAME_2, that makes a new name of it.
+/// Of NeRF's synthetic scenes INRIA's trainer calls views of the test and of the training the same.
+void tell_apart(const std::filesystem::path& path, std::vector<Camera>& cameras) {
+  std::set<std::string> names, met;
   for (const Camera& camera : cameras) {
     // They become names of files, and stand on terminals.
     if (std::any_of(camera.name.begin(), camera.name.end(),
                     [](unsigned char c) { return std::iscntrl(c) != 0; }))
       fail("{}: the name {:?} has a control character; take it out", path.string(), camera.name);
-    if (!names.insert(camera.name).second)
-      fail(
-          "{}: two cameras are called '{}': photos and pictures are told apart by names, so give each its "
-          "own",
-          path.string(), camera.name);
+    names.insert(camera.name);
   }
+  std::map<std::string, int> numbers;
+  std::string renamed;
+  for (Camera& camera : cameras) {
+    if (met.insert(camera.name).second) continue;
+    const std::string name = camera.name, ending(ending_of(name));
+    const std::string_view stem = std::string_view(name).substr(0, name.size() - ending.size());
+    int& number = numbers.try_emplace(name, 1).first->second;
+    do {
+      camera.name = fmt::format("{}_{}{}", stem, ++number, ending);
+    } while (!names.insert(camera.name).second);
+    if (renamed.empty()) renamed = fmt::format("'{}', the second is called '{}'", name, camera.name);
+  }
+  if (!renamed.empty())
+    log_warning(
+        "{}: {} of its {} cameras have the name of one before them, and get numbers: of those called {}. A "
+        "photo of such a name counts for the first",
+        path.string(), cameras.size() - met.size(), cameras.size(), renamed);
 }
 
 }  // namespace
@@ -190,7 +165,8 @@ std::filesystem::path resolve_cameras(const std::filesystem::path& path) {
 std::vector<Camera> load_cameras(const std::filesystem::path& path,
                                  const std::optional<double>& fov_degrees) {
   std::vector<Camera> cameras = load_any(path, fov_degrees);
-  check_names(path, cameras);
+  tell_apart(path, cameras);
+  set_short_names(cameras);
   return cameras;
 }
 

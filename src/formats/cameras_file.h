@@ -25,10 +25,10 @@ std::filesystem::path resolve_cameras(const std::filesystem::path& path);
 
 /// Reads all cameras, at least one, of a file or of a folder that holds such files, also in sparse/0 below
 /// it. In file order, COLMAP's by name. Rotations must be orthonormal within 1e-3 with determinant +1 and are
-/// kept to the digit. Of a file that lacks_lenses() pictures are `fov_degrees` high, or 60. Throws
-/// UndrawableLens (formats/distortion.h) where no camera's lens can be drawn, and Error naming the file, the
-/// camera's number in the list and its key; for broken JSON the line and byte; for a name that two cameras
-/// have, since photos and pictures are matched by it, the name.
+/// kept to the digit. Of a file that lacks_lenses() pictures are `fov_degrees` high, or 60. Photos and
+/// pictures are matched by names: of cameras of one name the second is called NAME_2 and so on, with a
+/// warning. Throws Error naming the file, the camera's number in the list and its key, for broken JSON the
+/// line and byte, and where no camera's lens can be drawn (formats/distortion.h).
 std::vector<Camera> load_cameras(const std::filesystem::path& path,
                                  const std::optional<double>& fov_degrees = {});
 

@@ -138,7 +138,7 @@ std::vector<Camera> load_colmap(const fs::path& folder) {
   }
   drawn.finish();
   if (cameras.empty()) fail("{} holds no images", image_file.string());
-  std::sort(cameras.begin(), cameras.end(), [](const Camera& a, const Camera& b) { return a.name < b.name; });
+  std::ranges::stable_sort(cameras, {}, &Camera::name);
   return cameras;
 }
 

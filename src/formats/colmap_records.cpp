@@ -1,11 +1,16 @@
 #include "formats/colmap_records.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
+#include <limits>
+#include <optional>
+#include <span>
+#include <type_traits>
+#include <utility>
 
 #include "base/error.h"
 #include "base/mapped_file.h"
+#include "base/numbers.h"
 #include "base/text.h"
 #include "formats/bytes.h"
 #include "formats/content.h"
@@ -120,11 +125,19 @@ class Lines {
     return true;
   }
 
-  /// The next line that is neither blank nor a comment.
-  bool next_record(std::string_view& line) {
+  /// The next line that is no comment.
+  bool next_no_comment(std::string_view& line) {
     while (next(line)) {
       const std::size_t first = line.find_first_not_of(" \t");
-      if (first != std::string_view::npos && line[first] != '#') return true;
+      if (first == std::string_view::npos || line[first] != '#') return true;
+    }
+    return false;
+  }
+
+  /// The next line that is neither blank nor a comment.
+  bool next_record(std::string_view& line) {
+    while (next_no_comment(line)) {
+      if (!line.empty()) return true;
     }
     return false;
   }
@@ -138,26 +151,39 @@ class Lines {
   std::size_t number_ = 0;
 };
 
+/// A number as COLMAP reads it, with or without a plus sign.
+std::optional<double> number_in(std::string_view word) {
+  if (word.starts_with('+')) word.remove_prefix(1);
+  const std::optional<double> value = take_real(word);
+  return word.empty() ? value : std::nullopt;
+}
+
+/// A whole one may be written as 160.0.
 template <typename T>
 T parse_number(const Lines& lines, std::string_view word, const char* what) {
-  T value{};
-  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-  if (error != std::errc() || end != word.data() + word.size())
-    fail("{}: {} is no {}", lines.where(), quoted(word), what);
-  return value;
+  const std::optional<double> value = number_in(word);
+  const bool fits = !std::is_integral_v<T> || (value >= 0.0 && *value == std::floor(*value) &&
+                                               *value < std::ldexp(1.0, std::numeric_limits<T>::digits));
+  if (!value || !fits) fail("{}: {} is no {}", lines.where(), quoted(word), what);
+  return static_cast<T>(*value);
+}
+
+bool are_numbers(std::span<const std::string_view> words) {
+  return std::ranges::all_of(words, [](std::string_view word) { return number_in(word).has_value(); });
 }
 
 /// Whether a line has points that an image shows, or none: X Y POINT3D_ID of each.
 bool are_points(std::string_view line) {
-  const auto is_number = [](std::string_view word, auto value) {
-    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-    return error == std::errc() && end == word.data() + word.size();
-  };
   const std::vector<std::string_view> words = words_of(line);
-  for (std::size_t k = 0; k < words.size(); ++k) {
-    if (!(k % 3 == 2 ? is_number(words[k], std::int64_t{}) : is_number(words[k], 0.0))) return false;
-  }
-  return words.size() % 3 == 0;
+  return words.size() % 3 == 0 && are_numbers(words);
+}
+
+/// The fields of an image's line, of which the name is all that is left: cameras call photos "IMG (1).jpg".
+std::vector<std::string_view> fields_of_image(std::string_view line) { return words_of(line, 10); }
+
+bool is_image(std::string_view line) {
+  const std::vector<std::string_view> fields = fields_of_image(line);
+  return fields.size() == 10 && are_numbers(std::span(fields).first(9));
 }
 
 void add(std::map<std::uint32_t, ColmapLens>& lenses, const std::string& where, ColmapLens lens) {
@@ -246,9 +272,14 @@ std::vector<ColmapImage> colmap_images_text(const std::filesystem::path& path) {
   const MappedFile file(path);
   Lines lines(path, as_text(file.bytes()));
   std::vector<ColmapImage> images;
-  for (std::string_view line; lines.next_record(line);) {
-    // The name is all that is left: cameras call photos "IMG (1).jpg".
-    const std::vector<std::string_view> words = words_of(line, 10);
+  bool may_be_points = false;  // the next line, of the image before: programs leave out those without any
+  for (std::string_view line; lines.next_no_comment(line);) {
+    const bool points = std::exchange(may_be_points, false);
+    if (line.empty() || (points && are_points(line))) continue;
+    if (points && !is_image(line))
+      fail("{}: expected the points seen in image {} (X Y POINT3D_ID ...), an empty line, or the next image",
+           lines.where(), images.back().id);
+    const std::vector<std::string_view> words = fields_of_image(line);
     if (words.size() < 10) fail("{}: expected IMAGE_ID QW QX QY QZ TX TY TZ CAMERA_ID NAME", lines.where());
     ColmapImage& image = images.emplace_back();
     image.id = parse_number<std::uint32_t>(lines, words[0], "image's number");
@@ -260,12 +291,7 @@ std::vector<ColmapImage> colmap_images_text(const std::filesystem::path& path) {
     check_pose(lines.where(), image);
     image.lens = parse_number<std::uint32_t>(lines, words[8], "camera's number");
     image.name = std::string(words[9]);
-    // Where an image was observed; an empty line is one, too.
-    std::string_view observations;
-    if (lines.next(observations) && !are_points(observations)) {
-      fail("{}: expected the points seen in image {} (X Y POINT3D_ID ...), or an empty line", lines.where(),
-           image.id);
-    }
+    may_be_points = true;
   }
   return images;
 }

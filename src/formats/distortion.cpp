@@ -5,6 +5,7 @@
 #include <limits>
 #include <utility>
 
+#include "base/error.h"
 #include "base/log.h"
 #include "base/text.h"
 
@@ -53,7 +54,7 @@ void DrawnLenses::leave_out(std::string why) {
 }
 
 void DrawnLenses::finish() const {
-  if (left_out_ > 0 && drawn_ == 0) throw UndrawableLens(first_left_out_);
+  if (left_out_ > 0 && drawn_ == 0) fail("{}", first_left_out_);
   if (left_out_ > 0)
     log_warning("{}: {} of {} cameras are left out, since none of their pictures can be drawn. The first: {}",
                 file_, left_out_, left_out_ + drawn_, first_left_out_);

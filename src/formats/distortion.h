@@ -7,7 +7,6 @@
 #include <optional>
 #include <string>
 
-#include "base/error.h"
 #include "formats/json_file.h"
 #include "scene/camera.h"
 
@@ -30,11 +29,6 @@ Distortion distortion_of(const BrownDistortion& brown);
 /// corner that the lens does not reach.
 double corner_shift(const Camera& camera, const Distortion& distortion);
 
-/// Thrown for cameras of which no picture can be drawn, since no plane holds what their lenses show.
-struct UndrawableLens : Error {
-  explicit UndrawableLens(const std::string& text) : Error(ExitCode::bad_input, text) {}
-};
-
 /// What the lenses of a file are drawn as. Every camera is noted; finish() reports each kind of lens in one
 /// warning.
 class DrawnLenses {
@@ -47,7 +41,7 @@ class DrawnLenses {
   void add(const Camera& camera, const Distortion& distortion);
   /// One that cannot be, with the whole text of the error that it is where no other can.
   void leave_out(std::string why);
-  /// Warns of what was bent or left out. Throws UndrawableLens where that is all there was.
+  /// Warns of what was bent or left out. Throws Error where that is all there was.
   void finish() const;
 
  private:

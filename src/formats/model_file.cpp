@@ -8,6 +8,7 @@
 #include "base/mapped_file.h"
 #include "base/numbers.h"
 #include "base/text.h"
+#include "formats/compressed_ply.h"
 #include "formats/content.h"
 #include "formats/gltf.h"
 #include "formats/json_file.h"
@@ -61,6 +62,29 @@ bool is_named_as_model(const fs::path& path) {
     if (ending == of_model) return true;
   }
   return false;
+}
+
+/// Whether a file is there and has a text in it, as that one may, too, which is cut short.
+bool has_text(const fs::path& path, std::string_view text) {
+  std::error_code ignored;
+  if (!fs::is_regular_file(path, ignored)) return false;
+  const MappedFile file(path);
+  return as_text(file.bytes()).find(text) != std::string_view::npos;
+}
+
+/// Whether a file that is called as a model holds something else: a ply with a mesh or points, or a glTF
+/// without Gaussians. What cannot be read counts as a model, so that its error is seen.
+bool is_no_model(const fs::path& path) {
+  try {
+    if (lowered_ending(path).starts_with(".gl")) return !has_text(path, "gaussian_splat");
+    if (lowered_ending(path) != ".ply") return false;
+    const MappedFile file(path);
+    const PlyHeader header = read_ply_header(path, file.bytes());
+    const PlyElement* const vertices = header.find("vertex");
+    return vertices == nullptr || (vertices->find("opacity") == nullptr && !is_compressed_ply(header));
+  } catch (const Error&) {
+    return false;
+  }
 }
 
 void refuse_level(const fs::path& path, const ModelOptions& options) {
@@ -128,9 +152,9 @@ Model load_content(const fs::path& path, const ModelOptions& options) {
 
 std::vector<fs::path> models_in(const fs::path& folder) {
   std::error_code ignored;
-  for (const char* name : {"lod-meta.json", "meta.json"}) {
-    if (fs::is_regular_file(folder / name, ignored)) return {folder / name};
-  }
+  // Other programs, too, have files of these names.
+  if (has_text(folder / "lod-meta.json", "\"lodLevels\"")) return {folder / "lod-meta.json"};
+  if (has_text(folder / "meta.json", "\"means\"")) return {folder / "meta.json"};
   const fs::path clouds = folder / "point_cloud", ply = "point_cloud.ply";
   for (const fs::path& file : {folder / ply, clouds / ply}) {
     if (fs::is_regular_file(file, ignored)) return {file};
@@ -142,11 +166,14 @@ std::vector<fs::path> models_in(const fs::path& folder) {
     if (is_named_as_model(entry.path()) && fs::is_regular_file(entry.path(), ignored))
       found.push_back(entry.path());
   }
+  if (found.size() > 1 && !std::ranges::all_of(found, is_no_model)) std::erase_if(found, is_no_model);
   std::ranges::sort(found, [](const fs::path& a, const fs::path& b) {
     return comes_before(a.filename().string(), b.filename().string());
   });
   const fs::path exported = folder / "exports/splat/splat.ply";
-  if (found.empty() && fs::is_regular_file(exported, ignored)) return {exported};
+  for (const fs::path& file : {exported, folder / "lod-meta.json", folder / "meta.json"}) {
+    if (found.empty() && fs::is_regular_file(file, ignored)) return {file};
+  }
   return found;
 }
 

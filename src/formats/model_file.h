@@ -11,10 +11,10 @@
 
 namespace binosplat {
 
-/// The models that a folder stands for, best one: lod-meta.json or meta.json of a SOG; point_cloud.ply, also
-/// in point_cloud/ or the latest point_cloud/iteration_N/ (INRIA, Scaffold-GS); the latest
-/// ply/point_cloud_N.ply (gsplat); all files in it that are called as models are, by their numbers;
-/// exports/splat/splat.ply (nerfstudio).
+/// The models that a folder stands for, best one: lod-meta.json or meta.json of a SOG, by what is in it;
+/// point_cloud.ply, also in point_cloud/ or the latest point_cloud/iteration_N/ (INRIA, Scaffold-GS); the
+/// latest ply/point_cloud_N.ply (gsplat); all files in it that are called as models are, by their numbers,
+/// without meshes and points among them; exports/splat/splat.ply (nerfstudio).
 std::vector<std::filesystem::path> models_in(const std::filesystem::path& folder);
 
 /// The file itself, or the model that a folder stands for. Throws Error for a folder with none or several.

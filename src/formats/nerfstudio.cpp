@@ -7,11 +7,13 @@
 #include <limits>
 #include <optional>
 
+#include "base/error.h"
 #include "base/log.h"
 #include "formats/distortion.h"
 #include "formats/image_file.h"
 #include "formats/lens.h"
 #include "formats/transforms.h"
+#include "formats/view_files.h"
 
 namespace binosplat {
 
@@ -93,13 +95,6 @@ Camera frame_of(const fs::path& path, const JsonValue& root, const JsonValue& fr
   return camera;
 }
 
-/// A view's photo, as such a list names it: from its own folder on, or from the root.
-std::optional<glm::ivec2> photo_size(const fs::path& list, const std::string& file_path) {
-  const fs::path photo = list.parent_path() / file_path;
-  std::error_code ignored;
-  return fs::is_regular_file(photo, ignored) ? std::optional(picture_size(photo)) : std::nullopt;
-}
-
 }  // namespace
 
 bool is_camera_path(const nlohmann::json& root) {
@@ -110,7 +105,7 @@ std::vector<Camera> load_camera_path(const fs::path& path, const nlohmann::json&
   const JsonValue root(path.string(), json);
   const std::string fault = undrawable_lens(
       [&](const char* key) { return root.has(key) ? std::optional(root.at(key)) : std::nullopt; });
-  if (!fault.empty()) throw UndrawableLens(fmt::format("{}, {}", path.string(), fault));
+  if (!fault.empty()) fail("{}, {}", path.string(), fault);
   const bool by_keys =
       !root.has("camera_path") || (root.at("camera_path").size() == 0 && root.has("keyframes"));
   const JsonValue frames = root.at(by_keys ? "keyframes" : "camera_path");
@@ -142,12 +137,14 @@ std::vector<Camera> load_pose_list(const fs::path& path, const nlohmann::json& j
       "{} px "
       "(--size)",
       path.string(), fov_degrees, pose_width, pose_height);
-  std::vector<Camera> cameras;
+  std::vector<Camera> cameras(root.size());
+  for (std::size_t i = 0; i < root.size(); ++i) cameras[i].name = root.at(i).at("file_path").text();
+  set_short_names(cameras);
   for (std::size_t i = 0; i < root.size(); ++i) {
     const JsonValue value = root.at(i);
-    Camera& camera = cameras.emplace_back();
-    camera.name = value.at("file_path").text();
-    const glm::ivec2 size = photo_size(path, camera.name).value_or(glm::ivec2(pose_width, pose_height));
+    Camera& camera = cameras[i];
+    const auto photo = find_view_photo(path.parent_path(), camera);
+    const glm::ivec2 size = photo ? picture_size(*photo) : glm::ivec2(pose_width, pose_height);
     camera.width = size.x;
     camera.height = size.y;
     set_vertical_fov(camera, fov_degrees);

@@ -18,8 +18,8 @@ bool is_camera_path(const nlohmann::json& root);
 /// a path without frames the keyframes, key_000 and so on, with times as their transitions take. Each has a
 /// camera_to_world (of a keyframe: matrix) of 16 numbers, with OpenGL's axes, and a vertical fov in degrees.
 /// Frames are row-major; keyframes are so as lists, and column-major in quotes, as older viewers wrote them.
-/// render_width and render_height are the pictures' size. Throws UndrawableLens for paths of fisheyes and
-/// panoramas, and Error naming the file and the key for all that is missing or wrong.
+/// render_width and render_height are the pictures' size. Throws Error naming the file and the key
+/// for paths of fisheyes and panoramas and all that is missing or wrong.
 std::vector<Camera> load_camera_path(const std::filesystem::path& path, const nlohmann::json& root);
 
 /// Whether a JSON file has poses alone: a list of objects with file_path and transform.

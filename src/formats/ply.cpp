@@ -144,6 +144,7 @@ class PlyReader {
       log_info("{}: its Gaussians are flat (2D Gaussian Splatting) and drawn as 3D ones without thickness",
                path_.string());
     }
+    if (layout_.rgb && !layout_.rgb_bytes) settle_colours();
     model_.cut_db = cut_harmonics_db(model_, cut_);
     keep_only(model_, kept_);
     return std::move(model_);
@@ -155,6 +156,23 @@ class PlyReader {
     model_.resize(layout_.vertices->count);
     kept_.assign(layout_.vertices->count, 0);
     if (layout_.cut_at > 0) cut_.assign(layout_.vertices->count, 0.0f);
+  }
+
+  /// Base colours that are no bytes were read as 0 to 1. Some programs write 0 to 255: the largest decides.
+  void settle_colours() {
+    const std::size_t values = 3 * static_cast<std::size_t>(sh_count(layout_.degree));
+    constexpr double most = 2.0;  // of 0 to 1: trainers' may be beyond that
+    double largest = 0.0;
+    for (std::size_t k = 0; k < model_.sh.size(); ++k) {
+      if (k % values < 3 && kept_[k / values] != 0) largest = std::max(largest, 0.5 + sh_c0 * model_.sh[k]);
+    }
+    if (largest > 255.5)
+      fail("{}: properties red, green and blue reach {:.6g}; expected 0 to 1, or 0 to 255", path_.string(),
+           largest);
+    for (std::size_t k = 0; largest > most && k < model_.sh.size(); ++k) {
+      if (k % values < 3)
+        model_.sh[k] = static_cast<float>(((0.5 + sh_c0 * model_.sh[k]) / 255.0 - 0.5) / sh_c0);
+    }
   }
 
   void keep(std::size_t i, const RawGaussian& raw) {

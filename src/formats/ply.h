@@ -13,9 +13,10 @@
 // The types half and float16, which are no part of ply either, are read as what they say.
 //
 // Three relatives are read as well: two scales and no scale_2 are flat Gaussians (2D Gaussian Splatting,
-// Huang 2024), whose third scale is 0; `red green blue` (uchar) in f_dc's place are base colours
-// (Nerfstudio), and `filter_3D` is folded into scales and opacities (Mip-Splatting, Yu 2024). PlayCanvas'
-// compressed ply (formats/compressed_ply.h) is read as well.
+// Huang 2024), whose third scale is 0; `red green blue` in f_dc's place are base colours, as uchar
+// (Nerfstudio) or floats, of 0 to 1 or, where one is above 2, of 0 to 255, and `filter_3D` is folded into
+// scales and opacities (Mip-Splatting, Yu 2024). PlayCanvas' compressed ply (formats/compressed_ply.h) is
+// read as well.
 
 #include <filesystem>
 

@@ -86,9 +86,18 @@ class Finder {
   PlyLayout& layout_;
 };
 
-bool has_bytes(const PlyElement& vertices, std::string_view name) {
-  const PlyProperty* property = vertices.find(name);
-  return property != nullptr && property->type == PlyType::uint8;
+/// Finds out whether there are base colours in the place of coefficients, and of which type.
+void find_rgb(const std::filesystem::path& path, PlyLayout& layout) {
+  if (layout.vertices->find("f_dc_0") != nullptr) return;
+  layout.rgb = layout.rgb_bytes = true;
+  for (const char* name : {"red", "green", "blue"}) {
+    const PlyProperty* property = layout.vertices->find(name);
+    const PlyType type = property == nullptr ? PlyType::uint8 : property->type;
+    if (type != PlyType::uint8) layout.rgb_bytes = false;
+    if (type != PlyType::uint8 && size_of(type) < size_of(PlyType::float32))
+      fail("{}: property '{}' of element 'vertex' is of a type that no colour is read of: uchar or float",
+           path.string(), name);
+  }
 }
 
 }  // namespace
@@ -124,8 +133,7 @@ PlyLayout find_layout(const std::filesystem::path& path, const PlyHeader& header
                            "rot_1", "rot_2", "rot_3", "opacity"}) {
     finder.add(name);
   }
-  layout.rgb = layout.vertices->find("f_dc_0") == nullptr && has_bytes(*layout.vertices, "red") &&
-               has_bytes(*layout.vertices, "green") && has_bytes(*layout.vertices, "blue");
+  find_rgb(path, layout);
   for (const char* name :
        layout.rgb ? std::array{"red", "green", "blue"} : std::array{"f_dc_0", "f_dc_1", "f_dc_2"}) {
     finder.add(name);
@@ -155,7 +163,8 @@ bool decode(const PlyLayout& layout, Model& model, std::size_t i, const RawGauss
   const std::size_t values = 3 * static_cast<std::size_t>(sh_count(layout.degree));
   std::copy_n(&raw[11], values, sh.begin());
   if (layout.rgb) {
-    for (int c = 0; c < 3; ++c) sh[c] = static_cast<float>((sh[c] / 255.0 - 0.5) / sh_c0);
+    for (int c = 0; c < 3; ++c)
+      sh[c] = static_cast<float>((sh[c] / (layout.rgb_bytes ? 255.0 : 1.0) - 0.5) / sh_c0);
   }
   const bool good = decode_raw(model, i,
                                {position, glm::vec3(raw[3], raw[4], layout.flat ? -INFINITY : raw[5]),

@@ -28,7 +28,8 @@ struct PlyLayout {
   const PlyElement* vertices = nullptr;
   int degree = 0;
   std::vector<Source> sources;  // for each number of a RawGaussian
-  bool rgb = false;             // the first three coefficients are base colours of 0 to 255 (Nerfstudio)
+  bool rgb = false;             // the first three coefficients are base colours
+  bool rgb_bytes = false;       // of 0 to 255 (Nerfstudio)
   bool filter_3d = false;       // the last number is Mip-Splatting's filter (world units)
   bool antialiased = false;
   std::string antialiased_by;  // as Model has it

@@ -88,8 +88,10 @@ std::optional<nlohmann::json> read_lod_meta(const fs::path& lod_meta) {
   std::error_code ignored;
   if (!fs::is_regular_file(lod_meta, ignored)) return std::nullopt;
   const MappedFile file(lod_meta);
-  if (content_of(file.bytes()) != Content::json) return std::nullopt;
-  nlohmann::json json = parse_json(lod_meta.string(), as_text(file.bytes()));
+  const std::string_view text = as_text(file.bytes());
+  if (text.find("\"lodLevels\"") == std::string_view::npos || content_of(file.bytes()) != Content::json)
+    return std::nullopt;
+  nlohmann::json json = parse_json(lod_meta.string(), text);
   return is_sog_levels(json) ? std::optional(std::move(json)) : std::nullopt;
 }
 

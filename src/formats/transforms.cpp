@@ -4,10 +4,12 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <utility>
 
 #include "formats/distortion.h"
 #include "formats/image_file.h"
 #include "formats/lens.h"
+#include "formats/view_files.h"
 
 namespace binosplat {
 
@@ -21,16 +23,14 @@ class Frame {
   Frame(const fs::path& path, const JsonValue& root, const JsonValue& frame)
       : path_(path), root_(root), frame_(frame) {}
 
-  Camera read() const {
-    Camera camera;
-    camera.name = frame_.at("file_path").text();
+  /// All of a camera that is named.
+  void read(Camera& camera) const {
     read_size(camera);
     read_focal(camera);
     camera.cx = number("cx").value_or(camera.width / 2.0);
     camera.cy = number("cy").value_or(camera.height / 2.0);
     check_lens(fmt::format("{}: frame '{}'", path_.string(), camera.name), camera);
     read_pose(camera);
-    return camera;
   }
 
   std::optional<JsonValue> value(const char* key) const {
@@ -52,17 +52,13 @@ class Frame {
       camera.height = static_cast<int>(height->whole(std::numeric_limits<int>::max()));
       return;
     }
-    const fs::path named = path_.parent_path() / camera.name;
-    for (const char* ending : {"", ".png", ".jpg", ".jpeg"}) {
-      const fs::path file(named.string() + ending);
-      std::error_code ignored;
-      if (!fs::is_regular_file(file, ignored)) continue;
-      const Image image = load_image(file);
-      camera.width = image.width;
-      camera.height = image.height;
-      return;
-    }
-    frame_.fail_here("there are no w and h, and no picture {} that would tell", named.string());
+    const auto photo = find_view_photo(path_.parent_path(), camera);
+    if (!photo)
+      frame_.fail_here("there are no w and h, and no picture {} that would tell",
+                       (path_.parent_path() / camera.name).string());
+    const glm::ivec2 size = picture_size(*photo);
+    camera.width = size.x;
+    camera.height = size.y;
   }
 
   void read_focal(Camera& camera) const {
@@ -114,7 +110,9 @@ std::vector<Camera> load_transforms(const fs::path& path, const nlohmann::json& 
   const JsonValue root(path.string(), json);
   const JsonValue frames = root.at("frames");
   if (frames.size() == 0) frames.fail_here("there are no cameras in it");
-  std::vector<Camera> cameras;
+  std::vector<Camera> named(frames.size()), cameras;
+  for (std::size_t i = 0; i < frames.size(); ++i) named[i].name = frames.at(i).at("file_path").text();
+  set_short_names(named);
   DrawnLenses drawn(path.string());
   for (std::size_t i = 0; i < frames.size(); ++i) {
     const JsonValue value = frames.at(i);
@@ -124,7 +122,8 @@ std::vector<Camera> load_transforms(const fs::path& path, const nlohmann::json& 
       drawn.leave_out(fmt::format("{}, frame {} (counted from 0), {}", path.string(), i, fault));
       continue;
     }
-    cameras.push_back(frame.read());
+    frame.read(named[i]);
+    cameras.push_back(std::move(named[i]));
     drawn.add(cameras.back(), read_distortion(key));
   }
   drawn.finish();

@@ -79,7 +79,17 @@ void fail_to_load(const char* library, const char* what_to_install) {
   throw Error(ExitCode::no_gl, fmt::format("{}: {}. {}", library, why, what_to_install));
 }
 
+void ignore_overrides() {
+  for (const char* name : {"MESA_EXTENSION_OVERRIDE", "MESA_GLSL_VERSION_OVERRIDE"}) {
+    const char* const value = std::getenv(name);
+    if (value == nullptr) continue;
+    log_warning("{}={} makes Mesa report other than it has, and is ignored", name, value);
+    unsetenv(name);
+  }
+}
+
 std::unique_ptr<Context> Context::open(Backend backend, int device) {
+  ignore_overrides();
   const auto tries = [&](Backend one) {
     return backend == one || (backend == Backend::automatic && (device < 0 || one == Backend::device));
   };

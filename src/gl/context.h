@@ -43,6 +43,10 @@ struct Limits {
   std::string why_no_subgroups;
 };
 
+/// Takes variables out of the environment that make Mesa report extensions and a GLSL other than it has,
+/// which some set for other programs; warns of each. Call it before a context is made.
+void ignore_overrides();
+
 class Context {
  public:
   /// Opens and makes current. `device` counts EGL's devices (only for Backend::device and automatic; -1: the

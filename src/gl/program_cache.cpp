@@ -71,7 +71,7 @@ void ProgramCache::write(const std::string& wanted, const std::string& kept) con
     out.write(wanted);
     out.write(std::as_bytes(std::span(&sum, 1)));
     out.write(kept);
-    out.commit();
+    out.commit(false);
   } catch (const Error&) {
     // A cache that cannot be written only costs time.
   }

@@ -3,6 +3,7 @@
 #include <string>
 
 #include "base/error.h"
+#include "gl/context.h"
 
 namespace binosplat::preview {
 
@@ -16,6 +17,7 @@ constexpr const char* instead = "`binosplat render` draws without a display";
 
 Glfw::Glfw() {
   glfwSetErrorCallback([](int, const char* text) { glfw_said = text; });
+  gl::ignore_overrides();
   if (glfwInit() == GLFW_FALSE)
     throw Error(ExitCode::no_gl, fmt::format("no display for a window ({}): {}", glfw_said, instead));
 }

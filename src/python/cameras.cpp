@@ -5,6 +5,7 @@
 #include <memory>
 #include <tuple>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include "base/error.h"
@@ -230,8 +231,13 @@ void add_list(py::module_& module) {
              "The file or folder with the cameras of a model, beside the model's path; None without.");
   module.def("find_photos", &find_photos, py::arg("cameras"),
              "The folder of the photos that cameras were found from, beside the cameras' path; or None.");
-  module.def("find_photo", &find_view_photo, py::arg("folder"), py::arg("view"),
-             "A view's photo in a folder, by the camera's name with or without a picture's ending; or None.");
+  module.def(
+      "find_photo",
+      [](const std::filesystem::path& folder, const std::variant<Camera, std::string>& view) {
+        return std::visit([&](const auto& of) { return find_view_photo(folder, of); }, view);
+      },
+      py::arg("folder"), py::arg("view"),
+      "A view's photo in a folder, by the camera or its name, with or without a picture's ending; or None.");
 }
 
 }  // namespace

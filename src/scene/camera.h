@@ -23,6 +23,7 @@ struct Camera {
   glm::dvec3 position{0.0};
   glm::dmat3 rotation{1.0};    // columns: the camera's axes x right, y down, z forward in the world
   std::optional<double> time;  // s, for cameras of a path
+  std::string short_name;  // what tells it from others of its file; set_short_names() (formats/view_files.h)
 };
 
 /// Fills in what a View says of the camera's lens and picture: lens, slopes, width and height.

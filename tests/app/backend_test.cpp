@@ -71,6 +71,25 @@ TEST_F(BackendTest, DriversThatMesaLacksAreNoCrash) {
   }
 }
 
+TEST_F(BackendTest, WhatMesaIsMadeToReportIsIgnored) {
+  add_cameras();
+  const std::vector<std::string> line = {"--mono", "--view", "front",         "--size",
+                                         "36x24",  "-o",     folder / "p.png"};
+  ASSERT_TRUE(good(render(line)));
+  const auto expected = load_image(folder / "p.png").data;
+  for (const auto& [name, value] : std::multimap<std::string, std::string>{
+           {"MESA_GLSL_VERSION_OVERRIDE", "330"},
+           {"MESA_GLSL_VERSION_OVERRIDE", "460"},
+           {"MESA_EXTENSION_OVERRIDE", "-GL_ARB_compute_shader"},
+           {"MESA_EXTENSION_OVERRIDE", "+GL_KHR_shader_subgroup +GL_NV_gpu_shader5"}}) {
+    std::filesystem::remove(folder / "p.png");
+    const Outcome drawn = render(line, {.variables = {{name, value}}});
+    ASSERT_TRUE(good(drawn)) << name << value;
+    EXPECT_TRUE(has(drawn.err, name + "=" + value));
+    EXPECT_EQ(load_image(folder / "p.png").data, expected);
+  }
+}
+
 TEST_F(BackendTest, TheDeviceAgreesWithMesa) {
   add_cameras();
   const Outcome device = draw("device", "device.exr");

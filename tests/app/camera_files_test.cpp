@@ -104,11 +104,86 @@ TEST_F(CameraFiles, TwoViewsOfOnePhotoStopAllThatMeasuresByPhotos) {
         << command;
   }
   EXPECT_TRUE(stops(test::run_program({"refit", model, "--photos", photos, "-o", folder / "t.ply"})));
-  // Names that are the same stop whatever is asked for.
-  save_colmap(pinhole, {"a.png", "b.png", "a.png"});
-  EXPECT_TRUE(ended(mono({"--view", "all"}), 2, "two cameras are called 'a.png'"));
-  EXPECT_TRUE(ended(mono({}), 2, "two cameras are called 'a.png'"));
-  EXPECT_FALSE(fs::exists(out));
+}
+
+// Of NeRF's synthetic scenes INRIA's trainer writes r_0 twice.
+TEST_F(CameraFiles, TwoViewsOfOneNameAreBothDrawn) {
+  const json cameras = {test::camera_json("r_0", 0.0), test::camera_json("r_1", 0.2),
+                        test::camera_json("r_0", 0.4)};
+  write_text(folder / "cameras.json", cameras.dump());
+  const std::vector<float> first = picture({"--view", "r_0"}), other = picture({"--view", "r_0_2"});
+  EXPECT_TRUE(first != other);
+  EXPECT_TRUE(picture({}) == first);
+  write_text(folder / "third.json", json{cameras[2]}.dump());
+  EXPECT_TRUE(picture({"--cameras", folder / "third.json"}) == other);
+  ASSERT_TRUE(good(mono({"--view", "all", "--cameras", folder / "cameras.json"})));
+  for (const char* name : {"r_0", "r_1", "r_0_2"}) EXPECT_TRUE(fs::exists(out + "/" + name + ".png")) << name;
+}
+
+TEST_F(CameraFiles, CamerasThatNobodyNamedStopNoPicture) {
+  fs::create_directories(folder / "images");
+  const json frame = {{"file_path", "./train/r_0"},
+                      {"transform_matrix", json::parse("[[1,0,0,0],[0,1,0,0],[0,0,1,0]]")}};
+  const std::pair<const char*, std::string> broken[] = {
+      {"cameras.json", "[{\"id\": 0"},
+      {"cameras.json", ""},
+      {"cameras.json", "[]"},
+      {"cameras.json", "7"},
+      {"cameras.json", R"({"version": 1, "cameras": [{"fov": 60}]})"},
+      {"transforms_train.json", json{{"camera_angle_x", 1.04}, {"frames", {frame}}}.dump()},
+      {"cameras.bin", ""}};
+  const std::string cannot = "the cameras beside " + model + " cannot be used: ";
+  for (const auto& [name, text] : broken) {
+    const std::string file = folder / name;
+    write_text(file, text);
+    if (std::string(name) == "cameras.bin") write_text(folder / "images.bin", "");
+    const Outcome drawn = mono({"--size", "36x24"});
+    EXPECT_TRUE(ended(drawn, 0, "; cameras are made up instead"));
+    EXPECT_TRUE(ended(drawn, 0, "warning: " + (folder.path() / "").string()));
+    EXPECT_EQ(drawn.err.find("warning:"), drawn.err.rfind("warning:")) << drawn.err;
+    // Whatever needs them, or names their file, does not go on without.
+    EXPECT_TRUE(ended(mono({"--view", "a"}), 2, cannot)) << text;
+    EXPECT_TRUE(ended(mono({"--tour", "walk"}), 2, cannot)) << text;
+    EXPECT_TRUE(ended(mono({"--photos", folder / "images"}), 2, "the model cannot be used: ")) << text;
+    const std::string named = std::string(name) == "cameras.bin" ? folder.path().string() : file;
+    EXPECT_EQ(mono({"--cameras", named}).code, 2) << text;
+    fs::remove(file);
+  }
+  write_text(folder / "cameras.json", "[]");
+  const auto run = [](const test::Words& words) { return test::run_program(words); };
+  EXPECT_TRUE(ended(run({"info", model, "--views"}), 0, "holds no cameras; cameras are made up instead"));
+  EXPECT_TRUE(ended(run({"convert", model, "-o", folder / "c.spz", "--report", "1", "--size", "36x24"}), 0,
+                    "holds no cameras; cameras are made up instead"));
+  EXPECT_TRUE(
+      ended(run({"levels", model, "-o", folder / "levels"}), 0, "no cameras are left beside the levels"));
+  EXPECT_TRUE(ended(run({"trim", model, "--quality", "40", "-o", folder / "t.ply"}), 2, cannot));
+  EXPECT_TRUE(ended(run({"refit", model, "-o", folder / "t.ply"}), 2, cannot));
+  for (const char* command : {"bench", "calibrate"}) {
+    test::Words words = {command, model, "--photos", folder / "images", "-o", folder / "o.json"};
+    if (std::string(command) == "calibrate") words.insert(words.end(), {"--max-drop", "1"});
+    EXPECT_TRUE(ended(run(words), 2, "cannot be used: ")) << command;
+  }
+}
+
+TEST_F(CameraFiles, PhotosOfPathsThatOtherProgramsWrote) {
+  save_colmap(pinhole, {"v.png"});
+  take_photos();
+  fs::remove_all(folder / "sparse");
+  for (const char* path : {"images/v.png", "images\\v.png", "C:\\data\\images\\v.png"}) {
+    json frames = {
+        {"frames",
+         {{{"file_path", path}, {"transform_matrix", json::parse("[[1,0,0,0],[0,-1,0,0],[0,0,-1,0]]")}}}},
+        {"fl_x", 60}};
+    for (const bool sized : {true, false}) {
+      if (sized) frames["w"] = 72, frames["h"] = 48;
+      write_text(folder / "transforms.json", frames.dump());
+      frames.erase("w");
+      for (const std::string& photos : {std::string(folder / "images"), std::string("beside")}) {
+        ASSERT_TRUE(good(mono({"--photos", photos}))) << path;
+        EXPECT_EQ(photo_psnr(), std::vector<double>{INFINITY}) << path;
+      }
+    }
+  }
 }
 
 TEST_F(CameraFiles, LensesThatCannotBeDrawnAreAWarningWhereOthersWillDo) {

@@ -139,6 +139,14 @@ TEST_F(Edges, FoldersOfCaches) {
   };
   const char* const full = "the disk is full; drivers keep no shaders there";
   EXPECT_TRUE(has(draw("/proc"), full));
+  // Nothing can be written below a file; that is said once, and by no driver.
+  write_text(here / "file", "");
+  for (const char* below : {"file", "file/caches"}) {
+    const std::string said = draw(here / below);
+    EXPECT_TRUE(has(said, "file: nothing can be written there; drivers keep no shaders there in this run"));
+    EXPECT_FALSE(has(said, "disabling"));
+  }
+  fs::remove(here / "file");
   // What is no whole path is ignored.
   for (const char* relative : {"./caches", ""}) {
     EXPECT_FALSE(has(draw(relative), full));

@@ -2,6 +2,7 @@
 // one where something fails midway.
 
 #include <chrono>
+#include <functional>
 #include <thread>
 
 #include "app/scene.h"
@@ -81,6 +82,28 @@ TEST_F(FilesInFlight, AFullDiskLeavesNoHalfFile) {
   EXPECT_TRUE(std::filesystem::exists(folder / "out"));
   for (const auto& [name, bytes] : contents(out)) EXPECT_EQ(name.find(".part-"), std::string::npos) << name;
   ASSERT_TRUE(good(test::run_program(line(out))));
+}
+
+TEST_F(FilesInFlight, WhatGoesAwayMeanwhileEndsTheRun) {
+  const Words more = {"--view", "all", "--exr", "half"};
+  const auto ends_after = [&](const std::function<void()>& change) {
+    std::filesystem::remove_all(out);
+    Program run(joined({"render", model, "-o", out}, more));
+    wait_for(out + "/view0_left.png");
+    change();
+    return run.wait();
+  };
+  EXPECT_TRUE(good(ends_after([] {})));
+  EXPECT_TRUE(ended(ends_after([&] { std::filesystem::rename(out, out + "-gone"); }), 2, out + "/view"));
+  EXPECT_FALSE(std::filesystem::exists(out)) << "a folder of the others";
+  std::filesystem::remove_all(out + "-gone");
+  EXPECT_TRUE(ended(ends_after([&] { std::filesystem::remove(out + "/view0_left.png"); }), 2,
+                    "view0_left.png was written, and is gone"));
+  EXPECT_TRUE(ended(ends_after([&] {
+                      std::filesystem::remove(out + "/view0_left.png");
+                      std::filesystem::create_directory(out + "/view0_left.png");
+                    }),
+                    2, "view0_left.png"));
 }
 
 // Signals that a program may end by itself, and one that it may not.

@@ -200,7 +200,8 @@ TEST_F(Refusals, ToursAndPaths) {
   test::write_text(cameras, nlohmann::json({test::camera_json("lonely", 0.0)}).dump());
   expect_refused({{{"--tour", "walk"}, "there is 1: name a file of more with --cameras"}});
   std::filesystem::remove(cameras);
-  expect_refused({{{"--tour", "walk"}, "--tour: no cameras beside " + model + " to go through: name their"}});
+  expect_refused(
+      {{{"--tour", "walk"}, "--tour goes through cameras: no cameras beside " + model + "; name their"}});
 }
 
 TEST_F(Refusals, Shards) {

@@ -65,7 +65,7 @@ TEST_F(RenderErrors, Cameras) {
   nlohmann::json cameras = {test::camera_json("front", 0.0)};
   cameras[0]["fx"] = 0.0;
   write_text(folder / "cameras.json", cameras.dump());
-  expect("camera 0 (counted from 0), key 'fx': expected a focal length above 0");
+  expect("camera 0 (counted from 0), key 'fx': expected a number above 0");
   write_text(folder / "cameras.json", "[{]");
   expect("is not valid JSON at line 1");
   cameras.clear();

@@ -51,9 +51,36 @@ TEST(CameraNames, OfColmapsTextAreAllThatIsLeftOfTheLine) {
 }
 
 TEST(CameraNames, AnImageIsNotTakenForThePointsOfAnother) {
-  // Twelve words, as many as of four points, in the place of the points.
+  // Twelve words, as many as of four points, in the place of the points, which some programs leave out.
   const std::string two = "1 1 0 0 0 0 0 0 1 a.jpg\n2 1 0 0 0 0 0 0 1 my b c.jpg\n";
-  EXPECT_TRUE(test::fails_saying([&] { names_in(two); }, {"images.txt, line 2", "points seen in image 1"}));
+  EXPECT_EQ(names_in(two), (CameraNames{"a.jpg", "my b c.jpg"}));
+  EXPECT_EQ(names_in(two + "# a comment\n3 1 0 0 0 0 0 0 1 12\n1.5 2 -1\n\n4 1 0 0 0 0 0 0 1 d"),
+            (CameraNames{"12", "a.jpg", "d", "my b c.jpg"}));
+  for (const char* cut : {"1.5 2 -1 4\n", "1.5 x -1\n", "2 1 0 0 0 0 0 0\n"})
+    EXPECT_TRUE(test::fails_saying([&] { names_in("1 1 0 0 0 0 0 0 1 a.jpg\n" + std::string(cut)); },
+                                   {"images.txt, line 2", "points seen in image 1"}))
+        << cut;
+}
+
+TEST(CameraNames, NumbersOfTextsAreReadAsColmapReadsThem) {
+  const TempFolder folder;
+  const auto load = [&](const std::string& lens_of, const std::string& image_of) {
+    write_text(folder / "cameras.txt", lens_of);
+    write_text(folder / "images.txt", image_of);
+    return load_cameras(folder.path()).at(0);
+  };
+  const Camera camera = load("+1.0 PINHOLE 160.0 +120 +140 1.4e2 80.0 +60.5\n",
+                             "12.0 +1 +0 0 0 +0.25 0 -0.5 1.0 a\n+3.5 2.0 12.0 1 2 +7\n");
+  EXPECT_EQ(camera.width, 160);
+  EXPECT_EQ(camera.height, 120);
+  EXPECT_EQ(camera.fx, 140.0);
+  EXPECT_EQ(camera.cy, 60.5);
+  EXPECT_EQ(camera.position, glm::dvec3(-0.25, 0.0, 0.5));
+  for (const char* bad : {"160.5", "-160", "++160", "1e30", "160px", "nan", "+"})
+    EXPECT_TRUE(test::fails_saying(
+        [&] { load(fmt::format("1 PINHOLE {} 120 1 1 1 1\n", bad), "1 1 0 0 0 0 0 0 1 a\n"); },
+        {"cameras.txt, line 1", "is no number of pixels"}))
+        << bad;
 }
 
 /// Of two cameras of these names, each kind of file.
@@ -92,13 +119,17 @@ std::vector<Pair> pairs_of(const std::string& a, const std::string& b) {
       {"poses", {{"transforms.json", poses.dump()}}}};
 }
 
-TEST(CameraNames, ThatOccurTwiceStopEveryReader) {
+TEST(CameraNames, ThatOccurTwiceGetNumbersInEveryReader) {
   for (const auto& [kind, files] : pairs_of("same name.jpg", "same name.jpg")) {
     const TempFolder folder;
     for (const auto& [name, text] : files) write_text(folder / name, text);
-    EXPECT_TRUE(test::fails_saying([&] { load_cameras(folder.path()); },
-                                   {folder.path().string(), "two cameras are called 'same name.jpg'"}))
-        << kind;
+    testing::internal::CaptureStderr();
+    const std::vector<Camera> cameras = load_cameras(folder.path());
+    const std::string said = testing::internal::GetCapturedStderr();
+    ASSERT_EQ(cameras.size(), 2u) << kind;
+    EXPECT_EQ(cameras[0].name, "same name.jpg") << kind;
+    EXPECT_EQ(cameras[1].name, "same name_2.jpg") << kind;
+    EXPECT_NE(said.find("1 of its 2 cameras have the name of one before them"), std::string::npos) << said;
   }
   // As they should be.
   for (const auto& [kind, files] : pairs_of("left/1.jpg", "right/1.jpg")) {
@@ -106,6 +137,52 @@ TEST(CameraNames, ThatOccurTwiceStopEveryReader) {
     for (const auto& [name, text] : files) write_text(folder / name, text);
     EXPECT_EQ(load_cameras(folder.path()).size(), 2u) << kind;
   }
+}
+
+TEST(CameraNames, NumbersMakeNewNames) {
+  // Sorted by name, as COLMAP's are.
+  EXPECT_EQ(names_in(image(1, "r_0") + image(2, "r_0_2") + image(3, "r_0") + image(4, "r_0") +
+                     image(5, "r_0_2") + image(6, "a_left") + image(7, "a_left")),
+            (CameraNames{"a_left", "a_2_left", "r_0", "r_0_3", "r_0_4", "r_0_2", "r_0_2_2"}));
+}
+
+/// Whose photos views of these names take in a folder below `folder`; "" without one.
+CameraNames photos_of(const TempFolder& folder, const std::string& below, const CameraNames& names) {
+  std::vector<Camera> views(names.size());
+  for (std::size_t i = 0; i < names.size(); ++i) views[i].name = names[i];
+  set_short_names(views);
+  CameraNames photos;
+  for (const Camera& view : views) {
+    const auto photo = find_view_photo(folder / below, view);
+    photos.push_back(photo ? fs::relative(*photo, folder.path()).string() : "");
+  }
+  return photos;
+}
+
+TEST(CameraNames, PhotosAreFoundByTheEndsOfPaths) {
+  const TempFolder folder;
+  for (const char* name : {"images", "images/cam0", "images/cam1", "flat"})
+    fs::create_directories(folder / name);
+  for (const char* name : {"images/v.png", "images/cam0/w.jpg", "images/cam1/w.jpg", "flat/w.jpg",
+                           "flat/x.jpg", "images/a\\b.png"})
+    write_text(folder / name, "");
+  for (const char* name : {"images/v.png", "./images/v.png", "images\\v.png", "C:\\data\\images\\v.png",
+                           "v.png", "../data/v.png", "/data/images/v", "images\\v"}) {
+    EXPECT_EQ(photos_of(folder, "images", {name}), CameraNames{"images/v.png"}) << name;
+    EXPECT_EQ(photos_of(folder, "images/", {name}), CameraNames{"images/v.png"}) << name;
+  }
+  EXPECT_EQ(photos_of(folder, "", {"images\\v.png"}), CameraNames{"images/v.png"});
+  EXPECT_EQ(photos_of(folder, "images", {"a\\b.png"}), CameraNames{"images/a\\b.png"})
+      << "a file of this name";
+  EXPECT_EQ(photos_of(folder, "flat", {"cam0/x.jpg", "cam1/y.jpg"}), (CameraNames{"flat/x.jpg", ""}));
+  // Where views share a name but for their folders, no photo is taken for another's.
+  for (const char* before : {"", "C:\\s\\", "/s/"}) {
+    const CameraNames cams = {before + std::string("cam0/w.jpg"), before + std::string("cam1/w.jpg")};
+    EXPECT_EQ(photos_of(folder, "images", cams), (CameraNames{"images/cam0/w.jpg", "images/cam1/w.jpg"}));
+    EXPECT_EQ(photos_of(folder, "images/cam1", cams), (CameraNames{"", "images/cam1/w.jpg"}));
+    EXPECT_EQ(photos_of(folder, "flat", cams), (CameraNames{"", ""}));
+  }
+  EXPECT_EQ(photos_of(folder, "flat", {"cam0/w.jpg", "cam1/w.png"}), (CameraNames{"", ""}));
 }
 
 TEST(CameraNames, NoTwoViewsTakeOnePhoto) {

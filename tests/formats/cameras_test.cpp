@@ -89,27 +89,26 @@ TEST(Cameras, RotationsAreKeptToTheDigit) {
 }
 
 TEST(Cameras, ErrorsNameTheCameraAndTheKey) {
-  EXPECT_TRUE(
-      refuses_with({{"width", 0}}, {"camera 1 (counted from 0)", "'width'", "0 is no number of pixels"}));
-  EXPECT_TRUE(refuses_with({{"width", -1}}, {"'width'", "-1 is no number of pixels"}));
-  EXPECT_TRUE(refuses_with({{"height", 480.5}}, {"'height'", "480.5 is no number of pixels"}));
+  EXPECT_TRUE(refuses_with({{"width", 0}}, {"camera 1 (counted from 0)", "0 x 480 px cannot be drawn"}));
+  EXPECT_TRUE(refuses_with({{"width", -1}}, {"camera 1", "'width'", "a whole number", "found -1"}));
+  EXPECT_TRUE(refuses_with({{"height", 480.5}}, {"'height'", "a whole number", "found 480.5"}));
   EXPECT_TRUE(refuses_with({{"height", 1e10}}, {"'height'"}));
-  EXPECT_TRUE(refuses_with({{"width", 100000}, {"height", 100000}}, {"camera 1", "too large"}));
+  EXPECT_TRUE(refuses_with({{"width", 100000}, {"height", 100000}}, {"camera 1", "cannot be drawn"}));
   EXPECT_TRUE(refuses_with({{"fx", 0}}, {"'fx'", "above 0"}));
   EXPECT_TRUE(refuses_with({{"fy", -2}}, {"'fy'", "above 0"}));
   EXPECT_TRUE(refuses_with({{"fx", "500"}}, {"'fx'", "finite number"}));
   EXPECT_TRUE(refuses_with({{"cx", "x"}}, {"'cx'", "finite number"}));
   EXPECT_TRUE(refuses_with({{"time", "x"}}, {"'time'", "finite number"}));
   EXPECT_TRUE(refuses_with({{"img_name", 7}}, {"'img_name'", "in quotes"}));
-  EXPECT_TRUE(refuses_with({{"position", {1, 2}}}, {"'position'", "three numbers"}));
-  EXPECT_TRUE(refuses_with({{"position", {1, 2, true}}}, {"'position'", "finite number"}));
-  EXPECT_TRUE(refuses_with({{"rotation", {{1, 0, 0}, {0, 1, 0}}}}, {"'rotation'", "three rows"}));
-  EXPECT_TRUE(refuses_with({{"rotation", {{1, 0}, {0, 1}, {0, 0}}}}, {"'rotation'", "three rows"}));
+  EXPECT_TRUE(refuses_with({{"position", {1, 2}}}, {"'position'", "expected 3 values"}));
+  EXPECT_TRUE(refuses_with({{"position", {1, 2, true}}}, {"'position[2]'", "finite number"}));
+  EXPECT_TRUE(refuses_with({{"rotation", {{1, 0, 0}, {0, 1, 0}}}}, {"'rotation'", "expected 3 values"}));
+  EXPECT_TRUE(refuses_with({{"rotation", {{1, 0}, {0, 1}, {0, 0}}}}, {"'rotation[0]'", "expected 3 values"}));
   EXPECT_TRUE(
       refuses_with({{"rotation", {{1, 0, 0}, {0, 1, 0}, {0, 0, 0.5}}}}, {"'rotation'", "off by 0.75"}));
   EXPECT_TRUE(refuses_with({{"rotation", {{1, 0, 0}, {0, 1, 0}, {0, 0, -1}}}}, {"'rotation'", "mirrors"}));
   for (const char* key : {"img_name", "width", "height", "position", "rotation", "fx", "fy"}) {
-    EXPECT_TRUE(refuses_with({{key, nullptr}}, {"camera 1", fmt::format("'{}': is missing", key)}));
+    EXPECT_TRUE(refuses_with({{key, nullptr}}, {"camera 1", fmt::format("'{}' is missing", key)}));
   }
 }
 

@@ -193,8 +193,7 @@ TEST(ColmapErrors, Text) {
     copy.write(replaced(copy.read(file), from, to), file);
     return test::fails_saying([&] { load_cameras(copy.path()); }, parts);
   };
-  // Without the empty line of an image that nothing was observed in, the next image stands in its place.
-  EXPECT_TRUE(with("images.txt", "img_000.png\n\n", "img_000.png\n",
+  EXPECT_TRUE(with("images.txt", "img_000.png\n\n", "img_000.png\n1.5 2.5\n",
                    {"images.txt, line 6", "the points seen in image 100", "an empty line"}));
   EXPECT_TRUE(
       with("images.txt", "100 -0.5 0.5", "100 -0.5 O.5", {"images.txt, line 5", "'O.5' is no number"}));

@@ -9,6 +9,7 @@
 
 #include "formats/cameras_file.h"
 #include "formats/model_file.h"
+#include "formats/streamed_sog.h"
 #include "support/broken.h"
 #include "support/program.h"
 
@@ -168,6 +169,39 @@ TEST(ModelsIn, AFolderIsTheModelThatItsTrainerLeft) {
   EXPECT_EQ(models_in(folder.path()), Paths{folder / "ply/point_cloud_29999.ply"});
   add("point_cloud/iteration_30000/point_cloud.ply");
   EXPECT_EQ(models_in(folder.path()), Paths{folder / "point_cloud/iteration_30000/point_cloud.ply"});
+}
+
+TEST(ModelsIn, FilesOfOtherProgramsHideNoModel) {
+  const TempFolder folder;
+  const auto found = [&] {
+    std::vector<std::string> names;
+    for (const fs::path& path : models_in(folder.path())) names.push_back(path.filename());
+    return names;
+  };
+  using Names = std::vector<std::string>;
+  const std::string vertex = "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float ";
+  write_text(folder / "m.ply", vertex + "opacity\nend_header\n0 0\n");
+  for (const char* text : {R"({"title": "a scan"})", "{", "", "[1, 2]", R"({"asset": {"version": "2.0"}})"}) {
+    for (const char* name : {"meta.json", "lod-meta.json", "scene.gltf", "scene.glb"}) {
+      write_text(folder / name, text);
+      EXPECT_EQ(found(), Names{"m.ply"}) << name << text;
+      EXPECT_FALSE(is_streamed_sog(folder.path()));
+    }
+  }
+  write_text(folder / "mesh.ply", vertex + "y\nend_header\n0 0\n");
+  EXPECT_EQ(found(), Names{"m.ply"});
+  write_text(folder / "scene.gltf", R"({"extensionsUsed": ["KHR_gaussian_splatting"]})");
+  EXPECT_EQ(found(), (Names{"m.ply", "scene.gltf"}));
+  // A SOG's, also one that is cut.
+  write_text(folder / "meta.json", R"({"version": 2, "means": {"mi)");
+  EXPECT_EQ(found(), Names{"meta.json"});
+  write_text(folder / "lod-meta.json", R"({"lodLevels": 2, )");
+  EXPECT_EQ(found(), Names{"lod-meta.json"});
+  // Alone they are what is wrong.
+  for (const char* name : {"m.ply", "mesh.ply", "scene.gltf", "scene.glb", "lod-meta.json"})
+    fs::remove(folder / name);
+  write_text(folder / "meta.json", R"({"title": "a scan"})");
+  EXPECT_EQ(found(), Names{"meta.json"});
 }
 
 }  // namespace

@@ -27,7 +27,7 @@ Read read(const TempFolder& folder) {
   try {
     read.cameras = load_cameras(folder.path());
     read.said = testing::internal::GetCapturedStderr();
-  } catch (const UndrawableLens& error) {
+  } catch (const Error& error) {
     read.said = testing::internal::GetCapturedStderr() + "error: " + error.what();
   }
   return read;

@@ -140,6 +140,27 @@ TEST(PlyHalves, OfOtherMattersAreWholeNumbers) {
   file.data_before = std::string("\2\0ab", 4);
   EXPECT_TRUE(equal(load(file), model));
   EXPECT_FLOAT_EQ(model.sh[0], static_cast<float>((100.0 / 255.0 - 0.5) / sh_c0));
+  // Colours that are floats: of 0 to 1, or of 0 to 255, whatever the other type.
+  const auto with_colours = [&](const char* type, double scale) {
+    PlyFile floats = file;
+    for (const char* colour : {"red", "green", "blue"}) {
+      floats.types[colour] = type;
+      for (std::size_t i = 0; i < 3; ++i) floats.at(i, colour) *= scale;
+    }
+    return load(floats);
+  };
+  const auto farthest = [&](const Model& other) {
+    float far = 0.0f;
+    for (std::size_t k = 0; k < model.sh.size(); ++k)
+      far = std::max(far, std::abs(other.sh[k] - model.sh[k]));
+    return far;
+  };
+  EXPECT_LT(farthest(with_colours("float", 1.0)), 1e-6f);
+  EXPECT_LT(farthest(with_colours("float", 1.0 / 255.0)), 1e-6f);
+  EXPECT_LT(farthest(with_colours("double", 1.0 / 255.0)), 1e-6f);
+  EXPECT_GT(farthest(with_colours("float", 0.5 / 255.0)), 0.1f) << "the planted fault: half as bright";
+  EXPECT_TRUE(test::fails_saying([&] { with_colours("float", 257.0); }, {"red, green and blue reach 31354"}));
+  EXPECT_TRUE(test::fails_saying([&] { with_colours("ushort", 1.0); }, {"'red'", "uchar or float"}));
   // The length of a list is never a half.
   file.header_before = "element strip 1\nproperty list half uchar indices\n";
   EXPECT_TRUE(test::fails_saying([&] { load(file); }, {"length of a list", "'half'"}));

@@ -65,7 +65,7 @@ def test_files_that_list_no_cameras_are_refused(tmp_path):
     (tmp_path / "broken.json").write_text('[{"img_name": "a"')
     (tmp_path / "short.json").write_text('[{"img_name": "a"}]')
     for name, words in {"missing.json": "cannot read", "broken.json": "broken.json", "short.json":
-                        "key 'width': is missing", "": "is a folder without cameras.json"}.items():
+                        "key 'width' is missing", "": "is a folder without cameras.json"}.items():
         with pytest.raises(binosplat.InputError) as raised:
             binosplat.load_cameras(tmp_path / name)
         assert words in str(raised.value)
