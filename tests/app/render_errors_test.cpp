@@ -62,19 +62,20 @@ TEST_F(RenderErrors, GaussiansThatCannotBeDrawnAreCounted) {
 }
 
 TEST_F(RenderErrors, Cameras) {
+  const test::Words named = {"--cameras", folder / "cameras.json"};
   nlohmann::json cameras = {test::camera_json("front", 0.0)};
   cameras[0]["fx"] = 0.0;
   write_text(folder / "cameras.json", cameras.dump());
-  expect("camera 0 (counted from 0), key 'fx': expected a number above 0");
+  expect("camera 0 (counted from 0), key 'fx': expected a number above 0", named);
   write_text(folder / "cameras.json", "[{]");
-  expect("is not valid JSON at line 1");
+  expect("is not valid JSON at line 1", named);
   cameras.clear();
   for (int i = 0; i < 20; ++i) cameras.push_back(test::camera_json("view" + std::to_string(i), 0.0));
   write_text(folder / "cameras.json", cameras.dump());
   expect("view7\n  and 12 more", {"--view", "x"});
   for (const std::string& bad : {std::string("a\x1b[31m"), std::string("a\0b", 3), std::string("a\nb")}) {
     write_text(folder / "cameras.json", nlohmann::json({test::camera_json(bad, 0.0)}).dump());
-    const Outcome outcome = render({});
+    const Outcome outcome = render(named);
     EXPECT_TRUE(ended(outcome, 2, "has a control character"));
     EXPECT_EQ(outcome.err.find('\x1b'), std::string::npos);
     EXPECT_EQ(outcome.err.find('\0'), std::string::npos);
