@@ -154,8 +154,8 @@ HeldOut hold_out(const CameraList& list, const std::optional<int>& every) {
   std::vector<std::string> names;
   for (const Camera& camera : list.cameras) names.push_back(camera.name);
   const auto others = std::is_sorted_until(names.begin(), names.end());
-  if (!every && others != names.end() && std::is_sorted(others, names.end()) &&
-      2 * (others - names.begin()) <= names.end() - others) {
+  if (!every && list.source.ends_with(".json") && others != names.end() &&
+      std::is_sorted(others, names.end()) && 2 * (others - names.begin()) <= names.end() - others) {
     return {{names.begin(), others},
             {others, names.end()},
             fmt::format("the {} that {} lists first", others - names.begin(), list.source)};

@@ -80,7 +80,7 @@ Studied open_studied(const StudyOptions& options) {
           std::move(shots)};
 }
 
-ExitCode study_scene(const StudyOptions& options, Study study) {
+ExitCode study_scene(StudyOptions options, Study study) {
   if (options.scenes.size() > 1 && study != Study::levels && study != Study::analyses)
     fail("study {}: {} is a study of one scene", fmt::join(options.scenes, " "),
          study_names[static_cast<std::size_t>(study)]);
@@ -90,6 +90,8 @@ ExitCode study_scene(const StudyOptions& options, Study study) {
     if (!options.output.empty()) analyses.folder = options.output;
     return analyse_scenes(options, options.scenes, analyses);
   }
+  if (options.photos == photos_beside)
+    options.photos = photos_folder(options.photos, listed_cameras(options.scene, options.camera));
   if (!options.output.empty()) check_output(std::filesystem::path(options.output) / "study.json");
   if (!options.json.empty()) check_output(options.json);
   if (study == Study::motion) study_motion(options);
