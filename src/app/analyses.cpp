@@ -5,9 +5,11 @@
 
 #include "app/blind.h"
 #include "app/command.h"
+#include "app/output_options.h"
 #include "app/parts.h"
 #include "app/photos.h"
 #include "app/report.h"
+#include "app/study_parts.h"
 #include "base/log.h"
 #include "lab/analyses.h"
 
@@ -17,33 +19,44 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr std::size_t calibration_views = 16, test_views = 8;
+constexpr std::size_t calibration_views = 16, most_test_views = 24;
 
 void print_page(const lab::Page& page) {
   for (const lab::Section& section : page.sections)
     fmt::print("{}\n  {}\n", section.title, section.problem.empty() ? section.sentence : section.problem);
 }
 
-}  // namespace
-
-ExitCode analyse_scene(const MeasuredOptions& options, const std::vector<std::string>& test, int frames,
-                       const fs::path& folder) {
+lab::Analysis analyse_scene(MeasuredOptions options, const AnalysesOptions& analyses,
+                            const fs::path& folder) {
   check_output(folder / "study.json");
+  if (options.photos == photos_beside)
+    options.photos = photos_folder(options.photos, listed_cameras(options.scene, options.camera));
   const PhotoSource source = photos_of(options);
   const std::vector<std::string>& named = options.camera.views;
-  const ViewChoice to_test{test, test_views, test.empty() ? named : std::vector<std::string>()};
+  std::string chosen;
+  const auto to_test = [&](const CameraList& list) {
+    const HeldOut held = hold_out(list, analyses.hold_out);
+    ViewChoice choice{analyses.test, most_test_views, {}};
+    if (!analyses.test.empty()) return choice;
+    chosen = held.how;
+    choice.without = held.training;
+    choice.without.insert(choice.without.end(), named.begin(), named.end());
+    return choice;
+  };
   const OpenScene scene = open_scene(options.scene, options.camera, no_rig, [&](const CameraList& list) {
-    check_photos(options.photos, photographed_cameras(to_test, options.photos, options.camera.lens, list));
+    check_photos(options.photos,
+                 photographed_cameras(to_test(list), options.photos, options.camera.lens, list));
   });
   const auto views_of = [&](const ViewChoice& choice) {
     return photographed_views(choice, source, options.camera.lens, scene.list);
   };
-  // No view serves both: those named for the one are left out of all for the other.
-  std::vector<lab::CalibrationView> tested = views_of(to_test);
-  std::vector<std::string> names;
-  for (const lab::CalibrationView& view : tested) names.push_back(view.camera.name);
+  // No view serves both: those for tests are left out of all for calibration.
+  std::vector<lab::CalibrationView> tested = views_of(to_test(scene.list));
+  if (tested.empty()) fail("study: there is no view for tests, which --test names: {} are", chosen);
+  std::vector<std::string> without = hold_out(scene.list, analyses.hold_out).test;
+  if (!analyses.test.empty()) without = analyses.test;
   std::vector<lab::CalibrationView> calibrated =
-      views_of({named, calibration_views, named.empty() ? names : std::vector<std::string>()});
+      views_of({named, calibration_views, named.empty() ? without : std::vector<std::string>()});
   const auto context = open_context_for_all("study", true, options.context);
   leave_out_blind("study", *context, scene.model, scene.near_plane, tested);
   leave_out_blind("study", *context, scene.model, scene.near_plane, calibrated);
@@ -51,21 +64,50 @@ ExitCode analyse_scene(const MeasuredOptions& options, const std::vector<std::st
     log_warning("there are no other views than those to test on: tolerances are found on them, too");
     calibrated = tested;
   }
+  log_info("{} views for tests{}; tolerances are found on {} others", tested.size(),
+           chosen.empty() ? "" : ": " + chosen, calibrated.size());
 
   Parts parts;
   const bool photos = !options.photos.empty();
-  const lab::Analysis analysis = lab::analyse(
+  lab::Analysis analysis = lab::analyse(
       *context, scene.model, calibrated, tested,
       {.scene = scene.model.name,
        .near_plane = scene.near_plane,
        .kind = photos ? lab::CalibrationTarget::Kind::drop : lab::CalibrationTarget::Kind::quality,
        .targets = photos ? std::vector{0.1, 0.2, 0.3, 0.4, 0.5} : std::vector{50.0, 45.0, 40.0, 37.0, 34.0},
-       .frames = frames},
+       .far = analyses.far,
+       .frames = analyses.frames},
       [&](const std::string& what, std::size_t done, std::size_t of) { parts.update(what, done, of); });
+  analysis.chosen = chosen;
   const lab::Page page = lab::analysis_page(analysis);
   save_report(folder, "study.json", to_json(analysis), page);
   print_page(page);
   fmt::print("\n{}: report.html, study.json\n", folder.string());
+  return analysis;
+}
+
+}  // namespace
+
+ExitCode analyse_scenes(const MeasuredOptions& options, const std::vector<std::string>& scenes,
+                        const AnalysesOptions& analyses) {
+  if (scenes.size() == 1) return analyse_scene(options, analyses, analyses.folder), ExitCode::done;
+  std::vector<lab::Analysis> all;
+  for (const std::string& scene : scenes) {
+    MeasuredOptions one = options;
+    one.scene.name = scene;
+    const std::string name =
+        is_built_in(scene) ? scene.substr(scene.find(':') + 1) : fs::path(scene).stem().string();
+    all.push_back(analyse_scene(one, analyses, analyses.folder / name));
+  }
+  const lab::Table means = lab::means_over_scenes(all);
+  print_table(means);
+  lab::Page page{.title = fmt::format("AdaGScale's analyses of {} scenes", all.size()),
+                 .sentence = "Speeds are geometric means over the scenes, all else arithmetic ones.",
+                 .facts = {{"device", all.front().device}},
+                 .sections = {{"means", "Over all scenes (figure 8)", "", means}}};
+  for (const lab::Analysis& one : all) page.facts.emplace_back("scene", one.scene);
+  save_report(analyses.folder, "study.json", {{"means", means.rows}, {"columns", means.columns}}, page);
+  fmt::print("\n{}: report.html, study.json of all\n", analyses.folder.string());
   return ExitCode::done;
 }
 

@@ -73,7 +73,7 @@ lab::Bench open_case(gl::Context& context, const BenchOptions& options, const Be
           model,
           std::move(views),
           make_view(resized(camera, width, height), near_plane),
-          {plan.axes.frames, plan.axes.repeats, options.ppd, peaks, foveated}};
+          {plan.axes.frames, plan.axes.repeats, options.ppd, peaks, foveated, options.far}};
 }
 
 /// Where the CPU draws: how long that takes, before it does.
@@ -269,6 +269,11 @@ void add_bench(CLI::App& program, Command& command) {
   sub->add_option("--view", o->camera.views, "Views by name, instead of the axes' number of them")
       ->type_name("NAME...");
   add_photos_options(*sub, *o, "Compare with DIR/NAME.jpg or .png as well");
+  sub->add_option(
+         "--far", o->far,
+         "Where the table of --transmittance depth ends, world units; AdaGScale's\nis 100 (fits the scene)")
+      ->type_name("DEPTH")
+      ->check(positive);
   sub->add_option("--ppd", o->ppd, "For FLIP: pixels per degree that the viewer has (67)")
       ->check(between(1.0, 1000.0, "a number from 1 to 1000"))
       ->type_name("N");

@@ -110,7 +110,7 @@ BenchPlan make_plan(const BenchOptions& options) {
   plan.json = std::make_shared<ordered_json>(
       lab::object("format", "binosplat bench plan", "version", 1, "program", BINOSPLAT_VERSION, "axes_name",
                   plan.axes.name, "axes", lab::to_json(plan.axes), "ppd", options.ppd, "profile",
-                  options.profile, "scenes", scenes, "points", plan.points));
+                  options.profile, "far", options.far, "scenes", scenes, "points", plan.points));
   return plan;
 }
 

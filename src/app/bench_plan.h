@@ -28,6 +28,7 @@ struct BenchOptions : MeasuredOptions {
   std::string compare;                   // results.json of an older run
   std::optional<double> fail_if_slower;  // percent
   std::string calibration;               // a file whose settings are measured, too
+  std::optional<float> far;              // of the table by depth, world units
   double ppd = 67.0;
   bool profile = false;
 };

@@ -23,6 +23,7 @@ namespace {
 struct CalibrateOptions : MeasuredOptions {
   TargetOptions target;
   int views = 16;
+  std::optional<int> hold_out;  // every which view
   measure::DepthTableSettings table;
   std::string output;
 };
@@ -48,11 +49,21 @@ ExitCode calibrate(const CalibrateOptions& o) {
   check_target("calibrate", "a target", o.target, o);
   check_output(o.output);
   const PhotoSource photos = photos_of(o);
-  const ViewChoice choice{o.camera.views, static_cast<std::size_t>(o.views)};
+  const auto choice = [&](const CameraList& list) {
+    ViewChoice views{o.camera.views, static_cast<std::size_t>(o.views)};
+    const HeldOut held = hold_out(list, o.hold_out);
+    if (views.views.empty() && !held.training.empty()) views.without = held.test;
+    return views;
+  };
   const OpenScene scene = open_scene(o.scene, o.camera, no_rig, [&](const CameraList& list) {
-    check_photos(o.photos, photographed_cameras(choice, o.photos, o.camera.lens, list));
+    check_photos(o.photos, photographed_cameras(choice(list), o.photos, o.camera.lens, list));
   });
-  std::vector<lab::CalibrationView> views = photographed_views(choice, photos, o.camera.lens, scene.list);
+  std::vector<lab::CalibrationView> views =
+      photographed_views(choice(scene.list), photos, o.camera.lens, scene.list);
+  if (o.camera.views.empty()) {
+    log_info("calibrating on {} training views; for tests are {}", views.size(),
+             hold_out(scene.list, o.hold_out).how);
+  }
   const auto context = open_context_for_all("calibrate", false, o.context);
   leave_out_blind("calibrate", *context, scene.model, scene.near_plane, views);
   Progress progress("calibrating", lab::calibrated_settings().size());
@@ -92,7 +103,12 @@ void add_calibrate(CLI::App& program, Command& command) {
   sub->add_option("--views", o->views, "So many views, spread evenly over the cameras (16)")
       ->type_name("N")
       ->check(range(1, 10000));
+  add_hold_out_option(*sub, o->hold_out);
   add_size_option(*sub, o->camera.lens);
+  choose_explained(*sub, "--order", o->table.order, "What Gaussians are sorted by (as the model was trained)",
+                   order_choices);
+  choose_explained(*sub, "--projection", o->table.projection,
+                   "What a ray sees of a Gaussian (as the model was trained)", projection_choices);
   sub->add_option("--bins", o->table.bins, "Of the transmittance by depth (20)")
       ->type_name("N")
       ->check(range(1, 10000));

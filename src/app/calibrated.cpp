@@ -4,6 +4,7 @@
 
 #include "base/error.h"
 #include "base/log.h"
+#include "render/frame_plan.h"
 
 namespace binosplat::app {
 
@@ -20,7 +21,8 @@ render::FrameSettings without_calibration(render::FrameSettings settings) {
 
 }  // namespace
 
-CalibratedSettings::CalibratedSettings(const DrawingOptions& options) : file_(options.calibration) {
+CalibratedSettings::CalibratedSettings(const DrawingOptions& options)
+    : file_(options.calibration), own_tolerance_(options.tolerance.has_value()) {
   if (file_.empty()) return;
   calibration_ = lab::load_calibration(file_);
   const render::FrameSettings asked = settings_of(options);
@@ -29,7 +31,16 @@ CalibratedSettings::CalibratedSettings(const DrawingOptions& options) : file_(op
          transmittance_choices[asked.transmittance].name);
 }
 
-void CalibratedSettings::check_model(const Model& model) {
+void CalibratedSettings::check_model(const Model& model, const render::FrameSettings& settings) {
+  const Perspective drawn = render::perspective_of(settings, model);
+  if (calibration_ && calibration_->perspective != drawn) {
+    const auto text = [](const Perspective& p) {
+      return fmt::format("--order {} --projection {}", order_choices[p.order].name,
+                         projection_choices[p.projection].name);
+    };
+    fail("--calibration {} is for {}, and this is drawn with {}: calibrate with these", file_,
+         text(calibration_->perspective), text(drawn));
+  }
   other_model_ = calibration_ && !lab::is_of(*calibration_, model);
   if (other_model_)
     log_warning("--calibration {} is of another model ({}, {} Gaussians): drawing exactly", file_,
@@ -43,6 +54,10 @@ render::FrameSettings CalibratedSettings::of(const Shot& shot, render::FrameSett
   if (!lab::covers(*calibration_, camera.position)) {
     log_warning("{} is far from the calibrated views: drawing it exactly", shot.name);
     return without_calibration(settings);
+  }
+  if (own_tolerance_) {
+    settings.depth_table = calibration_->depth_table;
+    return settings;
   }
   if (std::abs(camera.fx / calibration_->focal - 1.0) > same_focal)
     log_warning(

@@ -16,17 +16,19 @@ class CalibratedSettings {
   /// Reads the options' file, if they name one; it must have an entry for what they ask for (else: Error).
   explicit CalibratedSettings(const DrawingOptions& options);
 
-  /// A file of another model is not gone by: a warning says so. To be called before of().
-  void check_model(const Model& model);
+  /// A file of another model is not gone by: a warning says so. Throws Error where frames of these settings
+  /// have another order or projection than the file. To be called before of().
+  void check_model(const Model& model, const render::FrameSettings& settings);
 
-  /// `settings` with the file's tolerance and transmittance by depth; as they are without a file. Exact for a
+  /// `settings` with the file's tolerance, unless they have one of their own, and its transmittance by depth;
+  /// as they are without a file. Exact for a
   /// shot that is far from the calibrated views, and for another model: a warning says so.
   render::FrameSettings of(const Shot& shot, render::FrameSettings settings) const;
 
  private:
   std::string file_;
   std::optional<lab::Calibration> calibration_;
-  bool other_model_ = false;
+  bool other_model_ = false, own_tolerance_ = false;
 };
 
 }  // namespace binosplat::app

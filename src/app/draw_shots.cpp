@@ -189,7 +189,7 @@ void draw_all(gl::Context& context, Work& work, RenderReport& report) {
   std::optional<int> panorama_width;
   if (work.plan.vr180) panorama_width = work.shots[0].eyes[0].camera.width;
   std::optional<Drawer> drawer(std::in_place, context, report, panorama_width, std::move(gpu_model));
-  work.calibrated.check_model(report.model);
+  work.calibrated.check_model(report.model, settings);
   if (settings.transmittance == TRANSMITTANCE_DEPTH && drawing.calibration.empty())
     settings.depth_table = depth_table(drawer->frame, report.options.camera.lens, work.list,
                                        report.near_plane, report.model.axes, settings);

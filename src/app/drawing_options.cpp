@@ -9,9 +9,18 @@ namespace binosplat::app {
 void add_drawing_options(CLI::App& sub, DrawingOptions& o, bool in_window) {
   sub.option_defaults()->group("Drawing");
   choose_explained(sub, "--tiles", o.tiles, "Which tiles a Gaussian is drawn in (ellipse)", tiles_choices);
-  choose_explained(sub, "--th", o.th,
-                   "The alpha below which a Gaussian is left out of a tile (tau;\nwith --tolerance: squared)",
-                   th_choices);
+  std::string rules_help =
+      "The alpha below which a Gaussian is left out of a tile (tau;\nwith --tolerance: squared)";
+  Words<int> rules = words_of(th_choices);
+  for (const Choice& rule : th_choices) rules_help += fmt::format("\n  {}: {}", rule.name, rule.help);
+  if (!in_window) {
+    rules.emplace_back("adagscale", TH_PERIPHERAL);
+    rules_help += "\n  adagscale: the whole of AdaGScale: peripheral with --transmittance depth";
+  }
+  choose(sub, "--th", o.th, rules_help, rules)->each([&o](const std::string& rule) {
+    o.adagscale = rule == "adagscale";
+    if (o.adagscale) o.transmittance = TRANSMITTANCE_DEPTH;
+  });
   sub.add_option("--tolerance,--loss", o.tolerance, "How much that may cost, in the unit of --th")
       ->type_name("X")
       ->check(not_negative);
@@ -55,7 +64,12 @@ void check(const DrawingOptions& o) {
   const char* const th = th_choices[settings.th].name;
   const bool exact = render::is_exact(settings.th);
   const bool given = o.tolerance || o.quality, calibrated = !o.calibration.empty();
-  if (given && calibrated) {
+  if (o.adagscale && o.transmittance != TRANSMITTANCE_DEPTH) {
+    fail("--th adagscale goes by its table by depth: for --transmittance {} take --th peripheral",
+         transmittance_choices[o.transmittance].name);
+  }
+  // A tolerance beside a table that was calibrated goes by that table.
+  if (given && calibrated && !(o.tolerance && o.transmittance == TRANSMITTANCE_DEPTH)) {
     fail("{} with --calibration: each chooses the tolerance: leave one of them out",
          o.tolerance ? "--tolerance" : "--quality");
   }

@@ -16,6 +16,7 @@ struct DrawingOptions {
   std::optional<int> th;           // none: threshold_of()
   std::optional<float> tolerance;  // K or kappa
   int transmittance = TRANSMITTANCE_ONE;
+  bool adagscale = false;        // --th adagscale: TH_PERIPHERAL with TRANSMITTANCE_DEPTH
   std::optional<float> quality;  // dB
   std::string calibration;       // a file of binosplat calibrate
   std::optional<int> decode;     // of a Scaffold-GS model; none: eyes

@@ -83,8 +83,14 @@ CLI::Option* add_exposure_option(CLI::App& sub, std::string& exposure) {
       ->check(CLI::ExistingFile.description("") | CLI::IsMember({no_exposure}).description(""));
 }
 
-void add_photos_options(CLI::App& sub, MeasuredOptions& o, const char* help) {
-  sub.add_option("--photos", o.photos, help)->type_name("DIR")->check(folder());
+void add_photos_options(CLI::App& sub, MeasuredOptions& o, const char* help, bool found_beside) {
+  CLI::Option* const option = sub.add_option("--photos", o.photos, help)->type_name("DIR");
+  if (found_beside) {
+    option->type_name(fmt::format("DIR|{}", photos_beside))
+        ->check(folder() | CLI::IsMember({photos_beside}).description(""));
+  } else {
+    option->check(folder());
+  }
   add_exposure_option(sub, o.exposure);
 }
 

@@ -51,6 +51,6 @@ CLI::Option* add_exposure_option(CLI::App& sub, std::string& exposure);
 
 /// --photos of commands that look for none beside the cameras, and --exposure.
 void add_photos_options(CLI::App& sub, MeasuredOptions& options,
-                        const char* help = "DIR/NAME.jpg or .png of the views");
+                        const char* help = "DIR/NAME.jpg or .png of the views", bool found_beside = false);
 
 }  // namespace binosplat::app

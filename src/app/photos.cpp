@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <atomic>
 
+#include "app/option_checks.h"
 #include "app/output_options.h"
 #include "base/error.h"
 #include "base/inputs.h"
 #include "base/log.h"
+#include "formats/cameras_file.h"
 #include "formats/image_file.h"
 #include "formats/model_file.h"
 #include "lab/bench.h"
@@ -145,6 +147,42 @@ std::vector<Camera> photographed_cameras(const ViewChoice& choice, const std::st
   std::vector<Camera> spread;
   for (const std::size_t i : lab::spread_evenly(cameras.size(), choice.wanted)) spread.push_back(cameras[i]);
   return spread;
+}
+
+std::string photos_folder(const std::string& asked, const CameraList& list) {
+  check_cameras_of(asked, list);
+  if (asked != photos_beside) return asked;
+  const auto found = list.listed ? find_photos(list.source) : std::nullopt;
+  if (!found)
+    fail("--photos {}: there is no folder of photos beside the cameras of {}", photos_beside, list.source);
+  return found->string();
+}
+
+HeldOut hold_out(const CameraList& list, const std::optional<int>& every) {
+  std::vector<std::string> names;
+  for (const Camera& camera : list.cameras) names.push_back(camera.name);
+  const auto others = std::is_sorted_until(names.begin(), names.end());
+  if (!every && list.source.ends_with(".json") && others != names.end() &&
+      std::is_sorted(others, names.end()) && 2 * (others - names.begin()) <= names.end() - others) {
+    return {{names.begin(), others},
+            {others, names.end()},
+            fmt::format("the {} that {} lists first", others - names.begin(), list.source)};
+  }
+  std::sort(names.begin(), names.end());
+  const auto step = static_cast<std::size_t>(every.value_or(8));
+  HeldOut held{{}, {}, fmt::format("one in {} of {} views, by the order of names", step, names.size())};
+  for (std::size_t k = 0; k < names.size(); ++k)
+    (k % step == 0 ? held.test : held.training).push_back(names[k]);
+  return held;
+}
+
+void add_hold_out_option(CLI::App& sub, std::optional<int>& every) {
+  sub.add_option(
+         "--hold-out", every,
+         "Every Nth view by name is for tests, and no tolerance is found on it (8, or the\nviews that "
+         "INRIA's cameras.json lists first)")
+      ->type_name("N")
+      ->check(range(2, 1000000));
 }
 
 std::vector<lab::CalibrationView> photographed_views(const ViewChoice& choice, const PhotoSource& photos,

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "app/cli.h"
 #include "app/measured_options.h"
 #include "app/shots.h"
 #include "base/image.h"
@@ -73,6 +74,24 @@ struct ViewChoice {
 /// The cameras of a choice: with a folder of photos only those count, of all, that have one.
 std::vector<Camera> photographed_cameras(const ViewChoice& choice, const std::string& photos,
                                          const Lens& lens, const CameraList& list);
+
+/// The folder of photos that --photos names, or with photos_beside the one beside the cameras. Throws Error
+/// where there is none.
+std::string photos_folder(const std::string& asked, const CameraList& list);
+
+/// Views for tests, which no calibration may see, and all others, by name.
+struct HeldOut {
+  std::vector<std::string> test, training;
+  std::string how;  // they were told apart, for people
+};
+
+/// Every `every`th view by the order of names is for tests, as the field holds them out; without a number
+/// every 8th, or the views that a cameras.json of INRIA's trainer lists first: it has those for tests by
+/// name, and then the others by name.
+HeldOut hold_out(const CameraList& list, const std::optional<int>& every);
+
+/// --hold-out.
+void add_hold_out_option(CLI::App& sub, std::optional<int>& every);
 
 /// Each with its photo, where there is a folder of them.
 std::vector<lab::CalibrationView> photographed_views(const ViewChoice& choice, const PhotoSource& photos,

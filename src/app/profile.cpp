@@ -128,7 +128,7 @@ Profiled open_profiled(ProfileOptions o) {
       make_shots(o.camera.views, o.camera.lens, o.rig, list, near_plane, all.model().axes);
   if (!o.camera.along_path()) shots.resize(1);
   if (way.empty()) way = "standing at " + shots.front().name;
-  calibrated.check_model(all.model());
+  calibrated.check_model(all.model(), settings);
   settings = calibrated.of(shots.front(), settings);
   all.run = {frames_to_profile(o, shots), settings, o.foveate, o.fps, o.asks_clock};
   all.profile.facts = {o.scene.name, way, drawing_of(o, settings), lab::device_text(*all.context),

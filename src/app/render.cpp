@@ -95,16 +95,6 @@ void log_model(const std::string& scene, const std::optional<int>& decode, const
   }
 }
 
-// The folder of photos that --photos names, or the one found beside the cameras.
-std::string photos_folder(const std::string& asked, const CameraList& list) {
-  check_cameras_of(asked, list);
-  if (asked != photos_beside) return asked;
-  const auto found = list.listed ? find_photos(list.source) : std::nullopt;
-  if (!found)
-    fail("--photos {}: there is no folder of photos beside the cameras of {}", photos_beside, list.source);
-  return found->string();
-}
-
 // Those that options or a saved pose choose; none where they are to be made up.
 CameraList find_list(const RenderOptions& o, const OutputPlan& plan) {
   const auto saved = find_saved(o.scene);

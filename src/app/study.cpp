@@ -30,6 +30,8 @@ const struct {
   const char* option;
   std::vector<Study> studies;
 } options_of_some[] = {{"--test", {Study::analyses}},
+                       {"--hold-out", {Study::analyses}},
+                       {"--far", {Study::analyses}},
                        {"--photos", {Study::analyses, Study::turn}},
                        {"--exposure", {Study::analyses, Study::turn}},
                        {"--view", {Study::analyses, Study::turn, Study::levels}},
@@ -48,36 +50,6 @@ const struct {
                        {"--quality", {Study::motion}},
                        {"--rays", {Study::turn}},
                        {"--detail", {Study::levels}}};
-
-constexpr auto cases_are_tests =
-    "its cases are tests now (docs/stability.md), and `study --motion` compares rules on a scene of yours";
-constexpr auto rule_is_named = "`study --motion --rule TH,SOURCE` names a rule";
-constexpr auto rules_are_compared =
-    "`bench` times rules where cameras stand still, and `study --motion --motions still` compares them at "
-    "one quality";
-
-/// Options of earlier versions, and what to do instead.
-constexpr struct {
-  const char* option;
-  bool has_value;
-  const char* instead;
-} removed_options[] = {
-    {"--stability", false, cases_are_tests},
-    {"--case", true, cases_are_tests},
-    {"--rules", false, rules_are_compared},
-    {"--th", true, rule_is_named},
-    {"--transmittance", true, rule_is_named},
-    {"--tolerance,--loss", true, "`bench --axes FILE` measures rules at tolerances of yours"}};
-
-void add_removed_options(CLI::App& sub) {
-  for (const auto& removed : removed_options) {
-    const auto refuse = [&removed] { fail("study: {} was removed: {}", removed.option, removed.instead); };
-    CLI::Option* option = removed.has_value ? sub.add_option_function<std::string>(
-                                                  removed.option, [refuse](const std::string&) { refuse(); })
-                                            : sub.add_flag_callback(removed.option, refuse);
-    option->group("");  // no help or completion names it
-  }
-}
 
 /// The one that the options choose. Throws Error for two, and for an option that it does not take.
 Study chosen_study(const StudyOptions& options, const CLI::App& sub) {
@@ -108,12 +80,18 @@ Studied open_studied(const StudyOptions& options) {
           std::move(shots)};
 }
 
-ExitCode study_scene(const StudyOptions& options, Study study) {
-  if (options.scenes.size() > 1 && study != Study::levels)
-    fail("study {}: expected one scene; only --levels takes more", fmt::join(options.scenes, " "));
-  if (study == Study::analyses)
-    return analyse_scene(options, options.test, options.frames.value_or(24),
-                         options.output.empty() ? "out/study" : options.output);
+ExitCode study_scene(StudyOptions options, Study study) {
+  if (options.scenes.size() > 1 && study != Study::levels && study != Study::analyses)
+    fail("study {}: {} is a study of one scene", fmt::join(options.scenes, " "),
+         study_names[static_cast<std::size_t>(study)]);
+  if (study == Study::analyses) {
+    AnalysesOptions analyses = options.analyses;
+    analyses.frames = options.frames.value_or(analyses.frames);
+    if (!options.output.empty()) analyses.folder = options.output;
+    return analyse_scenes(options, options.scenes, analyses);
+  }
+  if (options.photos == photos_beside)
+    options.photos = photos_folder(options.photos, listed_cameras(options.scene, options.camera));
   if (!options.output.empty()) check_output(std::filesystem::path(options.output) / "study.json");
   if (!options.json.empty()) check_output(options.json);
   if (study == Study::motion) study_motion(options);
@@ -135,15 +113,22 @@ void add_studied_options(CLI::App& sub, StudyOptions& o) {
   sub.add_option("--cameras", o.camera.file, "cameras.json; default: the one beside the model")
       ->type_name("FILE");
   sub.add_option("--view", o.camera.views,
-                 "Views to calibrate on; default: 16 others than the test's, evenly spread.\n"
+                 "Views to calibrate on; default: 16 of those for training, evenly spread.\n"
                  "With --turn: the one to turn in (the first); with --levels: those to draw;\n"
                  "default: 8, evenly spread")
       ->type_name("NAME...");
-  sub.add_option("--test", o.test, "Views to test on; default: 8, evenly spread")->type_name("NAME...");
+  sub.add_option("--test", o.analyses.test, "Views to test on; default: those held out, at most 24")
+      ->type_name("NAME...");
+  add_hold_out_option(sub, o.analyses.hold_out);
+  sub.add_option("--far", o.analyses.far,
+                 "Where the table by depth of AdaGScale's own protocol ends, world units (100)")
+      ->type_name("DEPTH")
+      ->check(positive);
   add_photos_options(
       sub, o,
       "DIR/NAME.jpg or .png of the views: tolerances for 0.1 to 0.5 dB;\nwith --turn what each "
-      "order and projection loses");
+      "order and projection loses",
+      true);
   sub.add_option("-o,--output", o.output,
                  "Folder for report.html and study.json (out/study; of other studies none)")
       ->type_name("DIR");
@@ -190,7 +175,7 @@ void add_study(CLI::App& program, Command& command) {
       "study", "What thresholds gain on a scene, where they fail, and what levels of detail lose");
   const auto options = std::make_shared<StudyOptions>();
   StudyOptions& o = *options;
-  sub->add_option("SCENE", o.scenes, "A model, or demo:room or demo:city; with --levels one or more")
+  sub->add_option("SCENE", o.scenes, "A model, or demo:room or demo:city; of --motion and --turn one")
       ->required();
   sub->add_flag("--turn", o.turn,
                 "What turning the head changes along the same rays, by order and projection,\n"
@@ -221,9 +206,9 @@ void add_study(CLI::App& program, Command& command) {
       ->type_name("DB")
       ->check(quality_range);
   add_studied_options(*sub, o);
-  add_removed_options(*sub);
   sub->footer(
-      "By itself it repeats AdaGScale's analyses on the scene, as a page with plots.\n"
+      "By itself it makes AdaGScale's figures and tables on the scene, by the paper's protocol: "
+      "docs/adagscale.md.\n"
       "Examples:\n"
       "  binosplat study garden.ply --photos images -o out/garden\n"
       "  binosplat study garden.ply --motion --rule squared,one --rule squared,last --size 1280x1120\n"

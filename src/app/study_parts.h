@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "app/analyses.h"
 #include "app/measured_options.h"
 #include "app/photos.h"
 #include "app/rig_options.h"
@@ -31,7 +32,8 @@ struct MotionOptions {
 };
 
 struct StudyOptions : MeasuredOptions {
-  std::vector<std::string> scenes;  // `scene` is the first; more of --levels only
+  std::vector<std::string> scenes;  // `scene` is the first
+  AnalysesOptions analyses;
   RigOptions rig;
   bool turn = false;
   bool levels = false;
@@ -40,7 +42,6 @@ struct StudyOptions : MeasuredOptions {
   std::vector<DetailRequest> details = {
       {.db = 30}, {.db = 35}, {.db = 40}, {.db = 45}};  // of --levels, in order
   std::optional<int> frames;                            // timed of each rule in each round
-  std::vector<std::string> test;
   std::string output;
   double target = 40.0;          // of --motion, dB
   std::optional<float> quality;  // likewise

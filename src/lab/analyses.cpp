@@ -26,8 +26,7 @@ static void fields(const auto& io, const Spread& s) {
 }
 
 static void fields(const auto& io, const DepthBin& b) {
-  io("from", b.from, "to", b.to, "gaussians", b.gaussians, "contribution", b.contribution, "light",
-     b.transmittance, "upper", b.bound);
+  io("from", b.from, "to", b.to, "gaussians", b.gaussians, "light", b.transmittance, "upper", b.bound);
 }
 
 namespace {
@@ -44,10 +43,10 @@ const struct {
                      {"Speedy-Splat", TILES_SNUG},
                      {"FlashGS, AdR-Gaussian", TILES_ELLIPSE}};
 const struct {
-  const char* name;
-  int th, transmittance;
-} threshold_systems[] = {{"AdaGScale", TH_PERIPHERAL, TRANSMITTANCE_DEPTH},
-                         {"binosplat", TH_SQUARED, TRANSMITTANCE_LAST}};
+  const char *name, *rule;
+} threshold_systems[] = {{"AdaGScale", "peripheral, depth"},
+                         {"AdaGScale, table fitted to the scene", "peripheral, depth, fitted"},
+                         {"binosplat", "squared, last"}};
 
 /// A system without its times.
 AnalysedSystem system_of(const std::string& name, const render::FrameSettings& settings, Calibrator& tester,
@@ -71,14 +70,50 @@ std::vector<ContributionView> some_of(const std::vector<CalibrationView>& views,
   return some;
 }
 
+/// A rule with its name; of the rules by depth the paper's has the table as the paper measures it.
+struct AnalysedRule {
+  std::string name;
+  render::FrameSettings settings;
+};
+
+std::vector<AnalysedRule> rules_of(const Analysis& analysis) {
+  std::vector<AnalysedRule> rules;
+  for (render::FrameSettings rule : calibrated_settings()) {
+    rule.depth_table = analysis.depth_table;
+    rules.push_back({describe_family(rule), rule});
+    if (rule.th != TH_PERIPHERAL || rule.transmittance != TRANSMITTANCE_DEPTH) continue;
+    rule.depth_table = analysis.fitted_table;
+    rules.push_back({rules.back().name + ", fitted", rule});
+  }
+  return rules;
+}
+
+/// Every rule at every target, with the tolerance that `finder` finds in its views, as the tester sees it.
+std::vector<AnalysedSystem> at_targets(Calibrator& finder, Calibrator& tester,
+                                       const std::vector<CalibrationView>& test,
+                                       std::vector<AnalysedRule> rules, const std::vector<double>& targets,
+                                       const std::function<void()>& done) {
+  std::vector<AnalysedSystem> all;
+  for (const double target : targets) {
+    for (auto& [name, settings] : rules) {
+      const CalibrationEntry found = finder.find(settings, target);
+      settings.tolerance = static_cast<float>(found.tolerance);
+      AnalysedSystem& entry = all.emplace_back(system_of(name, settings, tester, test));
+      entry.target_db = target;
+      entry.reached_db = found.reached_db;
+      if (!(found.tolerance > 0.0)) settings.tolerance = 1e-3f;  // where the next search begins
+      done();
+    }
+  }
+  return all;
+}
+
 /// The threshold systems at the middle target, as the entries of the targets have them.
 std::vector<AnalysedSystem> from_targets(const std::vector<AnalysedSystem>& targets, double middle) {
   std::vector<AnalysedSystem> systems;
   for (const auto& system : threshold_systems) {
     for (const AnalysedSystem& entry : targets) {
-      if (entry.target_db != middle || entry.settings.th != system.th ||
-          entry.settings.transmittance != system.transmittance)
-        continue;
+      if (entry.target_db != middle || entry.name != system.rule) continue;
       systems.emplace_back(entry).name = fmt::format("{}, {:g} dB", system.name, middle);
     }
   }
@@ -102,35 +137,26 @@ Analysis analyse(gl::Context& context, const Model& model, const std::vector<Cal
                     .height = test.front().camera.height,
                     .calibration_photo_db = calibrator.exact_photo_db(),
                     .test_photo_db = tester.exact_photo_db(),
-                    .depth_table = calibrator.depth_table()};
+                    .depth_table = calibrator.depth_table({.far = settings.far}),
+                    .fitted_table = calibrator.depth_table()};
 
   const auto some = some_of(test, tester);
   std::size_t done = 0;
-  analysis.contributions = contributions(model, some, analysis.depth_table,
+  analysis.contributions = contributions(model, some, analysis.depth_table, analysis.fitted_table,
                                          [&] { progress("contributions", ++done, some.size()); });
 
   for (const auto& system : exact_systems)
     analysis.systems.push_back(system_of(system.name, {.tiles = system.tiles}, tester, test));
 
-  std::vector<render::FrameSettings> rules = calibrated_settings();
+  const std::vector<AnalysedRule> rules = rules_of(analysis);
   done = 0;
-  for (const double target : settings.targets) {
-    for (render::FrameSettings& rule : rules) {
-      rule.depth_table = analysis.depth_table;
-      const CalibrationEntry found = calibrator.find(rule, target);
-      rule.tolerance = static_cast<float>(found.tolerance);
-      AnalysedSystem& entry =
-          analysis.targets.emplace_back(system_of(describe_family(rule), rule, tester, test));
-      entry.target_db = target;
-      entry.reached_db = found.reached_db;
-      if (!(found.tolerance > 0.0)) rule.tolerance = 1e-3f;  // where the next search begins
-      progress("tolerances", ++done, settings.targets.size() * rules.size());
-    }
-  }
+  const auto one_more = [&] { progress("tolerances", ++done, 2 * settings.targets.size() * rules.size()); };
+  analysis.found = at_targets(calibrator, tester, test, rules, settings.targets, one_more);
+  analysis.tuned = at_targets(tester, tester, test, rules, settings.targets, one_more);
 
   std::vector<AnalysedSystem*> timed;
   std::vector<render::FrameSettings> all;
-  for (auto* systems : {&analysis.systems, &analysis.targets}) {
+  for (auto* systems : {&analysis.systems, &analysis.tuned}) {
     for (AnalysedSystem& system : *systems) {
       timed.push_back(&system);
       all.push_back(system.settings);
@@ -141,7 +167,7 @@ Analysis analyse(gl::Context& context, const Model& model, const std::vector<Cal
     progress("timing", ++done, turn_rounds * all.size() * tester.views().size());
   });
   for (std::size_t k = 0; k < times.size(); ++k) timed[k]->times = times[k];
-  for (AnalysedSystem& system : from_targets(analysis.targets, settings.targets[settings.targets.size() / 2]))
+  for (AnalysedSystem& system : from_targets(analysis.tuned, settings.targets[settings.targets.size() / 2]))
     analysis.systems.push_back(std::move(system));
   render::Frame frame(context, model);
   for (AnalysedSystem& system : analysis.systems) {
@@ -153,15 +179,21 @@ Analysis analyse(gl::Context& context, const Model& model, const std::vector<Cal
 }
 
 nlohmann::ordered_json to_json(const Analysis& a) {
-  auto json = object("format", "binosplat study", "version", 1, "device", a.device, "scene", a.scene,
+  auto json = object("format", "binosplat study", "version", 2, "device", a.device, "scene", a.scene,
                      "gaussians", a.gaussians, "target", a.drop() ? "drop" : "quality", "views",
-                     object("calibration", a.calibration_views, "test", a.test_views), "width", a.width,
-                     "height", a.height);
+                     object("calibration", a.calibration_views, "test", a.test_views, "chosen", a.chosen),
+                     "width", a.width, "height", a.height);
   if (a.drop()) json["photo_db"] = object("calibration", a.calibration_photo_db, "test", a.test_photo_db);
-  FieldWriter{json}("depth_table", object("far", a.depth_table.far, "upper", a.depth_table.bounds),
+  nlohmann::ordered_json distances;
+  for (const reference::DistanceBin& bin : a.contributions.by_distance)
+    distances.push_back(object("from", bin.from, "to", bin.to, "fragments", bin.fragments, "sum", bin.sum,
+                               "largest", bin.largest));
+  const auto table = [](const render::DepthTable& of) { return object("far", of.far, "upper", of.bounds); };
+  FieldWriter{json}("depth_table", table(a.depth_table), "fitted_table", table(a.fitted_table),
                     "contributions",
-                    object("skipping", a.contributions.skipping, "by_depth", a.contributions.by_depth),
-                    "systems", a.systems, "targets", a.targets);
+                    object("skipping", a.contributions.skipping, "by_distance", distances, "by_depth",
+                           a.contributions.by_depth),
+                    "systems", a.systems, "found", a.found, "tuned", a.tuned);
   return json;
 }
 

@@ -215,7 +215,7 @@ const render::DepthTable& Bench::depth_table() {
   std::vector<shared::View> views;
   for (const BenchView& view : views_) views.push_back(view.eyes.front());
   render::Frame frame(gpu_model_);
-  depth_table_ = measure::measure_depth_table(frame, views);
+  depth_table_ = measure::measure_depth_table(frame, views, {.far = effort_.far});
   return depth_table_;
 }
 

@@ -32,6 +32,7 @@ struct BenchEffort {
   double ppd = measure::flip_pixels_per_degree;  // for FLIP
   std::optional<Peaks> peaks;                    // of the GPU: whole pictures get a profile
   bool seen = false;                             // what eyes see that look along their axes
+  std::optional<float> far = {};                 // where the table by depth ends, world units; none: fits
 };
 
 /// The points that share a model, its views and their size. What is exact is drawn once, at first use.

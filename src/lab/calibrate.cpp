@@ -45,7 +45,8 @@ struct Calibrator::Reference {
 };
 
 Calibrator::Calibrator(gl::Context& context, const Model& model, const std::vector<CalibrationView>& views,
-                       double near_plane, CalibrationTarget::Kind kind)
+                       double near_plane, CalibrationTarget::Kind kind,
+                       const render::FrameSettings& exact)
     : context_(context), frame_(context, model), kind_(kind) {
   if (views.empty()) fail("calibration needs at least one view");
   for (const CalibrationView& view : views) {
@@ -56,7 +57,7 @@ Calibrator::Calibrator(gl::Context& context, const Model& model, const std::vect
            view.camera.name);
     names_.push_back(view.camera.name);
     views_.push_back(make_view(into_axes(view.camera, model.axes), near_plane));
-    const std::uint64_t pairs = frame_.draw(std::span(&views_.back(), 1)).pairs;
+    const std::uint64_t pairs = frame_.draw(std::span(&views_.back(), 1), exact).pairs;
     references_.push_back(
         drop ? std::make_unique<Reference>(context, as_picture(*view.photo), view.exposure, pairs)
              : std::make_unique<Reference>(context, frame_.read_pictures(), pairs));
@@ -152,11 +153,13 @@ std::vector<render::FrameSettings> calibrated_settings() {
 Calibration calibrate(gl::Context& context, const Model& model, const std::vector<CalibrationView>& views,
                       double near_plane, const CalibrationSettings& wanted,
                       const std::function<void(std::size_t, std::size_t)>& done) {
-  Calibrator calibrator(context, model, views, near_plane, wanted.target.kind);
+  const render::FrameSettings exact{.order = wanted.table.order, .projection = wanted.table.projection};
+  Calibrator calibrator(context, model, views, near_plane, wanted.target.kind, exact);
   Calibration c;
   c.model_name = model.name;
   c.gaussians = model.count();
   c.hash = model_hash(model);
+  c.perspective = render::perspective_of(exact, model);
   c.width = views.front().camera.width;
   c.height = views.front().camera.height;
   c.near_plane = near_plane;
@@ -171,6 +174,8 @@ Calibration calibrate(gl::Context& context, const Model& model, const std::vecto
   const std::vector<render::FrameSettings> all = calibrated_settings();
   for (render::FrameSettings settings : all) {
     settings.depth_table = c.depth_table;
+    settings.order = exact.order;
+    settings.projection = exact.projection;
     // What a rule found with another source is near: each question less is a frame, or eight.
     if (!c.entries.empty() && c.entries.back().th == settings.th && c.entries.back().tolerance > 0.0)
       settings.tolerance = static_cast<float>(c.entries.back().tolerance);

@@ -1,5 +1,5 @@
 #pragma once
-// Finds the transmittance bound by depth (AdaGScale, section 4.1) and the tolerance of each rule and source
+// Finds the transmittance bound by depth (AdaGScale, sections 3.2 and 3.4) and the tolerance of each rule and source
 // that costs as much as is asked for, on some views of a model. The pictures stay on the GPU: only sums are
 // read back.
 
@@ -38,10 +38,11 @@ struct ViewSplit {
 /// A model in some views, and what each way to draw it costs there.
 class Calibrator {
  public:
-  /// Draws the exact pictures. Context and model must outlive it. Throws Error for no views, views of
-  /// different photos (some with, some without), or none where the target is a drop.
+  /// Draws the exact pictures, in order and projection of `exact`. Context and model must outlive it. Throws
+  /// Error for no views, views of different photos (some with, some without), or none where the target is a
+  /// drop.
   Calibrator(gl::Context& context, const Model& model, const std::vector<CalibrationView>& views,
-             double near_plane, CalibrationTarget::Kind kind);
+             double near_plane, CalibrationTarget::Kind kind, const render::FrameSettings& exact = {});
   ~Calibrator();
 
   struct Cost {
@@ -85,7 +86,8 @@ class Calibrator {
   std::vector<std::unique_ptr<Reference>> references_;
 };
 
-/// What a calibration looks for, and how its table of bounds is measured.
+/// What a calibration looks for, and how its table of bounds is measured; all is drawn in the table's order and
+/// projection.
 struct CalibrationSettings {
   CalibrationTarget target;
   measure::DepthTableSettings table = {};

@@ -113,8 +113,9 @@ ordered_json to_json(const Calibration& c) {
   const char* const target = c.target.kind == CalibrationTarget::Kind::drop ? "drop_db" : "psnr_db";
   ordered_json json = object(
       "format", "binosplat calibration", "version", 1, "model",
-      object("name", c.model_name, "gaussians", c.gaussians, "hash", fmt::format("{:016x}", c.hash)), "width",
-      c.width, "height", c.height, "focal_px", c.focal, "near", c.near_plane, "target",
+      object("name", c.model_name, "gaussians", c.gaussians, "hash", fmt::format("{:016x}", c.hash)), "order",
+      order_choices[c.perspective.order].name, "projection",
+      projection_choices[c.perspective.projection].name, "width", c.width, "height", c.height, "focal_px", c.focal, "near", c.near_plane, "target",
       object(target, c.target.db), "depth_table",
       object("far", c.depth_table.far, "upper", c.depth_table.bounds, "seconds", c.depth_table_seconds),
       "views", ordered_json::array(), "entries", ordered_json::array());
@@ -139,6 +140,9 @@ Calibration parse_calibration(const std::string& name, const std::string& text) 
   c.model_name = model.at("name").text();
   c.gaussians = static_cast<std::size_t>(std::min(1e12, at_least(0.0, model.at("gaussians"))));
   c.hash = parse_hash(model.at("hash"));
+  // Files of earlier versions are of models' usual ones.
+  if (top.has("order")) c.perspective.order = parse_choice(top, "order", order_choices);
+  if (top.has("projection")) c.perspective.projection = parse_choice(top, "projection", projection_choices);
   c.width = pixels(top.at("width"));
   c.height = pixels(top.at("height"));
   c.focal = at_least(1e-9, top.at("focal_px"));

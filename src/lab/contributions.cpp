@@ -8,7 +8,6 @@
 #include "lab/settings.h"
 #include "measure/comparison.h"
 #include "reference/render.h"
-#include "reference/skipping.h"
 
 namespace binosplat::lab {
 
@@ -21,7 +20,6 @@ constexpr std::size_t depth_bins = 40;
 /// A Gaussian that a pixel of a view blends.
 struct ShownGaussian {
   double depth;          // world units
-  double contribution;   // the largest alpha T
   double transmittance;  // max(T)
 };
 
@@ -57,19 +55,27 @@ std::vector<DepthBin> bins_by_depth(const std::vector<ShownGaussian>& shown,
   std::vector<double> depths;
   for (const ShownGaussian& one : shown) depths.push_back(one.depth);
   const double far = quantile(depths, 0.95), width = far / depth_bins;
-  std::array<std::vector<double>, depth_bins> contribution, transmittance;
+  std::array<std::vector<double>, depth_bins> transmittance;
   for (const ShownGaussian& one : shown) {
     if (one.depth > far) continue;
     const auto b = std::min<std::size_t>(static_cast<std::size_t>(one.depth / width), depth_bins - 1);
-    contribution[b].push_back(one.contribution);
     transmittance[b].push_back(one.transmittance);
   }
   for (std::size_t b = 0; b < depth_bins; ++b) {
     const double from = width * static_cast<double>(b);
-    bins.push_back({from, from + width, contribution[b].size(), spread(contribution[b]),
-                    spread(transmittance[b]), bound_at(table, from + 0.5 * width)});
+    bins.push_back({from, from + width, transmittance[b].size(), spread(transmittance[b]),
+                    bound_at(table, from + 0.5 * width)});
   }
   return bins;
+}
+
+void add_up(std::vector<reference::DistanceBin>& sum, const std::vector<reference::DistanceBin>& of_view) {
+  if (sum.empty()) return void(sum = of_view);
+  for (std::size_t b = 0; b < sum.size(); ++b) {
+    sum[b].fragments += of_view[b].fragments;
+    sum[b].sum += of_view[b].sum;
+    sum[b].largest = std::max(sum[b].largest, of_view[b].largest);
+  }
 }
 
 double capped(double db) { return std::min(db, equal_db); }
@@ -77,7 +83,8 @@ double capped(double db) { return std::min(db, equal_db); }
 }  // namespace
 
 Contributions contributions(const Model& model, std::span<const ContributionView> views,
-                            const render::DepthTable& table, const std::function<void()>& progress) {
+                            const render::DepthTable& table, const render::DepthTable& fitted,
+                            const std::function<void()>& progress) {
   Contributions found;
   for (const char* by : known)
     found.skipping.push_back({by, std::vector<SkippingCurve::Point>(skipped_shares.size())});
@@ -89,9 +96,9 @@ Contributions contributions(const Model& model, std::span<const ContributionView
     const auto splats = reference::project_all(model, one.view);
     const auto lists = reference::make_lists(splats, reference::depth_order(splats), one.view, TILES_ELLIPSE);
     const auto transmittance = reference::measure_transmittance(splats, lists, one.view);
-    const auto contribution = reference::measure_contributions(splats, lists, one.view);
+    add_up(found.by_distance, reference::contributions_by_distance(splats, lists, one.view));
     for (std::size_t i = 0; i < splats.size(); ++i) {
-      if (transmittance[i] > 0.0) shown.push_back({splats[i].depth, contribution[i], transmittance[i]});
+      if (transmittance[i] > 0.0) shown.push_back({splats[i].depth, transmittance[i]});
     }
     const Image exact = on_black(reference::blend(splats, lists, one.view));
     const auto bounds = bounds_by(splats, transmittance, table);
@@ -110,7 +117,8 @@ Contributions contributions(const Model& model, std::span<const ContributionView
     }
     progress();
   }
-  found.by_depth = bins_by_depth(shown, table);
+  while (!found.by_distance.empty() && found.by_distance.back().fragments == 0) found.by_distance.pop_back();
+  found.by_depth = bins_by_depth(shown, fitted);
   return found;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
-// What single Gaussians contribute to a view, and what a picture loses without the lowest contributions
-// (AdaGScale, figures 4 to 6). In float64 on the CPU: how the frame draws plays no part in it.
+// What single Gaussians contribute to a view by distance from their middles, the transmittance in front of
+// them by depth, and what a picture loses without the lowest contributions (AdaGScale, figures 4 to 6). In
+// float64 on the CPU: how the frame draws plays no part in it.
 
 #include <cmath>
 #include <functional>
@@ -10,6 +11,7 @@
 #include <vector>
 
 #include "base/image.h"
+#include "reference/skipping.h"
 #include "render/settings.h"
 #include "scene/model.h"
 #include "shared/types.h"
@@ -43,18 +45,20 @@ struct Spread {
 struct DepthBin {
   double from = 0.0, to = 0.0;  // view depth, world units
   std::size_t gaussians = 0;    // that a pixel blends
-  Spread contribution;          // the largest alpha T of a pixel
   Spread transmittance;         // max(T)
   double bound = 0.0;           // the table's
 };
 
 struct Contributions {
   std::vector<SkippingCurve> skipping;
-  std::vector<DepthBin> by_depth;  // up to where 95 % of what is drawn lies nearer
+  std::vector<reference::DistanceBin> by_distance;  // of all views; up to the last that has fragments
+  std::vector<DepthBin> by_depth;                   // up to where 95 % of what is drawn lies nearer
 };
 
-/// `progress` is called after each view.
+/// T_upper(depth) is the `table`'s for skipping, and the `fitted` one's for the bins of depth. `progress` is
+/// called after each view.
 Contributions contributions(const Model& model, std::span<const ContributionView> views,
-                            const render::DepthTable& table, const std::function<void()>& progress);
+                            const render::DepthTable& table, const render::DepthTable& fitted,
+                            const std::function<void()>& progress);
 
 }  // namespace binosplat::lab

@@ -25,7 +25,8 @@ int bin_of(double score) {
 struct Fragment {
   std::uint32_t gaussian;
   double alpha;
-  int bin;
+  double score;  // alpha times the transmittance that is taken for it
+  int bin;       // of the score
 };
 
 /// A view's splats by tile, and the transmittance that each Gaussian is taken to meet; empty: what it does
@@ -55,7 +56,8 @@ void for_each_pixel(const Listed& listed, std::size_t begin, std::size_t end, co
           if (verdict != Verdict::blended) return;
           const double transmittance =
               listed.transmittances.empty() ? before.transmittance : listed.transmittances[i];
-          fragments.push_back({i, alpha, bin_of(alpha * transmittance)});
+          const double score = alpha * transmittance;
+          fragments.push_back({i, alpha, score, bin_of(score)});
         };
         blend_pixel(splats, list, {x, y}, {}, keep);
         visit(std::size_t{y} * view.width + x, fragments);
@@ -64,7 +66,50 @@ void for_each_pixel(const Listed& listed, std::size_t begin, std::size_t end, co
   }
 }
 
+// Of distances: below 1 px, then two an octave.
+constexpr std::size_t distance_bins = 23;
+
+std::size_t distance_bin(double px) {
+  return px < 1.0 ? 0 : std::min(static_cast<std::size_t>(2.0 * std::log2(px)) + 1, distance_bins - 1);
+}
+
 }  // namespace
+
+std::vector<DistanceBin> contributions_by_distance(const std::vector<Splat>& splats, const TileLists& lists,
+                                                   const shared::View& view) {
+  // Whole numbers add up to the same sum in any order.
+  constexpr double unit = 0x1p-32;
+  std::array<std::uint64_t, distance_bins> sums{};
+  std::vector<DistanceBin> bins(distance_bins);
+  for (std::size_t b = 0; b < distance_bins; ++b) {
+    const double octave = 0.5 * static_cast<double>(b);
+    bins[b].from = b == 0 ? 0.0 : std::exp2(octave - 0.5);
+    bins[b].to = std::exp2(octave);
+  }
+  std::mutex adding;
+  parallel_chunks(lists.begin.size() - 1, 1, [&](std::size_t begin, std::size_t end) {
+    std::array<DistanceBin, distance_bins> found{};
+    std::array<std::uint64_t, distance_bins> found_sums{};
+    for_each_pixel({splats, lists, view, {}}, begin, end,
+                   [&](std::size_t pixel, const std::vector<Fragment>& fragments) {
+                     const glm::dvec2 at(pixel % view.width, pixel / view.width);
+                     for (const Fragment& fragment : fragments) {
+                       const std::size_t b = distance_bin(glm::distance(at, splats[fragment.gaussian].mean));
+                       ++found[b].fragments;
+                       found_sums[b] += static_cast<std::uint64_t>(std::llround(fragment.score / unit));
+                       found[b].largest = std::max(found[b].largest, fragment.score);
+                     }
+                   });
+    const std::lock_guard lock(adding);
+    for (std::size_t b = 0; b < distance_bins; ++b) {
+      bins[b].fragments += found[b].fragments;
+      bins[b].largest = std::max(bins[b].largest, found[b].largest);
+      sums[b] += found_sums[b];
+    }
+  });
+  for (std::size_t b = 0; b < distance_bins; ++b) bins[b].sum = static_cast<double>(sums[b]) * unit;
+  return bins;
+}
 
 std::vector<Skipped> skip_lowest(const std::vector<Splat>& splats, const TileLists& lists,
                                  const shared::View& view, std::span<const double> bounds,

@@ -51,14 +51,6 @@ std::vector<double> measure_transmittance(const std::vector<Splat>& splats, cons
   return measure_pairs(splats, lists, view, not_seen, measure, keep_largest);
 }
 
-std::vector<double> measure_contributions(const std::vector<Splat>& splats, const TileLists& lists,
-                                          const shared::View& view) {
-  const auto measure = [](double& largest, double alpha, double transmittance) {
-    keep_largest(largest, alpha * transmittance);
-  };
-  return measure_pairs(splats, lists, view, not_seen, measure, keep_largest);
-}
-
 std::vector<double> measure_weights(const std::vector<Splat>& splats, const TileLists& lists,
                                     const shared::View& view) {
   const auto measure = [](double& sum, double alpha, double transmittance) { sum += alpha * transmittance; };

@@ -17,11 +17,6 @@ constexpr double not_seen = -1.0;
 std::vector<double> measure_transmittance(const std::vector<Splat>& splats, const TileLists& lists,
                                           const shared::View& view);
 
-/// For each Gaussian the largest alpha T over the pixels that blend it, what it contributes to the one that
-/// shows it best. 0 and not_seen as above.
-std::vector<double> measure_contributions(const std::vector<Splat>& splats, const TileLists& lists,
-                                          const shared::View& view);
-
 /// For each Gaussian its blending weight alpha * T, summed over the pixels that blend it; 0 where none does.
 std::vector<double> measure_weights(const std::vector<Splat>& splats, const TileLists& lists,
                                     const shared::View& view);

@@ -34,9 +34,9 @@ TEST_F(CalibrateTest, ViewsThatSeeNothingHaveNoSay) {
   };
   turn(1);
   const Outcome outcome = calibrate({"--quality", "38", "--size", "36x24"});
-  ASSERT_TRUE(ended(outcome, 0, "1 of 4 views see nothing of the model and are left out (side)"));
+  ASSERT_TRUE(ended(outcome, 0, "1 of 3 views see nothing of the model and are left out (side)"));
   const ordered_json found = ordered_json::parse(read_text(file));
-  EXPECT_EQ(found["views"].size(), 3);
+  EXPECT_EQ(found["views"].size(), 2);
   for (const auto& entry : found["entries"]) EXPECT_LT(entry["tolerance"], 1e3) << entry;
   std::filesystem::remove(file);
   for (const std::size_t k : {0u, 2u, 3u}) turn(k);
@@ -126,7 +126,7 @@ TEST_F(CalibrateTest, DropsAreAgainstPhotos) {
                                folder / "photos" / (std::string(view) + ".png")})));
     ASSERT_TRUE(good(calibrate({"--photos", folder / "photos", "--max-drop", "0.5"})));
     const ordered_json found = ordered_json::parse(read_text(file));
-    EXPECT_EQ(found["views"].size(), 2) << "the pair has no photos";
+    EXPECT_EQ(found["views"].size(), 1) << "the pair has no photos, and front is for tests";
     EXPECT_EQ(found["target"]["drop_db"], 0.5);
     for (const ordered_json& entry : found["entries"]) {
       EXPECT_LE(entry["reached_db"].get<double>(), 0.5);
@@ -135,6 +135,48 @@ TEST_F(CalibrateTest, DropsAreAgainstPhotos) {
       }
     }
   }
+}
+
+// Tests are every Nth view by the order of names, whatever the file's order is: no tolerance may see them.
+TEST_F(CalibrateTest, ViewsForTestsHaveNoSay) {
+  ordered_json cameras;
+  for (const char* name : {"c", "b", "a", "e", "d", "i", "h", "g", "f"})
+    cameras.push_back(test::camera_json(name, 0.02 * static_cast<double>(cameras.size())));
+  write_text(folder / "cameras.json", cameras.dump());
+  const auto taken = [&](std::vector<std::string> more) {
+    more.insert(more.end(), {"--quality", "30", "--size", "18x12"});
+    const Outcome outcome = calibrate(more);
+    EXPECT_TRUE(good(outcome));
+    EXPECT_NE(outcome.err.find("training views; for tests are"), std::string::npos) << outcome.err;
+    std::string names;
+    for (const ordered_json& view : ordered_json::parse(read_text(file))["views"])
+      names += view["name"].get<std::string>();
+    return names;
+  };
+  EXPECT_EQ(taken({}), "cbedhgf") << "a and i are for tests";
+  EXPECT_EQ(taken({"--hold-out", "3"}), "cbeihf") << "a, d and g are for tests";
+}
+
+TEST_F(CalibrateTest, GoesWithItsOrderAndProjection) {
+  ASSERT_TRUE(good(calibrate({"--quality", "38", "--view", "front", "--order", "distance", "--projection",
+                              "tangent", "--size", "36x24"})));
+  EXPECT_EQ(ordered_json::parse(read_text(file))["projection"], "tangent");
+  const std::vector<std::string> by = {"--mono",         "--view",        "front", "--size", "36x24",    "-o",
+                                       folder / "p.png", "--calibration", file,    "--th",   "adagscale"};
+  EXPECT_TRUE(ended(render(by), 2,
+                    "is for --order distance --projection tangent, and this is drawn with --order depth "
+                    "--projection affine"));
+  std::vector<std::string> same = by;
+  same.insert(same.end(), {"--order", "distance", "--projection", "tangent", "--json", folder / "r.json"});
+  ASSERT_TRUE(good(render(same)));
+  EXPECT_EQ(report()["settings"]["th"], "peripheral");
+  EXPECT_EQ(report()["settings"]["transmittance"], "depth");
+  // Its table goes with a tolerance of the user's, too.
+  same.insert(same.end(), {"--tolerance", "0.5"});
+  ASSERT_TRUE(good(render(same)));
+  EXPECT_EQ(report()["views"][0]["tolerance"], 0.5);
+  same.insert(same.end(), {"--transmittance", "last"});
+  EXPECT_TRUE(ended(render(same), 2, "--th adagscale goes by its table by depth"));
 }
 
 TEST_F(CalibrateTest, ErrorsSayWhatToDo) {

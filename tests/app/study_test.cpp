@@ -84,12 +84,33 @@ TEST_F(AnalysesCommand, LeavesAPageAndItsNumbers) {
   EXPECT_EQ(json.at("width"), 36);
   EXPECT_EQ(json.at("views").at("calibration"), nlohmann::json({"front"}));
   EXPECT_EQ(json.at("views").at("test"), nlohmann::json({"side"}));
-  EXPECT_EQ(json.at("targets").size(), 5 * 6u);
-  EXPECT_EQ(json.at("systems").size(), 6u);
+  EXPECT_EQ(json.at("found").size(), 5 * 7u);
+  EXPECT_EQ(json.at("tuned").size(), 5 * 7u);
+  EXPECT_EQ(json.at("systems").size(), 7u);
   EXPECT_NE(test::read_text(out + "/report.html").find("Pairs removed (table IV)"), std::string::npos);
   EXPECT_NE(outcome.out.find("Where the time goes"), std::string::npos) << outcome.out;
   EXPECT_NE(outcome.err.find("study may take long and keeps nothing until it is done"), std::string::npos)
       << outcome.err;
+}
+
+// Two scenes at once, and the choice of views: cameras as INRIA's trainer lists them, those for tests first.
+TEST_F(AnalysesCommand, ScenesShareAPageAndTestsAreHeldOut) {
+  nlohmann::json cameras;
+  for (const char* name : {"b", "h", "a", "c", "d", "e", "f", "g", "i", "j"})
+    cameras.push_back(test::camera_json(name, 0.05 * static_cast<double>(cameras.size())));
+  test::write_text(folder / "cameras.json", cameras.dump());
+  const std::string other = folder / "other.ply";
+  std::filesystem::copy_file(model, other);
+  const test::Outcome outcome =
+      test::run_program({"study", model, other, "--cameras", folder / "cameras.json", "--size", "18x12",
+                         "--frames", "1", "-o", out});
+  ASSERT_TRUE(test::good(outcome));
+  EXPECT_NE(outcome.out.find("| AdaGScale, 40 dB | "), std::string::npos) << outcome.out;
+  const auto one = test::load_json(out + "/" + std::filesystem::path(model).stem().string() + "/study.json");
+  EXPECT_EQ(one.at("views").at("test"), nlohmann::json({"b", "h"}));
+  EXPECT_EQ(one.at("views").at("calibration").size(), 8u);
+  EXPECT_EQ(test::load_json(out + "/other/study.json").at("views"), one.at("views"));
+  EXPECT_EQ(test::load_json(out + "/study.json").at("means").size(), 7u);
 }
 
 TEST_F(AnalysesCommand, DropsNeedPhotosOfTheirViews) {
@@ -107,6 +128,8 @@ TEST(Study, WhatMakesNoSenseIsNamed) {
       {{"--target", "45"}, "--target goes with --motion"},
       {{"--path", "x.json"}, "--path goes with --motion"},
       {{"--turn", "--test", "front"}, "--test goes with the analyses"},
+      {{"--turn", "--far", "5"}, "--far goes with the analyses"},
+      {{"--motion", "--hold-out", "4"}, "--hold-out goes with the analyses"},
       {{"--test", "no-such"}, "--view no-such"},
       {{"-o", folder / "file"}, "file"},
       {{"--turn", "--view", "all"}, "--view all"},
@@ -117,13 +140,6 @@ TEST(Study, WhatMakesNoSenseIsNamed) {
       {{"--turn", "--rays", "20000x20000"}, "at most a million"},
       {{"--turn", "--view", "no-such"}, "--view no-such"},
       {{"--turn", "--json", folder / "file/s.json"}, "file"},
-      // Options of earlier versions say what to do instead.
-      {{"--stability", "--case", "mist"}, "`study --motion` compares rules"},
-      {{"--rules", "--preset", "headset"}, "`bench` times rules"},
-      {{"--th", "squared"}, "`study --motion --rule TH,SOURCE`"},
-      {{"--transmittance", "last"}, "`study --motion --rule TH,SOURCE`"},
-      {{"--tolerance", "0.1"}, "`bench --axes FILE`"},
-      {{"--loss", "0.1"}, "`bench --axes FILE`"},
   };
   for (const auto& [options, message] : wrong) {
     std::vector<std::string> all = {"study", "demo:room", "--size", "64x36"};

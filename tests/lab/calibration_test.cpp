@@ -23,6 +23,7 @@ Calibration sample_calibration() {
   c.model_name = "fox.ply";
   c.gaussians = 109832;
   c.hash = 0x00ff39ddbc3922b3ull;
+  c.perspective = {ORDER_DISTANCE, PROJECTION_TANGENT};
   c.width = 518;
   c.height = 944;
   c.focal = 100.0;
@@ -40,6 +41,7 @@ TEST(Calibration, ComesBackAsItWas) {
   const Calibration read = parse_calibration("c.json", text);
   EXPECT_EQ(to_json(read).dump(), text);
   EXPECT_EQ(read.hash, sample_calibration().hash);
+  EXPECT_EQ(read.perspective, sample_calibration().perspective);
   EXPECT_EQ(read.target.kind, CalibrationTarget::Kind::drop);
   EXPECT_EQ(read.entries[1].transmittance, TRANSMITTANCE_LAST);
   EXPECT_EQ(read.depth_table.bounds, sample_calibration().depth_table.bounds);

@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <cmath>
+#include <map>
 
 #include "reference/splats.h"
 #include "reference/transmittance.h"
@@ -65,13 +67,50 @@ TEST_F(Skipping, LeavesOutTheLowestByHand) {
   expect(std::array{1.0, 1.0, 0.1, 1.0}, 0.5, 0.5, blended({1, 3}));
 }
 
-TEST_F(Skipping, ContributionsAndLightAreThoseOfTheWalls) {
+TEST_F(Skipping, LightIsThatOfTheWalls) {
   const auto light = measure_transmittance(splats, lists, view);
-  const auto contribution = measure_contributions(splats, lists, view);
-  for (std::size_t i = 0; i < 4; ++i) {
-    EXPECT_NEAR(light[i], lights[i], 1e-9);
-    EXPECT_NEAR(contribution[i], opacities[i] * lights[i], 1e-9);
+  for (std::size_t i = 0; i < 4; ++i) EXPECT_NEAR(light[i], lights[i], 1e-9);
+}
+
+// A spot alone: at a distance of d px it contributes sigma exp(-d^2 / (2 v)); another behind it, as wide, T
+// of that. A depth in the place of the distance would see all of each spot at once.
+TEST(Contributions, FallWithTheDistanceBetweenGaussianAndPixel) {
+  const shared::View view = view_of(64, 48);
+  constexpr double variance = 16.0;
+  std::vector<Splat> splats = {make_splat({30, 20}, {variance, 0, variance}, 0.8),
+                               make_splat({30, 20}, {variance, 0, variance}, 0.5)};
+  splats[0].depth = splats[0].order = 1.0;
+  splats[1].depth = splats[1].order = 2.0;
+  const TileLists lists = make_lists(splats, depth_order(splats), view, TILES_ELLIPSE);
+  std::map<double, std::pair<double, std::uint64_t>> wanted;  // by the bin's end
+  for (int y = 0; y < 48; ++y) {
+    for (int x = 0; x < 64; ++x) {
+      const double d = std::hypot(x - 30, y - 20), fall = std::exp(-0.5 * d * d / variance);
+      const double end = d < 1.0 ? 1.0 : std::exp2(0.5 * (std::floor(2.0 * std::log2(d)) + 1.0));
+      double t = 1.0;
+      for (const double sigma : {0.8, 0.5}) {
+        const double alpha = sigma * fall;
+        if (alpha < ALPHA_MIN) continue;
+        auto& [sum, fragments] = wanted[end];
+        sum += alpha * t;
+        ++fragments;
+        t *= 1.0 - alpha;
+      }
+    }
   }
+  double last = 1.0;
+  std::size_t filled = 0;
+  for (const DistanceBin& bin : contributions_by_distance(splats, lists, view)) {
+    if (bin.fragments == 0) continue;
+    const auto& [sum, fragments] = wanted.at(bin.to);
+    EXPECT_EQ(bin.fragments, fragments) << bin.to;
+    EXPECT_NEAR(bin.sum, sum, 1e-6) << bin.to;
+    EXPECT_LE(bin.largest, last) << "nearer ones contribute more";
+    last = bin.largest;
+    ++filled;
+  }
+  EXPECT_EQ(filled, wanted.size());
+  EXPECT_LT(last, 0.02);
 }
 
 TEST(SkippingMany, KnowingMoreCostsLess) {
