@@ -8,6 +8,7 @@
 #include "app/parts.h"
 #include "app/photos.h"
 #include "app/report.h"
+#include "app/resume.h"
 #include "base/log.h"
 #include "lab/analyses.h"
 
@@ -52,6 +53,7 @@ ExitCode analyse_scene(const MeasuredOptions& options, const std::vector<std::st
     calibrated = tested;
   }
 
+  const fs::path result = folder / "study.json";
   Parts parts;
   const bool photos = !options.photos.empty();
   const lab::Analysis analysis = lab::analyse(
@@ -60,10 +62,13 @@ ExitCode analyse_scene(const MeasuredOptions& options, const std::vector<std::st
        .near_plane = scene.near_plane,
        .kind = photos ? lab::CalibrationTarget::Kind::drop : lab::CalibrationTarget::Kind::quality,
        .targets = photos ? std::vector{0.1, 0.2, 0.3, 0.4, 0.5} : std::vector{50.0, 45.0, 40.0, 37.0, 34.0},
-       .frames = frames},
+       .frames = frames,
+       .rules = rules_of(options.rules),
+       .keep = keep_steps(result, options, source.exposures, scene.list, *context)},
       [&](const std::string& what, std::size_t done, std::size_t of) { parts.update(what, done, of); });
   const lab::Page page = lab::analysis_page(analysis);
   save_report(folder, "study.json", to_json(analysis), page);
+  forget_steps(result);
   print_page(page);
   fmt::print("\n{}: report.html, study.json\n", folder.string());
   return ExitCode::done;

@@ -90,8 +90,8 @@ std::vector<AnalysedSystem> from_targets(const std::vector<AnalysedSystem>& targ
 Analysis analyse(gl::Context& context, const Model& model, const std::vector<CalibrationView>& calibration,
                  const std::vector<CalibrationView>& test, const AnalysisSettings& settings,
                  const std::function<void(const std::string&, std::size_t, std::size_t)>& progress) {
-  Calibrator calibrator(context, model, calibration, settings.near_plane, settings.kind);
-  Calibrator tester(context, model, test, settings.near_plane, settings.kind);
+  Calibrator calibrator(context, model, calibration, settings.near_plane, settings.kind, settings.keep);
+  Calibrator tester(context, model, test, settings.near_plane, settings.kind, settings.keep);
   Analysis analysis{.device = device_text(context),
                     .scene = settings.scene,
                     .gaussians = model.count(),
@@ -112,7 +112,7 @@ Analysis analyse(gl::Context& context, const Model& model, const std::vector<Cal
   for (const auto& system : exact_systems)
     analysis.systems.push_back(system_of(system.name, {.tiles = system.tiles}, tester, test));
 
-  std::vector<render::FrameSettings> rules = calibrated_settings();
+  std::vector<render::FrameSettings> rules = calibrated_settings(settings.rules);
   done = 0;
   for (const double target : settings.targets) {
     for (render::FrameSettings& rule : rules) {

@@ -20,6 +20,8 @@ struct AnalysisSettings {
   CalibrationTarget::Kind kind = CalibrationTarget::Kind::drop;
   std::vector<double> targets;  // dB that tolerances are found for; the middle one is the systems'
   int frames = 24;              // timed of each setting, a view and round
+  std::vector<Rule> rules = all_rules();
+  Keep keep = {};
 };
 
 /// A way to draw, and what it costs and takes on the test views.
