@@ -19,7 +19,7 @@ using render::FrameEvent;
 using render::FrameRecord;
 using render::Recording;
 
-std::string json_of(const ordered_json& json) {
+std::string dumped(const ordered_json& json) {
   return json.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
 }
 
@@ -87,7 +87,7 @@ class TraceEvents {
     event["pid"] = 1;
     event["tid"] = track;
     if (!args.is_null()) event["args"] = args;
-    write_((std::exchange(is_first_, false) ? "" : ",") + json_of(event));
+    write_((std::exchange(is_first_, false) ? "" : ",") + dumped(event));
   }
 
   Clock::time_point start_;
@@ -184,7 +184,7 @@ void write_trace(const Profile& profile, const Write& write) {
   const Recording& recording = profile.recording;
   const ProfileFacts& facts = profile.facts;
   write("{\"displayTimeUnit\":\"ms\",\"otherData\":" +
-        json_of({{"scene", facts.scene}, {"motion", facts.motion}, {"device", facts.device}}) +
+        dumped({{"scene", facts.scene}, {"motion", facts.motion}, {"device", facts.device}}) +
         ",\"traceEvents\":[");
   TraceEvents events(start_of(recording), write);
   events.name("process_name", 0, "binosplat: " + facts.scene);

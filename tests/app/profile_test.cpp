@@ -40,6 +40,12 @@ TEST_F(ProfileCommand, LeavesAReportATraceAndATable) {
   EXPECT_EQ(numbers["worst"].size(), 10u);
   EXPECT_TRUE(test::has(outcome.out, "18 frames of 2 x 48 x 32 px, exact"));
   EXPECT_TRUE(test::has(outcome.out, "missed  "));
+  const lab::Table table = frames();
+  for (const auto& [name, px] : {std::pair{"width", 48.0}, {"height", 32.0}}) {
+    const auto at = std::ranges::find(table.columns, name) - table.columns.begin();
+    ASSERT_LT(at, std::ssize(table.columns));
+    EXPECT_EQ(table.rows[0][static_cast<std::size_t>(at)], lab::Cell(px));
+  }
   EXPECT_TRUE(test::has(outcome.out, "\nbound   the CPU, which draws ("));
   EXPECT_LE(std::count(outcome.out.begin(), outcome.out.end(), '\n'), 11);
   const std::string page = test::read_text(out + "/report.html");
