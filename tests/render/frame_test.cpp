@@ -427,8 +427,8 @@ TEST(Frame, IsTimedWithoutTheMakingOfItsPrograms) {
   const shared::View view = make_view(test::front_camera(32, 24, 30));
   context.set_shader_folder({});  // every program is made again
   const double before = context.making_ms();
-  Frame frame(context, model);
-  const FrameReport first = frame.draw(std::span(&view, 1));
+  render::Frame frame(context, model);
+  const render::FrameReport first = frame.draw(std::span(&view, 1));
   const double making = context.making_ms() - before;
   EXPECT_GT(first.programs_made, 5);
   EXPECT_LT(first.total_ms, 0.5 * making) << "of so few Gaussians";
