@@ -82,6 +82,7 @@ void write_png(const std::string& path, GLuint texture) {
   // A step below zero: OpenGL's rows begin at the bottom.
   if (png_image_write_to_file(&image, path.c_str(), 0, bytes.data(), -3 * width, nullptr) == 0)
     throw std::runtime_error(path + ": " + image.message);
+  std::printf("%s: %d x %d px\n", path.c_str(), width, height);
 }
 
 int main(int argc, char** argv) try {

@@ -9,6 +9,7 @@
 #include "app/parts.h"
 #include "app/photos.h"
 #include "app/report.h"
+#include "app/resume.h"
 #include "app/study_parts.h"
 #include "base/log.h"
 #include "lab/analyses.h"
@@ -67,6 +68,7 @@ lab::Analysis analyse_scene(MeasuredOptions options, const AnalysesOptions& anal
   log_info("{} views for tests{}; tolerances are found on {} others", tested.size(),
            chosen.empty() ? "" : ": " + chosen, calibrated.size());
 
+  const fs::path result = folder / "study.json";
   Parts parts;
   const bool photos = !options.photos.empty();
   lab::Analysis analysis = lab::analyse(
@@ -76,11 +78,14 @@ lab::Analysis analyse_scene(MeasuredOptions options, const AnalysesOptions& anal
        .kind = photos ? lab::CalibrationTarget::Kind::drop : lab::CalibrationTarget::Kind::quality,
        .targets = photos ? std::vector{0.1, 0.2, 0.3, 0.4, 0.5} : std::vector{50.0, 45.0, 40.0, 37.0, 34.0},
        .far = analyses.far,
-       .frames = analyses.frames},
+       .frames = analyses.frames,
+       .rules = rules_of(options.rules),
+       .keep = keep_steps(result, options, source.exposures, scene.list, *context)},
       [&](const std::string& what, std::size_t done, std::size_t of) { parts.update(what, done, of); });
   analysis.chosen = chosen;
   const lab::Page page = lab::analysis_page(analysis);
   save_report(folder, "study.json", to_json(analysis), page);
+  forget_steps(result);
   print_page(page);
   fmt::print("\n{}: report.html, study.json\n", folder.string());
   return analysis;

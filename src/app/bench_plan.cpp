@@ -32,27 +32,6 @@ BenchScene open_bench_scene(const BenchOptions& options, const std::string& file
   return scene;
 }
 
-// What tells a scene from another of the same name.
-ordered_json bench_scene_json(const BenchOptions& options, const Exposures& exposures,
-                              const BenchScene& scene) {
-  ordered_json json = {{"name", scene.name}};
-  if (scene.name == demo_city_name) {
-    json["count"] = city_settings(scene.options).count;
-    json["seed"] = city_settings(scene.options).seed;
-  } else if (!is_built_in(scene.name)) {
-    json["content"] = content_key(fs::path(scene.options.name));
-  }
-  json["cameras"] = ordered_json::array();
-  for (const Camera& camera : scene.list.cameras) json["cameras"].push_back(camera.name);
-  if (!options.camera.views.empty()) json["views"] = options.camera.views;
-  if (!scene.list.cameras.empty()) json["poses"] = content_key(scene.list.cameras);
-  if (options.camera.near_plane) json["near"] = *options.camera.near_plane;
-  json["photos"] = !options.photos.empty();
-  if (!options.photos.empty()) json["photos_content"] = pictures_key(options.photos);
-  if (exposures.change_any()) json["exposures_content"] = file_key(exposures.file());
-  return json;
-}
-
 void add_cases(BenchPlan& plan, std::size_t scene) {
   for (const int eyes : plan.axes.eyes) {
     for (const std::string& size : plan.axes.sizes) {
@@ -86,6 +65,26 @@ void add_calibrated(const std::string& file, lab::Axes& axes) {
 
 }  // namespace
 
+ordered_json scene_identity(const MeasuredOptions& options, const Exposures& exposures,
+                            const BenchScene& scene) {
+  ordered_json json = {{"name", scene.name}};
+  if (scene.name == demo_city_name) {
+    json["count"] = city_settings(scene.options).count;
+    json["seed"] = city_settings(scene.options).seed;
+  } else if (!is_built_in(scene.name)) {
+    json["content"] = content_key(fs::path(scene.options.name));
+  }
+  json["cameras"] = ordered_json::array();
+  for (const Camera& camera : scene.list.cameras) json["cameras"].push_back(camera.name);
+  if (!options.camera.views.empty()) json["views"] = options.camera.views;
+  if (!scene.list.cameras.empty()) json["poses"] = content_key(scene.list.cameras);
+  if (options.camera.near_plane) json["near"] = *options.camera.near_plane;
+  json["photos"] = !options.photos.empty();
+  if (!options.photos.empty()) json["photos_content"] = pictures_key(options.photos);
+  if (exposures.change_any()) json["exposures_content"] = file_key(exposures.file());
+  return json;
+}
+
 RigOptions rig_of(const BenchCase& which) { return {.mono = which.eyes == 1}; }
 
 Lens lens_of(const BenchCase& which) {
@@ -104,7 +103,7 @@ BenchPlan make_plan(const BenchOptions& options) {
     const BenchScene& scene = plan.scenes.emplace_back(open_bench_scene(options, file));
     if (!names.insert(scene.name).second) fail("two scenes are called {}: bench them one by one", scene.name);
     plan.photos = photo_source(scene.options.name, options.photos, options.exposure);
-    scenes.push_back(bench_scene_json(options, plan.photos.exposures, scene));
+    scenes.push_back(scene_identity(options, plan.photos.exposures, scene));
     add_cases(plan, plan.scenes.size() - 1);
   }
   plan.json = std::make_shared<ordered_json>(

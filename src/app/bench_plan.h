@@ -40,6 +40,10 @@ struct BenchScene {
   CameraList list;
 };
 
+/// What tells a scene, its cameras and its photos from others of the same names.
+nlohmann::ordered_json scene_identity(const MeasuredOptions& options, const Exposures& exposures,
+                                      const BenchScene& scene);
+
 /// Points that share a model, views and their size: a chart.
 struct BenchCase {
   std::size_t scene = 0;

@@ -11,6 +11,7 @@
 #include "app/option_checks.h"
 #include "app/output_options.h"
 #include "app/photos.h"
+#include "app/resume.h"
 #include "app/shots.h"
 #include "base/log.h"
 #include "base/progress.h"
@@ -66,11 +67,14 @@ ExitCode calibrate(const CalibrateOptions& o) {
   }
   const auto context = open_context_for_all("calibrate", false, o.context);
   leave_out_blind("calibrate", *context, scene.model, scene.near_plane, views);
-  Progress progress("calibrating", lab::calibrated_settings().size());
-  const lab::Calibration found =
-      lab::calibrate(*context, scene.model, views, scene.near_plane, {o.target.target(), o.table},
-                     [&](std::size_t entries, std::size_t) { progress.update(entries); });
+  const std::vector<lab::Rule> rules = rules_of(o.rules);
+  Progress progress("calibrating", lab::calibrated_settings(rules).size());
+  const lab::Calibration found = lab::calibrate(
+      *context, scene.model, views, scene.near_plane,
+      {o.target.target(), o.table, rules, keep_steps(o.output, o, photos.exposures, scene.list, *context)},
+      [&](std::size_t entries, std::size_t) { progress.update(entries); });
   save_json(o.output, lab::to_json(found));
+  forget_steps(o.output);
   print_calibration(found, o);
   // A tolerance goes with the size of the pictures: render warns where it differs.
   if (o.camera.lens.size)
@@ -116,13 +120,18 @@ void add_calibrate(CLI::App& program, Command& command) {
                   "Where its bins end, in world units; AdaGScale's is 100 (fits the scene)")
       ->type_name("DEPTH")
       ->check(positive);
+  add_rule_option(*sub, o->rules);
   add_measured_options(*sub, *o);
   sub->footer(
+      "A run that was ended goes on where it was when it is started again with the same options.\n"
       "Examples:\n"
       "  binosplat calibrate garden.ply --photos images --max-drop 0.3 -o garden.json\n"
       "  binosplat calibrate garden.ply --quality 40 --far 100 -o garden.json\n"
       "  binosplat render garden.ply --calibration garden.json --transmittance last");
-  sub->callback([o, &command] { command = [o] { return calibrate(*o); }; });
+  sub->callback([o, sub, &command] {
+    o->given = options_given(*sub);
+    command = [o] { return calibrate(*o); };
+  });
 }
 
 }  // namespace binosplat::app

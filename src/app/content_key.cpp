@@ -53,6 +53,12 @@ std::string content_key(const fs::path& path) {
   return key_of(file_of(path).parent_path(), files_of_model(path));
 }
 
+std::string text_key(const std::string& text) {
+  Hash hash;
+  hash.add(text);
+  return hash.key();
+}
+
 std::string file_key(const fs::path& file) { return key_of(file.parent_path(), {file}); }
 
 std::string pictures_key(const fs::path& folder) {

@@ -13,6 +13,9 @@ namespace binosplat::app {
 /// (files_of_model), and with no others. Throws Error for what cannot be read.
 std::string content_key(const std::filesystem::path& path);
 
+/// The same of a text.
+std::string text_key(const std::string& text);
+
 /// The same of one file by itself.
 std::string file_key(const std::filesystem::path& file);
 

@@ -47,7 +47,7 @@ void add_headset_options(CLI::App& sub, HeadsetOptions& o) {
          "--record", o.record_s,
          "Record the first S seconds as `profile` does; F8 in the window that\nmirrors records ten more")
       ->type_name("S")
-      ->check(positive);
+      ->check(between(1e-3, 3600.0, "seconds above zero, at most 3600"));
   sub.add_flag_callback(
       "--no-mirror", [&o] { o.mirror = false; }, "No window that shows what the left eye sees");
 }

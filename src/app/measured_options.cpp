@@ -1,8 +1,40 @@
 #include "app/measured_options.h"
 
 #include "app/option_checks.h"
+#include "base/choices.h"
 
 namespace binosplat::app {
+
+namespace {
+
+/// TH,SOURCE by their names.
+lab::Rule rule_of(const std::string& text) {
+  std::string bare = text;
+  std::erase(bare, ' ');
+  if (std::ranges::count(bare, ',') != 1) fail("--rule {}: expected TH,SOURCE", text);
+  const std::size_t comma = bare.find(',');
+  const std::string place = "--rule " + text, th = bare.substr(0, comma);
+  const lab::Rule rule{find_choice(place, th, th_choices),
+                       find_choice(place, bare.substr(comma + 1), transmittance_choices)};
+  if (render::is_exact(rule.th)) fail("{}: {} is exact, and always measured", place, th);
+  return rule;
+}
+
+}  // namespace
+
+void add_rule_option(CLI::App& sub, std::vector<std::string>& rules) {
+  sub.add_option("--rule", rules,
+                 "Only this rule, TH,SOURCE as `render --th` and `--transmittance` name them;\nmay be given "
+                 "again (all); those with `last` take longest")
+      ->type_name("RULE")
+      ->allow_extra_args(false);
+}
+
+std::vector<lab::Rule> rules_of(const std::vector<std::string>& texts) {
+  std::vector<lab::Rule> rules;
+  for (const std::string& text : texts) rules.push_back(rule_of(text));
+  return rules.empty() ? lab::all_rules() : rules;
+}
 
 void add_measured_options(CLI::App& sub, MeasuredOptions& o) {
   add_near_option(sub, o.camera);

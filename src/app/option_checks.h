@@ -37,6 +37,10 @@ inline CLI::Validator between(double low, double high, const char* expected) {
 /// What numbers of 32 bits hold, and what is computed from them.
 inline const CLI::Validator positive = between(1e-30, 1e30, "a number above zero (1e-30 to 1e30)");
 inline const CLI::Validator not_negative = between(0.0, 1e30, "a number from 0 to 1e30");
+inline const CLI::Validator seconds_range = between(1e-6, 1e6, "seconds above zero (0.000001 to 1000000)");
+constexpr double fps_least = 0.01;
+inline const CLI::Validator fps_range =
+    between(fps_least, 1000.0, "frames a second above zero (0.01 to 1000)");
 inline const CLI::Validator quality_range =
     between(render::quality_least, render::quality_most, "decibels from 10 to 100");
 

@@ -48,7 +48,7 @@ void add_output_options(CLI::App& sub, OutputOptions& o) {
                  "Frames a second of a tour, of a way through keys (30), or of a video\n(by the path's "
                  "times, or 30); a folder of models is drawn one after\nthe other, a model a frame")
       ->type_name("N")
-      ->check(positive);
+      ->check(fps_range);
   choose<int>(sub, "--bits", o.bits, "Bits a channel of PNG (8)", {{"8", 8}, {"16", 16}});
   sub.add_option("--png-level", o.png_level, "How small PNG is made: 0 (fast) to 12, slower by each (1)")
       ->type_name("N")

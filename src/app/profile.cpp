@@ -18,6 +18,7 @@
 #include "app/tour.h"
 #include "base/log.h"
 #include "base/mapped_file.h"
+#include "base/memory.h"
 #include "base/progress.h"
 #include "formats/content.h"
 #include "lab/csv.h"
@@ -31,7 +32,8 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr double seconds_default = 10.0;
-constexpr double quality_to_try = 40.0;  // dB: an error that is hard to see
+constexpr double frames_most = 1e6, frame_bytes = 4096.0;  // of a recording, and what each takes in memory
+constexpr double quality_to_try = 40.0;                    // dB: an error that is hard to see
 
 struct ProfileOptions : RenderOptions {
   double fps = headset_fps;  // 0: as fast as possible
@@ -55,6 +57,7 @@ void check(const ProfileOptions& o) {
     fail("--eye and --at go together: where the camera is, and what it looks at");
   if (o.camera.views.size() > 1 || (stands && !o.camera.eye && o.camera.views.front() == all_views.front()))
     fail("profile: --view stands at one camera: name one");
+  if (o.fps > 0.0 && o.fps < fps_least) fail("--fps {:g}: expected 0, or {:g} to 1000", o.fps, fps_least);
   check_foveate(o);
 }
 
@@ -90,13 +93,22 @@ std::string drawing_of(const ProfileOptions& o, const render::FrameSettings& set
 std::vector<std::vector<shared::View>> frames_to_profile(const ProfileOptions& o,
                                                          const std::vector<Shot>& shots) {
   std::vector<std::vector<shared::View>> frames;
-  if (shots.size() > 1 || o.camera.along_path()) {
-    for (const Shot& shot : shots) frames.push_back(views_of(shot));
-    return frames;
-  }
+  const bool moves = shots.size() > 1 || o.camera.along_path();
   const double seconds = o.camera.seconds.value_or(seconds_default);
-  frames.assign(static_cast<std::size_t>(std::max(1.0, std::round(seconds * pose_rate(o)))),
-                views_of(shots.front()));
+  const double count =
+      moves ? static_cast<double>(shots.size()) : std::max(1.0, std::round(seconds * pose_rate(o)));
+  const double most = std::min(frames_most, std::floor(0.5 * memory_bytes() / frame_bytes));
+  if (count > most)
+    fail(
+        "profile: {:.4g} frames, and a recording of at most {:.4g} fits in memory: fewer --seconds, at most "
+        "{:.4g} "
+        "at {:g} frames a second, or a lower --fps",
+        count, most, most / pose_rate(o), pose_rate(o));
+  if (moves) {
+    for (const Shot& shot : shots) frames.push_back(views_of(shot));
+  } else {
+    frames.assign(static_cast<std::size_t>(count), views_of(shots.front()));
+  }
   return frames;
 }
 
@@ -151,7 +163,8 @@ lab::Profile record(const ProfileOptions& o, const std::optional<lab::Table>& be
       all.stream ? all.stream->gpu_model(*all.context, all.run.settings.precision)
                  : std::make_shared<render::GpuModel>(*all.context, all.loaded, all.run.settings.precision);
   lab::ProfileDrawer drawer(model, all.run, all.stream.get());
-  tell_how_long(drawer.warm_up(), all.run.frames.size());
+  const double period_ms = o.fps > 0.0 ? 1000.0 / o.fps : 0.0;
+  tell_how_long(std::max(drawer.warm_up(), period_ms), all.run.frames.size());
   {
     Progress progress("profiling", all.run.frames.size(), "frames");
     all.profile.recording = drawer.record([&](std::size_t done) { progress.update(done); });
@@ -171,8 +184,11 @@ ExitCode profile(const ProfileOptions& o) {
   const lab::Profile profile = record(o, before);
   const lab::ProfileSummary summary = lab::summary_of(profile);
   std::vector<std::string> changes;
-  if (before) changes = lab::compare_frames(*before, lab::frames_table(profile.recording));
   save_profile(o.folder, profile, changes);
+  if (before) {  // once more, so that a comparison that fails loses no recording
+    changes = lab::compare_frames(*before, lab::frames_table(profile.recording));
+    save_profile(o.folder, profile, changes);
+  }
   for (const std::string& line : lab::lines_of(profile, summary)) fmt::print("{}\n", line);
   if (before) fmt::print("\nSince {}:\n{}\n", o.compare, fmt::join(changes, "\n"));
   fmt::print("{}: report.html, trace.json (for ui.perfetto.dev), frames.csv, profile.json\n", o.folder);

@@ -8,7 +8,6 @@
 #include "base/clock.h"
 #include "base/log.h"
 #include "base/output_file.h"
-#include "lab/csv.h"
 
 namespace binosplat::app {
 
@@ -16,16 +15,17 @@ void save_profile(const std::filesystem::path& folder, const lab::Profile& profi
                   const std::vector<std::string>& changes) {
   const lab::ProfileSummary summary = lab::summary_of(profile);
   const nlohmann::ordered_json json = lab::profile_json(profile, summary);
-  const lab::Page page = with_command(lab::profile_page(profile, summary, changes));
-  const std::array contents = {lab::html(page, json), lab::trace_of(profile),
-                               lab::csv(lab::frames_table(profile.recording)), json_text(json)};
-  // None gets its name before all are on the disk.
   std::deque<OutputFile> files;
-  for (std::size_t k = 0; k < profile_files.size(); ++k) {
-    OutputFile& file = files.emplace_back(folder / profile_files[k]);
-    file.write(contents[k]);
-    file.flush();
-  }
+  const auto next_file = [&]() -> lab::Write {
+    OutputFile& file = files.emplace_back(folder / profile_files[files.size()]);
+    return [&file](std::string_view text) { file.write(text); };
+  };
+  lab::write_html(with_command(lab::profile_page(profile, summary, changes)), json, next_file());
+  lab::write_trace(profile, next_file());
+  lab::write_frames(profile.recording, next_file());
+  next_file()(json_text(json));
+  // None gets its name before all are on the disk.
+  for (OutputFile& file : files) file.flush();
   for (OutputFile& file : files) file.commit();
 }
 

@@ -125,7 +125,7 @@ void add_view_options(CLI::App& sub, RenderOptions& o) {
          "Of a folder with the models of a moving scene: show so many a second, or\nas many as can be "
          "read")
       ->type_name("N")
-      ->check(positive);
+      ->check(fps_range);
   add_headset_options(sub, o.headset);
   add_foveate_option(sub, o.foveate);
   sub.get_option("--foveate")->group("Headset");

@@ -293,9 +293,10 @@ void print(const RenderReport& report) {
   for (const StageTimes::Row& row : rows) {
     fmt::print("{:<12}{:>12.3f}{:>12.3f}\n", row.stage, row.median_ms, row.p99_ms);
   }
-  fmt::print("GPU time of {} frame{} on {}{}; {:.1f} MB in buffers\n", frames, frames == 1 ? "" : "s",
-             report.context.renderer(), frames == 1 ? " (--frames N for more)" : "",
-             static_cast<double>(report.context.peak_bytes()) / 1e6);
+  fmt::print(
+      "GPU time of {} frame{} on {}{}; {:.1f} MB in buffers; making the shaders' programs took {:.2f} s\n",
+      frames, frames == 1 ? "" : "s", report.context.renderer(), frames == 1 ? " (--frames N for more)" : "",
+      static_cast<double>(report.context.peak_bytes()) / 1e6, 1e-3 * report.context.making_ms());
   print_run(report);
 }
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "app/bench_plan.h"
 #include "app/command.h"
 #include "app/content_key.h"
 #include "app/run_file.h"
@@ -36,6 +37,8 @@ std::string views_key(const std::vector<Shot>& shots) {
   }
   return content_key(cameras);
 }
+
+fs::path steps_of(const fs::path& result) { return fs::path(result) += ".unfinished"; }
 
 std::optional<std::string> first_there(const OutputPlan& plan, const std::vector<Shot>& shots) {
   for (const Shot& shot : shots) {
@@ -105,6 +108,26 @@ void check_alone(const OutputPlan& plan, const std::optional<ordered_json>& run)
         "{}: another run has drawn into the folder meanwhile, and its pictures may be among these: draw them "
         "again, in a folder of their own",
         plan.folder.string());
+}
+
+lab::Keep keep_steps(const fs::path& result, const MeasuredOptions& options, const Exposures& exposures,
+                     const CameraList& list, const gl::Context& context) {
+  const ordered_json run =
+      lab::object("program", BINOSPLAT_VERSION, "options", options.given, "scene",
+                  scene_identity(options, exposures, {options.scene.name, options.scene, list}), "device",
+                  lab::device_text(context));
+  return [folder = steps_of(result), run](const std::string& step, const auto& measure) {
+    const fs::path file = folder / (text_key(json_text(run) + step) + ".json");
+    if (is_whole(file)) return load_json(file);
+    const ordered_json measured = measure();
+    save_json(file, measured);
+    return measured;
+  };
+}
+
+void forget_steps(const fs::path& result) {
+  std::error_code ignored;
+  fs::remove_all(steps_of(result), ignored);
 }
 
 void forget_run(const OutputPlan& plan) {

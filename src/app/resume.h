@@ -7,9 +7,12 @@
 #include <vector>
 
 #include "app/cli.h"
+#include "app/measured_options.h"
 #include "app/render_options.h"
 #include "app/render_outputs.h"
 #include "app/shots.h"
+#include "formats/exposures.h"
+#include "lab/calibrate.h"
 
 namespace binosplat::app {
 
@@ -26,6 +29,12 @@ nlohmann::ordered_json identity_of(const RenderOptions& options, const CameraLis
 /// of this run is told by a file beside them, which the first run writes. Throws Error where it is of another
 /// run, and where there are files and none that tells of them.
 void leave_out_drawn(const OutputPlan& plan, const nlohmann::ordered_json& run, std::vector<Shot>& shots);
+
+/// Keeps what is measured for the file `result` beside it until forget_steps(), for runs of the same kind,
+/// which go on from there when one is ended: of the same options, content of files and device.
+lab::Keep keep_steps(const std::filesystem::path& result, const MeasuredOptions& options,
+                     const Exposures& exposures, const CameraList& list, const gl::Context& context);
+void forget_steps(const std::filesystem::path& result);
 
 /// For runs that draw all: what they leave in the folder is not what the file there tells of.
 void forget_run(const OutputPlan& plan);

@@ -12,6 +12,7 @@
 #include "app/option_checks.h"
 #include "app/output_options.h"
 #include "app/report.h"
+#include "app/resume.h"
 #include "app/shots.h"
 #include "app/study_parts.h"
 #include "base/error.h"
@@ -40,7 +41,7 @@ const struct {
                        {"--json", {Study::motion, Study::turn, Study::levels}},
                        {"--path", {Study::motion}},
                        {"--motions", {Study::motion}},
-                       {"--rule", {Study::motion}},
+                       {"--rule", {Study::analyses, Study::motion}},
                        {"--segments", {Study::motion}},
                        {"--lead", {Study::motion}},
                        {"--stop", {Study::motion}},
@@ -188,6 +189,7 @@ void add_study(CLI::App& program, Command& command) {
          },
          "With --turn: rays across and down (48x36; where the CPU draws 16x12)")
       ->type_name("NxN");
+  add_rule_option(*sub, o.rules);
   add_motion_options(*sub, o.motion);
   add_levels_options(*sub, o);
   sub->add_option(
@@ -207,8 +209,8 @@ void add_study(CLI::App& program, Command& command) {
       ->check(quality_range);
   add_studied_options(*sub, o);
   sub->footer(
-      "By itself it makes AdaGScale's figures and tables on the scene, by the paper's protocol: "
-      "docs/adagscale.md.\n"
+      "By itself it makes AdaGScale's figures and tables on the scene, by the paper's protocol\n"
+      "(docs/adagscale.md); started again with the same options it goes on where it was ended.\n"
       "Examples:\n"
       "  binosplat study garden.ply --photos images -o out/garden\n"
       "  binosplat study garden.ply --motion --rule squared,one --rule squared,last --size 1280x1120\n"
@@ -218,6 +220,7 @@ void add_study(CLI::App& program, Command& command) {
     options->scene.name = options->scenes.front();
     options->motion.lengths.moving = static_cast<std::size_t>(options->frames.value_or(60));
     const Study study = chosen_study(*options, *sub);
+    options->given = options_given(*sub);
     command = [options, study] { return study_scene(*options, study); };
   });
 }

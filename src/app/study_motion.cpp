@@ -31,36 +31,6 @@ namespace {
 constexpr const char* still_name = "still";
 constexpr std::size_t segments_default = 3;
 
-std::vector<std::string> words_between_commas(const std::string& text) {
-  std::vector<std::string> found(1);
-  for (const char c : text) {
-    if (c == ',') {
-      found.emplace_back();
-    } else if (c != ' ') {
-      found.back() += c;
-    }
-  }
-  return found;
-}
-
-/// TH,SOURCE by their names.
-Rule rule_of(const std::string& text) {
-  const std::vector<std::string> names = words_between_commas(text);
-  if (names.size() != 2) fail("--rule {}: expected TH,SOURCE", text);
-  const std::string place = "--rule " + text;
-  Rule rule{.th = find_choice(place, names[0], th_choices),
-            .transmittance = find_choice(place, names[1], transmittance_choices)};
-  if (render::is_exact(rule.th)) fail("{}: {} is exact, and always measured", place, names[0]);
-  return rule;
-}
-
-std::vector<Rule> rules_for(const StudyOptions& options) {
-  std::vector<Rule> rules;
-  for (const std::string& text : options.motion.rules) rules.push_back(rule_of(text));
-  if (rules.empty()) rules = lab::all_rules();
-  return rules;
-}
-
 /// What a metre is in world units, and why.
 struct Metre {
   double units = 1.0;
@@ -211,11 +181,6 @@ void add_motion_options(CLI::App& sub, MotionOptions& options) {
       ->delimiter(',')
       ->type_name("NAME,...")
       ->check(CLI::IsMember(names).description(""));
-  sub.add_option("--rule", options.rules,
-                 "With --motion: TH,SOURCE as `render --th` and `--transmittance` name them;\nmay be given "
-                 "again; default: all")
-      ->type_name("RULE")
-      ->allow_extra_args(false);
   const auto count = [&](const char* name, std::size_t& into, const char* help) {
     sub.add_option(name, into, fmt::format("{} ({})", help, into))->type_name("N")->check(range(0, 10000));
   };
@@ -238,7 +203,7 @@ void study_motion(const StudyOptions& options) {
   const Driven driven = open_driven(options);
   const std::vector<lab::MotionPath> paths = paths_of(driven, options);
   const std::vector<shared::View>& views = paths.front().segments.front().frames.front();
-  const std::vector<Rule> rules = rules_for(options);
+  const std::vector<Rule> rules = rules_of(options.rules);
   const auto context = open_context_for_all("study", true, options.context);
   refuse_blind("study --motion", *context, *driven.model,
                make_shots(all_views, driven.lens, no_rig, driven.list, driven.near_plane, driven.model->axes),

@@ -24,7 +24,6 @@ inline const ViewChoice photos_of_a_turn{.views = {}, .wanted = 16};
 struct MotionOptions {
   bool chosen = false;
   std::vector<std::string> motions;  // empty: all
-  std::vector<std::string> rules;    // TH,SOURCE; empty: all
   std::optional<std::size_t> segments;
   lab::SegmentLengths lengths;
   int rounds = 2;

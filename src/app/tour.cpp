@@ -57,7 +57,7 @@ void add_tour_options(CLI::App& sub, CameraOptions& o) {
                  "The first S seconds of the tour (all); or go through the keys of\n--path in S seconds, at "
                  "an even pace (by their times)")
       ->type_name("S")
-      ->check(positive);
+      ->check(seconds_range);
 }
 
 double tour_fps(const std::optional<double>& fps, bool video) {

@@ -15,7 +15,7 @@ namespace fs = std::filesystem;
 
 constexpr std::uint64_t most_levels = 100;
 constexpr std::uint64_t most_gaussians = std::uint64_t{1} << 32;
-// Of what levels lose and of pixels' widths: products of such numbers are still finite.
+// Of what levels lose, of pixels' widths and of places: products of such numbers are still finite.
 constexpr double most_lost = 1e20;
 
 std::vector<double> widths_of(const JsonValue& value) {
@@ -46,6 +46,13 @@ std::vector<double> by_direction(const JsonValue& value, std::size_t widths) {
   return numbers;
 }
 
+void check_bound(const JsonValue& bound, const LodChunk& leaf) {
+  if (!glm::all(glm::lessThanEqual(leaf.low, leaf.high)))
+    bound.fail_here("expected a 'min' that is at most 'max' along each axis");
+  if (glm::any(glm::greaterThan(glm::max(glm::abs(leaf.low), glm::abs(leaf.high)), glm::dvec3(most_lost))))
+    bound.fail_here("expected numbers from -{0} to {0}", most_lost);
+}
+
 /// Whether a leaf says what it loses of each pixel that shows it: not where its finest level shows nothing,
 /// and another one does.
 bool knows_errors(const LodChunk& leaf) {
@@ -61,6 +68,7 @@ void walk(const JsonValue& root, const std::function<void(const JsonValue&)>& se
   while (!nodes.empty()) {
     const JsonValue node = nodes.back();
     nodes.pop_back();
+    if (!node.value().is_object()) node.fail_here("expected an object");
     if (node.has("lods")) see(node);
     if (!node.has("children")) continue;
     const JsonValue children = node.at("children");
@@ -72,6 +80,9 @@ void walk(const JsonValue& root, const std::function<void(const JsonValue&)>& se
 
 SogLevels::SogLevels(const fs::path& path, const nlohmann::json& json) : path_(path) {
   const JsonValue root(path.string(), json);
+  if (root.has("version") && root.at("version").number() != 1)
+    root.at("version").fail_here("streamed SOG of version {} is not known; 1 is",
+                                 root.at("version").number());
   count_ = static_cast<int>(root.at("lodLevels").whole(most_levels));
   if (count_ == 0) root.at("lodLevels").fail_here("expected one level at least");
   const JsonValue names = root.at("filenames");
@@ -84,11 +95,16 @@ SogLevels::SogLevels(const fs::path& path, const nlohmann::json& json) : path_(p
   if (root.has("environment")) environment_ = file(root.at("environment"));
   walk(root, [&](const JsonValue& node) {
     const JsonValue lods = node.at("lods");
+    if (!lods.value().is_object()) lods.fail_here("expected an object of levels by their numbers");
     std::vector<Place>& places = leaves_.emplace_back();
+    std::size_t known = 0;
     for (int level = 0; level < count_; ++level) {
       const std::string key = std::to_string(level);
       if (lods.has(key)) places.push_back(place(level, lods.at(key)));
+      known += lods.value().contains(key);
     }
+    if (known < lods.value().size())
+      lods.fail_here("expected only levels from 0 to {}, of 'lodLevels'", count_ - 1);
   });
 }
 
@@ -127,6 +143,7 @@ std::vector<LodChunk> SogLevels::leaves(const nlohmann::json& json) const {
   walk(JsonValue(path_.string(), json), [&](const JsonValue& node) {
     const JsonValue bound = node.at("bound");
     LodChunk leaf{bound.at("min").vector<3>(), bound.at("max").vector<3>(), {}};
+    check_bound(bound, leaf);
     if (node.has("pixels")) {
       leaf.pixels = widths_of(node.at("pixels"));
       leaf.seen = by_direction(node.at("seen"), leaf.pixels.size());

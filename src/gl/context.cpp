@@ -190,19 +190,24 @@ const Program& Context::program(std::string_view name, std::span<const Number> v
     Program made(functions_, of_shader->first, defines_of(variant), shader_folder_, *program_cache_);
     add_span((made.is_compiled() ? "compile " : "load ") + of_shader->first, begin);
     ++programs_made_;
+    making_ms_ += ms_since(begin);
     found = of_shader->second.emplace(key, std::move(made)).first;
   }
-  if (is_preparing_ || found->second.is_complete()) return found->second;
+  if (!is_preparing_ && !found->second.is_complete()) complete(of_shader->second, found);
+  return found->second;
+}
+
+void Context::complete(Variants& variants, Variants::iterator program) {
   try {
     const auto begin = Clock::now();
-    const bool is_compiled = found->second.is_compiled();
-    found->second.complete(*program_cache_);
-    if (is_compiled) add_span("compile " + of_shader->first, begin);
+    const bool is_compiled = program->second.is_compiled();
+    program->second.complete(*program_cache_);
+    making_ms_ += ms_since(begin);
+    if (is_compiled) add_span("compile " + program->second.name(), begin);
   } catch (...) {
-    of_shader->second.erase(found);
+    variants.erase(program);
     throw;
   }
-  return found->second;
 }
 
 std::int64_t Context::gpu_time_ns() const {
@@ -220,6 +225,10 @@ void Context::prepare(const std::function<void()>& record) {
     throw;
   }
   is_preparing_ = false;
+  for (auto& [name, variants] : programs_) {
+    for (auto program = variants.begin(); program != variants.end(); ++program)
+      if (!program->second.is_complete()) complete(variants, program);
+  }
 }
 
 void Context::set_shader_folder(const std::filesystem::path& folder) {

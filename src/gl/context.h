@@ -95,11 +95,13 @@ class Context {
     const auto numbers = variant.numbers();
     return program(name, std::span<const Number>(numbers));
   }
-  /// Calls `record` for the programs that it asks for: drivers that can compile them all at once. Dispatchers
-  /// run nothing meanwhile (dispatch.h).
+  /// Calls `record` for the programs that it asks for, which are made when this returns: drivers that can
+  /// compile them all at once. Dispatchers run nothing meanwhile (dispatch.h).
   void prepare(const std::function<void()>& record);
   /// How many programs were compiled, or loaded from the cache, so far.
   int programs_made() const { return programs_made_; }
+  /// What that took, in ms.
+  double making_ms() const { return making_ms_; }
   bool is_preparing() const { return is_preparing_; }
 
   /// Shaders are read from this folder from now on; empty: the embedded ones.
@@ -137,7 +139,9 @@ class Context {
   void release_programs() { programs_.clear(); }
 
  private:
+  using Variants = std::map<std::uint64_t, Program>;  // by key_of()
   void read_limits();
+  void complete(Variants& variants, Variants::iterator program);
 
   Functions functions_;
   void* (*current_handle_)() = nullptr;  // EGL's, OSMesa's or glX's; null: not known
@@ -146,9 +150,10 @@ class Context {
   std::string backend_, vendor_, renderer_, version_;
   std::filesystem::path shader_folder_;
   std::unique_ptr<ProgramCache> program_cache_;
-  std::map<std::string, std::map<std::uint64_t, Program>, std::less<>> programs_;  // by shader and key_of()
+  std::map<std::string, Variants, std::less<>> programs_;  // by shader
   bool is_preparing_ = false;
   int programs_made_ = 0;
+  double making_ms_ = 0.0;
   std::int64_t allocated_ = 0, peak_ = 0;
 };
 

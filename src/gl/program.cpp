@@ -28,6 +28,19 @@ std::string vertex_shader_of(const std::string& fragment_shader) {
   return embedded_shaders().contains(own) ? own : "whole.vert";
 }
 
+/// Runs it with no work groups: drivers that compile a program when it first runs, as llvmpipe, do so then,
+/// and not in a stage that is timed.
+void run_nothing(const Functions& gl, std::uint32_t program) {
+  constexpr std::array<std::uint32_t, 3> groups{};
+  std::uint32_t buffer = 0;
+  gl.CreateBuffers(1, &buffer);
+  gl.NamedBufferStorage(buffer, sizeof(groups), groups.data(), 0);
+  gl.BindBuffer(GL_DISPATCH_INDIRECT_BUFFER, buffer);
+  gl.UseProgram(program);
+  gl.DispatchComputeIndirect(0);
+  gl.DeleteBuffers(1, &buffer);
+}
+
 }  // namespace
 
 Program::Program(const Functions& gl, const std::string& name, const Defines& defines,
@@ -62,7 +75,10 @@ void Program::complete(const ProgramCache& cache) {
   }
   text_.clear();
   gl_->ObjectLabel(GL_PROGRAM, id_, -1, name_.c_str());
-  if (!name_.ends_with(".frag")) read_local_size();
+  if (!name_.ends_with(".frag")) {
+    read_local_size();
+    run_nothing(*gl_, id_);
+  }
   reflect();
   is_complete_ = true;
 }

@@ -26,6 +26,8 @@ struct AnalysisSettings {
   std::vector<double> targets;  // dB that tolerances are found for; the middle one is the systems'
   float far = paper_far;        // world units: where AdaGScale's table by depth ends
   int frames = 24;              // timed of each setting, a view and round
+  std::vector<Rule> rules = all_rules();
+  Keep keep = {};
 };
 
 /// A way to draw, and what it costs and takes on the test views.

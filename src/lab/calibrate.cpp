@@ -6,13 +6,20 @@
 #include "base/clock.h"
 #include "base/error.h"
 #include "base/statistics.h"
-#include "lab/rule.h"
+#include "lab/fields.h"
 #include "lab/timed_rounds.h"
 #include "measure/search.h"
 #include "render/squared_error.h"
 #include "scene/axes.h"
 
 namespace binosplat::lab {
+
+using nlohmann::ordered_json;
+
+static void fields(const auto& io, Some<Calibrator::Cost> auto& c) {
+  io("mean_db", c.mean_db, "worst_db", c.worst_db, "worst_view", c.worst_view, "pairs_removed",
+     c.pairs_removed, "view_db", c.view_db, "pairs", c.pairs, "ms", c.ms);
+}
 
 namespace {
 
@@ -45,9 +52,9 @@ struct Calibrator::Reference {
 };
 
 Calibrator::Calibrator(gl::Context& context, const Model& model, const std::vector<CalibrationView>& views,
-                       double near_plane, CalibrationTarget::Kind kind,
+                       double near_plane, CalibrationTarget::Kind kind, Keep keep,
                        const render::FrameSettings& exact)
-    : context_(context), frame_(context, model), kind_(kind) {
+    : context_(context), frame_(context, model), kind_(kind), keep_(std::move(keep)) {
   if (views.empty()) fail("calibration needs at least one view");
   for (const CalibrationView& view : views) {
     const bool drop = kind == CalibrationTarget::Kind::drop;
@@ -68,7 +75,15 @@ Calibrator::Calibrator(gl::Context& context, const Model& model, const std::vect
 Calibrator::~Calibrator() = default;
 
 Calibrator::Cost Calibrator::cost(const render::FrameSettings& settings) {
-  return cost(frame_, settings, render::measures(settings.transmittance) ? render::settling_frames : 1);
+  const auto measured = [&]() -> ordered_json {
+    return cost(frame_, settings, render::measures(settings.transmittance) ? render::settling_frames : 1);
+  };
+  if (!keep_) return measured();
+  return keep_(object("views", names_, "drop", kind_ == CalibrationTarget::Kind::drop, "settings",
+                      to_json(BenchSettings(settings)), "table", settings.depth_table.bounds, "far",
+                      settings.depth_table.far)
+                   .dump(-1, ' ', false, ordered_json::error_handler_t::replace),
+               measured);
 }
 
 Calibrator::Cost Calibrator::cost(const Model& other, int drawings,
@@ -140,9 +155,9 @@ CalibrationEntry Calibrator::find(render::FrameSettings settings, double target_
           reached.pairs_removed, found.evaluations,      1e-3 * ms_since(start)};
 }
 
-std::vector<render::FrameSettings> calibrated_settings() {
+std::vector<render::FrameSettings> calibrated_settings(const std::vector<Rule>& rules) {
   std::vector<render::FrameSettings> all;
-  for (Rule rule : all_rules()) {
+  for (Rule rule : rules) {
     if (render::is_exact(rule.th)) continue;
     rule.tolerance = static_cast<float>(render::threshold_rules[rule.th].careful_tolerance);
     all.push_back(rule.settings());
@@ -154,7 +169,7 @@ Calibration calibrate(gl::Context& context, const Model& model, const std::vecto
                       double near_plane, const CalibrationSettings& wanted,
                       const std::function<void(std::size_t, std::size_t)>& done) {
   const render::FrameSettings exact{.order = wanted.table.order, .projection = wanted.table.projection};
-  Calibrator calibrator(context, model, views, near_plane, wanted.target.kind, exact);
+  Calibrator calibrator(context, model, views, near_plane, wanted.target.kind, wanted.keep, exact);
   Calibration c;
   c.model_name = model.name;
   c.gaussians = model.count();
@@ -171,7 +186,7 @@ Calibration calibrate(gl::Context& context, const Model& model, const std::vecto
   const Clock::time_point start = Clock::now();
   c.depth_table = calibrator.depth_table(wanted.table);
   c.depth_table_seconds = 1e-3 * ms_since(start);
-  const std::vector<render::FrameSettings> all = calibrated_settings();
+  const std::vector<render::FrameSettings> all = calibrated_settings(wanted.rules);
   for (render::FrameSettings settings : all) {
     settings.depth_table = c.depth_table;
     settings.order = exact.order;

@@ -1,7 +1,7 @@
 #pragma once
-// Finds the transmittance bound by depth (AdaGScale, sections 3.2 and 3.4) and the tolerance of each rule and source
-// that costs as much as is asked for, on some views of a model. The pictures stay on the GPU: only sums are
-// read back.
+// Finds the transmittance bound by depth (AdaGScale, sections 3.2 and 3.4) and the tolerance of each rule and
+// source that costs as much as is asked for, on some views of a model. The pictures stay on the GPU: only
+// sums are read back.
 
 #include <functional>
 #include <memory>
@@ -11,12 +11,17 @@
 
 #include "base/image.h"
 #include "lab/calibration.h"
+#include "lab/rule.h"
 #include "lab/settings.h"
 #include "measure/depth_table.h"
 #include "render/frame.h"
 #include "scene/camera.h"
 
 namespace binosplat::lab {
+
+/// Returns what `measure` returns for a step of this name, or returned in an earlier run that was ended.
+using Keep = std::function<nlohmann::ordered_json(const std::string& step,
+                                                  const std::function<nlohmann::ordered_json()>& measure)>;
 
 struct CalibrationView {
   Camera camera;               // of the world (scene/axes.h)
@@ -42,7 +47,8 @@ class Calibrator {
   /// Error for no views, views of different photos (some with, some without), or none where the target is a
   /// drop.
   Calibrator(gl::Context& context, const Model& model, const std::vector<CalibrationView>& views,
-             double near_plane, CalibrationTarget::Kind kind, const render::FrameSettings& exact = {});
+             double near_plane, CalibrationTarget::Kind kind, Keep keep = {},
+             const render::FrameSettings& exact = {});
   ~Calibrator();
 
   struct Cost {
@@ -81,20 +87,23 @@ class Calibrator {
   gl::Context& context_;
   render::Frame frame_;
   CalibrationTarget::Kind kind_;
+  Keep keep_;
   std::vector<std::string> names_;
   std::vector<shared::View> views_;
   std::vector<std::unique_ptr<Reference>> references_;
 };
 
-/// What a calibration looks for, and how its table of bounds is measured; all is drawn in the table's order and
-/// projection.
+/// What a calibration looks for, and how its table of bounds is measured; all is drawn in the table's order
+/// and projection.
 struct CalibrationSettings {
   CalibrationTarget target;
   measure::DepthTableSettings table = {};
+  std::vector<Rule> rules = all_rules();
+  Keep keep = {};
 };
 
-/// The ways to draw that a calibration has entries for: both rules by every source that one eye has.
-std::vector<render::FrameSettings> calibrated_settings();
+/// The ways to draw that a calibration has entries for: of these rules those that are not exact.
+std::vector<render::FrameSettings> calibrated_settings(const std::vector<Rule>& rules = all_rules());
 
 /// Measures the table of bounds by depth, then finds every entry, and calls `done(entries, of)` after each.
 Calibration calibrate(gl::Context& context, const Model& model, const std::vector<CalibrationView>& views,

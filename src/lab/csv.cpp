@@ -1,5 +1,6 @@
 #include "lab/csv.h"
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <utility>
 
@@ -30,7 +31,7 @@ std::optional<Cell> take_cell(std::string_view& line) {
     line.remove_prefix(line.front() == 't' ? 4 : 5);
   } else if (!line.empty() && line.front() != ',') {
     const std::optional<double> number = take_real(line);
-    if (!number) return std::nullopt;
+    if (!number || !std::isfinite(*number)) return std::nullopt;
     cell = *number;
   }
   if (!line.empty() && line.front() != ',') return std::nullopt;
@@ -66,7 +67,7 @@ std::string csv(const Table& table) {
   std::string text;
   const auto end_line = [&] { text.back() = '\n'; };
   for (const std::string& name : table.columns) text += name + ",";
-  end_line();
+  if (!table.columns.empty()) end_line();
   for (const std::vector<Cell>& row : table.rows) {
     for (const Cell& cell : row) text += csv_field(cell) + ",";
     end_line();
@@ -76,10 +77,12 @@ std::string csv(const Table& table) {
 
 Table read_csv(std::string_view text, const std::string& place) {
   Table table;
+  if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);  // as some editors begin UTF-8
   for (int number = 1; !text.empty(); ++number) {
     const std::size_t length = std::min(text.find('\n'), text.size());
     std::string_view line = text.substr(0, length);
     text.remove_prefix(std::min(length + 1, text.size()));
+    if (line.ends_with('\r')) line.remove_suffix(1);
     const std::string at = fmt::format("{}:{}", place, number);
     if (number == 1) {
       for (std::size_t comma = 0; comma != std::string_view::npos;

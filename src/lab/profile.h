@@ -1,6 +1,7 @@
 #pragma once
 // What a recording of frames says: which were bad and why, and what they all wait for.
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -52,8 +53,11 @@ double cpu_ms(const render::FrameRecord& frame);  // of the thread that draws, w
 
 bool is_missed(const render::Recording& recording, std::size_t n);
 
-/// As render::events_of(), with the names of programs, and where the clock was low.
-std::vector<render::FrameEvent> events_of(const render::Recording& recording, std::size_t n);
+/// The fastest clock of all frames, MHz; 0 where none is known.
+double fastest_mhz(const render::Recording& recording);
+
+/// As render::events_of(), with the names of programs, and where the clock was low against `fastest`.
+std::vector<render::FrameEvent> events_of(const render::Recording& recording, std::size_t n, double fastest);
 
 /// Throws Error for a recording without frames.
 ProfileSummary summary_of(const Profile& profile);
@@ -70,11 +74,16 @@ std::string advice_of(const Profile& profile, const ProfileSummary& summary);
 /// The lines that a terminal shows.
 std::vector<std::string> lines_of(const Profile& profile, const ProfileSummary& summary);
 
-/// A row for each frame: the columns of frames.csv.
-Table frames_table(const render::Recording& recording);
+/// A row for each frame, or for so many from the first on: the columns of frames.csv.
+Table frames_table(const render::Recording& recording, std::size_t first = 0, std::size_t count = SIZE_MAX);
+/// As many of those rows as are made at once: all of a long run would fill the memory.
+constexpr std::size_t rows_at_once = 1000;
 
-/// Trace Event JSON, as Perfetto and chrome://tracing read it: a track for the GPU and one for each thread.
-std::string trace_of(const Profile& profile);
+void write_frames(const render::Recording& recording, const Write& write);
+
+/// Writes Trace Event JSON, as Perfetto and chrome://tracing read it: a track for the GPU and one for each
+/// thread.
+void write_trace(const Profile& profile, const Write& write);
 
 Page profile_page(const Profile& profile, const ProfileSummary& summary,
                   const std::vector<std::string>& changes);

@@ -31,12 +31,6 @@ std::string programs_of(const Recording& recording, const FrameRecord& frame) {
   return fmt::format("{}", fmt::join(names, ", "));
 }
 
-double fastest(const Recording& recording) {
-  double most = 0.0;
-  for (const FrameRecord& frame : recording.frames) most = std::max(most, frame.mhz.value_or(0.0));
-  return most;
-}
-
 /// The parts of a frame: the GPU's stages, then what the CPU does. Where the CPU draws, submitting is
 /// drawing.
 std::vector<gl::StageTime> parts_of(const FrameRecord& frame, bool is_software) {
@@ -80,6 +74,12 @@ std::vector<gl::StageTime> over_frames(const Recording& recording, const Parts& 
 
 }  // namespace
 
+double fastest_mhz(const Recording& recording) {
+  double most = 0.0;
+  for (const FrameRecord& frame : recording.frames) most = std::max(most, frame.mhz.value_or(0.0));
+  return most;
+}
+
 double gpu_ms(const FrameRecord& frame) {
   double ms = 0.0;
   for (const gl::StageSpan& span : frame.report.spans) ms += span.ms();
@@ -97,13 +97,13 @@ bool is_missed(const Recording& recording, std::size_t n) {
          std::chrono::duration<double, std::milli>(frame.end - frame.due).count() > recording.budget_ms();
 }
 
-std::vector<FrameEvent> events_of(const Recording& recording, std::size_t n) {
+std::vector<FrameEvent> events_of(const Recording& recording, std::size_t n, double fastest) {
   const FrameRecord& frame = recording.frames[n];
   std::vector<FrameEvent> events = render::events_of(frame, n == 0 ? nullptr : &recording.frames[n - 1]);
   for (FrameEvent& event : events) {
     if (event.name == "program compiled") event.detail = programs_of(recording, frame);
   }
-  if (frame.mhz && *frame.mhz < slow_share * fastest(recording))
+  if (frame.mhz && *frame.mhz < slow_share * fastest)
     events.push_back({"low clock", fmt::format("{:.0f} MHz", *frame.mhz)});
   return events;
 }
@@ -114,6 +114,7 @@ ProfileSummary summary_of(const Profile& profile) {
   if (recording.frames.empty()) fail("no frame was recorded: there is nothing to report");
   ProfileSummary summary;
   std::vector<double> wall, gpu, cpu, mhz;
+  const double fastest = fastest_mhz(recording);
   for (std::size_t n = 0; n < recording.frames.size(); ++n) {
     const FrameRecord& frame = recording.frames[n];
     wall.push_back(frame.wall_ms());
@@ -122,7 +123,7 @@ ProfileSummary summary_of(const Profile& profile) {
     if (frame.mhz) mhz.push_back(*frame.mhz);
     summary.missed += is_missed(recording, n);
     summary.gpu_bound += gpu.back() >= cpu.back();
-    summary.slow_clock += frame.mhz && *frame.mhz < slow_share * fastest(recording);
+    summary.slow_clock += frame.mhz && *frame.mhz < slow_share * fastest;
     summary.worst.push_back(n);
   }
   summary.wall = quantiles_of(wall);
@@ -143,7 +144,8 @@ ProfileSummary summary_of(const Profile& profile) {
 std::string reason_of(const Profile& profile, const ProfileSummary& summary, std::size_t n) {
   const FrameRecord& frame = profile.recording.frames[n];
   std::vector<std::string> reasons;
-  for (const FrameEvent& event : events_of(profile.recording, n)) reasons.push_back(event.text());
+  const double fastest = summary.mhz ? summary.mhz->most : 0.0;
+  for (const FrameEvent& event : events_of(profile.recording, n, fastest)) reasons.push_back(event.text());
   const double longer = frame.wall_ms() - summary.wall.median;
   gl::StageTime most{"", 0.0};
   double all = 0.0;

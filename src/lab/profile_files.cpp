@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "lab/csv.h"
-#include "lab/fields.h"
 #include "lab/profile.h"
 
 namespace binosplat::lab {
@@ -18,6 +18,10 @@ using nlohmann::ordered_json;
 using render::FrameEvent;
 using render::FrameRecord;
 using render::Recording;
+
+std::string dumped(const ordered_json& json) {
+  return json.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
+}
 
 double ms_between(Clock::time_point from, Clock::time_point to) {
   return std::chrono::duration<double, std::milli>(to - from).count();
@@ -44,48 +48,51 @@ double ms_of_spans(const Recording& recording, const FrameRecord& frame, const s
   return ms;
 }
 
-std::string events_text(const Recording& recording, std::size_t n) {
+std::string text_of(const std::vector<FrameEvent>& events) {
   std::string text;
-  for (const FrameEvent& event : events_of(recording, n)) text += (text.empty() ? "" : "; ") + event.text();
+  for (const FrameEvent& event : events) text += (text.empty() ? "" : "; ") + event.text();
   return text;
 }
 
-/// Builds the list of events. Times are in microseconds since `start`.
+/// Writes the list of events, each as it comes: a long run has millions. Times are in microseconds since
+/// `start`.
 class TraceEvents {
  public:
-  explicit TraceEvents(Clock::time_point start) : start_(start) {}
+  TraceEvents(Clock::time_point start, const Write& write) : start_(start), write_(write) {}
 
-  void name_track(int track, const std::string& name) {
-    add({{"name", "thread_name"}, {"ph", "M"}}, track)["args"] = {{"name", name}};
-    add({{"name", "thread_sort_index"}, {"ph", "M"}}, track)["args"] = {{"sort_index", track}};
+  void name(const char* what, int track, const std::string& name) {
+    add({{"name", what}, {"ph", "M"}}, track, {{"name", name}});
   }
-  ordered_json& slice(const std::string& name, int track, Clock::time_point begin, Clock::time_point end) {
-    return add({{"name", name}, {"ph", "X"}, {"ts", us(begin)}, {"dur", us_between(begin, end)}}, track);
+  void name_track(int track, const std::string& track_name) {
+    name("thread_name", track, track_name);
+    add({{"name", "thread_sort_index"}, {"ph", "M"}}, track, {{"sort_index", track}});
+  }
+  void slice(const std::string& name, int track, Clock::time_point begin, Clock::time_point end,
+             const ordered_json& args = {}) {
+    add({{"name", name}, {"ph", "X"}, {"ts", us(begin)}, {"dur", us_between(begin, end)}}, track, args);
   }
   void counter(const std::string& name, Clock::time_point at, double value) {
-    add({{"name", name}, {"ph", "C"}, {"ts", us(at)}}, 0)["args"] = {{"value", value}};
+    add({{"name", name}, {"ph", "C"}, {"ts", us(at)}}, 0, {{"value", value}});
   }
   void instant(const FrameEvent& event, int track, Clock::time_point at) {
-    add({{"name", event.name}, {"ph", "i"}, {"s", "t"}, {"ts", us(at)}},
-        track)["args"] = {{"detail", event.detail}};
+    add({{"name", event.name}, {"ph", "i"}, {"s", "t"}, {"ts", us(at)}}, track, {{"detail", event.detail}});
   }
-
-  ordered_json take() { return std::move(events_); }
 
  private:
   static double us_between(Clock::time_point begin, Clock::time_point end) {
     return std::chrono::duration<double, std::micro>(std::max(end, begin) - begin).count();
   }
   double us(Clock::time_point at) const { return us_between(start_, at); }
-  ordered_json& add(ordered_json event, int track) {
+  void add(ordered_json event, int track, const ordered_json& args) {
     event["pid"] = 1;
     event["tid"] = track;
-    events_.push_back(std::move(event));
-    return events_.back();
+    if (!args.is_null()) event["args"] = args;
+    write_((std::exchange(is_first_, false) ? "" : ",") + dumped(event));
   }
 
   Clock::time_point start_;
-  ordered_json events_ = ordered_json::array();
+  const Write& write_;
+  bool is_first_ = true;
 };
 
 constexpr int gpu_track = 1, drawing_track = 2;
@@ -94,17 +101,18 @@ void add_gpu(const Recording& recording, std::size_t n, TraceEvents& events) {
   const auto& spans = recording.frames[n].report.spans;
   if (spans.empty() || spans.back().end_ns == 0) return;  // the driver tells no times
   const auto at = [&](std::int64_t gpu_ns) { return recording.cpu_time(gpu_ns); };
-  events.slice(fmt::format("frame {}", n), gpu_track, at(spans.front().begin_ns),
-               at(spans.back().end_ns))["args"] = {{"gpu_ms", gpu_ms(recording.frames[n])}};
+  events.slice(fmt::format("frame {}", n), gpu_track, at(spans.front().begin_ns), at(spans.back().end_ns),
+               {{"gpu_ms", gpu_ms(recording.frames[n])}});
   for (const gl::StageSpan& span : spans)
-    events.slice(span.name, gpu_track, at(span.begin_ns), at(span.end_ns))["args"] = {{"frame", n}};
+    events.slice(span.name, gpu_track, at(span.begin_ns), at(span.end_ns), {{"frame", n}});
 }
 
-void add_cpu(const Recording& recording, std::size_t n, TraceEvents& events) {
+void add_cpu(const Recording& recording, std::size_t n, double fastest, TraceEvents& events) {
   const FrameRecord& frame = recording.frames[n];
-  events.slice(fmt::format("frame {}", n), drawing_track, frame.begin, frame.end)["args"] = {
-      {"events", events_text(recording, n)}, {"missed", is_missed(recording, n)}};
-  for (const FrameEvent& event : events_of(recording, n)) events.instant(event, drawing_track, frame.begin);
+  const std::vector<FrameEvent> happened = events_of(recording, n, fastest);
+  events.slice(fmt::format("frame {}", n), drawing_track, frame.begin, frame.end,
+               {{"events", text_of(happened)}, {"missed", is_missed(recording, n)}});
+  for (const FrameEvent& event : happened) events.instant(event, drawing_track, frame.begin);
   events.counter("pairs", frame.begin, static_cast<double>(frame.report.pairs));
   events.counter("Gaussians in view", frame.begin, static_cast<double>(frame.report.visible));
   events.counter("Gaussians of the model", frame.begin, static_cast<double>(frame.gaussians));
@@ -126,17 +134,19 @@ Clock::time_point start_of(const Recording& recording) {
 
 }  // namespace
 
-Table frames_table(const Recording& recording) {
+Table frames_table(const Recording& recording, std::size_t first, std::size_t count) {
   const std::vector<std::string> stages = stage_names_of(recording);
+  const double fastest = fastest_mhz(recording);
   Table table{{"frame", "begin_ms", "late_ms", "wall_ms", "missed", "gpu_ms"}, {}};
   for (const std::string& stage : stages) table.columns.push_back("gpu_" + stage + "_ms");
-  for (const char* name : {"cpu_ms",          "levels_ms", "plan_ms",         "upload_ms", "submit_ms",
-                           "wait_ms",         "read_ms",   "choose_ms",       "pairs",     "visible",
-                           "gaussians",       "gpu_bytes", "levels_uploaded", "attempts",  "redrawn",
-                           "programs_made",   "tolerance", "quality_db",      "mhz",       "display_ms",
-                           "displays_missed", "events"})
+  for (const char* name : {"cpu_ms",   "levels_ms",  "plan_ms",         "upload_ms", "submit_ms",
+                           "wait_ms",  "read_ms",    "choose_ms",       "pairs",     "visible",
+                           "width",    "height",     "gaussians",       "gpu_bytes", "levels_uploaded",
+                           "attempts", "redrawn",    "programs_made",   "tolerance", "quality_db",
+                           "mhz",      "display_ms", "displays_missed", "events"})
     table.columns.emplace_back(name);
-  for (std::size_t n = 0; n < recording.frames.size(); ++n) {
+  const std::size_t end = first + std::min(count, recording.frames.size() - first);
+  for (std::size_t n = first; n < end; ++n) {
     const FrameRecord& frame = recording.frames[n];
     const render::FrameReport& report = frame.report;
     const render::CpuTimes& cpu = report.cpu;
@@ -152,35 +162,45 @@ Table frames_table(const Recording& recording) {
     const std::optional<int> displays = frame.display ? std::optional(frame.display->missed) : std::nullopt;
     for (Cell& cell :
          row(cpu_ms(frame), frame.levels.ms, cpu.plan, cpu.upload, cpu.submit, cpu.wait, cpu.read,
-             ms_of_spans(recording, frame, "choose levels"), report.pairs, report.visible, frame.gaussians,
-             report.gpu_bytes, frame.levels.uploaded, report.attempts, report.redrawn, report.programs_made,
+             ms_of_spans(recording, frame, "choose levels"), report.pairs, report.visible,
+             frame.views.front().width, frame.views.front().height, frame.gaussians, report.gpu_bytes,
+             frame.levels.uploaded, report.attempts, report.redrawn, report.programs_made,
              static_cast<double>(report.tolerance), report.quality, frame.mhz, display, displays,
-             events_text(recording, n)))
+             text_of(events_of(recording, n, fastest))))
       cells.push_back(std::move(cell));
   }
   return table;
 }
 
-std::string trace_of(const Profile& profile) {
+void write_frames(const Recording& recording, const Write& write) {
+  for (std::size_t n = 0; n < recording.frames.size(); n += rows_at_once) {
+    Table some = frames_table(recording, n, rows_at_once);
+    if (n > 0) some.columns.clear();
+    write(csv(some));
+  }
+}
+
+void write_trace(const Profile& profile, const Write& write) {
   const Recording& recording = profile.recording;
-  TraceEvents events(start_of(recording));
-  events.name_track(gpu_track, profile.facts.is_software ? "GPU (the CPU draws)" : "GPU");
+  const ProfileFacts& facts = profile.facts;
+  write("{\"displayTimeUnit\":\"ms\",\"otherData\":" +
+        dumped({{"scene", facts.scene}, {"motion", facts.motion}, {"device", facts.device}}) +
+        ",\"traceEvents\":[");
+  TraceEvents events(start_of(recording), write);
+  events.name("process_name", 0, "binosplat: " + facts.scene);
+  events.name_track(gpu_track, facts.is_software ? "GPU (the CPU draws)" : "GPU");
   std::map<std::string, int> tracks = {{"draws", drawing_track}};
   for (const Span& span : recording.spans)
     tracks.try_emplace(span.thread, static_cast<int>(tracks.size()) + drawing_track);
   for (const auto& [name, track] : tracks) events.name_track(track, "thread that " + name);
+  const double fastest = fastest_mhz(recording);
   for (std::size_t n = 0; n < recording.frames.size(); ++n) {
     add_gpu(recording, n, events);
-    add_cpu(recording, n, events);
+    add_cpu(recording, n, fastest, events);
   }
   for (const Span& span : recording.spans)
     events.slice(span.name, tracks.at(span.thread), span.begin, span.end);
-  const ordered_json trace = {
-      {"traceEvents", events.take()},
-      {"displayTimeUnit", "ms"},
-      {"otherData",
-       {{"scene", profile.facts.scene}, {"motion", profile.facts.motion}, {"device", profile.facts.device}}}};
-  return trace.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
+  write("]}");
 }
 
 }  // namespace binosplat::lab

@@ -16,27 +16,31 @@ namespace {
 using render::Recording;
 
 /// Some columns of frames.csv under names for readers.
-Table some_columns(const Table& all, const std::vector<std::pair<std::string, std::string>>& named) {
+Table some_columns(const Recording& recording,
+                   const std::vector<std::pair<std::string, std::string>>& named) {
   Table some;
-  std::vector<std::size_t> at;
-  for (const auto& [name, shown] : named) {
-    at.push_back(static_cast<std::size_t>(std::ranges::find(all.columns, name) - all.columns.begin()));
-    some.columns.push_back(shown);
-  }
-  for (const std::vector<Cell>& from : all.rows) {
-    std::vector<Cell>& cells = some.rows.emplace_back();
-    for (const std::size_t k : at) cells.push_back(from[k]);
+  for (const auto& [name, shown] : named) some.columns.push_back(shown);
+  for (std::size_t n = 0; n < recording.frames.size(); n += rows_at_once) {
+    Table all = lab::frames_table(recording, n, rows_at_once);
+    std::vector<std::size_t> at;
+    for (const auto& [name, shown] : named)
+      at.push_back(static_cast<std::size_t>(std::ranges::find(all.columns, name) - all.columns.begin()));
+    for (std::vector<Cell>& from : all.rows) {
+      std::vector<Cell>& cells = some.rows.emplace_back();
+      for (const std::size_t k : at) cells.push_back(std::move(from[k]));
+    }
   }
   return some;
 }
 
-Section frame_times(const Profile& profile, const ProfileSummary& summary, const Table& frames) {
-  const double budget = profile.recording.budget_ms();
+Section frame_times(const Profile& profile, const ProfileSummary& summary) {
+  const Recording& recording = profile.recording;
+  const double budget = recording.budget_ms();
   Section section{"frames", "Every frame",
                   fmt::format("Frames take {:.2f} ms (median), {:.2f} at p99, {:.2f} at most.",
                               summary.wall.median, summary.wall.p99, summary.wall.most)};
   Table& table = section.numbers.emplace(some_columns(
-      frames, {{"frame", "frame"}, {"events", "events"}, {"wall_ms", "frame ms"}, {"gpu_ms", "GPU ms"}}));
+      recording, {{"frame", "frame"}, {"events", "events"}, {"wall_ms", "frame ms"}, {"gpu_ms", "GPU ms"}}));
   section.chart = Chart{.x = "frame",
                         .y = {"frame ms", "GPU ms"},
                         .label = "events",
@@ -49,11 +53,11 @@ Section frame_times(const Profile& profile, const ProfileSummary& summary, const
   section.chart->y.emplace_back("budget ms");
   section.sentence +=
       fmt::format(" {} of {} were not done after {:.1f} ms, when the next one was due ({:g} a second).",
-                  summary.missed, frames.rows.size(), budget, profile.recording.fps);
+                  summary.missed, recording.frames.size(), budget, recording.fps);
   return section;
 }
 
-Section stacked_stages(const ProfileSummary& summary, const Table& frames) {
+Section stacked_stages(const Recording& recording, const ProfileSummary& summary) {
   Section section{"stages", "Stages on the GPU",
                   "GPU time of each frame by its stages, those of drawings that were repeated included."};
   if (summary.gpu.most == 0.0) {
@@ -63,7 +67,7 @@ Section stacked_stages(const ProfileSummary& summary, const Table& frames) {
   std::vector<std::pair<std::string, std::string>> named = {{"frame", "frame"}};
   for (const gl::StageTime& stage : summary.stages)
     named.emplace_back("gpu_" + stage.name + "_ms", stage.name);
-  section.numbers = some_columns(frames, named);
+  section.numbers = some_columns(recording, named);
   section.chart = Chart{.x = "frame",
                         .y = {section.numbers->columns.begin() + 1, section.numbers->columns.end()},
                         .title = "ms",
@@ -121,20 +125,20 @@ Section worst_frames(const Profile& profile, const ProfileSummary& summary) {
   return section;
 }
 
-Section bound(const Profile& profile, const ProfileSummary& summary, const Table& frames) {
+Section bound(const Profile& profile, const ProfileSummary& summary) {
   Section section{
       "bound", "GPU against CPU",
       fmt::format("What bounds the frames: {}. The CPU's time is that of the thread that draws, without its "
                   "waiting for the GPU.",
                   bound_of(profile, summary))};
-  section.numbers = some_columns(frames, {{"frame", "frame"},
-                                          {"gpu_ms", "GPU"},
-                                          {"levels_ms", "levels"},
-                                          {"plan_ms", "plan"},
-                                          {"upload_ms", "upload"},
-                                          {"submit_ms", "submit"},
-                                          {"wait_ms", "wait"},
-                                          {"read_ms", "read back"}});
+  section.numbers = some_columns(profile.recording, {{"frame", "frame"},
+                                                     {"gpu_ms", "GPU"},
+                                                     {"levels_ms", "levels"},
+                                                     {"plan_ms", "plan"},
+                                                     {"upload_ms", "upload"},
+                                                     {"submit_ms", "submit"},
+                                                     {"wait_ms", "wait"},
+                                                     {"read_ms", "read back"}});
   section.chart = Chart{.x = "frame",
                         .y = {section.numbers->columns.begin() + 1, section.numbers->columns.end()},
                         .title = "ms",
@@ -143,13 +147,13 @@ Section bound(const Profile& profile, const ProfileSummary& summary, const Table
   return section;
 }
 
-Section work(const Table& frames) {
+Section work(const Recording& recording) {
   Section section{"work", "What there was to draw",
                   "Pairs and Gaussians in view of each frame, and those of the model."};
-  section.numbers = some_columns(frames, {{"frame", "frame"},
-                                          {"pairs", "pairs"},
-                                          {"visible", "Gaussians in view"},
-                                          {"gaussians", "Gaussians of the model"}});
+  section.numbers = some_columns(recording, {{"frame", "frame"},
+                                             {"pairs", "pairs"},
+                                             {"visible", "Gaussians in view"},
+                                             {"gaussians", "Gaussians of the model"}});
   section.chart = Chart{.x = "frame",
                         .y = {section.numbers->columns.begin() + 1, section.numbers->columns.end()},
                         .title = "count",
@@ -157,7 +161,7 @@ Section work(const Table& frames) {
   return section;
 }
 
-Section clock_section(const Profile& profile, const ProfileSummary& summary, const Table& frames) {
+Section clock_section(const Profile& profile, const ProfileSummary& summary) {
   Section section{"clock", "The GPU's clock", ""};
   if (!summary.mhz) {
     section.problem = fmt::format("The clock is not told: {}.", profile.recording.no_clock);
@@ -166,7 +170,7 @@ Section clock_section(const Profile& profile, const ProfileSummary& summary, con
   section.sentence =
       fmt::format("{:.0f} MHz (median); {} frames were drawn below 95 % of the fastest, {:.0f} MHz.",
                   summary.mhz->median, summary.slow_clock, summary.mhz->most);
-  section.numbers = some_columns(frames, {{"frame", "frame"}, {"mhz", "MHz"}});
+  section.numbers = some_columns(profile.recording, {{"frame", "frame"}, {"mhz", "MHz"}});
   section.chart = Chart{.x = "frame", .y = {"MHz"}, .dots = false};
   return section;
 }
@@ -177,7 +181,6 @@ Page profile_page(const Profile& profile, const ProfileSummary& summary,
                   const std::vector<std::string>& changes) {
   const Recording& recording = profile.recording;
   const auto& views = recording.frames.front().views;
-  const Table frames = frames_table(recording);
   Page page{.title = fmt::format("Frame times: {}, {}", profile.facts.scene, profile.facts.motion),
             .sentence = fmt::format(
                 "Half of {} frames take {:.2f} ms or less, 99 % of them {:.2f}. What bounds them: {}.",
@@ -191,12 +194,15 @@ Page profile_page(const Profile& profile, const ProfileSummary& summary,
       {"device", profile.facts.device},
       {"rate",
        recording.fps > 0.0 ? fmt::format("{:g} frames a second", recording.fps) : "as fast as possible"}};
-  page.sections = {
-      frame_times(profile, summary, frames),  stacked_stages(summary, frames), histogram(profile, summary),
-      worst_frames(profile, summary),         bound(profile, summary, frames), work(frames),
-      clock_section(profile, summary, frames)};
+  page.sections = {frame_times(profile, summary),  stacked_stages(recording, summary),
+                   histogram(profile, summary),    worst_frames(profile, summary),
+                   bound(profile, summary),        work(recording),
+                   clock_section(profile, summary)};
   const std::string advice = advice_of(profile, summary);
-  if (!advice.empty()) page.sections.push_back({"next", "What to try", advice});
+  if (!advice.empty()) {
+    page.sentence += fmt::format(" Try {}.", advice);
+    page.sections.push_back({"next", "What to try", advice});
+  }
   if (!changes.empty()) {
     Section& section = page.sections.emplace_back(Section{"changes", "What changed", changes.back() + "."});
     section.table = Table{{"changed beyond noise"}, {}};

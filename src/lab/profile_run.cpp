@@ -84,7 +84,7 @@ render::Recording ProfileDrawer::record(const std::function<void(std::size_t)>& 
     render::FrameRecord frame{.due = Clock::now(), .views = run_.frames[n]};
     if (run_.fps > 0.0) {
       // The next time that a frame may begin at.
-      ticks = std::max(ticks, std::ceil((Clock::now() - start) / period));
+      if (n > 0) ticks = std::max(ticks, std::ceil((Clock::now() - start) / period));
       frame.due = start + std::chrono::duration_cast<Clock::duration>(ticks * period);
       wait_until(frame.due);
       ticks += 1.0;

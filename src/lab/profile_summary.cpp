@@ -21,6 +21,10 @@ const gl::StageTime& longest_stage(const ProfileSummary& summary) {
   return *std::ranges::max_element(summary.stages, {}, &gl::StageTime::ms);
 }
 
+bool is_gpu_bound(const Profile& profile, const ProfileSummary& summary) {
+  return 2 * summary.gpu_bound >= profile.recording.frames.size();
+}
+
 std::string line_of(const char* what, const Quantiles& q) {
   return fmt::format("{:<8}{:>10.3f}{:>10.3f}{:>10.3f}{:>10.3f}", what, q.median, q.p90, q.p99, q.most);
 }
@@ -39,13 +43,13 @@ nlohmann::ordered_json json_of(const Quantiles& q) {
 
 std::string bound_of(const Profile& profile, const ProfileSummary& summary) {
   const std::size_t frames = profile.recording.frames.size();
-  const bool is_gpu = 2 * summary.gpu_bound >= frames;
   const double all = all_stages(summary);
   const std::string stage = all > 0.0 ? fmt::format("{} {:.0f} %", longest_stage(summary).name,
                                                     100.0 * longest_stage(summary).ms / all)
                                       : "stages are not timed";
   if (profile.facts.is_software) return fmt::format("the CPU, which draws ({})", stage);
-  if (is_gpu) return fmt::format("GPU ({}), in {} of {} frames", stage, summary.gpu_bound, frames);
+  if (is_gpu_bound(profile, summary))
+    return fmt::format("GPU ({}), in {} of {} frames", stage, summary.gpu_bound, frames);
   const auto& most = *std::ranges::max_element(summary.usual, {}, [&](const gl::StageTime& part) {
     const bool is_stage =
         std::ranges::find(summary.stages, part.name, &gl::StageTime::name) != summary.stages.end();
@@ -57,13 +61,23 @@ std::string bound_of(const Profile& profile, const ProfileSummary& summary) {
 
 std::string advice_of(const Profile& profile, const ProfileSummary& summary) {
   const double all = all_stages(summary);
+  const render::Recording& recording = profile.recording;
+  if (recording.fps > 0.0 && summary.missed == 0)
+    return fmt::format(
+        "a higher --fps or a larger --size: 99 % of the frames are done in {:.2f} of {:.1f} ms, and then "
+        "wait "
+        "for the next one",
+        summary.wall.p99, recording.budget_ms());
+  if (!profile.facts.is_software && !is_gpu_bound(profile, summary))
+    return "fewer programs beside it and a CPU at its full clock: the GPU waits for the CPU, so that smaller "
+           "pictures and --quality save no time";
   if (profile.saving && profile.saving->share > 0.02)
     return fmt::format(
         "--quality {:g} would save {:.0f} % of a frame: binosplat bench {} --axes headset compares settings",
         profile.saving->quality_db, 100.0 * profile.saving->share, profile.facts.scene);
   if (summary.slow_clock > 0 && summary.missed > 0)
     return "keep the GPU's clock up (nvidia-smi --lock-gpu-clocks), and look at what is left";
-  const std::size_t gaussians = profile.recording.frames.back().gaussians;
+  const std::size_t gaussians = recording.frames.back().gaussians;
   if (gaussians > 1'000'000 && all > 0.0 && longest_stage(summary).name == "project")
     return fmt::format("levels of detail: binosplat levels {} writes them", profile.facts.scene);
   return summary.missed > 0 ? "smaller pictures, or --foveate for eyes that are tracked" : "";

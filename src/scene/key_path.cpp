@@ -159,8 +159,11 @@ std::vector<Camera> frames_of(const KeyPath& path, double frames_per_second) {
   // The last key is a frame, too, however its time was rounded.
   const double count = std::floor(path.seconds() * frames_per_second + 1e-6) + 1.0;
   if (!(count <= key_path_frames_most)) {
-    fail("a path of {:.4g} s at {} frames a second: {:.3g} frames are too many: take fewer a second",
-         path.seconds(), frames_per_second, count);
+    fail(
+        "a path of {:.4g} s at {} frames a second: {:.3g} frames are too many: {:.0e} fit, of fewer "
+        "--seconds or "
+        "a lower --fps",
+        path.seconds(), frames_per_second, count, key_path_frames_most);
   }
   std::vector<Camera> frames;
   for (double n = 0.0; n < count; ++n) {

@@ -293,11 +293,15 @@ void check_length(const std::vector<Stop>& stops, const TourSettings& settings) 
   double least = 0.0;  // s
   for (std::size_t k = 1; k < stops.size(); ++k)
     least += time_between(stops[k - 1], stops[k], settings.motion);
-  const double frames = std::min(least, settings.seconds) * settings.frames_per_second;
+  // Between frames that are far apart there are samples, too.
+  const double rate = std::max(settings.frames_per_second, 10.0);
+  const double frames = std::min(least, settings.seconds) * rate;
   if (frames < tour_frames_most) return;
   fail(
-      "a tour of {:.2g} frames or more, and {:.0e} fit: go faster, for less time or at fewer frames a second",
-      frames, tour_frames_most);
+      "a tour of {:.2g} frames or more, and {:.0e} fit: go faster (--tour), for less time (--seconds, at "
+      "most "
+      "{:.4g}) or at fewer frames a second (--fps)",
+      frames, tour_frames_most, tour_frames_most / rate);
 }
 
 }  // namespace

@@ -91,7 +91,8 @@ bool Stream::settle(std::span<const shared::View> views, const render::FrameSett
 VisibleChunks Stream::calibrate(std::span<const shared::View> views, const render::FrameSettings& settings,
                                 LevelChoice& choice) {
   const std::size_t gaussians = settings_.detail.heads_turn ? sample_of_many : sample_of_one;
-  const std::size_t most = std::max<std::size_t>(gaussians * chunks_.size() / files_.finest(), 1);
+  const std::size_t most =
+      std::max<std::size_t>(gaussians * chunks_.size() / std::max<std::size_t>(files_.finest(), 1), 1);
   sample_error_ = 0.0;
   ChunkModels finest = files_.finest_of(sample_of(choice, drawn_, most, samples_++));
   if (settings_.room) keep_what_fits(finest, model_, chunks_);
@@ -119,7 +120,9 @@ VisibleChunks Stream::measure(std::span<const shared::View> views, const render:
 void Stream::start_over() {
   model_.resize(0);
   chunks_ = ModelChunks(chunks_.size());
-  drawn_.assign(files_.chunks().size(), LodFiles::not_read);
+  drawn_.clear();
+  for (const LodChunk& chunk : files_.chunks())
+    drawn_.push_back(chunk.levels.empty() ? 0 : LodFiles::not_read);  // there is nothing to read of some
   chunks_.replace(model_, files_.chunks().size(), files_.environment());
 }
 

@@ -1,5 +1,9 @@
 // binosplat calibrate, and render with what it found.
 
+#include <chrono>
+#include <csignal>
+#include <thread>
+
 #include "app/scene.h"
 #include "formats/image_file.h"
 #include "measure/metrics.h"
@@ -55,6 +59,50 @@ TEST_F(CalibrateTest, ViewsThatSeeNothingHaveNoSay) {
   const Outcome converted = test::run_program({"convert", model, "--report", "2", "-o", folder / "m.ply"});
   EXPECT_TRUE(ended(converted, 0, "2 of 2 views see nothing of the model and are left out"));
   EXPECT_EQ(converted.out.find("equal"), std::string::npos) << converted.out;
+}
+
+TEST_F(CalibrateTest, GoesOnWhereItWasEnded) {
+  const std::vector<std::string> words = {"--quality", "38",          "--size", "36x24",
+                                          "--rule",    "squared,one", "--rule", "squared,last"};
+  const auto result = [&] {
+    ordered_json json = ordered_json::parse(read_text(file));
+    json["depth_table"].erase("seconds");
+    for (ordered_json& entry : json["entries"]) entry.erase("seconds");
+    return json;
+  };
+  const auto before = folder.files();
+  ASSERT_TRUE(good(calibrate(words)));
+  const ordered_json whole = result();
+  EXPECT_EQ(whole["entries"].size(), 2);
+  std::filesystem::remove(file);
+  std::vector<std::string> all = {"calibrate", model, "-o", file};
+  all.insert(all.end(), words.begin(), words.end());
+  test::Program program(all);
+  const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(60);
+  const auto kept = [&] {
+    std::size_t count = 0;
+    for (const std::string& name : folder.files()) count += name.find(".unfinished/") != name.npos;
+    return count;
+  };
+  while (kept() < 2 && std::chrono::steady_clock::now() < end)
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  program.send(SIGINT);
+  ASSERT_EQ(program.wait().code, -SIGINT);
+  EXPECT_FALSE(std::filesystem::exists(file));
+  const auto there = folder.files();
+  ASSERT_GT(there.size(), before.size());
+  const std::string step = *std::ranges::find_if(
+      there, [](const std::string& name) { return name.find(".unfinished/") != name.npos; });
+  const auto written = std::filesystem::last_write_time(folder / step);
+  // Other options go on from none of it, and leave it.
+  ASSERT_TRUE(good(test::run_program({"calibrate", model, "-o", folder / "other.json", "--quality", "38",
+                                      "--size", "36x24", "--rule", "squared,one"})));
+  EXPECT_EQ(std::filesystem::last_write_time(folder / step), written);
+  std::filesystem::remove(folder / "other.json");
+  ASSERT_TRUE(good(calibrate(words)));
+  EXPECT_EQ(result(), whole);
+  std::filesystem::remove(file);
+  EXPECT_EQ(folder.files(), before) << "what was kept is gone";
 }
 
 TEST_F(CalibrateTest, RenderGoesByIt) {

@@ -40,6 +40,12 @@ TEST_F(ProfileCommand, LeavesAReportATraceAndATable) {
   EXPECT_EQ(numbers["worst"].size(), 10u);
   EXPECT_TRUE(test::has(outcome.out, "18 frames of 2 x 48 x 32 px, exact"));
   EXPECT_TRUE(test::has(outcome.out, "missed  "));
+  const lab::Table table = frames();
+  for (const auto& [name, px] : {std::pair{"width", 48.0}, {"height", 32.0}}) {
+    const auto at = std::ranges::find(table.columns, name) - table.columns.begin();
+    ASSERT_LT(at, std::ssize(table.columns));
+    EXPECT_EQ(table.rows[0][static_cast<std::size_t>(at)], lab::Cell(px));
+  }
   EXPECT_TRUE(test::has(outcome.out, "\nbound   the CPU, which draws ("));
   EXPECT_LE(std::count(outcome.out.begin(), outcome.out.end(), '\n'), 11);
   const std::string page = test::read_text(out + "/report.html");
@@ -103,6 +109,9 @@ TEST_F(ProfileCommand, WhatMakesNoSenseIsNamedAndLeavesNothing) {
       {{"--tour", "crawl"}, "--tour crawl"},
       {{"--frames", "3"}, "--frames is for `binosplat render`"},
       {{"--fps", "-1"}, "frames a second from 0 to 1000"},
+      {{"--fps", "1e-9"}, "--fps 1e-09: expected 0, or 0.01 to 1000"},
+      {{"--seconds", "1e18"}, "--seconds: 1e18: expected seconds above zero (0.000001 to 1000000)"},
+      {{"--seconds", "1e6", "--view", "view1"}, "fewer --seconds, at most"},
       {{"--compare", folder / "none.csv"}, "none.csv"},
       {{"--compare", folder / "old.csv"}, "old.csv:2: expected a number or a text in quotes in column 2"},
       {{"--compare", folder / "other.csv"}, "no column wall_ms: expected the frames.csv of a profile"},

@@ -221,6 +221,41 @@ TEST_F(Calibrating, TheWholeFile) {
   EXPECT_EQ(to_json(parse_calibration("c", to_json(c).dump())), to_json(c));
 }
 
+TEST_F(Calibrating, GoesOnFromWhatWasMeasured) {
+  std::map<std::string, ordered_json> kept;
+  std::size_t measured = 0, most = 1000;
+  const auto run = [&](const std::vector<Rule>& rules) {
+    const Keep keep = [&](const std::string& step, const std::function<ordered_json()>& measure) {
+      if (kept.contains(step)) return kept[step];
+      if (measured == most) throw std::runtime_error("ended");
+      ++measured;
+      return kept[step] = ordered_json::parse(measure().dump());
+    };
+    ordered_json json =
+        to_json(calibrate(test::gl_context(), model, views, near_default,
+                          {{CalibrationTarget::Kind::quality, 40.0}, {.bins = 5}, rules, keep}));
+    json["depth_table"].erase("seconds");
+    for (ordered_json& entry : json["entries"]) entry.erase("seconds");
+    return json;
+  };
+  const std::vector<Rule> two = {{TH_SQUARED, TRANSMITTANCE_ONE}, {TH_PERIPHERAL, TRANSMITTANCE_ONE}};
+  const ordered_json whole = run(two);
+  EXPECT_EQ(whole["entries"].size(), 2);
+  const std::size_t all = std::exchange(measured, 0);
+  EXPECT_EQ(run(two), whole);
+  EXPECT_EQ(measured, 0u) << "nothing is measured twice";
+  kept.clear();
+  most = all / 2;
+  EXPECT_THROW(run(two), std::runtime_error);
+  most = 1000;
+  EXPECT_EQ(run(two), whole);
+  EXPECT_EQ(measured, all);
+  EXPECT_EQ(run({two[1]})["entries"], ordered_json::array({whole["entries"][1]}));
+  ordered_json& any = kept.begin()->second;  // planted: it is not what was measured
+  any["pairs_removed"] = any["mean_db"] = 39.0;
+  EXPECT_NE(run(two), whole);
+}
+
 TEST_F(Calibrating, NeedsViewsAndPhotos) {
   EXPECT_THROW(Calibrator(test::gl_context(), model, {}, near_default, CalibrationTarget::Kind::quality),
                Error);

@@ -32,7 +32,7 @@ struct Drawn {
   Drawn(render::Recording recording) {
     profile.recording = std::move(recording);
     profile.facts.is_software = true;
-    trace = json::parse(trace_of(profile));
+    trace = test::trace_of(profile);
   }
 
   /// Whether report and trace name an event in this frame.
@@ -77,8 +77,8 @@ TEST(ProfileRun, NamesAFrameThatIsDrawnAgainAndOneThatCompiles) {
   EXPECT_TRUE(drawn.names(3, "drawn again"));
   EXPECT_TRUE(drawn.names(3, "buffers grew"));
   for (const std::size_t n : {0u, 2u, 4u, 5u}) {
-    EXPECT_TRUE(events_of(drawn.profile.recording, n).empty())
-        << n << ": " << events_of(drawn.profile.recording, n)[0].text();
+    EXPECT_TRUE(events_of(drawn.profile.recording, n, 0.0).empty())
+        << n << ": " << events_of(drawn.profile.recording, n, 0.0)[0].text();
   }
   const auto& frame = drawn.profile.recording.frames[3];
   EXPECT_EQ(frame.report.redrawn, 1);

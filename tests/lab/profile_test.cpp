@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <fstream>
+
 #include "base/error.h"
 #include "lab/chromium.h"
 #include "lab/trace_rules.h"
@@ -91,7 +93,8 @@ TEST(Profile, TellsOfRepeatsCutsAndClocks) {
   profile.recording.frames[0].display = render::FrameDisplay{20.0, 2};
   const auto names = [&](std::size_t n) {
     std::vector<std::string> texts;
-    for (const FrameEvent& event : events_of(profile.recording, n)) texts.push_back(event.text());
+    for (const FrameEvent& event : events_of(profile.recording, n, fastest_mhz(profile.recording)))
+      texts.push_back(event.text());
     return texts;
   };
   EXPECT_EQ(names(0), (std::vector<std::string>{"display missed: 2 times"}));
@@ -105,7 +108,7 @@ TEST(Profile, TellsOfRepeatsCutsAndClocks) {
 
 TEST(Profile, ATraceKeepsTheRulesOfItsFormat) {
   const Profile profile = made_up();
-  const json trace = json::parse(trace_of(profile));
+  const json trace = test::trace_of(profile);
   EXPECT_EQ(test::faults_of_trace(trace), std::vector<std::string>());
   EXPECT_EQ(test::differences_of(trace, frames_table(profile.recording)), std::vector<std::string>());
   // The GPU's clock is brought to the CPU's: frame 1 begins at 20 ms, and its first stage a millisecond
@@ -128,7 +131,7 @@ TEST(Profile, ATraceKeepsTheRulesOfItsFormat) {
 
 TEST(Profile, PlantedFaultsOfTracesAreCaught) {
   const Profile profile = made_up();
-  const json good = json::parse(trace_of(profile));
+  const json good = test::trace_of(profile);
   const auto first = [](json& trace, const std::string& name) -> json& {
     for (json& event : trace["traceEvents"]) {
       if (event["name"] == name && event["ph"] == "X") return event;
@@ -145,6 +148,7 @@ TEST(Profile, PlantedFaultsOfTracesAreCaught) {
   EXPECT_TRUE(faulty([&](json& t) { first(t, "project")["ts"] = 0.0; })) << "before its frame";
   EXPECT_TRUE(faulty([&](json& t) { first(t, "submit").erase("ts"); }));
   EXPECT_TRUE(faulty([&](json& t) { first(t, "read levels")["tid"] = 9; })) << "a track without a name";
+  EXPECT_TRUE(faulty([&](json& t) { t["traceEvents"][0]["name"] = "thread_name"; })) << "no process_name";
   json trace = good;
   first(trace, "blend")["dur"] = 2000.0;
   EXPECT_FALSE(test::differences_of(trace, frames_table(profile.recording)).empty()) << "another sum";
@@ -161,8 +165,18 @@ TEST(Profile, FramesAsCsvAreReadAgain) {
             "drawn again: once, since a buffer was too small; buffers grew: 2.0 MB");
   EXPECT_TRUE(test::fails_saying([&] { read_csv("a,b\n1,2\n3\n", "old.csv"); },
                                  {"old.csv:3: 1 cells under 2 names"}));
-  EXPECT_TRUE(test::fails_saying([&] { read_csv("a,b\n1,x\n", "old.csv"); },
-                                 {"old.csv:2: expected a number or a text in quotes in column 2"}));
+  for (const char* const cell : {"x", "nan", "inf", "-inf", "1e999", "1 2", "\"open"})
+    EXPECT_TRUE(test::fails_saying([&] { read_csv(std::string("a,b\n1,") + cell + "\n", "old.csv"); },
+                                   {"old.csv:2: expected a number or a text in quotes in column 2"}))
+        << cell;
+  std::string of_windows = "\xef\xbb\xbf";
+  for (const char c : text) of_windows += c == '\n' ? std::string("\r\n") : std::string(1, c);
+  EXPECT_EQ(read_csv(of_windows, "windows.csv"), again);
+  // Written in stretches, it is the same.
+  const Profile longer = made_up(2 * rows_at_once + 7);
+  std::string written;
+  write_frames(longer.recording, [&](std::string_view part) { written += part; });
+  EXPECT_EQ(written, csv(frames_table(longer.recording)));
 }
 
 /// The same frames as another run would time them: all times within `noise` of what they are, times `factor`.
@@ -213,6 +227,68 @@ TEST(Profile, SaysBeforehandWhatCannotBeCompared) {
         check_comparable({{"a"}, std::vector(60, row(1.0))}, 60, "old.csv");
       },
       {"no column wall_ms: expected the frames.csv of a profile"}));
+  const auto with = [&](std::size_t column, const Cell& cell) {
+    Table table = old;
+    table.rows[7][column] = cell;
+    return table;
+  };
+  for (const Cell& cell : {Cell("x"), Cell(), Cell(true), Cell(-1.0), Cell(1e300)})
+    EXPECT_TRUE(test::fails_saying([&] { check_comparable(with(3, cell), 60, "old.csv"); },
+                                   {"--compare old.csv:9: wall_ms: expected a number from 0"}));
+  check_comparable(with(1, Cell("begin_ms is not compared")), 60, "old.csv");
+  Table without = old;
+  without.columns[5] = "other";
+  EXPECT_TRUE(
+      test::fails_saying([&] { check_comparable(without, 60, "old.csv"); }, {"old.csv: no column gpu_ms"}));
+}
+
+TEST(Profile, AdviceFitsWhatBoundsTheFrames) {
+  const auto advice = [](const auto& change) {
+    Profile profile = made_up();
+    change(profile);
+    return advice_of(profile, summary_of(profile));
+  };
+  const Saving saving{40.0, 0.3};
+  EXPECT_NE(advice([&](Profile& p) { p.saving = saving; }).find("--quality 40 would save 30 %"),
+            std::string::npos);
+  EXPECT_NE(advice([&](Profile& p) {
+              p.saving = saving;
+              for (auto& frame : p.recording.frames) frame.report.cpu.plan = 9.0;
+            }).find("the GPU waits for the CPU"),
+            std::string::npos);
+  const std::string in_time = advice([&](Profile& p) {
+    p.saving = saving;
+    p.recording.fps = 20.0;
+  });
+  EXPECT_NE(in_time.find("a higher --fps or a larger --size"), std::string::npos) << in_time;
+  EXPECT_EQ(advice([](Profile& p) { p.recording.fps = 0.0; }), "") << "nothing is due, nothing was tried";
+}
+
+TEST(Profile, TenMinutesAreWrittenWithin200MB) {
+  const auto status_kb = [](const std::string& name) {
+    std::ifstream file("/proc/self/status");
+    for (std::string line; std::getline(file, line);)
+      if (line.starts_with(name + ":")) return std::stol(line.substr(name.size() + 1));
+    return 0l;
+  };
+  Profile profile = made_up(54'000);
+  for (render::FrameRecord& frame : profile.recording.frames) {
+    frame.mhz = 1980.0;
+    for (const char* const stage : {"decode", "order", "pairs", "tile_sort", "ranges", "probe"})
+      frame.report.spans.push_back(
+          {stage, frame.report.spans.back().end_ns, frame.report.spans.back().end_ns + 1000});
+  }
+  std::ofstream("/proc/self/clear_refs") << "5";  // the peak begins anew
+  const long before = status_kb("VmRSS");
+  if (status_kb("VmHWM") > before + 1024) GTEST_SKIP() << "this system does not forget a peak of memory";
+  std::size_t bytes = 0;
+  const Write count = [&](std::string_view part) { bytes += part.size(); };
+  const ProfileSummary summary = summary_of(profile);
+  write_html(profile_page(profile, summary, {}), profile_json(profile, summary), count);
+  write_trace(profile, count);
+  write_frames(profile.recording, count);
+  EXPECT_GT(bytes, 100'000'000u);
+  EXPECT_LT(1e-3 * static_cast<double>(status_kb("VmHWM") - before), 200.0) << "MB";
 }
 
 TEST(Profile, ThePageHasTheBudgetTheReasonsAndThePictures) {
@@ -233,6 +309,7 @@ TEST(Profile, ThePageHasTheBudgetTheReasonsAndThePictures) {
             "program compiled: blend.comp; submit took 8.00 ms more than usual");
   EXPECT_EQ(page.sections[3].figures.size(), 10u);
   EXPECT_EQ(page.sections[7].sentence, advice_of(profile, summary));
+  EXPECT_TRUE(page.sentence.ends_with(" Try " + advice_of(profile, summary) + "."));
   EXPECT_NE(page.sections[6].problem.find("nobody asked"), std::string::npos);
   EXPECT_FALSE(html(page, profile_json(profile, summary)).empty());
   EXPECT_LE(lines_of(profile, summary).size(), 10u);

@@ -11,8 +11,15 @@
 #include <vector>
 
 #include "lab/csv.h"
+#include "lab/profile.h"
 
 namespace binosplat::test {
+
+inline nlohmann::json trace_of(const lab::Profile& profile) {
+  std::string text;
+  lab::write_trace(profile, [&](std::string_view part) { text += part; });
+  return nlohmann::json::parse(text);
+}
 
 /// What a trace does wrong: keys that a kind of event must have, times below 0, slices of a track that
 /// overlap without lying in each other, tracks without a name, stages outside of their frame.
@@ -24,11 +31,13 @@ inline std::vector<std::string> faults_of_trace(const nlohmann::json& trace) {
   };
   std::map<int, std::vector<Slice>> tracks;
   std::set<int> named;
+  int processes = 0;
   for (const nlohmann::json& event : trace.at("traceEvents")) {
     const std::string kind = event.value("ph", ""), name = event.value("name", "");
     const auto fault = [&](const std::string& what) { faults.push_back(name + ": " + what); };
     if (name.empty() || !event.contains("pid") || !event.contains("tid")) fault("no name, pid or tid");
     if (kind == "M") {
+      if (name == "process_name") ++processes;
       if (name == "thread_name") named.insert(event.at("tid").get<int>());
       continue;
     }
@@ -46,6 +55,7 @@ inline std::vector<std::string> faults_of_trace(const nlohmann::json& trace) {
       fault("a kind of event that nobody writes: " + kind);
     }
   }
+  if (processes != 1) faults.push_back("the process has no name, or many");
   constexpr double rounding = 0.01;  // us
   for (auto& [track, slices] : tracks) {
     if (!named.contains(track)) faults.push_back(fmt::format("track {} has no name", track));

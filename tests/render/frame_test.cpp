@@ -421,5 +421,21 @@ TEST(Frame, BadShapesAreNamed) {
   EXPECT_TRUE(test::fails_saying([&] { draw(model, empty); }, {"0 x 16"}));
 }
 
+TEST(Frame, IsTimedWithoutTheMakingOfItsPrograms) {
+  gl::Context& context = test::gl_context();
+  const Model model = test::random_model(0, 100, 1);
+  const shared::View view = make_view(test::front_camera(32, 24, 30));
+  context.set_shader_folder({});  // every program is made again
+  const double before = context.making_ms();
+  render::Frame frame(context, model);
+  const render::FrameReport first = frame.draw(std::span(&view, 1));
+  const double making = context.making_ms() - before;
+  EXPECT_GT(first.programs_made, 5);
+  EXPECT_LT(first.total_ms, 0.5 * making) << "of so few Gaussians";
+  EXPECT_LT(making, first.cpu.submit + 1.0) << "it is told as the CPU's time";
+  frame.draw(std::span(&view, 1));
+  EXPECT_EQ(context.making_ms() - before, making) << "nothing is made twice";
+}
+
 }  // namespace
 }  // namespace binosplat

@@ -334,11 +334,31 @@ TEST(LodFiles, SaysWhatIsWrongWithErrors) {
     EXPECT_TRUE(says([&wrong = wrong](Json& leaf) { leaf["seen"] = wrong; }, {leaf_key + "seen" + text}))
         << wrong;
   }
+  for (const Json& wrong : {Json(0), Json::array(), Json("x"), Json(true)}) {
+    EXPECT_TRUE(says([&](Json& leaf) { leaf["lods"] = wrong; }, {leaf_key + "lods': expected an object"}))
+        << wrong;
+    EXPECT_TRUE(says([&](Json& leaf) { leaf = wrong; }, {"key 'tree.children[0]': expected an object"}))
+        << wrong;
+  }
+  EXPECT_TRUE(says([](Json& leaf) { leaf["lods"]["2"] = leaf["lods"]["1"]; },
+                   {leaf_key + "lods': expected only levels from 0 to 1"}));
+  EXPECT_TRUE(says([](Json& leaf) { std::swap(leaf["bound"]["min"], leaf["bound"]["max"]); },
+                   {leaf_key + "bound': expected a 'min' that is at most 'max'"}));
+  EXPECT_TRUE(says([](Json& leaf) { leaf["bound"]["max"][1] = 1e300; },
+                   {leaf_key + "bound': expected numbers from -1e+20 to 1e+20"}));
   EXPECT_TRUE(says([](Json& leaf) { leaf["lods"]["1"].erase("errors"); },
                    {"the key 'tree.children[0].lods.1.errors' is missing"}));
   EXPECT_TRUE(says([](Json& leaf) { leaf.erase("seen"); }, {"the key 'tree.children[0].seen' is missing"}));
   // Without widths they are nobody's, and without any there is nothing to go by.
   EXPECT_FALSE(says([](Json& leaf) { leaf.erase("pixels"), leaf["lods"]["1"]["errors"] = -1; }, {""}));
+  for (const Json& version : {Json(99), Json(0), Json(1.5), Json("1"), Json::array()}) {
+    const Copy copy(folder / "sog/st-lod");
+    copy.edit("lod-meta.json", [&](Json& meta) { meta["version"] = version; });
+    EXPECT_TRUE(test::fails_saying([&] { LodFiles{copy.path()}; }, {"lod-meta.json, key 'version': "}))
+        << version;
+    EXPECT_TRUE(test::fails_saying([&] { load_model(copy.path()); }, {"lod-meta.json, key 'version': "}))
+        << version;
+  }
   const LodFiles none(folder / "sog/st-lod");
   EXPECT_TRUE(
       test::fails_saying([&] { none.check({.db = 40.0}); },

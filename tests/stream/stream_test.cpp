@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <nlohmann/json.hpp>
 #include <thread>
 
 #include "formats/model_file.h"
@@ -243,6 +244,24 @@ TEST(Stream, CalibratesPictures) {
   EXPECT_GT(*frames.stream.reported_db(), true_db(frames) + 20.0) << "planted: as the file says";
   EXPECT_GT(frames.rest({view}), 250u);
   EXPECT_NEAR(std::min(*frames.stream.reported_db(), 60.0), true_db(frames), 2.0);
+}
+
+TEST(Stream, DrawsLeavesWithoutLevels) {
+  const test::TempFolder folder;
+  test::write_levels(folder, 1000);
+  const std::string file = folder / "lod-meta.json";
+  nlohmann::json meta = nlohmann::json::parse(test::read_text(file));
+  nlohmann::json* leaf = &meta["tree"];
+  while (!leaf->contains("lods")) leaf = &(*leaf)["children"][0];
+  const std::size_t without = (*leaf)["lods"]["0"]["count"];
+  (*leaf)["lods"] = nlohmann::json::object();
+  test::write_text(file, meta.dump());
+  Stream stream(file, {.detail = {.db = 80.0}});
+  const auto model = stream.gpu_model(test::gl_context(), PRECISION_FULL);
+  for (int n = 0; n < 3; ++n) stream.settle(std::vector{before_all(3.0)}, {});
+  EXPECT_EQ(stream.gaussians(), 1000 - without);
+  Frames frames(file, {.detail = {.db = 80.0}, .reserve = 1000});
+  EXPECT_EQ(frames.rest({before_all(3.0)}), 1000 - without);
 }
 
 TEST(Stream, TellsWhatIsWrong) {
