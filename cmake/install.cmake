@@ -56,5 +56,5 @@ set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 # Opened at run time: a GPU's driver or Mesa. And for programs that link to the library, what it is linked to.
 set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "libegl1, libegl-mesa0, libgl1-mesa-dri, python3-numpy")
 set(CPACK_DEBIAN_PACKAGE_SUGGESTS "g++, cmake, pkg-config, libegl-dev, libgl-dev, libglm-dev, libfmt-dev, \
-libopenexr-dev, libpng-dev, libdeflate-dev, libturbojpeg0-dev, libwebp-dev, libzip-dev, libzstd-dev, zlib1g-dev, libtbb-dev, libosmesa6")
+libopenexr-dev, libpng-dev, libdeflate-dev, libturbojpeg0-dev, libwebp-dev, libyaml-cpp-dev, libzip-dev, libzstd-dev, zlib1g-dev, libtbb-dev, libosmesa6")
 include(CPack)

@@ -23,8 +23,8 @@ struct ModelOptions {
 
 /// A box with sides along the axes of the model's world.
 struct Bounds {
-  glm::vec3 low{0.0f};  // world units
-  glm::vec3 high{0.0f};
+  glm::dvec3 low{0.0};  // world units
+  glm::dvec3 high{0.0};
 };
 
 /// A model, which never changes. Copies are cheap, and share the numbers; so does a Renderer, which may

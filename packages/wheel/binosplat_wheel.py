@@ -59,6 +59,15 @@ def metadata():
             f"Description-Content-Type: text/markdown\n\n{(ROOT / 'README.md').read_text()}")
 
 
+def tell(text):
+    """Shows a line on the terminal, since pip keeps what a builder prints to itself (unless with -v)."""
+    try:
+        with open("/dev/tty", "w") as terminal:
+            print(text, file=terminal)
+    except OSError:
+        print(text, flush=True)
+
+
 def build(folder):
     """Builds with the Python that runs this, below build/wheel, and returns that folder."""
     name = f"wheel-{sys.version_info.major}.{sys.version_info.minor}"
@@ -66,6 +75,7 @@ def build(folder):
     options = ["-DBINOSPLAT_TESTS=OFF", "-DBINOSPLAT_PYTHON=ON", f"-DPython_EXECUTABLE={sys.executable}",
                f"-DCMAKE_CXX_FLAGS=-ffile-prefix-map={ROOT}=."]
     cores = str(os.cpu_count())
+    tell(f"binosplat: compiling in {where} on {cores} cores takes minutes; pip install -v shows each step")
     for command in (["cmake", "--preset", "release", "-B", str(where), "--log-level=NOTICE", *options],
                     ["cmake", "--build", str(where), "-j", cores],
                     ["cmake", "--install", str(where), "--prefix", str(folder), "--strip"]):

@@ -170,7 +170,7 @@ ExitCode convert(const ConvertOptions& o) {
     originals = draw(views, model, "drawing the original");
   }
 
-  const std::string axes = model.axes, wanted(axes_of(done.format));
+  const std::string axes = model.axes.letters, wanted(axes_of(done.format));
   if (axes != wanted)
     log_info("{}: its axes are turned from {} to {}, the ones of {}", o.output, axes, wanted,
              written_format(done.format).name);

@@ -12,7 +12,7 @@ namespace binosplat::app {
 
 namespace {
 
-std::vector<Shot> known_shots(const RenderOptions& options, const CameraList& list, const std::string& axes) {
+std::vector<Shot> known_shots(const RenderOptions& options, const CameraList& list, const ModelAxes& axes) {
   const CameraOptions& camera = options.camera;
   if (!list.listed && !camera.eye) return {};
   const double near_plane = camera.near_plane.value_or(near_default);
@@ -53,7 +53,7 @@ std::size_t gaussians_that_fit(double megabytes, render::FrameSettings settings,
 }
 
 DetailBudget detail_budget(const RenderOptions& options, const CameraList& list) {
-  const std::string axes = options.scene.axes.empty() ? Model().axes : options.scene.axes;
+  const ModelAxes axes{options.scene.axes.empty() ? Model().axes.letters : options.scene.axes};
   const std::vector<Shot> shots = known_shots(options, list, axes);
   DetailBudget budget;
   std::vector<shared::View> widest;  // the shot of the most pixels

@@ -26,7 +26,7 @@ namespace {
 
 // What --transmittance depth goes by: the cameras of the list, evenly chosen, as the shots see the scene.
 render::DepthTable depth_table(render::Frame& frame, const Lens& lens, const CameraList& list,
-                               double near_plane, const std::string& axes,
+                               double near_plane, const ModelAxes& axes,
                                const render::FrameSettings& settings) {
   constexpr std::size_t views_max = 16;
   const std::size_t count = std::min(views_max, list.cameras.size());

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "base/text.h"
 #include "scene/axes.h"
 #include "scene/point_seen.h"
 #include "scene/summary.h"
@@ -49,10 +50,10 @@ std::string why_empty(const Model& model, const Shot& shot, double near_plane, s
   if (seen.ahead == 0 && seen.near > 0)
     return fmt::format("all that lies ahead is nearer than --near {:.4g}", near_plane);
   const Bounds core = summarise(model).core;
-  const glm::dvec3 middle =
-      world_from_axes(model.axes) * (0.5 * (glm::dvec3(core.low) + glm::dvec3(core.high)));
-  return fmt::format("view {} looks {} the model, whose middle is at {:.4g},{:.4g},{:.4g}{}", shot.name,
-                     seen.ahead == 0 ? "away from" : "past", middle.x, middle.y, middle.z, elsewhere);
+  const glm::dvec3 middle = world_from_axes(model.axes.letters) * (0.5 * (core.low + core.high));
+  return fmt::format("view {} looks {} the model, whose middle is at {},{},{}{}", shot.name,
+                     seen.ahead == 0 ? "away from" : "past", coordinate(middle.x), coordinate(middle.y),
+                     coordinate(middle.z), elsewhere);
 }
 
 }  // namespace binosplat::app

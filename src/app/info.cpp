@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <map>
@@ -15,10 +16,12 @@
 #include "app/load_scene.h"
 #include "app/render_report.h"
 #include "app/shots.h"
+#include "base/text.h"
 #include "formats/cameras_file.h"
 #include "formats/exposures.h"
 #include "formats/model_file.h"
 #include "formats/model_output.h"
+#include "formats/usd.h"
 #include "lab/fields.h"
 #include "lab/weights.h"
 #include "render/frame_plan.h"
@@ -69,8 +72,8 @@ std::optional<SeenOfViews> see(const InfoOptions& o, const Model& model) {
 std::string axes_in_words(const Model& model) {
   static const std::map<char, const char*> words = {{'R', "right"}, {'L', "left"},    {'U', "up"},
                                                     {'D', "down"},  {'F', "forward"}, {'B', "back"}};
-  return fmt::format("x {}, y {}, z {}", words.at(model.axes[0]), words.at(model.axes[1]),
-                     words.at(model.axes[2]));
+  return fmt::format("x {}, y {}, z {}", words.at(model.axes.letters[0]), words.at(model.axes.letters[1]),
+                     words.at(model.axes.letters[2]));
 }
 
 /// What a headset's frame of a model starts with, seen so that the model fills the eyes.
@@ -82,8 +85,10 @@ render::MemoryNeeds headset_needs(const Model& model) {
 }
 
 void print_bounds(const char* name, const Bounds& b) {
-  fmt::print("{:<14} {:.4g} to {:.4g}, {:.4g} to {:.4g}, {:.4g} to {:.4g}\n", name, b.low.x, b.high.x,
-             b.low.y, b.high.y, b.low.z, b.high.z);
+  const auto side = [&](int i) {
+    return fmt::format("{} to {}", coordinate(b.low[i]), coordinate(b.high[i]));
+  };
+  fmt::print("{:<14} {}, {}, {}\n", name, side(0), side(1), side(2));
 }
 
 /// One line of a histogram: the share of all as a number and as a bar.
@@ -115,14 +120,15 @@ void print_info(const SeenOfViews& seen, std::size_t all) {
       "`binosplat trim` writes the smallest model that keeps them");
 }
 
-/// How a model was trained, as far as the files beside it say.
+/// How a model was trained, as far as the files beside it say, and its unit, where its own says it.
 struct Trained {
   std::optional<TrainingRun> run;
   std::optional<Exposures> exposures;
+  std::optional<double> units_per_metre;
 };
 
 Trained trained_as(const fs::path& file) {
-  Trained trained{run_of(file), {}};
+  Trained trained{run_of(file), {}, usd_units_per_metre(file)};
   if (const auto exposures = find_exposures(file)) trained.exposures.emplace(*exposures);
   return trained;
 }
@@ -176,7 +182,9 @@ void print_info(const Model& model, const Trained& trained, const ModelSummary& 
                  : "");
   fmt::print("{:<14} degree {}{}\n", "harmonics", model.degree,
              model.cut_db ? fmt::format(" of 4, which costs about {}", cut_in_words(model)) : "");
-  fmt::print("{:<14} {} ({})\n", "axes", model.axes, axes_in_words(model));
+  fmt::print("{:<14} {} ({})\n", "axes", model.axes.letters, axes_in_words(model));
+  if (const auto units = trained.units_per_metre)
+    fmt::print("{:<14} {:.6g} make a metre, says its metersPerUnit\n", "units", *units);
   fmt::print("{:<14} {:.4g} px^2, {}\n", "low-pass", model.kernel_px2,
              model.antialiased_by.empty()
                  ? "no file says whether it was trained with anti-aliasing"
@@ -188,6 +196,9 @@ void print_info(const Model& model, const Trained& trained, const ModelSummary& 
   print_info(trained);
   print_bounds("bounds", s.all);
   print_bounds("98 % within", s.core);
+  if (const glm::dvec3& o = model.axes.origin; o != glm::dvec3(0.0))
+    fmt::print("{:<14} {},{},{}: floats from there keep the digits that floats from zero would not\n",
+               "origin", coordinate(o.x), coordinate(o.y), coordinate(o.z));
   fmt::print("{:<14} {} for the model, at least {} for a frame of a headset's eyes\n", "GPU memory",
              megabytes(needs.model), megabytes(needs.frame));
   if (model.scaffold) {
@@ -222,13 +233,14 @@ ordered_json info_json(const Model& model, const ModelSummary& s, const render::
   ordered_json scale;
   for (const auto& [decade, count] : s.scale)
     scale.push_back({{"from", std::pow(10.0, decade)}, {"count", count}});
-  ordered_json json =
-      object("name", model.name, "format", model.format, "gaussians", model.count(), "left_out",
-             model.left_out, "degree", model.degree, "axes", model.axes, "kernel_px2", model.kernel_px2,
-             "antialiased", model.antialiased, "antialiased_by", model.antialiased_by, "order",
-             order_choices[model.perspective.order].name, "projection",
-             projection_choices[model.perspective.projection].name, "bounds", info_json(s.all), "core_bounds",
-             info_json(s.core), "gpu_bytes", object("model", needs.model, "headset_frame", needs.frame));
+  ordered_json json = object(
+      "name", model.name, "format", model.format, "gaussians", model.count(), "left_out", model.left_out,
+      "degree", model.degree, "axes", model.axes.letters, "kernel_px2", model.kernel_px2, "antialiased",
+      model.antialiased, "antialiased_by", model.antialiased_by, "order",
+      order_choices[model.perspective.order].name, "projection",
+      projection_choices[model.perspective.projection].name, "bounds", info_json(s.all), "core_bounds",
+      info_json(s.core), "origin", std::array{model.axes.origin.x, model.axes.origin.y, model.axes.origin.z},
+      "gpu_bytes", object("model", needs.model, "headset_frame", needs.frame));
   if (model.scaffold) return json;  // the rest is made for each eye
   for (std::size_t k = 0; k < std::size(written_formats); ++k)
     json["file_bytes"][written_formats[k].name] =
@@ -254,8 +266,8 @@ ExitCode list_views(const InfoOptions& options) {
   ordered_json json = ordered_json::array();
   for (const Camera& c : list.cameras) {
     const double fov = 2.0 * glm::degrees(std::atan(0.5 * c.height / c.fy));
-    fmt::print("{:<{}}  {} x {} px, {:.1f} degrees high, at {:.4g},{:.4g},{:.4g}\n", c.name, widest, c.width,
-               c.height, fov, c.position.x, c.position.y, c.position.z);
+    fmt::print("{:<{}}  {} x {} px, {:.1f} degrees high, at {},{},{}\n", c.name, widest, c.width, c.height,
+               fov, coordinate(c.position.x), coordinate(c.position.y), coordinate(c.position.z));
     json.push_back(camera_json(c));
   }
   if (!options.json.empty()) save_json(options.json, json);
@@ -288,6 +300,7 @@ ExitCode info(const InfoOptions& options) {
   if (options.json.empty()) return ExitCode::done;
   ordered_json json = info_json(model, summary, needs);
   if (trained.run || trained.exposures) json["training"] = info_json(trained);
+  if (trained.units_per_metre) json["units_per_metre"] = *trained.units_per_metre;
   if (seen)
     json["views"] =
         object("count", seen->views, "unseen", seen->unseen, "gaussians_of_99_percent", seen->most_of);

@@ -52,7 +52,7 @@ CitySettings city_settings(const SceneOptions& o) {
 }
 
 void set_as_asked(const SceneOptions& o, Model& model) {
-  if (!o.axes.empty()) model.axes = o.axes;
+  if (!o.axes.empty()) model.axes.letters = o.axes;
   if (o.antialias) {
     model.antialiased = *o.antialias;
     model.antialiased_by = *o.antialias ? "--antialias" : "--no-antialias";
@@ -73,9 +73,9 @@ std::vector<Camera> built_in_cameras(const SceneOptions& o) {
 
 void settle_axes(const SceneOptions& o, std::span<const Camera> cameras, Model& model) {
   if (!o.axes.empty() || !model.format.starts_with("spz")) return;
-  if (model.axes != "RUB" && model.axes != "RDF") return;
+  if (model.axes.letters != "RUB" && model.axes.letters != "RDF") return;
   const bool said = !model.format.ends_with(axes_not_said);
-  const std::string usual = model.axes, other = usual == "RUB" ? "RDF" : "RUB";
+  const std::string usual = model.axes.letters, other = usual == "RUB" ? "RDF" : "RUB";
   auto detected = detect_axes(model, other, cameras);
   if (!detected) detected = detect_axes(model, other, cameras_beside(o));
   // What a file says is wrong only where cameras see hardly anything of the model so.
@@ -90,7 +90,7 @@ void settle_axes(const SceneOptions& o, std::span<const Camera> cameras, Model& 
         o.name, usual, lowered(other));
     return;
   }
-  model.axes = detected->axes;
+  model.axes.letters = detected->axes;
   const std::string& left = detected->axes == usual ? other : usual;
   const std::string why =
       detected->by_ground

@@ -48,8 +48,8 @@ void show_in_turn(const std::vector<fs::path>& files, std::vector<Shot>& shots) 
 }
 
 ModelsInTurn::ModelsInTurn(const SceneOptions& scene, const Model& first, const std::vector<Shot>& shots)
-    : scene_(scene), format_(first.format) {
-  scene_.axes = first.axes;
+    : scene_(scene), format_(first.format), origin_(first.axes.origin) {
+  scene_.axes = first.axes.letters;
   for (const Shot& shot : shots) files_.push_back(shot.model);
   read_next();
 }
@@ -66,6 +66,7 @@ Model ModelsInTurn::take() {
   if (model.format != format_)
     fail("{} is {}, and the models before it are {}: all of a sequence must be of one kind", file,
          model.format, format_);
+  move_origin(model, origin_);
   read_next();
   return model;
 }

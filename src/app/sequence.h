@@ -22,7 +22,7 @@ void show_in_turn(const std::vector<std::filesystem::path>& files, std::vector<S
 /// The models of the shots after the first, which is there. While one is drawn, the next one is read.
 class ModelsInTurn {
  public:
-  /// The others take the axes of `first`, and must have its format.
+  /// The others take the axes and the origin of `first`, and must have its format.
   ModelsInTurn(const SceneOptions& scene, const Model& first, const std::vector<Shot>& shots);
 
   /// That of the next shot, beginning with the second. Throws Error as load_scene() does, and for a file of
@@ -34,6 +34,7 @@ class ModelsInTurn {
 
   SceneOptions scene_;
   std::string format_;
+  glm::dvec3 origin_;
   std::vector<std::string> files_;
   std::size_t next_ = 1;
   std::future<Model> reading_;

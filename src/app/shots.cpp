@@ -6,11 +6,13 @@
 #include <set>
 
 #include "app/load_scene.h"
+#include "app/model_files.h"
 #include "base/error.h"
 #include "base/inputs.h"
 #include "base/log.h"
 #include "formats/cameras_file.h"
 #include "formats/dataparser.h"
+#include "formats/usd.h"
 #include "scene/axes.h"
 #include "scene/framing.h"
 
@@ -95,7 +97,7 @@ stereo::EyePair eyes_of(const Lens& lens, const RigOptions& rig, const stereo::R
 }
 
 void add_eyes(const Lens& lens, const RigOptions& rig, const stereo::RigSettings& settings,
-              const ShotChoice& choice, const std::string& axes, Shot& shot) {
+              const ShotChoice& choice, const ModelAxes& axes, Shot& shot) {
   if (rig.mono) {
     const Camera camera = sized(lens, choice.cameras[0]);
     shot.eyes = {{"", camera, make_view(into_axes(camera, axes), settings.near_plane)}};
@@ -200,6 +202,12 @@ CameraList listed_cameras(const SceneOptions& scene, const CameraOptions& camera
   const std::vector<Camera> built_in = built_in_cameras(scene);
   Known known = known_of(saved);
   if (rig.units_per_metre) known.units_per_metre = rig.units_per_metre;
+  if (!known.units_per_metre && built_in.empty()) {
+    known.units_per_metre = usd_units_per_metre(model_file(scene.name));
+    if (known.units_per_metre.value_or(1.0) != 1.0)
+      log_info("{}: {:.6g} units make a metre, says its metersPerUnit (--units-per-metre for others)",
+               scene.name, *known.units_per_metre);
+  }
   if (camera.made_up()) {
     if (built_in.empty() && !(camera.eye && camera.up)) learn_beside(scene.name, camera, known);
     return {.known = known};
@@ -339,7 +347,7 @@ std::vector<Camera> chosen_cameras(const std::vector<std::string>& views, const 
 }
 
 std::vector<Shot> make_shots(const std::vector<std::string>& views, const Lens& lens, const RigOptions& rig,
-                             const CameraList& list, double near_plane, const std::string& axes) {
+                             const CameraList& list, double near_plane, const ModelAxes& axes) {
   const stereo::RigSettings settings = rig_settings(rig, list.known, near_plane);
   std::vector<Shot> shots;
   std::set<std::string> taken;

@@ -58,7 +58,8 @@ struct CameraList {
 /// The cameras that --cameras, a file beside the model, or the built-in scene gives; empty if none does, the
 /// options make up their own, or those beside the model, for which no option asks, cannot be used
 /// (Known::unusable). Quick: comes before the model is read. `saved` as find_saved() has it. What
-/// is known of metres is the rig's, where it says so: the list's cameras, and those made up, go by that.
+/// is known of metres is the rig's, where it says so, or the scene's: the list's cameras, and those made up, go
+/// by that.
 CameraList listed_cameras(const SceneOptions& scene, const CameraOptions& camera, const RigOptions& rig = {},
                           const std::optional<SavedPose>& saved = {});
 
@@ -127,6 +128,6 @@ std::vector<Camera> chosen_cameras(const std::vector<std::string>& views, const 
 /// The shots of the views by name: NAME, all_views, or none for the first. Of a path and of cameras that are
 /// made up, all. `near_plane` in world units, `axes` those of the model. Throws as chosen_cameras() does.
 std::vector<Shot> make_shots(const std::vector<std::string>& views, const Lens& lens, const RigOptions& rig,
-                             const CameraList& list, double near_plane, const std::string& axes);
+                             const CameraList& list, double near_plane, const ModelAxes& axes);
 
 }  // namespace binosplat::app

@@ -48,8 +48,9 @@ struct Driven {
 };
 
 // As render has it.
-Metre metre(const StudyOptions& options) {
+Metre metre(const StudyOptions& options, const Known& known) {
   if (options.rig.units_per_metre) return {*options.rig.units_per_metre, "--units-per-metre"};
+  if (known.units_per_metre) return {*known.units_per_metre, "the scene's metersPerUnit"};
   return {};
 }
 
@@ -62,7 +63,7 @@ Driven open_driven(const StudyOptions& options) {
          why_no_cameras(options.scene, driven.list.known));
   if (!options.camera.path.empty())
     driven.list = go_along_path(options.camera, headset_fps, true, std::move(driven.list));
-  driven.metre = metre(options);
+  driven.metre = metre(options, driven.list.known);
   driven.model = std::make_shared<const Model>(load_scene(options.scene, {}, driven.list.cameras));
   driven.near_plane = near_plane_of(options.camera, driven.list);
   return driven;

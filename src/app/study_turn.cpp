@@ -42,7 +42,7 @@ Lens lens_for_moving(const Camera& camera) {
 
 lab::PerspectiveViews views_for(const gl::Context& context, const StudyOptions& options,
                                 const Studied& studied) {
-  const std::string& axes = studied.model->axes;
+  const ModelAxes& axes = studied.model->axes;
   const Camera& camera = studied.shots.front().eyes.front().camera;
   const CameraList& list = studied.list;
   const stereo::RigSettings rig = rig_settings(options.rig, list.known, studied.near_plane);

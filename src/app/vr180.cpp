@@ -18,7 +18,7 @@ constexpr const char* refused[] = {"--fov",        "--convergence",     "--cant"
                                    "--decode",     "--exr-depth",       "--tile",        "--only",
                                    "--foveate"};
 
-std::vector<Camera> eyes_in_axes(const Shot& shot, const std::string& axes) {
+std::vector<Camera> eyes_in_axes(const Shot& shot, const ModelAxes& axes) {
   std::vector<Camera> eyes;
   for (const Eye& eye : shot.eyes) eyes.push_back(into_axes(eye.camera, axes));
   return eyes;
@@ -98,7 +98,7 @@ render::MemoryNeeds vr180_memory(const Shot& shot, const Model& model, double ne
   return needs;
 }
 
-render::FrameReport draw(stereo::Panorama& panorama, const Shot& shot, const std::string& axes,
+render::FrameReport draw(stereo::Panorama& panorama, const Shot& shot, const ModelAxes& axes,
                          double near_plane) {
   return panorama.draw(eyes_in_axes(shot, axes), near_plane);
 }

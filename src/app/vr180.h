@@ -26,7 +26,7 @@ void level(Shot& shot, const glm::dvec3& up);
 render::MemoryNeeds vr180_memory(const Shot& shot, const Model& model, double near_plane);
 
 /// The pictures of the shot's eyes, in the model's axes.
-render::FrameReport draw(stereo::Panorama& panorama, const Shot& shot, const std::string& axes,
+render::FrameReport draw(stereo::Panorama& panorama, const Shot& shot, const ModelAxes& axes,
                          double near_plane);
 
 }  // namespace binosplat::app

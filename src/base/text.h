@@ -1,8 +1,11 @@
 #pragma once
 // Letters in names, and bytes as letters.
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <cstddef>
 #include <filesystem>
 #include <limits>
@@ -30,6 +33,11 @@ bool comes_before(std::string_view a, std::string_view b);
 /// What stands between blanks; the last of `most` words is all that is left, with the blanks in it.
 std::vector<std::string_view> words_of(std::string_view line,
                                        std::size_t most = std::numeric_limits<std::size_t>::max());
+
+/// A coordinate for people, of more digits in a far world.
+inline std::string coordinate(double value) {
+  return fmt::format("{:.{}g}", value, std::abs(value) < 1e4 ? 4 : 10);
+}
 
 /// Bytes as base64 (RFC 4648), filled up by =.
 std::string base64(std::string_view bytes);

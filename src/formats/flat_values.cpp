@@ -1,9 +1,14 @@
 #include "formats/flat_values.h"
 
+#include <yaml-cpp/yaml.h>
+
 #include <algorithm>
+#include <iterator>
 #include <utility>
 #include <vector>
 
+#include "base/error.h"
+#include "base/text.h"
 #include "formats/json_file.h"
 
 namespace binosplat {
@@ -25,13 +30,45 @@ std::string unquoted(std::string_view text) {
   return std::string(is_quoted(text) ? text.substr(1, text.size() - 2) : text);
 }
 
-/// What is left of a value without its tag and anchor, and without a comment after it.
-std::string_view plain_value(std::string_view value) {
-  while (value.starts_with('!') || value.starts_with('&'))
-    value = trimmed(value.substr(std::min(value.find(' '), value.size())));
-  if (!is_quoted(value)) value = trimmed(value.substr(0, value.find(" #")));
-  return value.starts_with('#') ? std::string_view() : value;
+/// A value as a word. What is text, and reads like a truth value, is put into quotes, so that none takes it
+/// for one; YAML 1.1, which trainers write, has yes and on for true.
+std::string word_of(const YAML::Node& node) {
+  if (node.IsNull()) return "null";
+  constexpr std::string_view yes[] = {"true", "True", "TRUE", "yes", "Yes", "YES", "on", "On", "ON"};
+  constexpr std::string_view no[] = {"false", "False", "FALSE", "no", "No", "NO", "off", "Off", "OFF"};
+  const std::string& text = node.Scalar();
+  if (node.Tag() == "?" || node.Tag().ends_with(":bool")) {
+    if (std::ranges::find(yes, text) != std::end(yes)) return "true";
+    if (std::ranges::find(no, text) != std::end(no)) return "false";
+  }
+  const std::string word = lowered(text);
+  return word == "true" || word == "false" ? "'" + text + "'" : text;
 }
+
+struct FlatYaml {
+  FlatValues values;
+  std::vector<YAML::Node> above;  // the mappings around what is added
+  std::size_t added = 0;
+
+  /// Of two values of a key the last one counts, with all that is in it.
+  void add(const YAML::Node& node, const std::string& path) {
+    // References multiply what a file holds, and may name what they are part of.
+    constexpr std::size_t most = 20000, longest = 500;
+    if (++added > most) throw YAML::Exception(node.Mark(), fmt::format("more than {} values", most));
+    if (path.size() > longest || std::ranges::any_of(above, [&](const YAML::Node& n) { return n.is(node); }))
+      return;
+    const std::string inside = path + ".";
+    values.erase(values.lower_bound(inside), values.lower_bound(path + "/"));  // '/' follows '.'
+    values.erase(path);
+    if (node.IsScalar() || node.IsNull()) values.emplace(path, word_of(node));
+    if (!node.IsMap()) return;
+    above.push_back(node);
+    for (const auto& pair : node)
+      if (pair.first.IsScalar())
+        add(pair.second, path.empty() ? pair.first.Scalar() : inside + pair.first.Scalar());
+    above.pop_back();
+  }
+};
 
 /// Where a value of a Namespace ends: at a comma or the end, outside quotes and brackets.
 std::size_t end_of_value(std::string_view text) {
@@ -58,30 +95,22 @@ std::size_t end_of_value(std::string_view text) {
 
 }  // namespace
 
-FlatValues yaml_values(std::string_view text) {
-  FlatValues values;
-  std::vector<std::pair<std::size_t, std::string>> above;  // the indent of each mapping's key, and its path
-  while (!text.empty()) {
-    const std::size_t end = std::min(text.find('\n'), text.size());
-    const std::string_view line = text.substr(0, end);
-    text.remove_prefix(std::min(end + 1, text.size()));
-    const std::string_view inner = trimmed(line);
-    const std::size_t indent = std::min(line.find_first_not_of(' '), line.size());
-    const std::size_t colon = inner.ends_with(':') ? inner.size() - 1 : inner.find(": ");
-    const bool is_pair =
-        colon != std::string_view::npos && !inner.starts_with('-') && !inner.starts_with('#');
-    if (!is_pair) continue;
-    while (!above.empty() && above.back().first >= indent) above.pop_back();
-    const std::string key = unquoted(trimmed(inner.substr(0, colon)));
-    const std::string path = above.empty() ? key : above.back().second + "." + key;
-    const std::string_view value = plain_value(trimmed(inner.substr(colon + 1)));
-    if (value.empty()) {
-      above.emplace_back(indent, path);
-    } else if (std::string_view("[{|>*").find(value.front()) == std::string_view::npos) {
-      values.emplace(path, unquoted(value));
-    }
+FlatValues yaml_values(const std::string& source, std::string_view text) {
+  // In UTF-16, which begins with its mark, zeros are halves of letters.
+  const bool is_wide = text.starts_with("\xff\xfe") || text.starts_with("\xfe\xff");
+  const auto bad = std::ranges::find_if(
+      text, [](unsigned char c) { return (c < 0x20 && c != '\t' && c != '\n' && c != '\r') || c == 0x7f; });
+  if (bad != text.end() && !is_wide) {
+    fail("{}, line {}: the control character {}, which YAML does not allow", source,
+         1 + std::count(text.begin(), bad, '\n'), static_cast<int>(*bad));
   }
-  return values;
+  try {
+    FlatYaml flat;
+    flat.add(YAML::Load(std::string(text)), "");
+    return flat.values;
+  } catch (const YAML::Exception& error) {
+    fail("{}, line {}: {}", source, error.mark.line + 1, error.msg);
+  }
 }
 
 FlatValues namespace_values(std::string_view text) {

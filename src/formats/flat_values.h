@@ -10,9 +10,10 @@ namespace binosplat {
 /// Values as words, without quotes, by the keys that lead to them: "pipeline.model.sh_degree".
 using FlatValues = std::map<std::string, std::string, std::less<>>;
 
-/// Of YAML what trainers write with one value a line, in mappings that may be nested. Tags, anchors, lists
-/// and values of several lines are passed over, since no setting that matters to a picture is one.
-FlatValues yaml_values(std::string_view text);
+/// Of YAML, in mappings that may be nested: null, true and false as these words, and text that reads like one
+/// of the last two in quotes. Tags of objects and lists are passed over, since no setting that matters to a
+/// picture is one. Throws Error naming `source` and the line.
+FlatValues yaml_values(const std::string& source, std::string_view text);
 
 /// Of what Python prints of an argparse.Namespace: Namespace(eval=True, images='images').
 FlatValues namespace_values(std::string_view text);

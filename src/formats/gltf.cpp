@@ -65,12 +65,6 @@ void check_asset(const JsonValue& root) {
   }
 }
 
-/// Moves Gaussians by a node's transform in the world of the scene.
-void move(const JsonValue& node, const glm::dmat4& matrix, Model& model) {
-  if (!transform(model, matrix))
-    node.fail_here("its transform, or one above it, moves Gaussians beyond the largest number");
-}
-
 /// An extension that is not known, which may have numbers of its own in place of attributes.
 std::string unknown_in(const JsonValue& holder) {
   if (!holder.has("extensions")) return {};
@@ -131,7 +125,8 @@ class GltfReader {
                   others_, points_);
     }
     model_.format = packed_ ? "glTF with spz" : "glTF";
-    model_.axes = "LUF";
+    model_.axes.letters = "LUF";
+    set_far_positions(model_, places_);
     return std::move(model_);
   }
 
@@ -164,7 +159,8 @@ class GltfReader {
       if (glm::dmat3(matrix) == glm::dmat3(0.0)) continue;
       const bool is_last = mesh.left == 0 && i + 1 == places.count();
       Model part = is_last ? std::move(mesh.model) : mesh.model;
-      move(shown.node, matrix, part);
+      if (!transform(part, matrix, places_))
+        shown.node.fail_here("its transform, or one above it, moves Gaussians beyond the largest number");
       join(model_, std::move(part));
     }
   }
@@ -248,7 +244,7 @@ class GltfReader {
   Model read_points(const JsonValue& attributes) {
     const bool draft =
         !attributes.has(fmt::format("{}:ROTATION", splatting_extension)) && attributes.has("_ROTATION");
-    const auto name = [&](const char* end) {
+    const auto name = [&](const std::string& end) {
       return draft ? fmt::format("_{}", end) : fmt::format("{}:{}", splatting_extension, end);
     };
     const std::size_t n = document_.count(attributes.at("POSITION").whole(gltf_number_most));
@@ -259,7 +255,11 @@ class GltfReader {
     std::vector<float> opacities;
     std::vector<std::vector<float>> harmonics, cut;  // cut: of degree 4, which the format does not define
     Model model;
-    if (draft) {
+    const auto coefficient = [&](int degree, int m) {
+      return name(fmt::format("SH_DEGREE_{}_COEF_{}", degree, m));
+    };
+    // In drafts the base colour and the opacity were those of points.
+    if (!attributes.has(name("OPACITY")) && !attributes.has(coefficient(0, 0)) && attributes.has("COLOR_0")) {
       const std::vector<float> colours = attribute(attributes, "COLOR_0", 4, n);
       std::vector<float>& dc = harmonics.emplace_back();
       for (std::size_t i = 0; i < n; ++i) {
@@ -269,21 +269,20 @@ class GltfReader {
       }
     } else {
       opacities = attribute(attributes, name("OPACITY"), 1, n);
-      const auto coefficient = [&](int degree, int m) {
-        return fmt::format("{}:SH_DEGREE_{}_COEF_{}", splatting_extension, degree, m);
-      };
-      // Of degrees up to the highest there is, all coefficients must be there.
-      for (int degree = 1; degree <= 3; ++degree) {
-        for (int m = 0; m <= 2 * degree; ++m)
-          if (attributes.has(coefficient(degree, m))) model.degree = degree;
-      }
-      for (int degree = 0; degree <= model.degree; ++degree) {
-        for (int m = 0; m <= 2 * degree; ++m)
-          harmonics.push_back(attribute(attributes, coefficient(degree, m), 3, n));
-      }
-      for (int m = 0; m <= 8 && attributes.has(coefficient(4, 0)); ++m)
-        cut.push_back(attribute(attributes, coefficient(4, m), 3, n));
+      harmonics.push_back(attribute(attributes, coefficient(0, 0), 3, n));
     }
+    check_opacities(path_.string(), opacities);
+    // Of degrees up to the highest there is, all coefficients must be there.
+    for (int degree = 1; degree <= 3; ++degree) {
+      for (int m = 0; m <= 2 * degree; ++m)
+        if (attributes.has(coefficient(degree, m))) model.degree = degree;
+    }
+    for (int degree = 1; degree <= model.degree; ++degree) {
+      for (int m = 0; m <= 2 * degree; ++m)
+        harmonics.push_back(attribute(attributes, coefficient(degree, m), 3, n));
+    }
+    for (int m = 0; m <= 8 && attributes.has(coefficient(4, 0)); ++m)
+      cut.push_back(attribute(attributes, coefficient(4, m), 3, n));
     model.resize(n);
     std::vector<std::uint8_t> kept(n);
     std::array<float, 3 * sh_count(3)> sh{};
@@ -305,6 +304,7 @@ class GltfReader {
   const std::filesystem::path& path_;
   GltfDocument document_;
   Model model_;
+  std::vector<glm::dvec3> places_;  // of its Gaussians in the scene
   bool packed_ = false;
   std::string unknown_;  // an extension of the primitive that is read, which this reader does not know
   std::map<std::size_t, Mesh> meshes_;

@@ -98,9 +98,18 @@ std::vector<std::string> write_model(OutputFile& file, const Model& model, Model
         "it",
         model.name);
   }
-  if (model.axes != axes_of(format)) {
-    fail("{}: its axes are {}, and {} has {}", model.name, model.axes, written_format(format).name,
+  if (model.axes.letters != axes_of(format)) {
+    fail("{}: its axes are {}, and {} has {}", model.name, model.axes.letters, written_format(format).name,
          axes_of(format));
+  }
+  if (model.axes.origin != glm::dvec3(0.0) && format != ModelFormat::ply && format != ModelFormat::sog) {
+    Model rounded = model;
+    const double by = move_origin(rounded, glm::dvec3(0.0));
+    Losses losses = write_model(file, rounded, format, harmonic_bits);
+    losses.push_back(fmt::format(
+        "positions so far from zero are rounded by up to {:.2g} units: {} has floats (ply and SOG keep them)",
+        by, written_format(format).name));
+    return losses;
   }
   Losses losses = write(file, model, format, harmonic_bits);
   const bool kernel_kept =

@@ -67,10 +67,10 @@ class PlyText {
   }
 
   /// A number of a Gaussian, as text has it.
-  float value_of(const PlyLayout& layout, const PlyLayout::Source& source,
-                 const std::vector<double>& values) const {
+  double value_of(const PlyLayout& layout, const PlyLayout::Source& source,
+                  const std::vector<double>& values) const {
     const double value = values[source.property];
-    if (!source.as_bits) return static_cast<float>(value);
+    if (!source.as_bits) return value;
     if (value >= 0.0 && value <= 65535.0 && value == std::floor(value))
       return half_of(static_cast<std::uint16_t>(value));
     fail("{}, line {}: property '{}' of type ushort is {}; expected the bits of a half, 0 to 65535",
@@ -147,6 +147,12 @@ class PlyReader {
     if (layout_.rgb && !layout_.rgb_bytes) settle_colours();
     model_.cut_db = cut_harmonics_db(model_, cut_);
     keep_only(model_, kept_);
+    if (!places_.empty()) {
+      std::size_t kept = 0;
+      for (std::size_t i = 0; i < kept_.size(); ++i)
+        if (kept_[i] != 0) places_[kept++] = places_[i];
+      set_far_positions(model_, places_);
+    }
     return std::move(model_);
   }
 
@@ -156,6 +162,7 @@ class PlyReader {
     model_.resize(layout_.vertices->count);
     kept_.assign(layout_.vertices->count, 0);
     if (layout_.cut_at > 0) cut_.assign(layout_.vertices->count, 0.0f);
+    if (layout_.wide) places_.resize(layout_.vertices->count);
   }
 
   /// Base colours that are no bytes were read as 0 to 1. Some programs write 0 to 255: the largest decides.
@@ -175,7 +182,15 @@ class PlyReader {
     }
   }
 
-  void keep(std::size_t i, const RawGaussian& raw) {
+  /// Gaussian i, of which number(source) is each number.
+  template <typename Number>
+  void keep(std::size_t i, const Number& number) {
+    RawGaussian raw;
+    for (std::size_t k = 0; k < layout_.sources.size(); ++k) {
+      const double value = number(layout_.sources[k]);
+      raw[k] = static_cast<float>(value);
+      if (layout_.wide && k < 3) places_[i][static_cast<glm::length_t>(k)] = value;
+    }
     kept_[i] = decode(layout_, model_, i, raw) ? 1 : 0;
     if (layout_.cut_at > 0)
       cut_[i] = square_sum(std::span<const float, cut_values>(&raw[layout_.cut_at], cut_values));
@@ -202,7 +217,7 @@ class PlyReader {
         const std::size_t end = std::min<std::size_t>(begin + progress_block, element.count);
         parallel_for(
             end - begin,
-            [&](std::size_t k) { keep(begin + k, gather(bytes_.data() + at_ + (begin + k) * row, offsets)); },
+            [&](std::size_t k) { keep_row(begin + k, bytes_.data() + at_ + (begin + k) * row, offsets); },
             2048);
         progress_.update(end);
       }
@@ -233,7 +248,7 @@ class PlyReader {
     for (std::uint64_t i = 0; i < element.count; ++i) {
       const std::size_t end = find_offsets(element, at_, offsets);
       if (end > bytes_.size()) fail_cut(element, i);
-      if (gaussians) keep(i, gather(bytes_.data() + at_, offsets));
+      if (gaussians) keep_row(i, bytes_.data() + at_, offsets);
       if (gaussians && i % 4096 == 0) progress_.update(i);
       at_ = end;
     }
@@ -262,13 +277,10 @@ class PlyReader {
     return at;
   }
 
-  RawGaussian gather(const std::byte* row, const std::vector<std::size_t>& offsets) const {
-    RawGaussian raw;
-    for (std::size_t k = 0; k < layout_.sources.size(); ++k) {
-      const auto& [property, type, as_bits] = layout_.sources[k];
-      raw[k] = static_cast<float>(load_ply_number(type, row + offsets[property], swapped_));
-    }
-    return raw;
+  void keep_row(std::size_t i, const std::byte* row, const std::vector<std::size_t>& offsets) {
+    keep(i, [&](const PlyLayout::Source& source) {
+      return load_ply_number(source.type, row + offsets[source.property], swapped_);
+    });
   }
 
   /// Text: one line an element.
@@ -284,10 +296,7 @@ class PlyReader {
       const std::string_view line = text_.next_line(element, i);
       if (!gaussians) continue;
       text_.parse_row(element, i, line, values);
-      RawGaussian raw;
-      for (std::size_t k = 0; k < layout_.sources.size(); ++k)
-        raw[k] = text_.value_of(layout_, layout_.sources[k], values);
-      keep(i, raw);
+      keep(i, [&](const PlyLayout::Source& source) { return text_.value_of(layout_, source, values); });
       if (i % 4096 == 0) progress_.update(i);
     }
   }
@@ -302,7 +311,8 @@ class PlyReader {
   Progress progress_;
   Model model_;
   std::vector<std::uint8_t> kept_;
-  std::vector<float> cut_;  // square sums of degree 4, where there is one
+  std::vector<glm::dvec3> places_;  // where layout_.wide
+  std::vector<float> cut_;          // square sums of degree 4, where there is one
 };
 
 }  // namespace

@@ -24,6 +24,11 @@ constexpr std::pair<const char*, const char*> other_kernels[] = {
 void refuse_relatives(const std::filesystem::path& path, const PlyHeader& header) {
   const std::string name = path.string();
   const PlyElement* vertices = header.find("vertex");
+  if (vertices == nullptr && header.find("codebook_centers") != nullptr)
+    fail(
+        "{} is a model of Reduced-3DGS with a codebook (codebook_centers), which is not read: name the plain "
+        "point_cloud.ply that its trainer writes, too",
+        name);
   if (vertices == nullptr)
     fail("{}: the ply header has no element 'vertex'; it is no model of Gaussians", name);
   const auto has = [&](std::string_view property) { return vertices->find(property) != nullptr; };
@@ -133,6 +138,9 @@ PlyLayout find_layout(const std::filesystem::path& path, const PlyHeader& header
                            "rot_1", "rot_2", "rot_3", "opacity"}) {
     finder.add(name);
   }
+  layout.wide = header.format == PlyFormat::ascii ||
+                std::ranges::any_of(layout.sources.begin(), layout.sources.begin() + 3,
+                                    [](const auto& source) { return source.type != PlyType::float32; });
   find_rgb(path, layout);
   for (const char* name :
        layout.rgb ? std::array{"red", "green", "blue"} : std::array{"f_dc_0", "f_dc_1", "f_dc_2"}) {

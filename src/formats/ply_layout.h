@@ -28,6 +28,7 @@ struct PlyLayout {
   const PlyElement* vertices = nullptr;
   int degree = 0;
   std::vector<Source> sources;  // for each number of a RawGaussian
+  bool wide = false;            // positions may be finer than floats (from zero)
   bool rgb = false;             // the first three coefficients are base colours
   bool rgb_bytes = false;       // of 0 to 255 (Nerfstudio)
   bool filter_3d = false;       // the last number is Mip-Splatting's filter (world units)

@@ -44,12 +44,14 @@ Losses write_ply(OutputFile& file, const Model& model) {
   const std::size_t values = 3 * static_cast<std::size_t>(sh_count(model.degree)), higher = values / 3 - 1;
   std::string header =
       fmt::format("ply\nformat binary_little_endian 1.0\nelement vertex {}\n", model.count());
-  std::size_t columns = 0;
-  const auto add = [&](const std::string& name) {
-    header += fmt::format("property float {}\n", name);
-    ++columns;
+  std::size_t columns = 0;  // of 4 bytes
+  const auto add = [&](const std::string& name, bool is_wide = false) {
+    header += fmt::format("property {} {}\n", is_wide ? "double" : "float", name);
+    columns += is_wide ? 2 : 1;
   };
-  for (const char* name : {"x", "y", "z", "nx", "ny", "nz", "f_dc_0", "f_dc_1", "f_dc_2"}) add(name);
+  const bool is_far = model.axes.origin != glm::dvec3(0.0);
+  for (const char* name : {"x", "y", "z"}) add(name, is_far);
+  for (const char* name : {"nx", "ny", "nz", "f_dc_0", "f_dc_1", "f_dc_2"}) add(name);
   for (std::size_t k = 0; k < 3 * higher; ++k) add(fmt::format("f_rest_{}", k));
   for (const char* name : {"opacity", "scale_0", "scale_1", "scale_2", "rot_0", "rot_1", "rot_2", "rot_3"})
     add(name);
@@ -61,12 +63,13 @@ Losses write_ply(OutputFile& file, const Model& model) {
 
   RowWriter rows([&](std::span<const std::byte> bytes) { file.write(bytes); }, model.count());
   rows.write(model.count(), 4 * columns, [&](std::size_t i, std::byte* row) {
-    const auto put = [&](float value) {
+    const auto put = [&](auto value) {
       store_number(row, value);
-      row += 4;
+      row += sizeof(value);
     };
     const float* sh = &model.sh[i * values];
-    for (int c = 0; c < 3; ++c) put(model.position[i][c]);
+    for (int c = 0; c < 3; ++c)
+      is_far ? put(model.axes.origin[c] + model.position[i][c]) : put(model.position[i][c]);
     for (int c = 0; c < 3; ++c) put(0.0f);  // normals
     for (std::size_t c = 0; c < 3; ++c) put(sh[c]);
     for (std::size_t c = 0; c < 3; ++c) {
@@ -76,7 +79,8 @@ Losses write_ply(OutputFile& file, const Model& model) {
     for (int c = 0; c < 3; ++c) put(ply_log_scale(model.scale[i][c]));
     for (int c = 0; c < 4; ++c) put(model.rotation[i][c]);
   });
-  return {};
+  if (!is_far) return {};
+  return {"positions are so far from zero that they are written as doubles, which not every program reads"};
 }
 
 }  // namespace binosplat

@@ -90,11 +90,17 @@ Model load_whole(const std::filesystem::path& path, const SogSource& source) {
   model.degree = source.degree();
   model.antialiased = source.antialiased();
   model.perspective = source.perspective();
-  model.resize(source.count());
-  std::vector<std::uint8_t> kept(source.count());
-  const SogSource::Range all{0, source.count(), 0};
-  source.decode(model, {&all, 1}, kept);
-  keep_only(model, kept);
+  const auto textures = source.textures();
+  const auto decode = [&] {
+    model.resize(source.count());
+    model.left_out = 0;
+    std::vector<std::uint8_t> kept(source.count());
+    const SogSource::Range all{0, source.count(), 0};
+    source.decode(model, {&all, 1}, kept, *textures);
+    keep_only(model, kept);
+  };
+  decode();
+  if (choose_origin(model)) decode();
   return model;
 }
 

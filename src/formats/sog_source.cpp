@@ -177,11 +177,12 @@ bool SogSource::decode_one(const Textures& textures, std::size_t i, Model& model
   const std::uint8_t* low = texel(means_l);
   const std::uint8_t* high = texel(means_u);
   const std::uint8_t* three = texel(quats);
-  glm::vec3 position, scale;
+  glm::dvec3 position;
+  glm::vec3 scale;
   std::array<float, 3 * sh_count(3)> sh{};
   for (int c = 0; c < 3; ++c) {
     const double n = mean_low_[c] + mean_span_[c] * (low[c] + 256 * high[c]) / 65535.0;
-    position[c] = static_cast<float>(std::copysign(std::expm1(std::abs(n)), n));
+    position[c] = std::copysign(std::expm1(std::abs(n)), n);
     const auto channel = static_cast<std::size_t>(c);
     scale[c] = scale_[channel][texel(scales)[c]];
     sh[channel] = dc_[channel][texel(sh0)[c]];

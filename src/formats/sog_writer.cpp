@@ -49,7 +49,7 @@ float sog_log_scale(float scale) {
 }
 
 /// What positions are stored as.
-double log_position(float p) { return std::copysign(std::log1p(std::abs(static_cast<double>(p))), p); }
+double log_position(double p) { return std::copysign(std::log1p(std::abs(p)), p); }
 
 class SogWriter {
  public:
@@ -112,14 +112,18 @@ class SogWriter {
   void add_positions() {
     glm::dvec3 low(std::numeric_limits<double>::max()), high(std::numeric_limits<double>::lowest());
     for (const glm::vec3& p : model_.position) {
-      const glm::dvec3 v(log_position(p.x), log_position(p.y), log_position(p.z));
+      const glm::dvec3 q = model_.axes.origin + glm::dvec3(p);
+      const glm::dvec3 v(log_position(q.x), log_position(q.y), log_position(q.z));
       low = glm::min(low, v);
       high = glm::max(high, v);
     }
     const auto step = [&](std::size_t i, int c) {
       const double span = high[c] - low[c];
-      return span > 0.0 ? nearest_step((log_position(model_.position[i][c]) - low[c]) / span * 65535.0, 65535)
-                        : 0u;
+      return span > 0.0
+                 ? nearest_step((log_position(model_.axes.origin[c] + model_.position[i][c]) - low[c]) /
+                                    span * 65535.0,
+                                65535)
+                 : 0u;
     };
     const auto bytes = [&](std::size_t i, int shift) {
       Rgba texel{0, 0, 0, 255};

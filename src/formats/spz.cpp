@@ -103,7 +103,7 @@ Model load_spz(const std::string& source, std::span<const std::byte> bytes) {
   Model model;
   model.format = fmt::format("spz {}{}", contents.version, contents.axes ? "" : axes_not_said);
   model.degree = std::min(contents.degree, 3);
-  model.axes = contents.axes.value_or("RUB");
+  model.axes.letters = contents.axes.value_or("RUB");
   model.antialiased = contents.antialiased;
   model.resize(contents.count);
   const SpzDecoder decoder(contents);

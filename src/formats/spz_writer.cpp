@@ -130,7 +130,7 @@ Losses write_spz(OutputFile& file, const Model& model, int harmonic_bits) {
   RowWriter rows([&](std::span<const std::byte> bytes) { gzip.write(bytes); },
                  (model.degree > 0 ? 6 : 5) * model.count());
   write_rows(rows, model, bits, harmonic_bits);
-  gzip.write(spz_axes_extension(model.axes));
+  gzip.write(spz_axes_extension(model.axes.letters));
   gzip.finish();
   return losses_of(model, bits, harmonic_bits);
 }

@@ -125,19 +125,24 @@ Model load_taken(const fs::path& lod_meta, const SogLevels& levels, const std::v
   }
   if (total == 0) fail("{} holds no Gaussians ({})", lod_meta.string(), format);
   check_total(lod_meta, total, bytes);
-  model.resize(total);
-  std::vector<std::uint8_t> kept(total);
-  Progress progress("reading " + lod_meta.string(), total);
-  std::mutex counting;
-  std::size_t done = 0;
-  parallel_for(parts.size(), [&](std::size_t i) {
-    const std::vector<SogSource::Range> ranges = ranges_of(parts[i].taken);
-    parts[i].source.decode(model, ranges, kept);
-    const std::lock_guard<std::mutex> lock(counting);
-    for (const SogSource::Range& range : ranges) done += range.count;
-    progress.update(done);
-  });
-  keep_only(model, kept);
+  const auto decode = [&] {
+    model.resize(total);
+    model.left_out = 0;
+    std::vector<std::uint8_t> kept(total);
+    Progress progress("reading " + lod_meta.string(), total);
+    std::mutex counting;
+    std::size_t done = 0;
+    parallel_for(parts.size(), [&](std::size_t i) {
+      const std::vector<SogSource::Range> ranges = ranges_of(parts[i].taken);
+      parts[i].source.decode(model, ranges, kept);
+      const std::lock_guard<std::mutex> lock(counting);
+      for (const SogSource::Range& range : ranges) done += range.count;
+      progress.update(done);
+    });
+    keep_only(model, kept);
+  };
+  decode();
+  if (choose_origin(model)) decode();
   return model;
 }
 

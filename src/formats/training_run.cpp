@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t largest_run_file = std::size_t{1} << 22;  // bytes; trainers' have some ten thousand
+constexpr std::size_t largest_run_file = std::size_t{1} << 20;  // bytes; trainers' have some ten thousand
 
 /// What a value means for the pictures. A value that begins with '!' stands for all others.
 struct Clue {
@@ -94,7 +94,7 @@ struct RunKind {
   const char* prefix;  // of the keys below
   const char* mark;    // a key that no file of this kind lacks, and others have not
   const char *antialiasing, *word_for_it;
-  std::vector<const char*> said;  // keys that a reader wants to know, besides those of the clues
+  const char* said;  // keys that a reader wants to know, besides those of the clues
   std::vector<Clue> clues;
 };
 
@@ -104,54 +104,19 @@ std::vector<Clue> all_of(const Clue (&clues)[N]) {
 }
 
 const std::vector<RunKind>& run_kinds() {
-  const auto yaml = [](const std::string&, std::string_view text) { return yaml_values(text); };
   const auto python = [](const std::string&, std::string_view text) { return namespace_values(text); };
-  static const std::vector<RunKind> kinds = {{"cfg.yml",
-                                              "gsplat",
-                                              yaml,
-                                              "",
-                                              "result_dir",
-                                              "antialiased",
-                                              "true",
-                                              {"antialiased", "sh_degree", "random_bkgd"},
-                                              all_of(of_gsplat)},
-                                             {"config.yml",
-                                              "nerfstudio",
-                                              yaml,
-                                              "pipeline.model.",
-                                              "cull_alpha_thresh",
-                                              "rasterize_mode",
-                                              "antialiased",
-                                              {"rasterize_mode", "sh_degree", "color_corrected_metrics"},
-                                              all_of(of_nerfstudio)},
-                                             {"cfg_args",
-                                              "INRIA's trainer or one like it",
-                                              python,
-                                              "",
-                                              "sh_degree",
-                                              "antialiasing",
-                                              "true",
-                                              {"antialiasing", "sh_degree", "resolution", "eval"},
-                                              all_of(of_inria)},
-                                             {"training_config.json",
-                                              "LichtFeld Studio",
-                                              json_values,
-                                              "optimization.",
-                                              "sh_degree",
-                                              "antialiasing",
-                                              "true",
-                                              {"antialiasing", "sh_degree", "strategy"},
-                                              all_of(of_lichtfeld)},
-                                             {"parsed.yaml",
-                                              "3DGRUT",
-                                              yaml,
-                                              "",
-                                              "render.method",
-                                              "",
-                                              "",
-                                              {"model.progressive_training.max_n_features",
-                                               "render.particle_kernel_degree", "render.splat.k_buffer_size"},
-                                              all_of(of_3dgrut)}};
+  static const std::vector<RunKind> kinds = {
+      {"cfg.yml", "gsplat", yaml_values, "", "result_dir", "antialiased", "true",
+       "antialiased sh_degree random_bkgd", all_of(of_gsplat)},
+      {"config.yml", "nerfstudio", yaml_values, "pipeline.model.", "cull_alpha_thresh", "rasterize_mode",
+       "antialiased", "rasterize_mode sh_degree color_corrected_metrics", all_of(of_nerfstudio)},
+      {"cfg_args", "INRIA's trainer or one like it", python, "", "sh_degree", "antialiasing", "true",
+       "antialiasing sh_degree resolution eval", all_of(of_inria)},
+      {"training_config.json", "LichtFeld Studio", json_values, "optimization.", "sh_degree", "antialiasing",
+       "true", "antialiasing sh_degree strategy", all_of(of_lichtfeld)},
+      {"parsed.yaml", "3DGRUT", yaml_values, "", "render.method", "", "",
+       "model.progressive_training.max_n_features render.particle_kernel_degree render.splat.k_buffer_size",
+       all_of(of_3dgrut)}};
   return kinds;
 }
 
@@ -165,8 +130,8 @@ std::string printable(std::string value) {
 }
 
 /// A value of a key, in small letters: Python says True, YAML true.
-std::optional<std::string> value_of(const FlatValues& values, const RunKind& kind, const char* key) {
-  const auto found = values.find(std::string(kind.prefix) + key);
+std::optional<std::string> value_of(const FlatValues& values, const RunKind& kind, std::string_view key) {
+  const auto found = values.find(kind.prefix + std::string(key));
   if (found == values.end()) return std::nullopt;
   const std::string value = lowered(found->second);
   return value == "null" || value == "none" || value.empty() ? std::nullopt : std::optional(value);
@@ -177,12 +142,13 @@ bool holds(const Clue& clue, const std::string& value) {
 }
 
 void tell(const FlatValues& values, const RunKind& kind, TrainingRun& run) {
-  std::vector<const char*> keys = kind.said;
-  for (const Clue& clue : kind.clues) keys.push_back(clue.key);
-  for (const char* key : keys) {
+  std::vector<std::string_view> keys = words_of(kind.said);
+  for (const Clue& clue : kind.clues) keys.emplace_back(clue.key);
+  for (const std::string_view key : keys) {
     const auto is_key = [&](const auto& said) { return said.first == key; };
     const auto value = value_of(values, kind, key);
-    if (value && std::ranges::none_of(run.said, is_key)) run.said.emplace_back(key, printable(*value));
+    if (value && std::ranges::none_of(run.said, is_key))
+      run.said.emplace_back(std::string(key), printable(*value));
   }
   for (const Clue& clue : kind.clues) {
     const auto value = value_of(values, kind, clue.key);
@@ -194,7 +160,9 @@ void tell(const FlatValues& values, const RunKind& kind, TrainingRun& run) {
     const bool is_advice = clue.sentence == white || clue.sentence == moved_world;
     (is_advice ? run.advice : run.otherwise).emplace_back(clue.sentence);
   }
-  if (const auto value = value_of(values, kind, kind.antialiasing))
+  const auto value = value_of(values, kind, kind.antialiasing);
+  const bool is_truth = std::string_view(kind.word_for_it) == "true";
+  if (value && (!is_truth || *value == "true" || *value == "false"))
     run.antialiased = *value == kind.word_for_it;
 }
 

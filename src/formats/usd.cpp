@@ -1,16 +1,20 @@
 #include "formats/usd.h"
 
 #include <algorithm>
+#include <cmath>
+#include <functional>
 #include <glm/gtc/matrix_transform.hpp>
 #include <glm/gtc/type_ptr.hpp>
 #include <set>
 
 #include "base/log.h"
+#include "base/mapped_file.h"
 #include "base/text.h"
 #include "formats/content.h"
 #include "formats/harmonics_cut.h"
 #include "formats/join.h"
 #include "formats/perspective.h"
+#include "formats/plausible.h"
 #include "formats/usd_transform.h"
 #include "formats/usda.h"
 #include "formats/zip_file.h"
@@ -53,7 +57,10 @@ class UsdReader {
 
   Model read() {
     note_parts_elsewhere(file_);
-    for (const UsdaPrim& prim : file_.prims) show(prim, glm::dmat4(1.0), "");
+    for (const UsdaPrim& prim : file_.prims) show(prim, {});
+    // As renderers have it: what stands for others to be seen quickly is not drawn beside these.
+    for (const auto& add_proxy : proxies_)
+      if (!has_render_) add_proxy();
     if (model_.count() == 0 && model_.left_out == 0) fail_without_gaussians();
     if (!elsewhere_.empty()) {
       log_warning("{}: what its {} hold is not drawn; one file of all makes: {}", source_, elsewhere_,
@@ -63,7 +70,8 @@ class UsdReader {
       if (others_.contains(type)) log_warning("{}: only its Gaussians are drawn, and no {}", source_, type);
     }
     model_.format = flat_ ? "OpenUSD, flat Gaussians" : "OpenUSD";
-    model_.axes = axes();
+    model_.axes.letters = axes();
+    set_far_positions(model_, places_);
     return std::move(model_);
   }
 
@@ -94,19 +102,33 @@ class UsdReader {
     }
   }
 
-  void show(const UsdaPrim& prim, const glm::dmat4& parent, const std::string& colours) {
+  /// What a prim has of those above it.
+  struct Inherited {
+    glm::dmat4 matrix{1.0};
+    std::string colours, purpose;
+  };
+
+  void show(const UsdaPrim& prim, Inherited inherited) {
     const auto active = prim.metadata.find("active");
     if (active != prim.metadata.end() && active->second.rest() == "false") return;
     note_parts_elsewhere(prim);
     if (prim.specifier != "def" || token_of(prim, "visibility") == "invisible") return;
-    const glm::dmat4 matrix = usd_transform(prim, parent);
-    const std::string space =
-        prim.attribute("colorSpace:name") != nullptr ? token_of(prim, "colorSpace:name") : colours;
+    if (prim.attribute("visibility.timeSamples") != nullptr)
+      log_warning("{}: '{}' comes and goes with time; it is drawn as if it were always there", source_,
+                  prim.name);
+    inherited.matrix = usd_transform(prim, inherited.matrix);
+    if (prim.attribute("colorSpace:name") != nullptr) inherited.colours = token_of(prim, "colorSpace:name");
+    if (prim.attribute("purpose") != nullptr) inherited.purpose = token_of(prim, "purpose");
     const bool flat =
         prim.type == "ParticleField" && has_schema(prim, "ParticleFieldKernelGaussianSurfletAPI");
     if (flat || prim.type == "ParticleField3DGaussianSplat" ||
         (prim.type == "ParticleField" && has_schema(prim, "ParticleFieldKernelGaussianEllipsoidAPI"))) {
-      add(prim, matrix, space, flat);
+      has_render_ = has_render_ || inherited.purpose == "render";
+      if (inherited.purpose == "proxy") {
+        proxies_.emplace_back([this, &prim, inherited, flat] { add(prim, inherited, flat); });
+      } else if (inherited.purpose != "guide") {
+        add(prim, inherited, flat);
+      }
     } else if (prim.type.starts_with("ParticleField")) {
       prim.where.fail_here("'{}' is a {} with another kernel than a Gaussian's; only Gaussians can be drawn",
                            prim.name, prim.type);
@@ -115,10 +137,11 @@ class UsdReader {
       nurec_ = nurec_ || prim.attribute("omni:nurec:isNuRecVolume") != nullptr;
     }
     if (prim.type == "PointInstancer") return;  // what is in it is a pattern of what it shows
-    for (const UsdaPrim& child : prim.prims) show(child, matrix, space);
+    for (const UsdaPrim& child : prim.prims) show(child, inherited);
   }
 
-  void add(const UsdaPrim& prim, const glm::dmat4& matrix, const std::string& colours, bool flat) {
+  void add(const UsdaPrim& prim, const Inherited& inherited, bool flat) {
+    const auto& [matrix, colours, purpose] = inherited;
     if (colours.starts_with("lin")) {
       log_warning("{}: its colours are linear light, which is drawn as if it were display values: too dark",
                   source_);
@@ -126,7 +149,7 @@ class UsdReader {
     // So files hide things, by a scale of 0.
     if (glm::dmat3(matrix) == glm::dmat3(0.0)) return;
     Model part = gaussians_of(prim, flat);
-    if (!transform(part, matrix))
+    if (!transform(part, matrix, places_))
       prim.where.fail_here("the transform of '{}' moves Gaussians beyond the largest number", prim.name);
     flat_ = flat_ || flat;
     join(model_, std::move(part));
@@ -163,6 +186,7 @@ class UsdReader {
     const std::vector<float> scales = values(prim, "scales", 3, 1, n);
     const std::vector<float> rotations = values(prim, "orientations", 4, 1, n);
     const std::vector<float> opacities = values(prim, "opacities", 1, 1, n);
+    check_opacities(source_, opacities);
     const UsdaText* degree = prim.attribute("radiance:sphericalHarmonicsDegree");
     const double said = degree != nullptr ? degree->numbers(1)[0] : 3.0;
     if (!(said == 0.0 || said == 1.0 || said == 2.0 || said == 3.0 || said == 4.0))
@@ -200,12 +224,34 @@ class UsdReader {
   std::string source_;  // for errors: the path, and the file in an archive
   UsdaPrim file_;
   Model model_;
-  bool flat_ = false, nurec_ = false;
+  std::vector<glm::dvec3> places_;  // of its Gaussians in the scene
+  bool flat_ = false, nurec_ = false, has_render_ = false;
+  std::vector<std::function<void()>> proxies_;
   std::string elsewhere_;         // the word by which it has parts in other files or in variants
   std::set<std::string> others_;  // types of prims that are no Gaussians
 };
 
 }  // namespace
+
+std::optional<double> usd_units_per_metre(const fs::path& path) {
+  std::error_code ignored;
+  if (!fs::is_regular_file(path, ignored)) return std::nullopt;
+  const MappedFile file(path);
+  std::span<const std::byte> bytes = file.bytes();
+  std::vector<std::byte> first;
+  if (content_of(bytes) == Content::zip && is_usdz(path, bytes)) {
+    const ZipFile zip(path.string(), bytes);
+    bytes = first = zip.read(zip.names()[0]);
+  }
+  if (content_of(bytes) != Content::usda) return std::nullopt;
+  const UsdaPrim scene = read_usda(path.string(), as_text(bytes), true);
+  const auto found = scene.metadata.find("metersPerUnit");
+  if (found == scene.metadata.end()) return std::nullopt;
+  const double units = 1.0 / found->second.numbers(1)[0];
+  if (!(units > 0.0) || !std::isfinite(units))
+    found->second.fail_here("metersPerUnit: expected a number above 0");
+  return units;
+}
 
 Model load_usda(const fs::path& path, std::string_view text) {
   return UsdReader(path, path.string(), text).read();

@@ -4,6 +4,7 @@
 // of a flat Gaussian (a surflet), as 3DGRUT exports them. Frame: OpenUSD's, by its upAxis (RUB or RFU).
 
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string_view>
 
@@ -11,12 +12,15 @@
 
 namespace binosplat {
 
-/// Reads the Gaussians of all prims that are defined, active and not invisible, moved by the transforms of
-/// those above them (xformOp, of all kinds that need no time). Throws Error
-/// naming the line where something is damaged, missing, cannot be drawn, or is only there at points in time.
-/// What references name and variants hold is not put together: an error, or a warning where there are
-/// Gaussians without it, names the command that does so.
+/// Reads the Gaussians of all prims that are defined, active, not invisible and not guides (nor proxies,
+/// where others have the purpose `render`), moved by the transforms of those above them (xformOp, of all
+/// kinds that need no time). Throws Error naming the line where something is damaged, missing, cannot be
+/// drawn, or is only there at points in time. What references name and variants hold is not put together: an
+/// error, or a warning where there are Gaussians without it, names the command that does so.
 Model load_usda(const std::filesystem::path& path, std::string_view text);
+
+/// How many units of a scene make a metre, where the file at `path` is one and says so by its metersPerUnit.
+std::optional<double> usd_units_per_metre(const std::filesystem::path& path);
 
 /// Whether a zip archive is a .usdz, whose first file is an OpenUSD scene.
 bool is_usdz(const std::filesystem::path& path, std::span<const std::byte> archive);

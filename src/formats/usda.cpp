@@ -55,6 +55,23 @@ void read_attribute(UsdaText& text, std::string_view word, UsdaPrim& prim) {
   if (text.next() == '(') text.value();
 }
 
+/// OpenUSD holds a sample until the next, and the first one before it: where all are the same, and so where
+/// there is one, they are the value at every time.
+void hold_still(UsdaValues& attributes) {
+  constexpr std::string_view ending = ".timeSamples";
+  for (auto at = attributes.begin(); at != attributes.end();) {
+    const auto moving = at++;
+    if (!moving->first.ends_with(ending)) continue;
+    const std::vector<UsdaText> samples = moving->second.samples();
+    const auto differs = [&](const UsdaText& sample) { return sample.rest() != samples[0].rest(); };
+    if (samples.empty() || std::ranges::any_of(samples, differs)) continue;
+    const std::string name = moving->first.substr(0, moving->first.size() - ending.size());
+    attributes.erase(moving);
+    attributes.erase(name);
+    if (samples[0].rest() != "None") attributes.emplace(name, samples[0]);
+  }
+}
+
 UsdaPrim read_prim(UsdaText& text, std::string_view specifier, int depth) {
   if (depth > prims_deep_most) text.fail_here("prims are nested more than {} deep", prims_deep_most);
   text.next();
@@ -83,6 +100,7 @@ UsdaPrim read_prim(UsdaText& text, std::string_view specifier, int depth) {
       read_attribute(text, word, prim);
     }
   }
+  hold_still(prim.attributes);
   return prim;
 }
 
@@ -246,16 +264,28 @@ std::string UsdaText::text() const {
   return value;
 }
 
+std::vector<UsdaText> UsdaText::samples() const {
+  UsdaText left = *this;
+  std::vector<UsdaText> values;
+  left.list('{', '}', [&] {
+    left.number();
+    left.expect(':');
+    values.push_back(left.value());
+  });
+  left.finish();
+  return values;
+}
+
 const UsdaText* UsdaPrim::attribute(std::string_view named) const {
   const auto found = attributes.find(named);
   return found == attributes.end() ? nullptr : &found->second;
 }
 
-UsdaPrim read_usda(const std::string& source, std::string_view text) {
+UsdaPrim read_usda(const std::string& source, std::string_view text, bool only_metadata) {
   UsdaText left(source, text);  // whose first line is a comment
   UsdaPrim file{.specifier = {}, .type = {}, .name = {}, .where = left, .metadata = {}, .attributes = {}};
   read_metadata(left, file.metadata);
-  while (left.next() != 0) {
+  while (!only_metadata && left.next() != 0) {
     const UsdaText before = left;
     const std::string_view word = left.word();
     if (is_one_of(word, {"def", "over", "class"})) {

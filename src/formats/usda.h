@@ -57,6 +57,7 @@ class UsdaText {
   std::vector<float> tuples(std::size_t count) const;  // a list of tuples, one after the other
   std::vector<std::string> texts() const;              // a list
   std::string text() const;
+  std::vector<UsdaText> samples() const;  // of timeSamples, in their order
 
   /// What is left of it, as it is written.
   std::string_view rest() const { return all_.substr(at_, end_ - at_); }
@@ -86,13 +87,14 @@ using UsdaValues = std::map<std::string, UsdaText, std::less<>>;
 struct UsdaPrim {
   std::string specifier, type, name;  // def, over or class; empty of the file itself
   UsdaText where;                     // its beginning
-  UsdaValues metadata, attributes;    // attributes also as "positions.timeSamples"
+  UsdaValues metadata, attributes;    // also "positions.timeSamples", where these differ
   std::vector<UsdaPrim> prims = {};
 
   const UsdaText* attribute(std::string_view named) const;
 };
 
-/// The file, as a prim that has its metadata and its prims. `text` outlives it. Throws Error naming the line.
-UsdaPrim read_usda(const std::string& source, std::string_view text);
+/// The file, as a prim that has its metadata and, unless only that is wanted, its prims. `text` outlives it.
+/// Throws Error naming the line.
+UsdaPrim read_usda(const std::string& source, std::string_view text, bool only_metadata = false);
 
 }  // namespace binosplat

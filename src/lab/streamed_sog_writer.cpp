@@ -39,7 +39,7 @@ constexpr double more_most = 4.0;  // that they may lose more or less than each 
 /// A leaf of the tree.
 struct Leaf {
   std::span<const std::uint32_t> indices;
-  Box box;                    // around ellipsoids of one standard deviation
+  Box box;                    // around ellipsoids of one standard deviation, from zero
   ordered_json lods;          // where its levels lie, and what they lose
   ordered_json pixels, seen;  // by which that was found
 
@@ -136,7 +136,7 @@ Plan make_plan(const Model& model, const LevelSettings& settings) {
     plan.scenes.back().count += count;
     plan.pieces.push_back(std::move(piece));
   }
-  const auto measure = [&](Leaf& leaf) { leaf.box = reach_of(model, leaf.indices); };
+  const auto measure = [&](Leaf& leaf) { leaf.box = reach_of(model, leaf.indices) + model.axes.origin; };
   parallel_for(plan.leaves.size(), [&](std::size_t i) { measure(plan.leaves[i]); });
   return plan;
 }

@@ -10,7 +10,7 @@ namespace binosplat::library {
 
 /// SplatModel::placement() of a model.
 inline Placement placement_in(const Model& model, const glm::dvec3& origin, double units_per_metre) {
-  const glm::dmat3 into_model = glm::transpose(world_from_axes(model.axes));
+  const glm::dmat3 into_model = glm::transpose(world_from_axes(model.axes.letters));
   return {into_model * origin, into_model * Placement{}.axes, units_per_metre};
 }
 

@@ -147,7 +147,7 @@ void Renderer::submit(std::span<const View> views, const Placement& placement, c
     fail("settings.foveation.gaze: {} for {} views: expected none, one or one a view", gazes, views.size());
   if (to.is_foveated && !to.depths.empty())
     fail("foveation with depth targets: composed pictures have no depths");
-  const auto head = library::views_of(views, placement, settings);
+  const auto head = library::views_of(views, placement, impl_->frame->frame().model()->model(), settings);
 
   const gl::KeptState kept(*impl_->context);
   std::optional<gl::KeptTextures> textures;

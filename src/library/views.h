@@ -1,15 +1,17 @@
 #pragma once
-// The caller's views, as a frame draws them.
+// The caller's views, as a frame draws them: from the model's origin.
 
 #include <binosplat/renderer.h>
 
+#include "scene/model.h"
 #include "stereo/eyes.h"
 
 namespace binosplat::library {
 
 /// Throws as stereo::views_from_xr() does.
-inline stereo::HeadViews views_of(std::span<const View> views, const Placement& placement,
+inline stereo::HeadViews views_of(std::span<const View> views, Placement placement, const Model& model,
                                   const Settings& settings) {
+  placement.origin -= model.axes.origin;
   std::vector<Eye> eyes;
   std::vector<glm::ivec2> sizes;
   for (const View& view : views) {

@@ -30,7 +30,7 @@ MarkGround find_mark_ground(const Model& model, const glm::dvec3& up) {
   MarkGround found{.up = glm::normalize(up)};
   if (model.count() == 0) return found;
   const CoredModel cored(model);
-  found.middle = world_from_axes(model.axes) * cored.core.middle;
+  found.middle = into_world(cored.core.middle, model.axes);
   found.radius = cored.core.radius;
   if (const auto ground = find_ground(cored, found.up)) found.floor = ground->height;
   return found;

@@ -22,7 +22,7 @@
 
 namespace binosplat::python {
 
-stereo::EyePair Rig::pair(std::string_view axes, double near_plane) const {
+stereo::EyePair Rig::pair(const ModelAxes& axes, double near_plane) const {
   if (eyes)
     return stereo::rig_from_eyes(into_axes((*eyes)[0], axes), into_axes((*eyes)[1], axes), near_plane);
   stereo::RigSettings of_frame = settings;

@@ -5,10 +5,12 @@
 #include <cctype>
 #include <cmath>
 #include <memory>
+#include <new>
 #include <optional>
 #include <utility>
 
 #include "base/error.h"
+#include "base/memory.h"
 #include "formats/exposures.h"
 #include "formats/image_file.h"
 #include "formats/model_file.h"
@@ -32,7 +34,7 @@ template <typename T>
 void fill(Image& image, const py::array& array, float white) {
   if (!holds<T>(array)) return;
   const auto dense = py::array_t<T, py::array::c_style>::ensure(array);
-  if (!dense) throw py::error_already_set();
+  if (!dense) throw std::bad_alloc();  // which is what NumPy may lack: the type is right
   for (std::size_t k = 0; k < image.data.size(); ++k)
     image.data[k] = static_cast<float>(dense.data()[k]) / white;
 }
@@ -51,6 +53,8 @@ Image empty_image(const py::array& array, const std::string& name) {
         "1, 3 or 4 channels",
         name, std::string(py::str(array.attr("shape"))));
   }
+  if (4.0 * static_cast<double>(side(0)) * static_cast<double>(side(1) * side(2)) > memory_bytes())
+    throw std::bad_alloc();
   return {static_cast<int>(side(1)), static_cast<int>(side(0)), static_cast<int>(side(2))};
 }
 
@@ -100,6 +104,8 @@ glm::mat4x3 exposure_of(const ExposureRows& rows) {
   glm::mat4x3 exposure;
   for (int i = 0; i < 3; ++i) {
     const auto& row = rows[static_cast<std::size_t>(i)];
+    for (const float v : row)
+      if (!std::isfinite(v)) fail("exposure: expected three rows of four finite numbers");
     exposure[i] = {row[0], row[1], row[2]};
     exposure[3][i] = row[3];
   }
@@ -156,6 +162,7 @@ py::array array_of(Image&& image) {
 }
 
 Image image_of(const py::object& picture, const std::string& name) {
+  refuse_masked(picture, name);
   const py::array array = py::array::ensure(picture);
   if (!array) throw py::type_error(name + ": expected an array");
   if (!holds<float>(array) && !holds<double>(array) && !holds<std::uint8_t>(array) &&

@@ -4,12 +4,14 @@
 #include <functional>
 #include <initializer_list>
 #include <memory>
+#include <new>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
 #include "base/error.h"
+#include "base/memory.h"
 #include "python/module.h"
 #include "python/unlocked.h"
 #include "scene/axes.h"
@@ -19,11 +21,14 @@ namespace binosplat::python {
 
 namespace {
 
-using Floats = py::array_t<float, py::array::c_style | py::array::forcecast>;
+template <typename T>
+using Dense = py::array_t<T, py::array::c_style | py::array::forcecast>;
+using Floats = Dense<float>;
 
 /// NumPy's array of what is one, gives one, or lends its memory by DLPack; a tensor that is being trained is
 /// detached first.
 py::array as_array(const py::object& given, const char* name) {
+  refuse_masked(given, name);
   const py::object values = py::hasattr(given, "detach") ? given.attr("detach")() : given;
   const bool lends = !py::hasattr(values, "__array__") && py::hasattr(values, "__dlpack__");
   const auto numpy = py::module_::import("numpy");
@@ -35,8 +40,9 @@ py::array as_array(const py::object& given, const char* name) {
   return py::array(array);
 }
 
-/// The values as dense float32 rows of a shape: -1 is any size. Throws Error for another shape.
-Floats floats_of(const py::object& given, const char* name, std::initializer_list<py::ssize_t> shape) {
+/// The values as dense rows of a shape: -1 is any size. Throws Error for another shape.
+template <typename T = float>
+Dense<T> floats_of(const py::object& given, const char* name, std::initializer_list<py::ssize_t> shape) {
   const py::array array = as_array(given, name);
   bool fits = array.ndim() == static_cast<py::ssize_t>(shape.size());
   py::ssize_t axis = 0;
@@ -48,8 +54,9 @@ Floats floats_of(const py::object& given, const char* name, std::initializer_lis
     fail("{}: an array of shape {}: expected ({}{})", name, std::string(py::str(array.attr("shape"))),
          expected, shape.size() == 1 ? "," : "");
   }
-  auto dense = Floats::ensure(array);
-  if (!dense) throw py::error_already_set();
+  if (static_cast<double>(array.size()) * (4.0 + sizeof(T)) > memory_bytes()) throw std::bad_alloc();
+  auto dense = Dense<T>::ensure(array);
+  if (!dense) throw std::bad_alloc();  // which is what NumPy may lack: the type is right
   return dense;
 }
 
@@ -66,16 +73,17 @@ int degree_of(const py::array& sh) {
 
 /// The five arrays, dense.
 struct Columns {
-  Floats means, quats, scales, opacities, sh;
+  Dense<double> means;
+  Floats quats, scales, opacities, sh;
 };
 
 void fail_at(const char* name, std::size_t row, std::string_view why) { fail("{}[{}]: {}", name, row, why); }
 
 /// Why a row is no Gaussian.
 void check_row(const GaussianValues& values, std::size_t row, int coefficients) {
-  const auto finite = [](const float* of, int count) {
+  const auto finite = [](const auto* of, int count) {
     for (int k = 0; k < count; ++k) {
-      if (!std::isfinite(of[k])) return false;
+      if (!std::isfinite(static_cast<float>(of[k]))) return false;
     }
     return true;
   };
@@ -95,8 +103,8 @@ void fill_rows(Model& model, const Columns& from) {
   const std::size_t count = model.count();
   const int coefficients = 3 * sh_count(model.degree);
   for (std::size_t i = 0; i < count; ++i) {
-    const float *p = from.means.data() + 3 * i, *q = from.quats.data() + 4 * i,
-                *s = from.scales.data() + 3 * i;
+    const double* p = from.means.data() + 3 * i;
+    const float *q = from.quats.data() + 4 * i, *s = from.scales.data() + 3 * i;
     const GaussianValues values{{p[0], p[1], p[2]},
                                 {s[0], s[1], s[2]},
                                 {q[0], q[1], q[2], q[3]},
@@ -119,20 +127,21 @@ std::shared_ptr<Model> model_of(const Columns& columns, int degree, const Traini
   model->degree = degree;
   model->antialiased = training.antialiased;
   world_from_axes(training.axes);
-  model->axes = training.axes;
+  model->axes.letters = training.axes;
   if (columns.means.shape(0) == 0) fail("means: no Gaussians: expected one row or more");
   model->resize(static_cast<std::size_t>(columns.means.shape(0)));
   const Unlocked unlocked;
   fill_rows(*model, columns);
+  if (choose_origin(*model)) fill_rows(*model, columns);
   return model;
 }
 
 /// A copy of so many rows.
 template <typename Row>
-py::array_t<float> array_of_rows(const std::vector<Row>& rows) {
-  const auto* const first = reinterpret_cast<const float*>(rows.data());
-  return py::array_t<float>({static_cast<py::ssize_t>(rows.size()), static_cast<py::ssize_t>(Row::length())},
-                            first);
+py::array_t<typename Row::value_type> array_of_rows(const std::vector<Row>& rows) {
+  const auto* const first = reinterpret_cast<const typename Row::value_type*>(rows.data());
+  return py::array_t<typename Row::value_type>(
+      {static_cast<py::ssize_t>(rows.size()), static_cast<py::ssize_t>(Row::length())}, first);
 }
 
 /// A property; a Scaffold-GS model has none to show.
@@ -140,7 +149,12 @@ template <typename Get>
 auto of_gaussians(const char* name, const Get& get) {
   return [name, get](const Model& model) {
     if (model.scaffold) fail("{}: a Scaffold-GS model makes its Gaussians for each eye", name);
-    return get(model);
+    try {
+      return get(model);
+    } catch (const py::error_already_set& error) {
+      if (error.matches(PyExc_MemoryError)) throw std::bad_alloc();
+      throw;
+    }
   };
 }
 
@@ -152,7 +166,7 @@ void add_model_arrays(py::class_<Model, std::shared_ptr<Model>>& model) {
                        const py::object& opacities, const py::object& sh, const std::string& name,
                        const std::string& axes, bool antialiased) {
              Columns columns;
-             columns.means = floats_of(means, "means", {-1, 3});
+             columns.means = floats_of<double>(means, "means", {-1, 3});
              const py::ssize_t count = columns.means.shape(0);
              columns.quats = floats_of(quats, "quats", {count, 4});
              columns.scales = floats_of(scales, "scales", {count, 3});
@@ -163,8 +177,15 @@ void add_model_arrays(py::class_<Model, std::shared_ptr<Model>>& model) {
            }),
            py::arg("means"), py::arg("quats"), py::arg("scales"), py::arg("opacities"), py::arg("sh"),
            py::kw_only(), py::arg("name") = "arrays", py::arg("axes") = "RDF", py::arg("antialiased") = false)
-      .def_property_readonly("means",
-                             of_gaussians("means", [](const Model& m) { return array_of_rows(m.position); }))
+      .def_property_readonly("means", of_gaussians("means",
+                                                   [](const Model& m) -> py::array {
+                                                     if (m.axes.origin == glm::dvec3(0.0))
+                                                       return array_of_rows(m.position);
+                                                     std::vector<glm::dvec3> means;
+                                                     for (const glm::vec3& p : m.position)
+                                                       means.push_back(m.axes.origin + glm::dvec3(p));
+                                                     return array_of_rows(means);
+                                                   }))
       .def_property_readonly("quats",
                              of_gaussians("quats", [](const Model& m) { return array_of_rows(m.rotation); }))
       .def_property_readonly("scales",

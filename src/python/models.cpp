@@ -20,7 +20,7 @@ std::shared_ptr<Model> load(const std::filesystem::path& path, const std::option
   if (axes) world_from_axes(*axes);
   const Unlocked unlocked;
   auto model = std::make_shared<Model>(load_model(path, {lod, appearance}));
-  model->axes = axes.value_or(model->axes);
+  model->axes.letters = axes.value_or(model->axes.letters);
   if (antialiased) {
     model->antialiased = *antialiased;
     model->antialiased_by = "antialiased=";
@@ -38,7 +38,9 @@ void add_models(py::module_& module) {
       .def_property_readonly("count", &Model::count, "Gaussians; anchors of Scaffold-GS.")
       .def_readonly("degree", &Model::degree, "Of the spherical harmonics, 0 to 3.")
       .def_readonly("left_out", &Model::left_out, "Gaussians of the file that are not finite.")
-      .def_readonly("axes", &Model::axes, "Where its x, y and z point: R or L, U or D, F or B.")
+      .def_property_readonly(
+          "axes", [](const Model& m) { return m.axes.letters; },
+          "Where its x, y and z point: R or L, U or D, F or B.")
       .def_readonly("antialiased", &Model::antialiased, "Whether it was trained with anti-aliasing.")
       .def_readonly("antialiased_by", &Model::antialiased_by,
                     "What says so: a comment of its file, a file of the training's run; empty: nothing does.")

@@ -3,6 +3,7 @@
 #include "python/module.h"
 
 #include <array>
+#include <new>
 #include <string_view>
 
 #include "base/error.h"
@@ -15,6 +16,8 @@ namespace {
 // The exceptions' types, by ExitCode; the base for those that have none of their own. Never freed, as types
 // of a module.
 std::array<PyObject*, 5> error_types{};
+
+constexpr const char* not_made = "this object was made by __new__ alone: call its class, or what returns one";
 
 PyObject* add_error(py::module_& module, const char* name, const char* help, const py::tuple& bases) {
   const std::string full = std::string("binosplat.") + name;
@@ -33,6 +36,22 @@ void translate(std::exception_ptr thrown) {
     const auto words = py::reinterpret_steal<py::object>(
         PyUnicode_DecodeUTF8(text.data(), static_cast<Py_ssize_t>(text.size()), "replace"));
     PyErr_SetObject(error_types[static_cast<std::size_t>(error.code())], words.ptr());
+  } catch (const std::bad_alloc&) {
+    PyErr_SetString(error_types[static_cast<std::size_t>(ExitCode::out_of_memory)],
+                    "there is no memory for this: it takes more than there is");
+  } catch (const py::cast_error& error) {
+    // So pybind11 says it of what a shared pointer holds.
+    if (std::string_view(error.what()).find("non-held") == std::string_view::npos) throw;
+    PyErr_SetString(PyExc_TypeError, not_made);
+  }
+}
+
+/// Objects that only __new__ has seen are refused, where pybind11 would give them memory that nobody has set.
+void refuse_unmade(const py::module_& module) {
+  for (const auto& [name, thing] : module.attr("__dict__").cast<py::dict>()) {
+    if (!PyType_Check(thing.ptr())) continue;
+    auto* const type = py::detail::get_type_info(reinterpret_cast<PyTypeObject*>(thing.ptr()));
+    if (type != nullptr) type->operator_new = [](std::size_t) -> void* { throw py::type_error(not_made); };
   }
 }
 
@@ -55,6 +74,14 @@ void add_errors(py::module_& module) {
   py::register_exception_translator(translate);
 }
 
+void refuse_masked(const py::object& array, const std::string& name) {
+  if (py::module_::import("numpy.ma").attr("is_masked")(array).cast<bool>())
+    fail(
+        "{}: a masked array, and a mask has no place here: leave the masked rows out, or fill them "
+        "(filled())",
+        name);
+}
+
 }  // namespace binosplat::python
 
 PYBIND11_MODULE(_binosplat, module) {
@@ -69,4 +96,5 @@ PYBIND11_MODULE(_binosplat, module) {
   add_models(module);
   add_cameras(module);
   add_renderer(module);
+  refuse_unmade(module);
 }

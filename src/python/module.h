@@ -27,6 +27,9 @@ void add_model_arrays(py::class_<Model, std::shared_ptr<Model>>& model);
 void add_cameras(py::module_& module);
 void add_renderer(py::module_& module);
 
+/// Throws Error for masked arrays (numpy.ma) with a value that is masked; `name` begins its text.
+void refuse_masked(const py::object& array, const std::string& name);
+
 /// The picture as float32 of (height, width, channels), of one channel as (height, width). Takes its memory
 /// over.
 py::array array_of(Image&& image);

@@ -49,7 +49,7 @@ void check(const render::FrameSettings& s, bool given, bool scaffold, bool follo
 }
 
 /// The views of a camera or of both eyes in the model's frame.
-std::vector<shared::View> views_of(const std::variant<Camera, Rig>& view, const std::string& axes,
+std::vector<shared::View> views_of(const std::variant<Camera, Rig>& view, const ModelAxes& axes,
                                    double near_plane) {
   if (const auto* camera = std::get_if<Camera>(&view))
     return {make_view(into_axes(*camera, axes), near_plane)};

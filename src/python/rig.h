@@ -15,7 +15,7 @@ struct Rig {
   stereo::RigSettings settings;
 
   /// In the frame of a model with these axes (scene/axes.h). Throws Error as stereo::make_rig does.
-  stereo::EyePair pair(std::string_view axes = "RDF", double near_plane = near_default) const;
+  stereo::EyePair pair(const ModelAxes& axes = {}, double near_plane = near_default) const;
 };
 
 }  // namespace binosplat::python

@@ -90,7 +90,7 @@ void add_view(FramePlan& plan, shared::View view, const ViewRegion& region,
 // The least and the largest thing that the Gaussians of a box can be sorted by in a view.
 glm::dvec2 order_span(const shared::View& view, int order, const Bounds& box) {
   const glm::dvec3 anchor(view.anchor), forward(view.row_z), eye(view.eye), centre(view.centre);
-  const glm::dvec3 low = glm::dvec3(box.low) - anchor, high = glm::dvec3(box.high) - anchor;
+  const glm::dvec3 low = box.low - anchor, high = box.high - anchor;
   const double near_plane = view.anchor.w;
   const glm::dvec3 farthest = glm::max(glm::abs(low), glm::abs(high));
   const double reach = farthest.x + farthest.y + farthest.z + std::abs(view.row_z.w);

@@ -102,11 +102,14 @@ void add_places(const ModelBuffers::Page& page, std::span<const Range> ranges,
 void add_to(std::optional<Bounds>& box, const Model& model, std::span<const Range> ranges) {
   std::mutex adding;
   const auto add = [&](std::size_t begin, std::size_t end) {
-    Bounds some{model.position[ranges[begin].first], model.position[ranges[begin].first]};
+    glm::vec3 low = model.position[ranges[begin].first], high = low;
     for (const Range& range : ranges.subspan(begin, end - begin)) {
-      for (const glm::vec3& p : std::span(model.position).subspan(range.first, range.count))
-        some = {glm::min(some.low, p), glm::max(some.high, p)};
+      for (const glm::vec3& p : std::span(model.position).subspan(range.first, range.count)) {
+        low = glm::min(low, p);
+        high = glm::max(high, p);
+      }
     }
+    const Bounds some{low, high};
     const std::lock_guard lock(adding);
     box = box ? Bounds{glm::min(box->low, some.low), glm::max(box->high, some.high)} : some;
   };

@@ -47,8 +47,8 @@ glm::dmat3 world_from_axes(std::string_view letters) {
 }
 
 void bring_into_axes(Model& model, std::string_view letters) {
-  const glm::dmat3 turn = glm::transpose(world_from_axes(letters)) * world_from_axes(model.axes);
-  model.axes = letters;
+  const glm::dmat3 turn = glm::transpose(world_from_axes(letters)) * world_from_axes(model.axes.letters);
+  model.axes = {std::string(letters), turn * model.axes.origin};
   if (turn == glm::dmat3(1.0)) return;
   const HarmonicsTurn harmonics(turn);
   const double hand = glm::determinant(turn);
@@ -65,10 +65,17 @@ void bring_into_axes(Model& model, std::string_view letters) {
   parallel_for(model.count(), bring, 2048);
 }
 
-Camera into_axes(Camera camera, std::string_view letters) {
-  const glm::dmat3 into = glm::transpose(world_from_axes(letters));
-  camera.position = into * camera.position;
-  camera.rotation = into * camera.rotation;
+glm::dvec3 into_world(const glm::dvec3& point, const ModelAxes& axes) {
+  return world_from_axes(axes.letters) * (axes.origin + point);
+}
+
+glm::dvec3 into_axes(const glm::dvec3& point, const ModelAxes& axes) {
+  return glm::transpose(world_from_axes(axes.letters)) * point - axes.origin;
+}
+
+Camera into_axes(Camera camera, const ModelAxes& axes) {
+  camera.position = into_axes(camera.position, axes);
+  camera.rotation = glm::transpose(world_from_axes(axes.letters)) * camera.rotation;
   return camera;
 }
 

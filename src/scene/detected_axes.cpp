@@ -33,7 +33,7 @@ double share_in_view(const Model& model, const Camera& camera) {
   return static_cast<double>(seen) / static_cast<double>(looked_at);
 }
 
-double mean_in_view(const Model& model, std::span<const Camera> cameras, const std::string& axes) {
+double mean_in_view(const Model& model, std::span<const Camera> cameras, const ModelAxes& axes) {
   std::vector<double> shares(cameras.size());
   parallel_for(cameras.size(),
                [&](std::size_t i) { shares[i] = share_in_view(model, into_axes(cameras[i], axes)); });
@@ -51,7 +51,7 @@ Upright upright(const Model& model, const std::string& others, std::span<const C
   if (!capture) return {};
   const auto ground = find_ground(CoredModel(model));
   if (!ground) return {};
-  const glm::dvec3 up = glm::transpose(world_from_axes(model.axes)) * ground->up;
+  const glm::dvec3 up = glm::transpose(world_from_axes(model.axes.letters)) * ground->up;
   return {glm::dot(ground->up, capture->up), glm::dot(world_from_axes(others) * up, capture->up)};
 }
 
@@ -63,10 +63,10 @@ std::optional<DetectedAxes> detect_axes(const Model& model, const std::string& o
   std::vector<Camera> some;
   for (std::size_t i = 0; i < cameras.size(); i += cameras.size() / most_cameras + 1)
     some.push_back(cameras[i]);
-  DetectedAxes usual{.axes = model.axes, .cameras = some.size()}, other = usual;
+  DetectedAxes usual{.axes = model.axes.letters, .cameras = some.size()}, other = usual;
   other.axes = others;
-  usual.seen = other.seen_otherwise = mean_in_view(model, some, usual.axes);
-  other.seen = usual.seen_otherwise = mean_in_view(model, some, other.axes);
+  usual.seen = other.seen_otherwise = mean_in_view(model, some, {usual.axes});
+  other.seen = usual.seen_otherwise = mean_in_view(model, some, {other.axes});
   if (std::max(usual.seen, other.seen) < least_seen) return std::nullopt;
   if (usual.seen >= clearly * other.seen) return usual;
   if (other.seen >= clearly * usual.seen) return other;

@@ -24,21 +24,21 @@ constexpr std::size_t framing_sample = 200000;
 /// The place on the circle around the core where a camera at `turn` radians stands.
 struct Ring {
   Core core;
-  glm::dmat3 world;  // from the model's frame
+  const ModelAxes& axes;
   glm::dvec3 up, ahead, aside;
   double distance = 0.0;
   double elevation = glm::radians(elevation_degrees);
 
   Ring(const CoredModel& cored, int width, int height, double fov_degrees, const glm::dvec3& wanted_up,
        const std::optional<Capture::Around>& around)
-      : core(cored.core), world(world_from_axes(cored.model.axes)) {
+      : core(cored.core), axes(cored.model.axes) {
     const glm::dvec3 up_there = glm::normalize(wanted_up);
     // Any direction that is not up will do to start the circle; z, unless up is along it, is where COLMAP's
     // first camera looks.
     const glm::dvec3 start = std::abs(up_there.z) < 0.9 ? glm::dvec3(0, 0, 1) : glm::dvec3(1, 0, 0);
     const glm::dvec3 aside_there = glm::normalize(glm::cross(start, up_there));
     // The world's directions in the model's frame.
-    const glm::dmat3 into = glm::transpose(world);
+    const glm::dmat3 into = glm::transpose(world_from_axes(axes.letters));
     up = into * up_there;
     aside = into * aside_there;
     ahead = into * glm::cross(up_there, aside_there);
@@ -46,14 +46,14 @@ struct Ring {
     const double half_angle = std::atan(std::min(tan_y, tan_y * width / height));
     distance = core.radius / std::sin(half_angle);
     if (!around) return;
-    core.middle = into * around->middle;
+    core.middle = into_axes(around->middle, axes);
     distance = around->distance;
     elevation = around->elevation;
   }
 
   /// Where a point of the world lies, seen from the middle in the direction `away`.
   double turn_to(const glm::dvec3& away) const {
-    const glm::dvec3 there = glm::transpose(world) * away;
+    const glm::dvec3 there = glm::transpose(world_from_axes(axes.letters)) * away;
     return std::atan2(-glm::dot(there, aside), -glm::dot(there, ahead));
   }
 
@@ -152,13 +152,12 @@ Capture capture_of(const CoredModel& cored, const Ground& ground, double eyes) {
   Capture capture{ground.up};
   if (!ground.height) return capture;
   const Core& core = cored.core;
-  const glm::dmat3 world = world_from_axes(cored.model.axes);
   constexpr double highest = 0.7;  // radii: of a model that is no larger than a person
   const double eyes_at = *ground.height + std::min(eyes, highest * core.radius);
   constexpr double crowded = 0.2;  // sr, of 1.8 that are looked at
   std::optional<double> least;
   for (const double away : {0.9, 0.6, 0.4}) {
-    Capture::Around around{world * core.middle};
+    Capture::Around around{into_world(core.middle, cored.model.axes)};
     const double height = eyes_at - glm::dot(around.middle, ground.up);
     around.distance = std::hypot(away * core.radius, height);
     around.elevation = std::atan2(height, away * core.radius);
@@ -166,7 +165,7 @@ Capture capture_of(const CoredModel& cored, const Ground& ground, double eyes) {
     const Clearest clearest = clearest_on(cored.model, ring);
     if (least && *least <= clearest.obstructed) continue;
     least = clearest.obstructed;
-    around.first = world * ring.eye(clearest.turn) - around.middle;
+    around.first = into_world(ring.eye(clearest.turn), cored.model.axes) - around.middle;
     capture.around = around;
   }
   if (*least > crowded) {
@@ -179,12 +178,11 @@ std::vector<Camera> orbit(const CoredModel& cored, int count, int width, int hei
                           const Capture& capture) {
   const auto& [up, around] = capture;
   const Ring ring(cored, width, height, fov_degrees, up, around);
-  const glm::dmat3 world = world_from_axes(cored.model.axes);
   const double start = around ? ring.turn_to(around->first) : clearest_on(cored.model, ring).turn;
   std::vector<Camera> cameras;
   for (int k = 0; k < count; ++k) {
-    const glm::dvec3 eye = world * ring.eye(start + glm::two_pi<double>() * k / count);
-    cameras.push_back(look_at(eye, world * ring.core.middle, up, fov_degrees, width, height));
+    const glm::dvec3 eye = into_world(ring.eye(start + glm::two_pi<double>() * k / count), ring.axes);
+    cameras.push_back(look_at(eye, into_world(ring.core.middle, ring.axes), up, fov_degrees, width, height));
     cameras.back().name = fmt::format("orbit_{:03}", k);
   }
   return cameras;

@@ -40,7 +40,7 @@ struct Piece {
 std::vector<Piece> pieces_of(const CoredModel& cored) {
   const Model& model = cored.model;
   const Core& core = cored.core;
-  const glm::dmat3 world = world_from_axes(model.axes);
+  const glm::dmat3 world = world_from_axes(model.axes.letters);
   std::vector<Piece> pieces;
   for (std::size_t i = 0; i < model.count(); i += model.count() / ground_sample + 1) {
     const glm::vec3& s = model.scale[i];
@@ -176,8 +176,8 @@ std::optional<Ground> find_ground(const CoredModel& cored, const std::optional<g
     ground.up = upper(*axis, pieces);
   }
   if (const auto floor = floor_of(ground.up, pieces))
-    ground.height = glm::dot(world_from_axes(cored.model.axes) * cored.core.middle, ground.up) +
-                    *floor * cored.core.radius;
+    ground.height =
+        glm::dot(into_world(cored.core.middle, cored.model.axes), ground.up) + *floor * cored.core.radius;
   return ground;
 }
 

@@ -4,10 +4,16 @@
 #include <cmath>
 #include <glm/gtc/quaternion.hpp>
 #include <numeric>
+#include <utility>
+
+#include "base/error.h"
+#include "scene/core.h"
 
 namespace binosplat {
 
 namespace {
+
+constexpr float opacity_rounding = 1e-3f;  // a step of halves beyond 1
 
 bool finite(const glm::vec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 
@@ -37,8 +43,11 @@ bool decode_raw(Model& model, std::size_t i, const GaussianValues& raw) {
 }
 
 bool place(Model& model, std::size_t i, const GaussianValues& values) {
-  const auto& [position, scale, rotation, opacity, sh] = values;
+  const auto& [from_zero, scale, rotation, given_opacity, sh] = values;
+  const glm::vec3 position(from_zero - model.axes.origin);
   const std::size_t count = 3 * static_cast<std::size_t>(sh_count(model.degree));
+  const float nearest = std::clamp(given_opacity, 0.0f, 1.0f);
+  const float opacity = std::abs(given_opacity - nearest) <= opacity_rounding ? nearest : given_opacity;
   // The squares of an fp32 quaternion can overflow fp32.
   const glm::dvec4 q(rotation);
   const double square = glm::dot(q, q), norm = std::sqrt(square);
@@ -52,6 +61,19 @@ bool place(Model& model, std::size_t i, const GaussianValues& values) {
   return finite(position) && finite(scale) && glm::all(glm::greaterThanEqual(scale, glm::vec3(0.0f))) &&
          opacity >= 0.0f && opacity <= 1.0f && std::isfinite(norm) && norm > 0.0 &&
          std::all_of(sh, sh + count, [](float v) { return std::isfinite(v); });
+}
+
+void check_opacities(const std::string& source, std::span<const float> opacities) {
+  constexpr std::ptrdiff_t few = 100;  // one in so many may be damaged
+  const auto is_beyond = [](float a) {
+    return std::isfinite(a) && std::abs(a - 0.5f) > 0.5f + opacity_rounding;
+  };
+  if (std::ranges::count_if(opacities, is_beyond) <= std::ssize(opacities) / few) return;
+  const auto [low, high] = std::ranges::minmax(opacities);
+  fail(
+      "{}: opacities are from {:.3g} to {:.3g}, as logits are: expected 0 to 1, the sigmoid of what trainers "
+      "store",
+      source, low, high);
 }
 
 void keep_only(Model& model, const std::vector<std::uint8_t>& kept) {
@@ -72,6 +94,38 @@ void keep_only(Model& model, const std::vector<std::uint8_t>& kept) {
   model.resize(to);
 }
 
+bool choose_origin(Model& model) {
+  constexpr std::size_t sample = 20000;
+  Model some;
+  for (std::size_t i = 0; i < model.count(); i += model.count() / sample + 1) {
+    some.position.push_back(model.position[i]);
+    some.scale.push_back(model.scale[i]);
+  }
+  if (some.count() == 0) return false;
+  const auto [middle, radius] = core_of(some);
+  constexpr double far = 256.0;  // where floats round by a hundredth of a pixel of a picture of 1,000 px
+  if (glm::length(middle) <= far * radius) return false;
+  const double step = std::exp2(std::ceil(std::log2(radius)));
+  model.axes.origin = glm::round(middle / step) * step;  // of so few digits that it rounds nothing
+  return true;
+}
+
+void set_far_positions(Model& model, std::span<const glm::dvec3> positions) {
+  if (!choose_origin(model)) return;
+  for (std::size_t i = 0; i < model.count(); ++i) model.position[i] = positions[i] - model.axes.origin;
+}
+
+double move_origin(Model& model, const glm::dvec3& origin) {
+  const glm::dvec3 by = std::exchange(model.axes.origin, origin) - origin;
+  double most = 0.0;
+  for (glm::vec3& p : model.position) {
+    const glm::dvec3 exact = glm::dvec3(p) + by;
+    p = exact;
+    most = std::max(most, glm::distance(glm::dvec3(p), exact));
+  }
+  return most;
+}
+
 Bounds core_bounds(const Model& model) {
   Bounds bounds;
   std::vector<glm::vec3> positions;
@@ -89,15 +143,15 @@ Bounds core_bounds(const Model& model) {
       std::nth_element(axis.begin(), at, axis.end());
       return *at;
     };
-    bounds.low[i] = percentile(0.02);
-    bounds.high[i] = percentile(0.98);
+    bounds.low[i] = model.axes.origin[i] + percentile(0.02);
+    bounds.high[i] = model.axes.origin[i] + percentile(0.98);
   }
   return bounds;
 }
 
 Bounds all_bounds(const Model& model) {
   Bounds bounds{model.position[0], model.position[0]};
-  for (const glm::vec3& p : model.position) bounds = {glm::min(bounds.low, p), glm::max(bounds.high, p)};
+  for (const glm::dvec3 p : model.position) bounds = {glm::min(bounds.low, p), glm::max(bounds.high, p)};
   return bounds;
 }
 

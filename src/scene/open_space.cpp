@@ -44,16 +44,16 @@ struct Map {
 /// The floor's directions and the map's place, in the model's frame.
 struct Plan {
   Core core;
-  glm::dmat3 world;
+  const ModelAxes& axes;
   glm::dvec3 up, aside, ahead;
   double floor, cell;
 
   Plan(const CoredModel& cored, const Ground& ground)
-      : core(cored.core), world(world_from_axes(cored.model.axes)), cell(core.radius / space_half) {
-    up = glm::transpose(world) * ground.up;
+      : core(cored.core), axes(cored.model.axes), cell(core.radius / space_half) {
+    up = glm::transpose(world_from_axes(axes.letters)) * ground.up;
     aside = level_directions(up)[0];
     ahead = level_directions(up)[1];
-    floor = *ground.height - glm::dot(core.middle, up);
+    floor = *ground.height - glm::dot(axes.origin + core.middle, up);
   }
 
   glm::dvec3 place(const glm::dvec2& at, double height) const {
@@ -147,9 +147,10 @@ std::optional<Capture::Around> open_space(const CoredModel& cored, const Ground&
     farthest = seen;
     first = away;
   }
-  Capture::Around around{plan.world * plan.place(middle, eyes)};
+  Capture::Around around{into_world(plan.place(middle, eyes), plan.axes)};
   around.distance = to_the_border * radius * plan.cell;
-  around.first = plan.world * (first.x * plan.aside + first.y * plan.ahead) * around.distance;
+  around.first =
+      world_from_axes(plan.axes.letters) * (first.x * plan.aside + first.y * plan.ahead) * around.distance;
   return around;
 }
 

@@ -72,7 +72,7 @@ Model repeat(Model model, int nx, int nz, double spacing) {
   if (!std::isfinite(static_cast<float>(farthest))) {
     fail("--spacing {}: expected a distance between copies in world units", spacing);
   }
-  const Grid grid{nx, nz, glm::transpose(world_from_axes(model.axes)), spacing};
+  const Grid grid{nx, nz, glm::transpose(world_from_axes(model.axes.letters)), spacing};
   if (model.scaffold) {
     Model repeated = stand_in(repeat(*model.scaffold, grid));
     repeated.kernel_px2 = model.kernel_px2;

@@ -11,7 +11,7 @@ namespace binosplat {
 namespace {
 
 constexpr float thin = 0.01f;
-constexpr float far_in_diagonals = 5.0f;
+constexpr double far_in_diagonals = 5.0;
 
 /// The highest degree of the harmonics that says anything.
 std::size_t degree_in_use(const Model& model, std::size_t i) {
@@ -26,7 +26,7 @@ std::size_t degree_in_use(const Model& model, std::size_t i) {
   return 0;
 }
 
-void count_scale(ModelSummary& summary, glm::vec3 scale, float diagonal) {
+void count_scale(ModelSummary& summary, glm::vec3 scale, double diagonal) {
   std::sort(&scale.x, &scale.x + 3);
   if (scale.z == 0.0f) {
     ++summary.without_size;
@@ -44,12 +44,13 @@ ModelSummary summarise(const Model& model) {
   if (model.count() == 0) fail("{}: the model has no Gaussians", model.name);
   ModelSummary summary;
   summary.core = core_bounds(model);
-  summary.all = all_bounds(model);
-  const float diagonal = glm::length(summary.core.high - summary.core.low);
+  const auto [low, high] = all_bounds(model);
+  summary.all = {model.axes.origin + low, model.axes.origin + high};
+  const double diagonal = glm::length(summary.core.high - summary.core.low);
   std::vector<double> opacities, scales;
   for (std::size_t i = 0; i < model.count(); ++i) {
-    const glm::vec3& p = model.position[i];
-    const glm::vec3 outside = p - glm::clamp(p, summary.core.low, summary.core.high);
+    const glm::dvec3 p = model.axes.origin + glm::dvec3(model.position[i]);
+    const glm::dvec3 outside = p - glm::clamp(p, summary.core.low, summary.core.high);
     summary.far += glm::length(outside) > far_in_diagonals * diagonal ? 1 : 0;
     const float opacity = model.opacity[i];
     ++summary.opacity[std::min<std::size_t>(9, static_cast<std::size_t>(10.0f * opacity))];

@@ -10,7 +10,7 @@
 namespace binosplat {
 
 struct ModelSummary {
-  Bounds all;                             // around all positions, in the model's frame and units
+  Bounds all;                             // around all positions, from zero
   Bounds core;                            // core_bounds
   std::array<std::size_t, 10> opacity{};  // Gaussians by tenths of opacity; 1 counts to the last
   /// Gaussians by decades of their largest scale: n for scales from 10^n up to 10^(n+1), world units.

@@ -69,7 +69,7 @@ void map_ellipsoid(const glm::dmat3& linear, glm::vec4& rotation, glm::vec3& sca
 
 }  // namespace
 
-bool transform(Model& model, const glm::dmat4& map) {
+bool transform(Model& model, const glm::dmat4& map, std::vector<glm::dvec3>& places) {
   const glm::dmat3 linear(map);
   if (!all_finite(linear)) return false;
   const auto svd = decomposed(linear);
@@ -86,8 +86,11 @@ bool transform(Model& model, const glm::dmat4& map) {
   if (turns && model.degree > 0) harmonics.emplace(q);
   const std::size_t values = 3 * static_cast<std::size_t>(sh_count(model.degree));
   std::atomic<bool> good = true;
+  const std::size_t before = places.size();
+  places.resize(before + model.count());
   const auto move = [&](std::size_t i) {
-    model.position[i] = glm::dvec3(map * glm::dvec4(model.position[i], 1.0));
+    places[before + i] = glm::dvec3(map * glm::dvec4(model.position[i], 1.0));
+    model.position[i] = places[before + i];
     if (!even) {
       map_ellipsoid(linear, model.rotation[i], model.scale[i]);
     } else {

@@ -16,8 +16,9 @@ namespace binosplat {
 ///   are then not those of one that was trained so; but no harmonics of the same degree could be, and the
 ///   turn nearest to M is what KHR_gaussian_splatting asks for.
 ///
-/// Returns whether all numbers are finite; where they are not, the model is of no use any more. Not for
-/// models with a scaffold.
-[[nodiscard]] bool transform(Model& model, const glm::dmat4& map);
+/// Appends where each Gaussian comes to lie to `places`, of more digits than the model keeps. Returns whether
+/// all numbers are finite; where they are not, the model is of no use any more. Not for models with a
+/// scaffold or an origin.
+[[nodiscard]] bool transform(Model& model, const glm::dmat4& map, std::vector<glm::dvec3>& places);
 
 }  // namespace binosplat

@@ -83,6 +83,16 @@ LodFiles::LodFiles(const fs::path& path) {
   source_ = std::make_unique<Source>(lod_meta, json);
   chunks_ = source_->levels.leaves(json);
   check_leaves(source_->path, chunks_);
+  Model middles;
+  for (const LodChunk& chunk : chunks_) {
+    middles.position.emplace_back(0.5 * (chunk.low + chunk.high));
+    middles.scale.emplace_back(chunk.high - chunk.low);
+  }
+  if (choose_origin(middles)) like_.axes = middles.axes;
+  for (LodChunk& chunk : chunks_) {
+    chunk.low -= like_.axes.origin;
+    chunk.high -= like_.axes.origin;
+  }
   for (int level = 0; level < source_->levels.count(); ++level)
     static_cast<void>(source_->levels.taken(level));  // throws where leaves share Gaussians
   spare_ = (chunks_.size() + 1) * ModelChunks::block;

@@ -31,7 +31,7 @@ class LodFiles {
   std::string name() const;
   /// The model without its Gaussians.
   const Model& like() const { return like_; }
-  /// The leaves of the file's tree.
+  /// The leaves of the file's tree, their boxes from the model's origin.
   const std::vector<LodChunk>& chunks() const { return chunks_; }
   /// The Gaussians that belong to every level.
   Model environment() const;

@@ -43,7 +43,7 @@ TEST_F(GltfNodes, AreReadAsTheyAre) {
   const Model found = load();
   EXPECT_EQ(found.position, model.position);
   EXPECT_EQ(found.sh, model.sh);
-  EXPECT_EQ(found.axes, "LUF");
+  EXPECT_EQ(found.axes.letters, "LUF");
 }
 
 TEST_F(GltfNodes, TurnWhatIsInThem) {
@@ -60,6 +60,55 @@ TEST_F(GltfNodes, TurnWhatIsInThem) {
   EXPECT_FALSE(follows_at(found, 0, map, glm::dmat3(1.0)));
   glb.node() = {{"mesh", 0}, {"matrix", list_of_matrix(map)}};
   EXPECT_TRUE(follows_at(load(), 0, map, quarter));
+}
+
+TEST_F(GltfNodes, KeepTheDigitsOfFarPlaces) {
+  const glm::dvec3 far(4120000.25, 680000.5, 4800000.125);
+  const auto worst = [&] {
+    const Model found = load();
+    double worst_of = 0.0;
+    for (std::size_t i = 0; i < found.count(); ++i) {
+      worst_of = std::max(worst_of, glm::distance(found.axes.origin + glm::dvec3(found.position[i]),
+                                                  far + glm::dvec3(model.position[i % model.count()])));
+    }
+    return worst_of;
+  };
+  glb.node()["translation"] = {far.x, far.y, far.z};
+  EXPECT_LT(worst(), 1e-5);
+  glb.root["nodes"].push_back(glb.node());  // of several parts, too
+  glb.root["scenes"][0]["nodes"] = {0, 1};
+  EXPECT_LT(worst(), 1e-5);
+  glb.node()["translation"][2] = static_cast<float>(far.z);  // planted fault
+  EXPECT_GT(worst(), 0.1);
+}
+
+// The draft of August 2025 has the colour and the opacity of points.
+TEST_F(GltfNodes, AreReadOfTheDraftWithColours) {
+  Glb draft = test::gltf_of(test::random_model(11, 20, 0));
+  std::string colours;
+  for (std::size_t i = 0; i < 20; ++i)
+    for (const float v : {0.25f, 0.5f, 1.0f, 0.75f}) colours += test::little(v);
+  draft.root["bufferViews"].push_back(
+      {{"buffer", 0}, {"byteOffset", draft.binary.size()}, {"byteLength", colours.size()}});
+  draft.root["accessors"].push_back({{"bufferView", draft.root["bufferViews"].size() - 1},
+                                     {"componentType", 5126},
+                                     {"count", 20},
+                                     {"type", "VEC4"}});
+  draft.binary += colours;
+  draft.root["buffers"][0]["byteLength"] = draft.binary.size();
+  json& attributes = draft.attributes();
+  attributes["COLOR_0"] = draft.root["accessors"].size() - 1;
+  const auto opacity = attributes[test::splatting + ":OPACITY"];
+  const Model now = load_gltf_bytes(draft.bytes());
+  EXPECT_NE(now.opacity[0], 0.75f) << "of the format as it is COLOR_0 is for others";
+  attributes.erase(test::splatting + ":OPACITY");
+  attributes.erase(test::splatting + ":SH_DEGREE_0_COEF_0");
+  const Model found = load_gltf_bytes(draft.bytes());
+  EXPECT_EQ(found.opacity, std::vector<float>(20, 0.75f));
+  EXPECT_NEAR(0.5 + sh_c0 * found.sh[0], 0.25, 1e-6);
+  EXPECT_EQ(found.scale, now.scale);
+  attributes[test::splatting + ":OPACITY"] = opacity;  // neither the one nor the other
+  EXPECT_TRUE(refuses_gltf(draft.bytes(), {"SH_DEGREE_0_COEF_0"}));
 }
 
 // Scale first, then rotation, then translation; a parent's after its child's.

@@ -95,7 +95,7 @@ TEST(ModelOutput, TheComparisonCatchesFaults) {
       {"dc", [&](Model& m) { std::swap(m.sh[0], m.sh[1]); }},
       {"sh", [&](Model& m) { std::swap(m.sh[3], m.sh[4]); }},    // channels
       {"sh", [&](Model& m) { std::swap(m.sh[45], m.sh[42]); }},  // coefficients
-      {"axes", [&](Model& m) { m.axes = "LUF"; }},
+      {"axes", [&](Model& m) { m.axes.letters = "LUF"; }},
       {"count", [&](Model& m) { m.resize(m.count() - 1); }}};
   for (const ModelFormat format : formats) {
     const Model model = in_axes_of(hard_model(3, 700, 7), format);

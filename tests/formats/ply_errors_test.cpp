@@ -163,6 +163,11 @@ TEST(PlyErrors, FilesThatHoldSomethingElse) {
   const std::string points =
       "element vertex 1\nproperty float x\nproperty float y\nproperty float z\nproperty uchar red\n"
       "property uchar green\nproperty uchar blue\n";
+  EXPECT_TRUE(
+      refuses_ply("ply\nformat binary_little_endian 1.0\nelement vertex_0 0\nproperty float x\nelement "
+                  "codebook_centers 256\n"
+                  "property float features_dc\nend_header\n",
+                  {"Reduced-3DGS", "codebook_centers", "point_cloud.ply"}));
   EXPECT_TRUE(refuses_ply(ply(points), {"is a point cloud", "point_cloud/iteration_N/point_cloud.ply"}));
   EXPECT_TRUE(
       refuses_ply(ply(points + "element face 2\nproperty list uchar int i\n"), {"is a mesh of 2 faces"}));

@@ -101,7 +101,8 @@ TEST(SpzErrors, NothingUnfoldsBeyondItsHeader) {
   EXPECT_TRUE(refuses_spz(
       test::gzipped(extended + little(1u) + little(0xfffffff0u) + std::string(std::size_t{1} << 22, '\0')),
       {"an extension of 4294967280 bytes runs past"}));
-  EXPECT_EQ(load_spz(test::gzipped(extended + little(0xadbe0003u) + little(4u) + little(7u))).axes, "LUF");
+  EXPECT_EQ(load_spz(test::gzipped(extended + little(0xadbe0003u) + little(4u) + little(7u))).axes.letters,
+            "LUF");
 }
 
 TEST(SpzErrors, Streams) {
@@ -173,19 +174,19 @@ TEST(SpzErrors, GaussiansThatBytesCannotHold) {
 TEST(SpzErrors, Extensions) {
   REQUIRE_FIXTURES(folder);
   const std::string good = test::read_text(folder / "spz/synthetic-v4-extensions.spz");
-  EXPECT_EQ(load_spz(good).axes, "RDF");
+  EXPECT_EQ(load_spz(good).axes.letters, "RDF");
   EXPECT_TRUE(
       refuses_spz(patched(good, 36, little(0xfffffff0u)), {"an extension of 4294967280 bytes runs past"}));
   const std::size_t axes = good.find(little(0xadbe0003u));
   ASSERT_NE(axes, std::string::npos);
   EXPECT_TRUE(refuses_spz(patched(good, axes + 8, little(17u)), {"names the coordinate system 17"}));
-  EXPECT_EQ(load_spz(patched(good, axes + 8, little(0u))).axes, "RUB");
+  EXPECT_EQ(load_spz(patched(good, axes + 8, little(0u))).axes.letters, "RUB");
 }
 
 TEST(Spz, SaysWhatItIs) {
   REQUIRE_FIXTURES(folder);
   const Model model = load_model(folder / "spz/adobe-train-v4-sh3-rdf2rub-aa.spz");
-  EXPECT_EQ(model.axes, "RUB");
+  EXPECT_EQ(model.axes.letters, "RUB");
   EXPECT_TRUE(model.antialiased);
   EXPECT_FALSE(load_model(folder / "spz/adobe-train-v3-sh3-rdf2rub.spz").antialiased);
   const std::string said = said_of(test::read_text(folder / "spz/adobe-v4-sh4.spz"));

@@ -7,10 +7,12 @@
 #include <algorithm>
 
 #include "base/output_file.h"
+#include "base/text.h"
 #include "formats/files_of_model.h"
 #include "formats/flat_values.h"
 #include "formats/model_file.h"
 #include "formats/model_output.h"
+#include "support/broken.h"
 #include "support/ply.h"
 #include "support/program.h"
 
@@ -19,28 +21,77 @@ namespace {
 
 namespace fs = std::filesystem;
 
-TEST(FlatValues, OfYamlAreTheLinesWithOneValue) {
-  const FlatValues values = yaml_values(
-      "!!python/object:nerfstudio.engine.trainer.TrainerConfig\r\n"
-      "steps:\n- 7000\n- name: x\n"
-      "pipeline: &id001 !!python/object:nerfstudio.Pipeline\n"
-      "  _target: !!python/name:nerfstudio.Pipeline ''\n"
-      "  model: !!python/object:nerfstudio.Model\n"
-      "    camera_optimizer: !!python/object:nerfstudio.Optimizer\n"
-      "      mode: 'off'   # for now\n"
-      "    sh_degree: 3   # at most\n"
-      "    grid: [1, 2]\n"
-      "    other: *id001\n"
-      "  after: \"a: b # c\"\n"
-      "last: !!str true\n");
+TEST(FlatValues, OfYamlAreThoseOfItsMappings) {
+  const FlatValues values = yaml_values("f.yml",
+                                        "!!python/object:nerfstudio.engine.trainer.TrainerConfig\r\n"
+                                        "steps:\n- 7000\n- name: x\n"
+                                        "pipeline: &id001 !!python/object:nerfstudio.Pipeline\n"
+                                        "  _target: !!python/name:nerfstudio.Pipeline ''\n"
+                                        "  path: !!python/object/apply:pathlib.PosixPath\n  - /\n  - data\n"
+                                        "  model: !!python/object:nerfstudio.Model\n"
+                                        "    camera_optimizer: !!python/object:nerfstudio.Optimizer\n"
+                                        "      mode: 'off'   # for now\n"
+                                        "    sh_degree: 3   # at most\n"
+                                        "    grid: [1, 2]\n"
+                                        "    other: *id001\n"
+                                        "  after: \"a: b # c\"\n"
+                                        "last: !!str yes\n");
   const FlatValues expected = {{"pipeline._target", ""},
                                {"pipeline.model.camera_optimizer.mode", "off"},
                                {"pipeline.model.sh_degree", "3"},
                                {"pipeline.after", "a: b # c"},
-                               {"last", "true"}};
+                               {"last", "yes"}};
   EXPECT_EQ(values, expected);
-  EXPECT_TRUE(yaml_values("").empty());
-  EXPECT_TRUE(yaml_values("no pairs\n: \n- a\n#b: c").size() <= 1);
+  EXPECT_TRUE(yaml_values("f.yml", "").empty() || yaml_values("f.yml", "").begin()->second == "null");
+}
+
+// What PyYAML makes of them, which trainers write and read with.
+TEST(FlatValues, OfYamlAreWhatYamlSays) {
+  const auto a = [](const std::string& text) {
+    const FlatValues values = yaml_values("f.yml", text);
+    const auto found = values.find("a");
+    return found == values.end() ? std::string("none") : found->second;
+  };
+  for (const char* yes :
+       {"true", "True", "TRUE", "yes", "on", "ON", "!!bool 'true'", "\ttrue", "\n  true", "&x true"})
+    EXPECT_EQ(a(std::string("a: ") + yes + "\n"), "true") << yes;
+  for (const char* no : {"false", "no", "Off", "\n  false"})
+    EXPECT_EQ(a(std::string("a: ") + no + "\n"), "false") << no;
+  // Text is no truth value, however it reads.
+  for (const char* text : {"'true'", "\"true\"", "!!str true", "tRUE"})
+    EXPECT_EQ(lowered(a(std::string("a: ") + text + "\n")), "'true'") << text;
+  EXPECT_EQ(a("a: |\n  true\nb: 1\n"), "true\n");
+  EXPECT_EQ(a("a: >-\n  false\n"), "'false'");
+  EXPECT_EQ(a("a: |\n  b: 1\n  a: true\n"), "b: 1\na: true\n") << "what is text is no key";
+  EXPECT_EQ(a("{a: yes, b: [1, {a: no}]}"), "true");
+  EXPECT_EQ(a("\xef\xbb\xbf"
+              "a: on\n"),
+            "true");
+  EXPECT_EQ(a("a: 99999999999999999999999999\n"), "99999999999999999999999999");
+  EXPECT_EQ(a("a:true\n"), "none");
+  EXPECT_EQ(a("a:\n"), "null");
+  EXPECT_EQ(a("b: &x on\na: *x\n"), "true");
+  // The last one counts, with all that is in it.
+  EXPECT_EQ(a("a: true\na: false\n"), "false");
+  const FlatValues last = yaml_values("f.yml", "m: {a: 1, n: {b: 2}}\nm: {c: 4}\n");
+  EXPECT_EQ(last, (FlatValues{{"m.c", "4"}}));
+}
+
+TEST(FlatValues, OfHostileYamlAreAnError) {
+  const auto refuses = [](const std::string& text, std::initializer_list<std::string> parts) {
+    return test::fails_saying([&] { yaml_values("f.yml", text); }, parts);
+  };
+  EXPECT_TRUE(refuses("a: 'x\n", {"f.yml, line "}));
+  EXPECT_TRUE(refuses(std::string("a: 1\nb\0: 2\n", 12), {"f.yml, line 2: the control character 0"}));
+  EXPECT_TRUE(refuses("a: tr\4ue\n", {"f.yml, line 1: the control character 4"}));
+  EXPECT_TRUE(refuses(std::string(1 << 20, '['), {"f.yml"}));
+  std::string deep, bomb = "a0: &a0 {x: 1, y: 2}\n", flat;
+  for (int i = 0; i < 100000; ++i) deep += "{a: ";
+  EXPECT_TRUE(refuses(deep, {"f.yml"}));
+  for (int i = 1; i < 40; ++i) bomb += fmt::format("a{0}: &a{0} {{x: *a{1}, y: *a{1}}}\n", i, i - 1);
+  EXPECT_TRUE(refuses(bomb, {"f.yml", "more than 20000 values"}));
+  for (int i = 0; i < 30000; ++i) flat += fmt::format("k{}: 1\n", i);
+  EXPECT_TRUE(refuses(flat, {"f.yml", "more than 20000 values"}));
 }
 
 TEST(FlatValues, OfANamespaceMayHoldCommasInQuotesAndBrackets) {
@@ -121,11 +172,23 @@ TEST_F(TrainingRunTest, OfGsplatSaysWhatIsDrawnOtherwise) {
       {"post_processing: bilateral_grid", "bilateral grid"},
       {"pose_opt: true", "cameras were moved"}};
   for (const auto& [line, part] : changed) {
-    const auto run = found(gsplat_ply, "run/cfg.yml", std::string(line) + "\n" + gsplat_with(""));
+    const auto run = found(gsplat_ply, "run/cfg.yml", gsplat_with(std::string(line) + "\n"));
     ASSERT_EQ(run->otherwise.size(), 1u) << line << otherwise(run);
     EXPECT_TRUE(says(run->otherwise[0], part)) << run->otherwise[0];
   }
-  EXPECT_EQ(found(gsplat_ply, "run/cfg.yml", "antialiased: true\n" + gsplat_with(""))->antialiased, true);
+  EXPECT_EQ(found(gsplat_ply, "run/cfg.yml", gsplat_with("antialiased: true\n"))->antialiased, true);
+}
+
+TEST_F(TrainingRunTest, TextIsNoTruthValue) {
+  const auto said = [&](const std::string& line) {
+    const auto run = found(gsplat_ply, "run/cfg.yml", gsplat_with(line));
+    return run ? run->antialiased : std::optional<bool>();
+  };
+  EXPECT_EQ(said("antialiased: yes\n"), true);
+  EXPECT_EQ(said("antialiased:\n  false\n"), false);
+  for (const char* text : {"|\n  true\n", "'true'\n", "99999999999999999999\n", "\n", "[true]\n"})
+    EXPECT_EQ(said(std::string("antialiased: ") + text), std::nullopt) << text;
+  EXPECT_FALSE(found(gsplat_ply, "run/cfg.yml", gsplat_with("x: 'y\n"))) << "with a warning";
 }
 
 TEST_F(TrainingRunTest, OfNerfstudioIsNested) {
@@ -203,7 +266,7 @@ TEST_F(TrainingRunTest, IsTheNearestThatCanBeRead) {
 }
 
 TEST_F(TrainingRunTest, DecidesOnlyWhatTheModelDoesNotSay) {
-  ASSERT_TRUE(found(gsplat_ply, "run/cfg.yml", "antialiased: true\n" + gsplat_with("")));
+  ASSERT_TRUE(found(gsplat_ply, "run/cfg.yml", gsplat_with("antialiased: true\n")));
   const fs::path ply = folder / gsplat_ply;
   const auto loaded = [&](const std::string& comments) {
     test::PlyFile file = test::inria_file(0, 5);

@@ -4,6 +4,7 @@
 
 #include <glm/gtc/matrix_transform.hpp>
 
+#include "formats/usd.h"
 #include "scene/axes.h"
 #include "scene/transform.h"
 #include "support/broken.h"
@@ -15,6 +16,11 @@
 
 namespace binosplat {
 namespace {
+
+bool transform(Model& model, const glm::dmat4& map) {
+  std::vector<glm::dvec3> places;
+  return binosplat::transform(model, map, places);
+}
 
 using test::load_usd_text;
 using test::usd_file;
@@ -46,7 +52,7 @@ TEST(Usd, ReadsWhatAPlyReads) {
     const Model read = load_usd_text(usd_file(usd_prim(model)));
     EXPECT_TRUE(test::equal(read, model)) << degree;
     EXPECT_EQ(read.format, "OpenUSD");
-    EXPECT_EQ(read.axes, "RUB");
+    EXPECT_EQ(read.axes.letters, "RUB");
     EXPECT_EQ(read.perspective, Perspective{});
   }
   // Planted fault: x y z w in place of w x y z.
@@ -63,7 +69,7 @@ TEST(Usd, LooksAsTheSamePlyInTheFrameOfItsAxes) {
     bring_into_axes(moved, up == "Y" ? "RUB" : "RFU");
     Model read =
         load_usd_text(test::replaced(usd_file(usd_prim(moved)), "upAxis = \"Y\"", "upAxis = \"" + up + "\""));
-    EXPECT_EQ(read.axes, moved.axes);
+    EXPECT_EQ(read.axes.letters, moved.axes.letters);
     bring_into_axes(read, "RDF");
     for (std::size_t i = 0; i < model.count(); ++i) EXPECT_EQ(read.position[i], model.position[i]);
     for (std::size_t k = 0; k < model.sh.size(); ++k) EXPECT_NEAR(read.sh[k], model.sh[k], 1e-5f);
@@ -151,6 +157,95 @@ TEST(Usd, Transforms) {
   EXPECT_TRUE(lies_at(placed(parent, own + "uniform token[] xformOpOrder = [\"!resetXformStack!\", "
                                            "\"xformOp:translate\"]\n"),
                       {2, 3, 4}));
+}
+
+TEST(Usd, PlacesKeepTheirDigits) {
+  const glm::dvec3 far(455000.25, 5411000.5, 312.125);
+  const Model model = some_model(0);
+  const auto worst = [&](const std::string& place) {
+    const Model read = load_usd_text(
+        usd_file(usd_prim(model, place + "uniform token[] xformOpOrder = [\"xformOp:translate\"]\n")));
+    double worst_of = 0.0;
+    for (std::size_t i = 0; i < model.count(); ++i)
+      worst_of = std::max(worst_of, glm::distance(read.axes.origin + glm::dvec3(read.position[i]),
+                                                  far + glm::dvec3(model.position[i])));
+    return worst_of;
+  };
+  EXPECT_LT(worst("double3 xformOp:translate = (455000.25, 5411000.5, 312.125)\n"), 1e-5);
+  EXPECT_GT(worst("double3 xformOp:translate = (455000.25, 5411000.5, 312)\n"), 0.1) << "planted fault";
+}
+
+// OpenUSD holds a value until the next, and the first one before it.
+TEST(Usd, OneTimeSampleIsEveryTime) {
+  const Model model = some_model(1);
+  const std::string text = usd_file(usd_prim(model));
+  for (const char* name : {"positions", "orientations", "scales", "opacities"}) {
+    const std::size_t at = text.find(std::string(name) + " = ") + std::string(name).size();
+    const std::size_t end = text.find('\n', at);
+    const std::string value = text.substr(at + 3, text.find("]", at) - at - 2);
+    const auto with = [&](const std::string& samples) {
+      return text.substr(0, at) + ".timeSamples = {" + samples + "}" + text.substr(end);
+    };
+    EXPECT_TRUE(test::equal(load_usd_text(with("1: " + value + ",")), model)) << name;
+    EXPECT_TRUE(test::equal(load_usd_text(with("-1.5: " + value + ", 3: " + value)), model)) << name;
+    EXPECT_TRUE(refuses_usd(with("1: " + value + ", 2: [" + value.substr(1) + "\n"), {name}))
+        << "planted fault";
+  }
+  const std::string order = "uniform token[] xformOpOrder = [\"xformOp:translate\"]";
+  // Stronger than the default, wherever that stands.
+  EXPECT_TRUE(lies_at(placed("double3 xformOp:translate.timeSamples = { 1: (10, 0, 0), }\n"
+                             "double3 xformOp:translate = (0, 7, 0)\n" +
+                             order),
+                      {11, 2, 3}));
+  EXPECT_TRUE(
+      refuses_usd(placed("double3 xformOp:translate.timeSamples = { 1: (10, 0, 0), 2: (0, 0, 0) }\n" + order),
+                  {"moves with time"}));
+  for (const char* when : {"1", "1: \"invisible\", 2"})
+    EXPECT_TRUE(
+        refuses_usd(placed(std::string("token visibility.timeSamples = { ") + when + ": \"invisible\" }"),
+                    {"that are to be seen"}));
+}
+
+TEST(Usd, GuidesAndProxiesAreNotDrawn) {
+  const auto with = [](const std::string& purpose, std::size_t count) {
+    const std::string line = purpose.empty() ? "" : "uniform token purpose = \"" + purpose + "\"\n";
+    return "def Xform \"" + purpose + std::to_string(count) + "\"\n{\n" + line +
+           usd_prim(some_model(0, count)) + "}\n";
+  };
+  const auto count = [](const std::string& prims) { return load_usd_text(usd_file(prims)).count(); };
+  EXPECT_EQ(count(with("", 1) + with("guide", 2) + with("default", 4)), 5u);
+  EXPECT_EQ(count(with("proxy", 2) + with("", 1)), 3u) << "alone it stands for nothing that is there";
+  EXPECT_EQ(count(with("proxy", 2) + with("render", 4)), 4u);
+  // A prim's own purpose is stronger than the one above it.
+  EXPECT_EQ(count("def Xform \"a\"\n{\nuniform token purpose = \"guide\"\n" + with("render", 3) +
+                  with("", 1) + "}\n"),
+            3u);
+}
+
+TEST(Usd, SaysItsUnit) {
+  const test::TempFolder folder;
+  const auto units = [&](const std::string& more) {
+    test::write_text(folder / "a.usda",
+                     test::replaced(usd_file(usd_prim(some_model(0, 1))), "upAxis", more + "upAxis"));
+    return usd_units_per_metre(folder / "a.usda");
+  };
+  EXPECT_EQ(units("metersPerUnit = 0.01\n"), 100.0);
+  EXPECT_EQ(units("metersPerUnit = 1\n"), 1.0);
+  EXPECT_EQ(units(""), std::nullopt);
+  for (const char* bad : {"0", "-1", "nan", "1e-320"})
+    EXPECT_THROW(units(std::string("metersPerUnit = ") + bad + "\n"), Error) << bad;
+}
+
+TEST(Usd, OpacitiesBeyondOne) {
+  Model model = some_model(0, 200);
+  model.opacity.assign(200, 1.0f);
+  const Model whole = model;
+  model.opacity[3] = std::nextafter(1.0f, 2.0f);
+  EXPECT_TRUE(test::equal(load_usd_text(usd_file(usd_prim(model))), whole));
+  model.opacity[3] = 1.5f;  // one is damage
+  EXPECT_EQ(load_usd_text(usd_file(usd_prim(model))).left_out, 1u);
+  for (std::size_t i = 0; i < 200; ++i) model.opacity[i] = 0.1f * static_cast<float>(i) - 5.0f;
+  EXPECT_TRUE(refuses_usd(usd_file(usd_prim(model)), {"opacities are from -5 to 14.9", "logits", "0 to 1"}));
 }
 
 TEST(Usd, TransformsTurnScaleAndHarmonics) {

@@ -89,7 +89,7 @@ TEST_F(Library, AnEyeIsTheSameWhateverIsDrawnWithIt) {
 TEST_F(Library, ModelsKnowWhichWayIsUp) {
   // One ball to the upper right, in the frame of trained models and in that of OpenGL.
   Model down = ball({0.3, 0.2, 1.5}), up = down;
-  up.axes = "RUB";
+  up.axes.letters = "RUB";
   up.position[0] = {0.3f, 0.2f, -1.5f};
   std::vector<std::vector<float>> seen;
   for (const SplatModel& model : {in_memory(down), in_memory(up)}) {
@@ -101,6 +101,25 @@ TEST_F(Library, ModelsKnowWhichWayIsUp) {
   Renderer renderer(caller.get_proc_address(), in_memory(up));
   renderer.draw(views(), placement, over_black);
   EXPECT_NE(read(0), seen[0]) << "the model's axes go unnoticed";
+}
+
+// A model with an origin stands where its positions from zero are.
+TEST_F(Library, FarModelsAreSeenFromTheirWorld) {
+  Model near = ball({0.3, 0.2, 1.5}), there = near;
+  there.axes.origin = {455000.25, 5411000.5, 312.125};
+  std::vector<std::vector<float>> seen;
+  for (const Model& model : {near, there}) {
+    Renderer renderer(caller.get_proc_address(), in_memory(model));
+    Placement beside = placement;
+    beside.origin += model.axes.origin;
+    renderer.draw(views(), beside, over_black);
+    seen.push_back(read(0));
+  }
+  EXPECT_LT(glm::length(centre_of_pixels(seen[0]) - centre_of_pixels(seen[1])), 1e-3);
+  EXPECT_EQ(in_memory(there).bounds().low - there.axes.origin, in_memory(near).bounds().low);
+  Renderer renderer(caller.get_proc_address(), in_memory(there));
+  renderer.draw(views(), placement, over_black);
+  EXPECT_NE(read(0), seen[0]) << "the origin goes unnoticed";
 }
 
 TEST_F(Library, RoundedPosesAreStillParallel) {

@@ -144,3 +144,52 @@ def test_what_is_no_array_of_floats_is_refused(arrays):
         binosplat.Model(**empty)
     with pytest.raises(binosplat.InputError, match="axes 'XYZ'"):
         binosplat.Model(**arrays, axes="XYZ")
+
+
+def test_means_of_float64_keep_their_digits_far_away(model, arrays):
+    far = np.array([455000.25, 5411000.5, 312.125])
+
+    def camera(at):
+        return binosplat.Camera(72, 48, 60.0, position=at)
+
+    def psnr(means):
+        made = binosplat.Model(**dict(arrays, means=means))
+        return binosplat.compare(pixels(made, camera(far)), pixels(model, camera(np.zeros(3)))).psnr
+
+    wide = arrays["means"].astype(float) + far
+    assert psnr(wide) > 60
+    assert psnr(wide.astype(np.float32)) < 40  # planted fault
+    made = binosplat.Model(**dict(arrays, means=wide))
+    assert made.means.dtype == np.float64 and np.abs(made.means - wide).max() < 1e-5
+    framed = binosplat.frame(made, 72, 48).position - binosplat.frame(model, 72, 48).position
+    np.testing.assert_allclose(framed, far, atol=1e-3)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_masked_values_are_refused(arrays, name):
+    masked = np.ma.masked_array(arrays[name], mask=False)
+    assert binosplat.Model(**dict(arrays, **{name: masked})).count == 300
+    masked[7] = np.ma.masked
+    with pytest.raises(binosplat.InputError, match=f"{name}: a masked array"):
+        binosplat.Model(**dict(arrays, **{name: masked}))
+    picture = np.ma.masked_greater(np.zeros((4, 4, 3), np.float32) + np.eye(4)[:, :, None], 0.5)
+    for call in (lambda: binosplat.compare(picture, picture), lambda: binosplat.quantised(picture)):
+        with pytest.raises(binosplat.InputError, match="a masked array"):
+            call()
+
+
+def test_more_than_the_memory_is_said(arrays):
+    many = {name: np.broadcast_to(array[:1], (2**33, *array.shape[1:])) for name, array in arrays.items()}
+    with pytest.raises(binosplat.OutOfMemory):
+        binosplat.Model(**many)
+
+
+def test_objects_that_nobody_made_are_refused(model):
+    unmade = [(binosplat.Picture, "colour"), (binosplat.Picture, "report"), (binosplat.Comparison, "psnr"),
+              (binosplat.Model, "means"), (binosplat.Camera, "name"), (binosplat.Rig, "eyes"),
+              (binosplat.Cameras, "source"), (binosplat.Renderer, "device")]
+    for kind, name in unmade:
+        with pytest.raises(TypeError, match="made by __new__ alone"):
+            getattr(kind.__new__(kind), name)
+    with pytest.raises(TypeError, match="made by __new__ alone"):
+        binosplat.Renderer(binosplat.Model.__new__(binosplat.Model))

@@ -76,3 +76,8 @@ def test_every_function_says_what_it_takes_and_returns():
     for name in binosplat.__all__:
         assert inspect.getdoc(getattr(binosplat, name)), name
     assert not is_told(binosplat.Picture)
+
+
+def test_dir_has_what_there_is_for_users():
+    assert sorted(dir(binosplat)) == sorted([*binosplat.__all__, "__version__"])
+    assert not [name for name in binosplat.__all__ if name.startswith("_")]

@@ -32,7 +32,7 @@ TEST(Axes, CamerasSeeTheSame) {
   const glm::dvec3 seen = glm::transpose(camera.rotation) * (p - camera.position);
   for (const char* letters : {"RDF", "RUB", "LUF", "RUF", "FRU", "BLD"}) {
     const glm::dvec3 stored = glm::transpose(world_from_axes(letters)) * p;
-    const Camera entered = into_axes(camera, letters);
+    const Camera entered = into_axes(camera, {letters});
     EXPECT_LT(glm::length(glm::transpose(entered.rotation) * (stored - entered.position) - seen), 1e-15)
         << letters;
     EXPECT_EQ(entered.width, 640);
@@ -47,13 +47,13 @@ TEST(Axes, FramesAreFoundInTheWorld) {
   const Model model = test::random_model(3, 501, 0);
   for (const char* letters : {"RUB", "LUF", "RUF", "RFU"}) {
     Model turned = model;
-    turned.axes = letters;
+    turned.axes.letters = letters;
     for (glm::vec3& p : turned.position) p = glm::transpose(world_from_axes(letters)) * glm::dvec3(p);
     const Camera expected = frame_model(model, 640, 480), found = frame_model(turned, 640, 480);
     EXPECT_LT(glm::length(found.position - expected.position), 1e-6) << letters;
     EXPECT_LT(glm::length(found.rotation[0] - expected.rotation[0]), 1e-9) << letters;
     EXPECT_LT(glm::length(found.rotation[1] - expected.rotation[1]), 1e-9) << letters;
-    turned.axes = "RDF";  // planted fault
+    turned.axes.letters = "RDF";  // planted fault
     EXPECT_GT(glm::length(frame_model(turned, 640, 480).position - expected.position), 0.01) << letters;
   }
 }
@@ -79,7 +79,7 @@ TEST(Axes, ModelsLookTheSameInEveryFrame) {
   const glm::dvec3 direction = glm::normalize(glm::dvec3(0.3, -0.7, 0.5));
   int frames = 0;
   const auto same = [&](const Model& turned, std::size_t i) {
-    const glm::dmat3 world = world_from_axes(turned.axes);
+    const glm::dmat3 world = world_from_axes(turned.axes.letters);
     const glm::dmat3 there = world * covariance_of(turned, i) * glm::transpose(world);
     double apart = glm::length(world * glm::dvec3(turned.position[i]) - glm::dvec3(model.position[i])) +
                    std::abs(red(turned, i, glm::transpose(world) * direction) - red(model, i, direction));

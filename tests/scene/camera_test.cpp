@@ -111,7 +111,7 @@ TEST(Model, CoreBoundsIgnoreOutliers) {
   EXPECT_EQ(bounds.low.z, 5.0f);
   for (std::size_t i = 600; i <= 1000; ++i) model.opacity[i] = 0.0f;
   EXPECT_NEAR(core_bounds(model).high.x, 588.0f, 1.5f) << "nobody sees the others";
-  EXPECT_EQ(core_bounds(Model{}).high, glm::vec3(0.0f));
+  EXPECT_EQ(core_bounds(Model{}).high, glm::dvec3(0.0));
 }
 
 }  // namespace

@@ -55,7 +55,7 @@ std::vector<Camera> ring_of_100(const glm::dvec3& middle) {
 /// The same as a file has it whose numbers are in a frame, read as RUB.
 Model stored(Model model, const std::string& axes) {
   bring_into_axes(model, axes);
-  model.axes = "RUB";
+  model.axes.letters = "RUB";
   return model;
 }
 

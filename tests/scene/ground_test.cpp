@@ -116,7 +116,7 @@ TEST(Ground, IsWhereMostSurfacesFaceAndTheModelBegins) {
 
 TEST(Ground, IsTheWorldsWhateverTheModelsAxes) {
   Model model = garden();
-  model.axes = "RFU";  // x right, y forward, z up
+  model.axes.letters = "RFU";  // x right, y forward, z up
   const auto found = find_ground(model);
   ASSERT_TRUE(found);
   EXPECT_LT(degrees_between(found->up, {0, -1, 0}), 1.0);

@@ -10,6 +10,11 @@
 namespace binosplat {
 namespace {
 
+bool transform(Model& model, const glm::dmat4& map) {
+  std::vector<glm::dvec3> places;
+  return binosplat::transform(model, map, places);
+}
+
 using test::apart;
 using test::follows;
 

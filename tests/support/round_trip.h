@@ -247,7 +247,7 @@ inline std::string difference(const Expected& e, const glm::vec4& rotation, cons
 inline std::string difference(const Model& model, const Model& back, ModelFormat format,
                               int harmonic_bits = 8) {
   if (back.count() != model.count() || back.left_out != 0) return "count";
-  if (back.axes != model.axes) return "axes";
+  if (back.axes.letters != model.axes.letters) return "axes";
   std::vector<std::uint32_t> order(model.count());
   for (std::size_t i = 0; i < order.size(); ++i) order[i] = static_cast<std::uint32_t>(i);
   if (format == ModelFormat::compressed_ply || format == ModelFormat::sog)
@@ -274,7 +274,7 @@ bool same_bits(const std::vector<T>& a, const std::vector<T>& b) {
 }
 
 inline bool same_bits(const Model& a, const Model& b) {
-  return a.degree == b.degree && a.axes == b.axes && a.antialiased == b.antialiased &&
+  return a.degree == b.degree && a.axes.letters == b.axes.letters && a.antialiased == b.antialiased &&
          a.kernel_px2 == b.kernel_px2 && a.perspective == b.perspective &&
          same_bits(a.position, b.position) && same_bits(a.scale, b.scale) &&
          same_bits(a.rotation, b.rotation) && same_bits(a.opacity, b.opacity) && same_bits(a.sh, b.sh);

@@ -142,7 +142,7 @@ void view_in_headset(const RenderOptions& o, const preview::Opened& scene, previ
   settings.frame = choices.settings;
   settings.budget_ms = o.headset.budget_ms;
   settings.start = into_axes(start.cameras.front(), model.axes);
-  settings.up = glm::transpose(world_from_axes(model.axes)) * start.up;
+  settings.up = glm::transpose(world_from_axes(model.axes.letters)) * start.up;
   settings.units_per_metre = choices.rig.units_per_metre;
   tell_first_signal();
   HeadsetRecording recording(context, scene, instance.headset());

@@ -22,6 +22,10 @@ from ._binosplat import __version__  # noqa: F401
 __all__ = [name for name in vars(_binosplat) if not name.startswith("_")]
 
 
+def __dir__():
+    return [*__all__, "__version__"]
+
+
 def _keywords(function):
     """The names of a function's arguments, from the signatures with which its documentation begins."""
     signatures = [line for line in function.__doc__.splitlines() if ") -> " in line]

@@ -37,7 +37,7 @@ class Model:
     order: _Order
     projection: _Projection
     near: float
-    means: _Floats
+    means: NDArray[np.float32] | NDArray[np.float64]
     quats: _Floats
     scales: _Floats
     opacities: _Floats
