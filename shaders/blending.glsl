@@ -47,7 +47,7 @@ layout(std430, binding = 9) readonly buffer LongLists { uint long_lists[]; };  /
 // -log2(alpha) in a pixel (x, y) of the cell is (t^2 + s) + y ((2 b t + v) + c y), t = a x + u. See stage(). With the tangent
 // projection that is divided by |d|^2, d being the pixel's ray, before -log2(sigma), which is no part of s, is added.
 shared vec4 batch_across[BATCH];  // a, u, 2 b, s
-shared vec4 batch_down[BATCH];    // v, c, with the tangent projection -log2(sigma), and 0: one address finds all three
+shared vec4 batch_down[BATCH];    // v, c, with the tangent projection -log2(sigma) and direction_in_bytes(): one address finds all three
 #if PACKED  // v, c, and as halves rg and b are in batch_down
 shared float batch_depth[BATCH];
 float depth_of(uint at) { return batch_depth[at]; }
@@ -60,12 +60,15 @@ float depth_of(uint at) { return batch_colour[at].a; }
 #if PROJECTION == PROJECTION_TANGENT
 #define OF_TILE shared
 OF_TILE float farthest;  // the largest |d|^2
+OF_TILE vec2 heart;      // the slope of its middle
+bool is_broad;           // what is wide may lie ahead of some of its pixels, and behind others where it can be seen, too
 float nearness[COLUMN];  // of each pixel: 1 / |d|^2
 #else
 #define OF_TILE
 #endif
 OF_TILE vec2 middle;  // of its cell
 
+uint view_index = 0u;
 uvec2 first_pixel;  // of the column
 float column;       // from the middle of the cell
 float row[COLUMN];  // of each pixel, as well
@@ -125,6 +128,18 @@ void blend(uint at[AHEAD], const bool may_be_hidden) {
       MEET(p, k, a);
     }
   }
+#if PROJECTION == PROJECTION_TANGENT
+  if (is_broad) {
+    for (uint p = 0u; p < COLUMN; ++p) {
+      vec3 ray = vec3(slope_at(views[view_index], vec2(first_pixel + uvec2(0u, p))), 1.0);
+      for (uint k = 0u; k < AHEAD; ++k) {
+        if (dot(direction_of(batch_down[at[k]].w), ray) >= 0.0) continue;
+        weights[p][k] = 0.0;
+        MEET(p, k, 0.0);
+      }
+    }
+  }
+#endif
   float left[COLUMN];
   bool some_stop = false;  // asked of all pixels at once: a branch each took 2 % of the time
   for (uint p = 0u; p < COLUMN; ++p) {
@@ -216,8 +231,10 @@ void stage(uint at, Splat splat) {
   precise float slope = 2.0 * v * yy;
   precise float bend = fma(yx, yx, yy * yy);
 #if PROJECTION == PROJECTION_TANGENT
+  float direction = is_wide(splat) ? direction_in_bytes(views[view_index], splat) : 0.0;
+  if (!is_broad && dot(direction_of(direction), vec3(heart, 1.0)) < 0.0) bits = -1e30;
   batch_across[at] = vec4(xx, u, 2.0 * yx, v * v);
-  batch_down[at] = vec4(slope, bend, -bits, 0.0);
+  batch_down[at] = vec4(slope, bend, -bits, direction);
 #else
   precise float level = fma(v, v, -bits);
   batch_across[at] = vec4(xx, u, 2.0 * yx, level);
