@@ -49,6 +49,7 @@ void check_harmonic_bits(const std::optional<int>& bits, ModelFormat format) {
 Model load_written(const fs::path& file, const Model& model) {
   Model written = load_model_alone(file);
   written.perspective = model.perspective;
+  written.kernel_px2 = model.kernel_px2;
   return written;
 }
 

@@ -9,6 +9,9 @@ namespace binosplat {
 
 namespace {
 
+// Of a trained model nothing is as large; the squares of what it is in a picture must not overflow fp32.
+constexpr float scale_most = 1e13f;
+
 bool finite(const glm::vec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 
 }  // namespace
@@ -49,8 +52,9 @@ bool place(Model& model, std::size_t i, const GaussianValues& values) {
   model.rotation[i] = unit ? rotation : glm::vec4(q / norm);
   model.opacity[i] = opacity;
   std::copy(sh, sh + count, &model.sh[i * count]);
-  return finite(position) && finite(scale) && glm::all(glm::greaterThanEqual(scale, glm::vec3(0.0f))) &&
-         opacity >= 0.0f && opacity <= 1.0f && std::isfinite(norm) && norm > 0.0 &&
+  return finite(position) && glm::all(glm::greaterThanEqual(scale, glm::vec3(0.0f))) &&
+         glm::all(glm::lessThanEqual(scale, glm::vec3(scale_most))) && opacity >= 0.0f && opacity <= 1.0f &&
+         std::isfinite(norm) && norm > 0.0 &&
          std::all_of(sh, sh + count, [](float v) { return std::isfinite(v); });
 }
 
