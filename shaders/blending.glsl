@@ -8,6 +8,7 @@
 //   CANVASES    above 0: the pictures of so many views go into images, and z_sums are depths (blend_pictures.glsl)
 //   MEASURE     what is measured of each splat, MEASURE_ of shared/limits.h (blend_measure.glsl)
 //   DEBUG_VIEW  SHOW_ of shared/axes.h: what of each pixel is told in the place of its picture (blend_debug.glsl)
+//   BROAD       1: with the tangent projection, wide splats may lie ahead of some pixels of a tile, and behind others
 //   MESH_DEPTH  1: splats behind the caller's meshes are not seen (blend_mesh.glsl)
 //   ANY         whether something holds in an invocation that goes with this one
 //   REACHES     whether a splat of the batch is blended in this invocation's block, if others are in the batch, too
@@ -61,7 +62,6 @@ float depth_of(uint at) { return batch_colour[at].a; }
 #define OF_TILE shared
 OF_TILE float farthest;  // the largest |d|^2
 OF_TILE vec2 heart;      // the slope of its middle
-bool is_broad;           // what is wide may lie ahead of some of its pixels, and behind others where it can be seen, too
 float nearness[COLUMN];  // of each pixel: 1 / |d|^2
 #else
 #define OF_TILE
@@ -128,15 +128,13 @@ void blend(uint at[AHEAD], const bool may_be_hidden) {
       MEET(p, k, a);
     }
   }
-#if PROJECTION == PROJECTION_TANGENT
-  if (is_broad) {
-    for (uint p = 0u; p < COLUMN; ++p) {
-      vec3 ray = vec3(slope_at(views[view_index], vec2(first_pixel + uvec2(0u, p))), 1.0);
-      for (uint k = 0u; k < AHEAD; ++k) {
-        if (dot(direction_of(batch_down[at[k]].w), ray) >= 0.0) continue;
-        weights[p][k] = 0.0;
-        MEET(p, k, 0.0);
-      }
+#if BROAD
+  for (uint p = 0u; p < COLUMN; ++p) {
+    vec3 ray = vec3(slope_at(views[view_index], vec2(first_pixel + uvec2(0u, p))), 1.0);
+    for (uint k = 0u; k < AHEAD; ++k) {
+      if (dot(direction_of(batch_down[at[k]].w), ray) >= 0.0) continue;
+      weights[p][k] = 0.0;
+      MEET(p, k, 0.0);
     }
   }
 #endif
@@ -232,7 +230,7 @@ void stage(uint at, Splat splat) {
   precise float bend = fma(yx, yx, yy * yy);
 #if PROJECTION == PROJECTION_TANGENT
   float direction = is_wide(splat) ? direction_in_bytes(views[view_index], splat) : 0.0;
-  if (!is_broad && dot(direction_of(direction), vec3(heart, 1.0)) < 0.0) bits = -1e30;
+  if (BROAD == 0 && dot(direction_of(direction), vec3(heart, 1.0)) < 0.0) bits = -1e30;
   batch_across[at] = vec4(xx, u, 2.0 * yx, v * v);
   batch_down[at] = vec4(slope, bend, -bits, direction);
 #else

@@ -54,7 +54,6 @@ void begin_pixels(uvec2 in_tile) {
   vec2 most = max(abs(first), abs(first + float(TILE_SIZE - 1) * step));
   farthest = 1.0 + dot(most, most);
   heart = first + float(TILE_SIZE - 1) * 0.5 * step;
-  is_broad = 2.0 * float(TILE_SIZE) > min(view.lens.x, view.lens.y);  // else it is less than 42 degrees across
 #endif
   begin_block(view, view_index < frame.asked);
   for (uint p = 0u; p < COLUMN; ++p) {

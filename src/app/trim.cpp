@@ -51,12 +51,11 @@ ModelFormat check_trim(const TrimOptions& o) {
 /// The file that was read, where it has the format that is to be written and says by itself how it is drawn.
 std::optional<fs::path> same_format(const TrimOptions& o, const Model& model, ModelFormat format) {
   const fs::path file = model_file(o.scene.name);
-  const std::string& format_read = model.format;
   const auto run = run_of(file);
   if (!kernel_loss(model, format).empty() || (run && run->antialiased)) return std::nullopt;
   const std::string_view name = written_format(format).read_as;
   // A SOG may be read from a meta.json beside its pictures, and is written as an archive.
-  const bool same = (format_read == name || format_read.starts_with(fmt::format("{} ", name))) &&
+  const bool same = (model.format == name || model.format.starts_with(fmt::format("{} ", name))) &&
                     (format != ModelFormat::sog || model_format_of(file) == format);
   return same && fs::is_regular_file(file) ? std::optional(file) : std::nullopt;
 }

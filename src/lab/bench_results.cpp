@@ -53,19 +53,17 @@ double TimeNoise::between(const BenchPoint& a, const BenchPoint& b, std::size_t 
 double TimeNoise::deviation() const { return freedom_ > 0 ? std::sqrt(squares_ / freedom_) : 0.0; }
 
 std::vector<bool> pareto_front(const std::vector<BenchPoint>& points) {
-  std::map<std::string, std::pair<TimeNoise, std::size_t>> charts;
+  std::map<std::string, TimeNoise> charts;
   for (const BenchPoint& point : points) {
-    if (!point.has_times()) continue;
-    auto& [noise, count] = charts[point.chart()];
-    noise.add(point);
-    ++count;
+    if (point.has_times()) charts[point.chart()].add(point);
   }
   std::vector<bool> front;
   for (const BenchPoint& point : points) {
-    front.push_back(point.has_times() && std::none_of(points.begin(), points.end(), [&](const auto& other) {
+    const TimeNoise& noise = charts[point.chart()];
+    front.push_back(point.has_times() && std::ranges::none_of(points, [&](const BenchPoint& other) {
                       if (!other.has_times() || other.chart() != point.chart()) return false;
-                      const auto& [noise, count] = charts[point.chart()];
-                      const double share = noise.is_known() ? noise.between(point, other, count) : 0.0,
+                      const double share =
+                                       noise.is_known() ? noise.between(point, other, points.size()) : 0.0,
                                    quicker = point.frame_ms - (1.0 + share) * other.frame_ms,
                                    nearer = other.psnr_db() - point.psnr_db();
                       return quicker >= 0 && nearer >= 0 && (quicker > 0 || nearer > 0);

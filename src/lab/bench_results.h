@@ -105,8 +105,8 @@ class TimeNoise {
  public:
   void add(const BenchPoint& point);  // which has times
   bool is_known() const { return freedom_ > 0; }
-  /// By how much the times of two points may differ without a cause; in one of a hundred cases one of so many
-  /// pairs differs by more (Student's t; by the scatter of all, or of the two where that is larger).
+  /// By how much two times may differ without a cause: in one case of a hundred, one of so many pairs differs
+  /// more.
   double between(const BenchPoint& a, const BenchPoint& b, std::size_t pairs) const;
 
  private:

@@ -25,14 +25,13 @@ glm::dmat3 scaled_axes(const Gaussian& gaussian) {
   return {rotation[0] * s.x, rotation[1] * s.y, rotation[2] * s.z};
 }
 
-/// What scaled axes, seen in a plane, come to there.
 struct Seen {
   glm::dvec3 covariance;  // xx, xy, yy, with the low-pass
   double det, det_free;   // with it and without
 };
 
-/// The determinants by sums of squares: xx yy - xy^2 would lose the width of a needle a million times as
-/// long.
+/// What scaled axes come to in a plane. The determinants by sums of squares: xx yy - xy^2 would lose the
+/// width of a needle a million times as long.
 Seen seen_in_plane(const glm::dmat3x2& axes, double low_pass) {
   const glm::dvec3 a = glm::row(axes, 0), b = glm::row(axes, 1), n = glm::cross(a, b);
   const double aa = glm::dot(a, a), bb = glm::dot(b, b), free = glm::dot(n, n);

@@ -28,8 +28,7 @@ class ToleranceControl {
   void forget();
 
   /// Whether enough is known of a frame of these settings to draw it at tolerance(), without a probe. Never
-  /// of views of so few tiles that a probe has all of them: single Gaussians decide there, and their error
-  /// may change by some dB from one frame to the next.
+  /// of views that a probe has all of: single Gaussians may change their error by some dB a frame.
   bool knows(std::span<const shared::View> views, const FrameSettings& settings) const;
   float tolerance() const { return static_cast<float>(tolerance_); }
 

@@ -9,8 +9,7 @@ namespace binosplat {
 
 namespace {
 
-// Of a trained model nothing is as large; the squares of what it is in a picture must not overflow fp32.
-constexpr float scale_most = 1e13f;
+constexpr float scale_most = 1e13f;  // in pictures, its square must not overflow fp32
 
 bool finite(const glm::vec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 
