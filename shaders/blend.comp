@@ -43,13 +43,6 @@ void load(uint at) {
     return;
   }
   Splat splat = SPLAT(values[at]);
-#if PROJECTION == PROJECTION_TANGENT
-  // Lists of tiles hold what lies ahead of their rays only: it has faded long before it comes to lie behind.
-  if (frame.list_per_view != 0u && is_wide(splat)) {
-    float facing = 1.0 + dot(slope_at(views[view_index], splat.mean), slope_at(views[view_index], middle));
-    if (facing > 0.0 == splat.conic.w < 0.0) splat.opacity = 0.0;
-  }
-#endif
 #if APPROXIMATE
   reached[self] = blocks_reached(splat, splat.mean - corner);
 #endif

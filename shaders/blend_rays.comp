@@ -49,6 +49,9 @@ void main() {
       float down = d.y / (abs(splat.conic.w) * root);
       float q = (across * across + down * down) * nearness;
       float alpha = min(float(ALPHA_MAX), splat.opacity * exp(-0.5 * q));
+#if PROJECTION == PROJECTION_TANGENT
+      if (is_wide(splat) && dot(direction_of(direction_in_bytes(view, splat)), vec3(slope, 1.0)) < 0.0) alpha = 0.0;
+#endif
       bool is_seen = at + k < end && !is_done && alpha >= float(ALPHA_MIN);  // not a number: no
       float left = transmittance * (1.0 - alpha);
       is_done = is_done || (is_seen && left < float(TRANSMITTANCE_MIN));

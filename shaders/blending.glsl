@@ -8,6 +8,7 @@
 //   CANVASES    above 0: the pictures of so many views go into images, and z_sums are depths (blend_pictures.glsl)
 //   MEASURE     what is measured of each splat, MEASURE_ of shared/limits.h (blend_measure.glsl)
 //   DEBUG_VIEW  SHOW_ of shared/axes.h: what of each pixel is told in the place of its picture (blend_debug.glsl)
+//   BROAD       1: with the tangent projection, wide splats may lie ahead of some pixels of a tile, and behind others
 //   MESH_DEPTH  1: splats behind the caller's meshes are not seen (blend_mesh.glsl)
 //   ANY         whether something holds in an invocation that goes with this one
 //   REACHES     whether a splat of the batch is blended in this invocation's block, if others are in the batch, too
@@ -47,7 +48,7 @@ layout(std430, binding = 9) readonly buffer LongLists { uint long_lists[]; };  /
 // -log2(alpha) in a pixel (x, y) of the cell is (t^2 + s) + y ((2 b t + v) + c y), t = a x + u. See stage(). With the tangent
 // projection that is divided by |d|^2, d being the pixel's ray, before -log2(sigma), which is no part of s, is added.
 shared vec4 batch_across[BATCH];  // a, u, 2 b, s
-shared vec4 batch_down[BATCH];    // v, c, with the tangent projection -log2(sigma), and 0: one address finds all three
+shared vec4 batch_down[BATCH];    // v, c, with the tangent projection -log2(sigma) and direction_in_bytes(): one address finds all three
 #if PACKED  // v, c, and as halves rg and b are in batch_down
 shared float batch_depth[BATCH];
 float depth_of(uint at) { return batch_depth[at]; }
@@ -60,12 +61,14 @@ float depth_of(uint at) { return batch_colour[at].a; }
 #if PROJECTION == PROJECTION_TANGENT
 #define OF_TILE shared
 OF_TILE float farthest;  // the largest |d|^2
+OF_TILE vec2 heart;      // the slope of its middle
 float nearness[COLUMN];  // of each pixel: 1 / |d|^2
 #else
 #define OF_TILE
 #endif
 OF_TILE vec2 middle;  // of its cell
 
+uint view_index = 0u;
 uvec2 first_pixel;  // of the column
 float column;       // from the middle of the cell
 float row[COLUMN];  // of each pixel, as well
@@ -125,6 +128,16 @@ void blend(uint at[AHEAD], const bool may_be_hidden) {
       MEET(p, k, a);
     }
   }
+#if BROAD
+  for (uint p = 0u; p < COLUMN; ++p) {
+    vec3 ray = vec3(slope_at(views[view_index], vec2(first_pixel + uvec2(0u, p))), 1.0);
+    for (uint k = 0u; k < AHEAD; ++k) {
+      if (dot(direction_of(batch_down[at[k]].w), ray) >= 0.0) continue;
+      weights[p][k] = 0.0;
+      MEET(p, k, 0.0);
+    }
+  }
+#endif
   float left[COLUMN];
   bool some_stop = false;  // asked of all pixels at once: a branch each took 2 % of the time
   for (uint p = 0u; p < COLUMN; ++p) {
@@ -216,8 +229,10 @@ void stage(uint at, Splat splat) {
   precise float slope = 2.0 * v * yy;
   precise float bend = fma(yx, yx, yy * yy);
 #if PROJECTION == PROJECTION_TANGENT
+  float direction = is_wide(splat) ? direction_in_bytes(views[view_index], splat) : 0.0;
+  if (BROAD == 0 && dot(direction_of(direction), vec3(heart, 1.0)) < 0.0) bits = -1e30;
   batch_across[at] = vec4(xx, u, 2.0 * yx, v * v);
-  batch_down[at] = vec4(slope, bend, -bits, 0.0);
+  batch_down[at] = vec4(slope, bend, -bits, direction);
 #else
   precise float level = fma(v, v, -bits);
   batch_across[at] = vec4(xx, u, 2.0 * yx, level);

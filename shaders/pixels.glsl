@@ -2,7 +2,6 @@
 
 // What the work group draws.
 uint tile = 0u;
-uint view_index = 0u;
 uint begin = 0u, end = 0u;  // its list
 
 // Whether there is anything for this work group to draw; else it must end.
@@ -54,6 +53,7 @@ void begin_pixels(uvec2 in_tile) {
   vec2 first = (vec2(corner) + 0.5 - view.lens.zw) * step;
   vec2 most = max(abs(first), abs(first + float(TILE_SIZE - 1) * step));
   farthest = 1.0 + dot(most, most);
+  heart = first + float(TILE_SIZE - 1) * 0.5 * step;
 #endif
   begin_block(view, view_index < frame.asked);
   for (uint p = 0u; p < COLUMN; ++p) {

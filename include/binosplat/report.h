@@ -42,10 +42,11 @@ struct Report {
   /// With Settings::quality: the PSNR in dB of the view that errs most, by what this frame and earlier ones
   /// measured; infinite where nothing differs.
   double quality = 0.0;
-  int attempts = 0;            // times that it was drawn until the quality held
-  int redrawn = 0;             // times that it was drawn again, since a buffer was too small
-  int programs_made = 0;       // shaders that were compiled for it, or loaded from the cache
-  bool sampled_error = false;  // it drew some tiles exactly, too, to measure its error
+  bool quality_is_estimate = false;  // not measured on all of this frame: it may be some dB off
+  int attempts = 0;                  // times that it was drawn until the quality held
+  int redrawn = 0;                   // times that it was drawn again, since a buffer was too small
+  int programs_made = 0;             // shaders that were compiled for it, or loaded from the cache
+  bool sampled_error = false;        // it drew some tiles exactly, too, to measure its error
   /// With a quality or a measured transmittance: it could not go by earlier frames, as the first one cannot,
   /// nor one after a camera cut.
   bool is_cut = false;

@@ -11,9 +11,9 @@
 #define LEVEL_MAX 11.2
 // Of a direction: it must not be level with the picture's plane, or the mean would have no place there.
 #if HALF
-#define RISE_MIN 1e-2  // so that fp16 holds the conic
+#define RISE_MIN 1e-3  // so that fp16 holds the conic
 #else
-#define RISE_MIN 1e-4
+#define RISE_MIN 3e-4
 #endif
 
 bool is_wide(Splat splat) { return splat.depth < 0.0; }
@@ -22,6 +22,14 @@ vec2 slope_at(View view, vec2 pixel) {
   precise vec2 slope = (pixel + 0.5 - view.lens.zw) / view.lens.xy;
   return slope;
 }
+
+// Where a wide splat lies, in a float's bits: rays at less than a right angle to it may see it, and long before that it has faded.
+float direction_in_bytes(View view, Splat splat) {
+  vec3 direction = vec3(slope_at(view, splat.mean), 1.0);
+  return uintBitsToFloat(packSnorm4x8(vec4(sign(splat.conic.w) * normalize(direction), 0.0)));
+}
+
+vec3 direction_of(float bytes) { return unpackSnorm4x8(floatBitsToUint(bytes)).xyz; }
 
 // Whether a Gaussian at v is too far from all rays of the picture to be seen.
 bool is_beside(View view, vec3 v, float distance, vec3 scale) {
@@ -32,36 +40,34 @@ bool is_beside(View view, vec3 v, float distance, vec3 scale) {
   return v.z < distance * (cosine - 1e-4);
 }
 
-// How much both eigenvalues of Q in the tangent plane must grow by, so that none is wider than WIDEST_TANGENT; in radians, from
-// the Gaussian's direction in the world.
-float excess(View view, vec3 direction, float distance, mat3 axes) {
-  vec3 least = abs(direction.x) < 0.6 ? vec3(1.0, 0.0, 0.0) : vec3(0.0, 1.0, 0.0);
-  precise vec3 aside = least.yzx * direction.zxy - least.zxy * direction.yzx;  // cross products
+// The conic of a wide splat at v, no wider than it may be, and with the sign of v.z its place. It is found in the tangent plane,
+// since the picture's plane may be nearly level with the direction: there its terms would cancel one another.
+vec4 wide_conic(View view, vec3 v, float distance, mat3 axes, out float kept) {
+  precise vec3 n = v / distance;
+  vec3 least = abs(n.x) < 0.6 ? vec3(1.0, 0.0, 0.0) : vec3(0.0, 1.0, 0.0);
+  precise vec3 aside = least.yzx * n.zxy - least.zxy * n.yzx;  // cross products
   precise vec3 first = aside / sqrt(dot_precise(aside, aside));
-  precise vec3 second = direction.yzx * first.zxy - direction.zxy * first.yzx;
-  vec3 across = onto_axes(first / distance, axes);
-  vec3 down = onto_axes(second / distance, axes);
-  precise float low_pass = float(KERNEL_PX2) / (view.lens.x * view.lens.y);
-  precise float xx = dot_precise(across, across) + low_pass;
-  precise float xy = dot_precise(across, down);
-  precise float yy = dot_precise(down, down) + low_pass;
-  precise float half_difference = 0.5 * (xx - yy);
-  precise float most = 0.5 * (xx + yy) + sqrt(half_difference * half_difference + xy * xy);
-  precise float more = max(0.0, 1.0 / float(WIDEST_TANGENT * WIDEST_TANGENT) - 1.0 / most);
-  return more;
-}
-
-// The conic of a wide splat, no wider than it may be. The unit circle of the tangent plane is |d|^2 - (n . d)^2 = 1.
-vec4 limited(View view, vec4 conic, vec3 n, float more) {
-  if (more == 0.0) return conic;
-  precise vec2 f = 1.0 / view.lens.xy;
-  precise vec3 circle = vec3((1.0 - n.x * n.x) * f.x * f.x, -n.x * n.y * f.x * f.y, (1.0 - n.y * n.y) * f.y * f.y);
-  precise float root = 1.0 / conic.w;
-  precise float rise = n.z * f.x * f.y;
-  precise float mixed = conic.x * circle.z - 2.0 * conic.y * circle.y + conic.z * circle.x;
-  precise float det = root * root + more * (max(mixed, 0.0) + more * rise * rise);
-  precise vec4 narrower = vec4(conic.xyz + more * circle, inversesqrt(det));
-  return narrower;
+  precise vec3 second = n.yzx * first.zxy - n.zxy * first.yzx;
+  precise float focal = sqrt(view.lens.x * view.lens.y);
+  precise float gain = focal / distance;
+  precise vec3 along = gain * (first.x * view.row_x.xyz + first.y * view.row_y.xyz + first.z * view.row_z.xyz);
+  precise vec3 down = gain * (second.x * view.row_x.xyz + second.y * view.row_y.xyz + second.z * view.row_z.xyz);
+  vec4 q = conic_of(onto_axes(along, axes), onto_axes(down, axes), LowPass(vec2(0.0), vec2(1.0)), free_of(view), kept);
+  if (q.w == 0.0) return q;
+  // None is wider than WIDEST_TANGENT: both eigenvalues grow by as much.
+  precise float half_difference = 0.5 * (q.x - q.z);
+  precise float most = 0.5 * (q.x + q.z) + sqrt(half_difference * half_difference + q.y * q.y);
+  precise float det = 1.0 / (q.w * q.w);
+  precise float more = max(0.0, 1.0 / (float(WIDEST_TANGENT * WIDEST_TANGENT) * focal * focal) - det / most);
+  precise float grown = det + more * (q.x + q.z + more);
+  // As squares of two rows, seen in the picture.
+  precise float root = sqrt(q.x + more);
+  precise vec2 scale = focal / view.lens.xy;
+  precise vec2 upper = scale * (root * first.xy + q.y / root * second.xy);
+  precise vec2 lower = scale * (sqrt(grown) / root * second.xy);
+  precise vec4 conic = vec4(upper.x * upper.x + lower.x * lower.x, upper.x * upper.y + lower.x * lower.y,
+                            upper.y * upper.y + lower.y * lower.y, inversesqrt(grown) / n.z);
+  return conic;
 }
 
 bool project(View view, Gaussian g, mat3 axes, out Splat splat) {
@@ -93,9 +99,9 @@ bool project(View view, Gaussian g, mat3 axes, out Splat splat) {
   precise float above = root * root - float(WIDE_LEVEL) * (q.x + q.y - float(WIDE_LEVEL));
   if (v.z < 0.0 || q.x <= float(WIDE_LEVEL) || above <= 0.0) {
     if (v.z > 0.0 && is_beside(view, v, distance, g.scale.xyz)) return false;
-    splat.conic = limited(view, splat.conic, v / distance, excess(view, away / distance, distance, axes));
+    splat.conic = wide_conic(view, v, distance, axes, kept);
+    if (splat.conic.w == 0.0) return false;
     splat.depth = -distance;
-    if (v.z < 0.0) splat.conic.w = -splat.conic.w;
   }
   precise vec2 mean = view.lens.xy * slope + view.lens.zw - 0.5;
   splat.mean = mean;

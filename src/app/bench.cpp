@@ -181,6 +181,11 @@ void compare_with_older(const BenchOptions& options, const lab::BenchResults& re
                 fmt::format("{} is {:.1f} % slower than in {}, more than --fail-if-slower {:g}",
                             found.slowest, found.slower_percent, options.compare, *options.fail_if_slower));
   }
+  if (found.timed < found.matched) {
+    throw Error(ExitCode::fell_short,
+                fmt::format("--fail-if-slower: the times of {} of {} points could not be compared with {}",
+                            found.matched - found.timed, found.matched, options.compare));
+  }
 }
 
 ExitCode finish(const BenchOptions& options, const BenchFolder& folder) {

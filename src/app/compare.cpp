@@ -56,16 +56,25 @@ const char* channel_name(const Image& image, int channel) {
   return image.channels == 1 ? "grey" : names[channel];
 }
 
+/// "a.exr holds a NaN or an infinity at x 3, y 4, red".
+std::string why_undefined(const CompareOptions& options, const Comparison& found, const Image& a) {
+  const auto& [none, x, y, channel] = found.largest;
+  return fmt::format("{} holds a NaN or an infinity at x {}, y {}, {}",
+                     std::isnan(a.at(x, y, channel)) ? options.a : options.b, x, y, channel_name(a, channel));
+}
+
 void print_comparison(const CompareOptions& options, const Comparison& found, const Image& image) {
   const auto line = [](const char* name, const std::string& value) { fmt::print("{:<15}{}\n", name, value); };
   const bool equal = std::isinf(found.psnr) && found.psnr > 0;
+  if (std::isnan(found.psnr)) {
+    for (const char* name : {"PSNR", "SSIM", "FLIP"})
+      line(name, "undefined: " + why_undefined(options, found, image));
+    return;
+  }
   line("PSNR", equal ? "infinite: the pictures are equal" : fmt::format("{:.4f} dB", found.psnr));
-  line("SSIM", std::isnan(found.ssim)
-                   ? "undefined: the pictures are smaller than its window of 11 x 11 px, or hold a NaN"
-                   : fmt::format("{:.6f}", found.ssim));
-  line("FLIP", std::isnan(found.flip)
-                   ? "undefined: the pictures hold a NaN"
-                   : fmt::format("{:.6f} at {} pixels per degree", found.flip, options.pixels_per_degree));
+  line("SSIM", std::isnan(found.ssim) ? "undefined: the pictures are smaller than its window of 11 x 11 px"
+                                      : fmt::format("{:.6f}", found.ssim));
+  line("FLIP", fmt::format("{:.6f} at {} pixels per degree", found.flip, options.pixels_per_degree));
   const auto& largest = found.largest;
   if (largest.max > 0.0)
     line("largest error",
@@ -109,13 +118,14 @@ nlohmann::ordered_json comparison_json(const measure::FoveatedComparison& found,
 nlohmann::ordered_json comparison_json(const CompareOptions& options, const Comparison& found,
                                        const Image& image) {
   const auto& largest = found.largest;
-  return lab::object(
-      "version", BINOSPLAT_VERSION, "a", options.a, "b", options.b, "width", image.width, "height",
-      image.height, "equal", largest.max == 0.0, "psnr_db", found.psnr,  // null where equal: infinite
-      "ssim", found.ssim, "flip", found.flip, "pixels_per_degree", options.pixels_per_degree, "largest_error",
-      lab::object("value", largest.max, "x", largest.x, "y", largest.y, "channel",
-                  channel_name(image, largest.channel)),
-      "min_psnr_db", options.min_psnr);
+  return lab::object("version", BINOSPLAT_VERSION, "a", options.a, "b", options.b, "width", image.width,
+                     "height", image.height, "equal", largest.max == 0.0, "psnr_db",
+                     found.psnr,  // null where equal, infinite, or undefined
+                     "ssim", found.ssim, "flip", found.flip, "pixels_per_degree", options.pixels_per_degree,
+                     "largest_error",
+                     lab::object("value", largest.max, "x", largest.x, "y", largest.y, "channel",
+                                 channel_name(image, largest.channel)),
+                     "min_psnr_db", options.min_psnr);
 }
 
 ExitCode compare_files(const CompareOptions& options) {
@@ -134,7 +144,7 @@ ExitCode compare_files(const CompareOptions& options) {
   const Comparison found = measure::compare(a, b, options.pixels_per_degree);
   print_comparison(options, found, a);
   std::optional<measure::FoveatedComparison> foveated;
-  if (options.gaze) foveated = measure::compare_foveated(a, b, *options.gaze);
+  if (options.gaze && !std::isnan(found.psnr)) foveated = measure::compare_foveated(a, b, *options.gaze);
   if (foveated) print_comparison(*foveated);
   if (!options.difference.empty()) {
     const double gain = measure::difference_gain(measure::common_error(a, b));
@@ -150,7 +160,10 @@ ExitCode compare_files(const CompareOptions& options) {
   }
   if (options.min_psnr && !(found.psnr >= *options.min_psnr)) {
     throw Error(ExitCode::fell_short,
-                fmt::format("{:.4f} dB fall short of --min-psnr {}", found.psnr, *options.min_psnr));
+                std::isnan(found.psnr)
+                    ? fmt::format("--min-psnr {}: PSNR is undefined, since {}", *options.min_psnr,
+                                  why_undefined(options, found, a))
+                    : fmt::format("{:.4f} dB fall short of --min-psnr {}", found.psnr, *options.min_psnr));
   }
   return ExitCode::done;
 }

@@ -178,7 +178,8 @@ void print_info(const Model& model, const Trained& trained, const ModelSummary& 
   fmt::print("{} ({})\n", model.name, model.format);
   fmt::print("{:<14} {}{}\n", "Gaussians", n,
              model.left_out > 0
-                 ? fmt::format(" ({} more left out: values not finite, or no rotation)", model.left_out)
+                 ? fmt::format(" ({} more left out: values not finite, scales above 1e13, or no rotation)",
+                               model.left_out)
                  : "");
   fmt::print("{:<14} degree {}{}\n", "harmonics", model.degree,
              model.cut_db ? fmt::format(" of 4, which costs about {}", cut_in_words(model)) : "");

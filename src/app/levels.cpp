@@ -161,6 +161,7 @@ ExitCode levels(const LevelsOptions& o) {
         "more, and it draws these",
         undrawn);
   for (const std::string& loss : written.losses) log_warning("{}", loss);
+  for (const std::string& loss : kernel_loss(model, ModelFormat::sog)) log_warning("{}", loss);
   if (again) log_info("{} of {} SOGs were in {} already", written.kept, written.files, o.output);
   write_cameras(o);
   fmt::print("level   Gaussians\n");

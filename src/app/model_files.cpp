@@ -50,6 +50,7 @@ Model load_written(const fs::path& file, const Model& model) {
   Model written = load_model_alone(file);
   written.perspective = model.perspective;
   move_origin(written, model.axes.origin);
+  written.kernel_px2 = model.kernel_px2;
   return written;
 }
 

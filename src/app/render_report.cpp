@@ -151,7 +151,8 @@ ordered_json view_json(const Drawn& drawn, const RenderOptions& options,
                     "tile", r.tile_size, "depth_orders", r.order_groups, "drawn_again", r.redrawn,
                     "tolerance", given(drawing.quality || !drawing.calibration.empty(), r.tolerance),
                     "probed_psnr_db", given(drawing.quality.has_value(), r.quality), "told_psnr_db",
-                    given(drawing.quality.has_value(), reported_psnr(drawn)), "photo_psnr_db",
+                    given(drawing.quality.has_value(), reported_psnr(drawn)), "told_is_estimate",
+                    given(drawing.quality.has_value(), is_estimate(drawn)), "photo_psnr_db",
                     drawn.photo_psnr);
   if (drawn.levels) json["levels_of_detail"] = levels_json(*drawn.levels);
   for (const stereo::FoveatedEye& eye : drawn.foveated) json["foveated"].push_back(foveated_json(eye));
@@ -268,8 +269,8 @@ void print(const RenderReport& report) {
                 ? "  (by the float64 reference, on the CPU"
                 : fmt::format("  ({} pairs, {:.3f} ms", drawn.report.pairs, drawn.report.total_ms);
     if (report.options.drawing.quality)
-      line +=
-          fmt::format(", tolerance {:.4g} for about {:.1f} dB", drawn.report.tolerance, reported_psnr(drawn));
+      line += fmt::format(", tolerance {:.4g} for {}{:.1f} dB", drawn.report.tolerance,
+                          is_estimate(drawn) ? "an estimated " : "", reported_psnr(drawn));
     if (drawn.photo_psnr) line += fmt::format(", {:.4f} dB against the photo", *drawn.photo_psnr);
     fmt::print("{})\n", line);
     if (drawn.most_shown)

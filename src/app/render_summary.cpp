@@ -64,6 +64,10 @@ double reported_psnr(const Drawn& drawn) {
   return shares ? psnr_of_both(frame, *drawn.levels->predicted_psnr) : frame;
 }
 
+bool is_estimate(const Drawn& drawn) {
+  return drawn.report.quality_is_estimate || (drawn.levels && drawn.levels->predicted_psnr);
+}
+
 void print_comfort(const Drawn& drawn) {
   const stereo::DisparityRange& r = drawn.comfort->range;
   fmt::print("  disparity {:.1f} (far) to {:.1f} px (near), {:.2f} to {:.2f} degrees, against {}{}\n",
@@ -93,8 +97,8 @@ void print_way(const RenderReport& report) {
               ? "  (by the float64 reference, on the CPU"
               : fmt::format("  ({:.0f} pairs, {:.3f} ms, medians", quantile(pairs, 0.5), quantile(ms, 0.5));
   if (report.options.drawing.quality)
-    line +=
-        fmt::format("; about {:.1f} dB, {:.1f} at worst", quantile(reported, 0.5), quantile(reported, 0.0));
+    line += fmt::format("; {:.1f} dB, {:.1f} at worst, {} of them estimated", quantile(reported, 0.5),
+                        quantile(reported, 0.0), std::ranges::count_if(all, is_estimate));
   fmt::print("{}{})\n", line, report.options.output.json.empty() ? "; each by itself: --json FILE" : "");
   if (!shown.empty())
     fmt::print("  colours: {}: 0 (dark blue) to {} to {} and more (yellow), by frame\n",

@@ -7,6 +7,8 @@ namespace binosplat::app {
 
 /// dB that a frame says of itself: with what its levels lose, where they share --quality.
 double reported_psnr(const Drawn& drawn);
+/// Whether that was not measured on all of the frame.
+bool is_estimate(const Drawn& drawn);
 
 /// Prints how the disparities of a pair lie.
 void print_comfort(const Drawn& drawn);

@@ -17,6 +17,7 @@
 #include "base/mapped_file.h"
 #include "base/output_file.h"
 #include "formats/content.h"
+#include "formats/model_file.h"
 #include "formats/model_output.h"
 #include "lab/fields.h"
 #include "lab/trim.h"
@@ -47,13 +48,14 @@ ModelFormat check_trim(const TrimOptions& o) {
   return format;
 }
 
-/// The file that was read, where it has the format that is to be written.
-std::optional<fs::path> same_format(const TrimOptions& o, const std::string& format_read,
-                                    ModelFormat format) {
+/// The file that was read, where it has the format that is to be written and says by itself how it is drawn.
+std::optional<fs::path> same_format(const TrimOptions& o, const Model& model, ModelFormat format) {
   const fs::path file = model_file(o.scene.name);
+  const auto run = run_of(file);
+  if (!kernel_loss(model, format).empty() || (run && run->antialiased)) return std::nullopt;
   const std::string_view name = written_format(format).read_as;
   // A SOG may be read from a meta.json beside its pictures, and is written as an archive.
-  const bool same = (format_read == name || format_read.starts_with(fmt::format("{} ", name))) &&
+  const bool same = (model.format == name || model.format.starts_with(fmt::format("{} ", name))) &&
                     (format != ModelFormat::sog || model_format_of(file) == format);
   return same && fs::is_regular_file(file) ? std::optional(file) : std::nullopt;
 }
@@ -152,7 +154,7 @@ ExitCode trim(const TrimOptions& o) {
   const CameraList list = needed_cameras("trim", o);
   Model model = load_scene(o.scene, {}, list.cameras);
   refuse_scaffold(model, o.scene.name);
-  const std::optional<fs::path> original = same_format(o, model.format, format);
+  const std::optional<fs::path> original = same_format(o, model, format);
   bring_into_axes(model, axes_of(format));
   lab::ViewSplit views = split_views("trim", o, photos, o.split, list,
                                      [](std::size_t, std::size_t cameras) { return cameras / 2; });

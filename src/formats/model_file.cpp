@@ -212,16 +212,21 @@ Model load_model_alone(const fs::path& path, const ModelOptions& options) {
   }
   model.name = file.filename().string();
   if (model.count() == 0) {
-    fail("{}: all of its {} Gaussians have values that are not finite or out of range, or zero quaternions",
-         file.string(), model.left_out);
+    fail(
+        "{}: all of its {} Gaussians have values that are not finite or out of range, scales above 1e13, or "
+        "zero "
+        "quaternions",
+        file.string(), model.left_out);
   }
   if (model.cut_db) {
     log_warning("{}: harmonics of degree 4 are drawn up to degree 3, which costs about {}", file.string(),
                 cut_in_words(model));
   }
   if (model.left_out > 0) {
-    log_warning("{}: {} of {} Gaussians left out (values not finite or out of range, or a zero quaternion)",
-                file.string(), model.left_out, model.left_out + model.count());
+    log_warning(
+        "{}: {} of {} Gaussians left out (values not finite or out of range, a scale above 1e13, or a zero "
+        "quaternion)",
+        file.string(), model.left_out, model.left_out + model.count());
   }
   if (model.antialiased && model.antialiased_by.empty()) model.antialiased_by = "its file";
   return model;

@@ -89,6 +89,12 @@ std::uint64_t bytes_in(ModelFormat format, std::size_t count, int degree) {
   return count * (20 + higher);
 }
 
+std::vector<std::string> kernel_loss(const Model& model, ModelFormat format) {
+  if (model.kernel_px2 == KERNEL_PX2 || (format == ModelFormat::ply && is_mip_splatting(model))) return {};
+  return {fmt::format("{} does not tell the low-pass of {:.4g} px^2: draw it with --kernel-px2 {:.4g}",
+                      written_format(format).name, model.kernel_px2, model.kernel_px2)};
+}
+
 std::vector<std::string> write_model(OutputFile& file, const Model& model, ModelFormat format,
                                      int harmonic_bits) {
   if (model.scaffold) {
@@ -112,13 +118,7 @@ std::vector<std::string> write_model(OutputFile& file, const Model& model, Model
     return losses;
   }
   Losses losses = write(file, model, format, harmonic_bits);
-  const bool kernel_kept =
-      model.kernel_px2 == KERNEL_PX2 || (format == ModelFormat::ply && is_mip_splatting(model));
-  if (!kernel_kept) {
-    losses.push_back(
-        fmt::format("{} does not tell the low-pass of {:.4g} px^2: draw it with --kernel-px2 {:.4g}",
-                    written_format(format).name, model.kernel_px2, model.kernel_px2));
-  }
+  std::ranges::move(kernel_loss(model, format), std::back_inserter(losses));
   if ((format == ModelFormat::spz || format == ModelFormat::splat) && model.perspective != Perspective{}) {
     losses.push_back(fmt::format("{} does not tell how it is seen: draw it with --order {} --projection {}",
                                  written_format(format).name, order_choices[model.perspective.order].name,

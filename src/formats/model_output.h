@@ -65,6 +65,9 @@ std::uint64_t bytes_in(ModelFormat format, std::size_t count, int degree);
 std::vector<std::string> write_model(OutputFile& file, const Model& model, ModelFormat format,
                                      int harmonic_bits = 8);
 
+/// Of that, what is said of the model's low-pass: nothing where the format keeps it.
+std::vector<std::string> kernel_loss(const Model& model, ModelFormat format);
+
 /// Reads back what write_model() wrote of `model`, before it is committed: numbers that a format has no room
 /// for show here. Throws Error where the file cannot be read or has another count; takes the model's memory
 /// once more, and only warns where that is not there.

@@ -9,8 +9,10 @@
 namespace binosplat::lab {
 
 struct BenchComparison {
-  std::vector<std::string> lines;  // one for each point that changed beyond noise; the last one counts
+  std::vector<std::string> lines;  // of points whose times are none, of those that changed beyond noise; the
+                                   // last one counts
   std::size_t matched = 0;         // points of both runs
+  std::size_t timed = 0;           // of these: whose times were compared
   double slower_percent = 0.0;     // of the point that became slower by most, beyond noise; 0: none did
   std::string slowest;             // that point
 };

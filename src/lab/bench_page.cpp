@@ -78,7 +78,9 @@ std::string sentence_of(const BenchChart& chart) {
   if (exact != nullptr && exact != *good)
     sentence += fmt::format(", {:.2f} times as fast as the exact picture ({:.4g} ms)",
                             exact->frame_ms / (*good)->frame_ms, exact->frame_ms);
-  return sentence + ". Filled points are on the Pareto front: nothing is both quicker and nearer to exact.";
+  return sentence +
+         ". Filled points are on the Pareto front: nothing is both nearer to exact and, beyond noise, "
+         "quicker. Bars are half the spread of the repeats.";
 }
 
 constexpr const char* psnr_column = "PSNR against exact dB, equal pictures at 100";
@@ -86,12 +88,14 @@ constexpr const char* psnr_column = "PSNR against exact dB, equal pictures at 10
 const char* yes_if(bool so) { return so ? "yes" : ""; }
 
 Section accuracy(const BenchChart& chart) {
-  Table table{{"setting", "family", "front", "frame ms", psnr_column}, {}};
+  Table table{{"setting", "family", "front", "frame ms", "noise ms", psnr_column}, {}};
   for (const BenchPoint* p : chart.measured)
-    table.rows.push_back(row(p->name, p->family, yes_if(chart.is_front(p)), p->frame_ms, p->psnr_db()));
+    table.rows.push_back(
+        row(p->name, p->family, yes_if(chart.is_front(p)), p->frame_ms, p->noise_ms, p->psnr_db()));
   Chart plot{"frame ms", {psnr_column}, "family", "setting", "front", "", chart.families};
   plot.line = false;
   plot.front = true;
+  plot.spread = "noise ms";
   return {chart.id, chart.title, sentence_of(chart), {}, plot, table};
 }
 

@@ -94,6 +94,26 @@ struct BenchPoint : BenchNumbers {
 
   /// What the points of a chart have in common: "fox, both eyes, size own".
   std::string chart(const char* before_size = "size ") const;
+
+  /// Whether it was measured, or tried to be; whether its times are numbers above 0, as those measured are.
+  bool is_there() const { return measured() || !device.empty(); }
+  bool has_times() const;
+};
+
+/// How far times scatter by chance, relative to themselves, as the repeats of points tell.
+class TimeNoise {
+ public:
+  void add(const BenchPoint& point);  // which has times
+  bool is_known() const { return freedom_ > 0; }
+  /// By how much two times may differ without a cause: in one case of a hundred, one of so many pairs differs
+  /// more.
+  double between(const BenchPoint& a, const BenchPoint& b, std::size_t pairs) const;
+
+ private:
+  double deviation() const;
+
+  double squares_ = 0.0;
+  int freedom_ = 0;
 };
 
 struct BenchResults {
@@ -107,7 +127,7 @@ void to_json(nlohmann::ordered_json& json, const BenchPoint& point);
 void from_json(const nlohmann::ordered_json& json, BenchPoint& point);
 
 /// For each point whether it is on the Pareto front of its chart (same scene, eyes and size): none is both
-/// quicker and nearer to exact.
+/// quicker, by more than noise, and nearer to exact.
 std::vector<bool> pareto_front(const std::vector<BenchPoint>& points);
 
 /// A line a point, a column a number; empty where it was not measured.

@@ -34,7 +34,7 @@ static void fields(const auto& io, const Figure& f) {
 static void fields(const auto& io, const Chart& c) {
   io("x", c.x, "y", c.y, "by", c.by, "label", c.label, "filled", c.filled, "title", c.title, "order", c.order,
      "bars", c.bars, "zero", c.zero, "areas", c.areas, "line", c.line, "steps", c.steps, "dots", c.dots,
-     "front", c.front, "log_x", c.log_x, "log_y", c.log_y);
+     "front", c.front, "spread", c.spread, "log_x", c.log_x, "log_y", c.log_y);
 }
 
 static void fields(const auto& io, const Section& s) {

@@ -72,6 +72,7 @@ struct Chart {
   bool steps = false;                   // by steps: a value holds until the next
   bool dots = true;
   bool front = false;                 // one more line by steps through the points that are filled
+  std::string spread = {};            // how far a point may lie to the left and right: a bar
   bool log_x = false, log_y = false;  // only values above 0 can be drawn
 };
 

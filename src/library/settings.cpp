@@ -107,6 +107,7 @@ Report report_of(const render::FrameReport& frame) {
   report.order_groups = frame.order_groups;
   report.tolerance = frame.tolerance;
   report.quality = frame.quality;
+  report.quality_is_estimate = frame.quality_is_estimate;
   report.attempts = frame.attempts;
   report.redrawn = frame.redrawn;
   report.in_place = frame.on_canvases;

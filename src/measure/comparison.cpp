@@ -1,5 +1,7 @@
 #include "measure/comparison.h"
 
+#include <cmath>
+
 namespace binosplat::measure {
 
 bool is_see_through(const Image& image) {
@@ -32,6 +34,7 @@ bool make_shown(Image& a, Image& b, const Background& background) {
   for (Image* image : {&a, &b}) {
     if (image->channels == 1 && a.channels != b.channels) *image = before(behind, *image);
     // An EXR may hold values outside 0 to 1 that a PNG of the same picture cannot.
+    for (float& value : image->data) value = std::isfinite(value) ? value : NAN;
     *image = clamped(*image);
   }
   return see_through && !keeps_alpha;
@@ -42,7 +45,9 @@ double photo_psnr(const Image& picture, const glm::mat4x3& exposure, const Image
 }
 
 Comparison compare(const Image& a, const Image& b, double pixels_per_degree) {
-  return {psnr(a, b), ssim(a, b), flip(a, b, pixels_per_degree), largest_difference(a, b)};
+  Comparison found{psnr(a, b), ssim(a, b), flip(a, b, pixels_per_degree), largest_difference(a, b)};
+  if (std::isinf(found.largest.max)) found.psnr = found.largest.max = NAN;
+  return found;
 }
 
 }  // namespace binosplat::measure

@@ -7,6 +7,7 @@
 
 namespace binosplat::measure {
 
+/// Where a value is not a number all are undefined, NaN, and `largest` has its place.
 struct Comparison {
   double psnr = 0.0;
   double ssim = 0.0;
@@ -20,10 +21,11 @@ bool is_see_through(const Image& image);
 /// RGB of any image: grey as three equal channels, and what is seen through before a background.
 Image before(const glm::vec3& background, const Image& image);
 
-/// Makes two pictures what a screen shows of them: values clamped to [0, 1], and grey as three equal channels
-/// where the other one has colour. Alpha is left out where it is 1 everywhere. Where only one has other
-/// alpha, it is shown before a background, black unless that is given; with a given background both are. Else
-/// alpha stays, and counts. Returns whether something that is seen through was put before a background.
+/// Makes two pictures what a screen shows of them: values clamped to [0, 1], infinite ones not numbers, and
+/// grey as three equal channels where the other one has colour. Alpha is left out where it is 1 everywhere.
+/// Where only one has other alpha, it is shown before a background, black unless that is given; with a given
+/// background both are. Else alpha stays, and counts. Returns whether something that is seen through was put
+/// before a background.
 bool make_shown(Image& a, Image& b, const Background& background = {});
 
 /// PSNR against a photo of what a picture becomes by its exposure (exposed() of base/image.h), both as 8 bits

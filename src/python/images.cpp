@@ -210,17 +210,19 @@ void add_images(py::module_& module) {
 
   add_exposures(module);
   py::class_<Comparison>(module, "Comparison", "By how much two pictures differ.")
-      .def_readonly("psnr", &Comparison::psnr, "dB; inf for equal pictures, -inf where one holds a NaN.")
-      .def_readonly("ssim", &Comparison::ssim,
-                    "At most 1, that of equal pictures; nan for pictures below 11 x 11 px or with a NaN.")
-      .def_readonly("flip", &Comparison::flip, "Mean of FLIP's map, 0 to 1; nan where one holds a NaN.")
+      .def_readonly("psnr", &Comparison::psnr,
+                    "dB; inf for equal pictures, nan where one holds a NaN or an infinity.")
+      .def_readonly(
+          "ssim", &Comparison::ssim,
+          "At most 1, that of equal pictures; nan for pictures below 11 x 11 px or with such a value.")
+      .def_readonly("flip", &Comparison::flip, "Mean of FLIP's map, 0 to 1; nan likewise.")
       .def_property_readonly(
           "largest_error", [](const Comparison& c) { return c.largest.max; },
           "Of a channel, absolute, of white 1.")
       .def_property_readonly(
           "at",
           [](const Comparison& c) { return py::make_tuple(c.largest.y, c.largest.x, c.largest.channel); },
-          "Row, column and channel of the largest error.")
+          "Row, column and channel of the largest error, or of the first NaN or infinity.")
       .def("__repr__", &describe_comparison);
   module.def("compare", &compare, py::arg("a"), py::arg("b"),
              py::arg("ppd") = measure::flip_pixels_per_degree, py::arg("background") = py::none(),

@@ -97,6 +97,7 @@ void check_row(const GaussianValues& values, std::size_t row, int coefficients) 
   if (!(values.opacity >= 0.0f && values.opacity <= 1.0f))
     fail_at("opacities", row, "expected 0 to 1, which is the sigmoid of what trainers store");
   if (!finite(values.sh, coefficients)) fail_at("sh", row, not_finite);
+  fail_at("scales", row, "above 1e13, which cannot be drawn");
 }
 
 void fill_rows(Model& model, const Columns& from) {

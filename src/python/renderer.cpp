@@ -63,8 +63,9 @@ py::dict dict_of(const render::FrameReport& report) {
   using namespace py::literals;
   return py::dict("total_ms"_a = report.total_ms, "stages_ms"_a = stages, "visible"_a = report.visible,
                   "pairs"_a = report.pairs, "tolerance"_a = report.tolerance, "quality"_a = report.quality,
-                  "submit_ms"_a = report.cpu.submit, "attempts"_a = report.attempts,
-                  "remembered"_a = report.used_measured, "gpu_bytes"_a = report.gpu_bytes);
+                  "quality_is_estimate"_a = report.quality_is_estimate, "submit_ms"_a = report.cpu.submit,
+                  "attempts"_a = report.attempts, "remembered"_a = report.used_measured,
+                  "gpu_bytes"_a = report.gpu_bytes);
 }
 
 /// What Python sees of a view's picture.

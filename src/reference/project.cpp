@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <glm/gtc/matrix_access.hpp>
 
 #include "base/parallel.h"
 #include "reference/decode.h"
@@ -12,8 +13,8 @@ namespace binosplat::reference {
 
 namespace {
 
-/// M M^T, M = Rot(q) diag(scale): the covariance in world axes.
-glm::dmat3 covariance_in_world(const Gaussian& gaussian) {
+/// M = Rot(q) diag(scale), whose M M^T is the covariance in world axes.
+glm::dmat3 scaled_axes(const Gaussian& gaussian) {
   const glm::dvec4& q = gaussian.rotation;
   const double w = q[0], x = q[1], y = q[2], z = q[3];
   const glm::dmat3 rotation(1 - 2 * (y * y + z * z), 2 * (x * y + w * z),
@@ -21,8 +22,20 @@ glm::dmat3 covariance_in_world(const Gaussian& gaussian) {
                             2 * (x * y - w * z), 1 - 2 * (x * x + z * z), 2 * (y * z + w * x),   // second
                             2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y));  // third
   const glm::dvec3& s = gaussian.scale;
-  const glm::dmat3 m(rotation[0] * s.x, rotation[1] * s.y, rotation[2] * s.z);
-  return m * glm::transpose(m);
+  return {rotation[0] * s.x, rotation[1] * s.y, rotation[2] * s.z};
+}
+
+struct Seen {
+  glm::dvec3 covariance;  // xx, xy, yy, with the low-pass
+  double det, det_free;   // with it and without
+};
+
+/// What scaled axes come to in a plane. The determinants by sums of squares: xx yy - xy^2 would lose the
+/// width of a needle a million times as long.
+Seen seen_in_plane(const glm::dmat3x2& axes, double low_pass) {
+  const glm::dvec3 a = glm::row(axes, 0), b = glm::row(axes, 1), n = glm::cross(a, b);
+  const double aa = glm::dot(a, a), bb = glm::dot(b, b), free = glm::dot(n, n);
+  return {{aa + low_pass, glm::dot(a, b), bb + low_pass}, free + low_pass * (aa + bb + low_pass), free};
 }
 
 /// World to eye.
@@ -90,16 +103,15 @@ glm::dvec2 picture_point(const glm::dvec3& v, const shared::View& view) {
 /// Affine: J takes the Gaussian at v to the picture.
 void project_affine(const Gaussian& gaussian, const shared::View& view, const glm::dvec3& v,
                     const LowPass& low_pass, Splat& splat) {
-  const glm::dmat3x2 projection = perspective_jacobian(v, view) * axes_of(view);
-  const glm::dmat2 c2 = projection * covariance_in_world(gaussian) * glm::transpose(projection);
-  const double kernel = low_pass.kernel_px2;
-  splat.covariance = glm::dvec3(c2[0][0] + kernel, c2[0][1], c2[1][1] + kernel);
-  splat.det = splat.covariance.x * splat.covariance.z - splat.covariance.y * splat.covariance.y;
+  const Seen seen = seen_in_plane(perspective_jacobian(v, view) * axes_of(view) * scaled_axes(gaussian),
+                                  low_pass.kernel_px2);
+  splat.covariance = seen.covariance;
+  splat.det = seen.det;
   splat.drawn = splat.det > 0.0;
   splat.mean = picture_point(v, view);
   splat.depth = v.z;
   splat.conic = glm::dvec3(splat.covariance.z, -splat.covariance.y, splat.covariance.x) / splat.det;
-  if (low_pass.antialiased) splat.opacity *= std::sqrt(std::max(0.0, glm::determinant(c2)) / splat.det);
+  if (low_pass.antialiased) splat.opacity *= std::sqrt(seen.det_free / seen.det);
 }
 
 /// Any two directions that make a right-handed frame with the unit vector n.
@@ -117,28 +129,26 @@ void project_tangent(const Gaussian& gaussian, const shared::View& view, const g
   const double focal2 = lens[0] * lens[1], distance = glm::length(v);
   const glm::dvec3 n = v / distance;
   const auto [e1, e2] = across(n);
-  const glm::dmat3 in_eye = axes_of(view) * covariance_in_world(gaussian) * glm::transpose(axes_of(view));
   const glm::dmat3x2 onto = glm::transpose(glm::dmat2x3(e1, e2));
-  const glm::dmat2 shape = onto * in_eye * glm::transpose(onto) / (distance * distance);
-  const glm::dmat2 widened = shape + glm::dmat2(low_pass.kernel_px2 / focal2);
-  splat.drawn = glm::determinant(widened) > 0.0;
+  const Seen seen =
+      seen_in_plane(onto * axes_of(view) * scaled_axes(gaussian) / distance, low_pass.kernel_px2 / focal2);
+  splat.drawn = seen.det > 0.0;
   splat.depth = distance;
   splat.mean = picture_point(v, view);
-  if (low_pass.antialiased) {
-    splat.opacity *= std::sqrt(std::max(0.0, glm::determinant(shape)) / glm::determinant(widened));
-  }
-  glm::dmat2 q = glm::inverse(widened);
-  const double mean = 0.5 * (q[0][0] + q[1][1]);
-  const double least = glm::determinant(q) / (mean + std::hypot(0.5 * (q[0][0] - q[1][1]), q[0][1]));
-  q += glm::dmat2(std::max(0.0, 1.0 / (WIDEST_TANGENT * WIDEST_TANGENT) - least));
+  if (low_pass.antialiased) splat.opacity *= std::sqrt(seen.det_free / seen.det);
+  const glm::dvec3& c = seen.covariance;
+  const double most = 0.5 * (c.x + c.z) + std::hypot(0.5 * (c.x - c.z), c.y);
+  const double more = std::max(0.0, 1.0 / (WIDEST_TANGENT * WIDEST_TANGENT) - 1.0 / most);
+  const glm::dmat2 q(c.z / seen.det + more, -c.y / seen.det, -c.y / seen.det, c.x / seen.det + more);
+  const double det_q = 1.0 / seen.det + more * ((c.x + c.z) / seen.det + more);
 
-  splat.det = focal2 * focal2 / glm::determinant(q);
+  splat.det = focal2 * focal2 / det_q;
 
   // The ray of a pixel is to_ray * (x, y, 1).
   const glm::dmat3 to_ray(1 / lens[0], 0, 0, 0, 1 / lens[1], 0, (0.5 - lens[2]) / lens[0],
                           (0.5 - lens[3]) / lens[1], 1);
-  const glm::dmat3x2 seen = onto * to_ray;
-  splat.cone = Cone{glm::transpose(seen) * q * seen, glm::transpose(to_ray) * to_ray, n.z < 0.0,
+  const glm::dmat3x2 rays = onto * to_ray;
+  splat.cone = Cone{glm::transpose(rays) * q * rays, glm::transpose(to_ray) * to_ray, n.z < 0.0,
                     glm::transpose(to_ray) * n};
 }
 

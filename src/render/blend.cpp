@@ -33,6 +33,14 @@ BlendProgram program_for(const gl::Context& context, const FramePlan& plan, cons
   return context.software() ? BlendProgram::software : BlendProgram::general;
 }
 
+// Whether a tile may be 42 degrees across: what fades at 69 degrees from a splat's direction
+// (docs/method.md 2.2) may then be seen by one of its rays and lie behind another.
+bool has_broad_tiles(const FramePlan& plan) {
+  return std::ranges::any_of(plan.views, [&](const shared::View& view) {
+    return std::min(view.lens.x, view.lens.y) < 2.0f * static_cast<float>(plan.settings.tile_size);
+  });
+}
+
 // The exact blend's programs know no tile test: the same lists give the same bits; nor does a pixel's colour
 // depend on the tiles' size. Exact or not, it does not on how many an invocation draws.
 const gl::Program& program(gl::Context& context, const FramePlan& plan, const BlendTask& task,
@@ -47,6 +55,7 @@ const gl::Program& program(gl::Context& context, const FramePlan& plan, const Bl
                  .debug_view = task.debug_view,
                  .approximate = plan.is_approximate(),
                  .projection = plan.perspective.projection,
+                 .broad = plan.perspective.projection == PROJECTION_TANGENT && has_broad_tiles(plan),
                  .large_splats = large_splats};
   if (v.draws()) {
     v.depth = plan.depth();

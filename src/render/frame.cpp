@@ -75,7 +75,7 @@ void Frame::submit(std::span<const shared::View> views, const FrameSettings& set
   is_cut_ = (settings.quality > 0.0f || measures(settings.transmittance)) && !history_.goes_on(plan_);
   if (settings.quality > 0.0f) {
     if (!history_.goes_on(plan_)) tolerance_control_.forget();
-    if (!tolerance_control_.knows(settings) || !history_.probed_lately(plan_, workings.probe_every))
+    if (!tolerance_control_.knows(views, settings) || !history_.probed_lately(plan_, workings.probe_every))
       return start_search();
     PlanRequest with = request;
     with.tolerance = tolerance_control_.tolerance();
@@ -99,6 +99,7 @@ FrameReport Frame::finish() {
   }
   if (submitted_.settings.quality > 0.0f && submitted_.last == Stage::probe)
     report.quality = tolerance_control_.quality();
+  report.quality_is_estimate = !submitted_.searches || !tolerance_control_.is_measured();
   report.cpu = cpu_;
   report.programs_made = dispatcher_.context().programs_made() - programs_before_;
   report.is_cut = is_cut_;

@@ -55,6 +55,7 @@ struct FrameReport {
   bool is_cut = false;  // it could not go by earlier frames, as it asked to: it is the first, or a camera cut
   bool on_canvases = false;  // its pictures are on the canvases that it was given, and nowhere else
   double quality = 0.0;      // with settings.quality: its PSNR in dB, as this and earlier frames' probes tell
+  bool quality_is_estimate = false;  // not measured on all of this frame
 };
 
 /// A Gaussian that a frame drew in a view, and the largest transmittance that it met.

@@ -43,6 +43,16 @@ double careful_tolerance_at_40_db(const FrameSettings& s, double focal) {
   return threshold_rules[s.th].careful_tolerance * std::pow(std::min(1.0, focal / 700.0), 1.75);
 }
 
+struct Tiles {
+  std::uint32_t across, down;
+  double all() const { return static_cast<double>(across) * down; }
+};
+
+Tiles tiles_of(const shared::View& view, const FrameSettings& settings) {
+  const auto side = static_cast<std::uint32_t>(settings.tile_size);
+  return {(view.width + side - 1) / side, (view.height + side - 1) / side};
+}
+
 bool same_rule(const FrameSettings& a, const FrameSettings& b) {
   return (a.quality > 0.0f) == (b.quality > 0.0f) && std::abs(a.quality - b.quality) <= followed &&
          a.th == b.th && a.transmittance == b.transmittance;
@@ -55,11 +65,11 @@ void ToleranceControl::forget() {
   fresh_ = cut_ = holds_ = true;
 }
 
-bool ToleranceControl::knows(const FrameSettings& settings) const {
+bool ToleranceControl::knows(std::span<const shared::View> views, const FrameSettings& settings) const {
   const bool saw_all =
       std::all_of(views_.begin(), views_.end(), [](const Estimate& v) { return v.weight > 0.0; });
   return saw_all && !fresh_ && holds_ && !exact_ && same_rule(settings, settings_) &&
-         settings.quality <= settings_.quality + unnoticed;
+         settings.quality <= settings_.quality + unnoticed && step_in(views.front(), settings) > 1;
 }
 
 void ToleranceControl::begin(const FrameSettings& settings, double focal) {
@@ -71,6 +81,14 @@ void ToleranceControl::begin(const FrameSettings& settings, double focal) {
       careful_tolerance_at_40_db(settings, focal) * std::pow(10.0, -0.1 * (settings.quality - 40.0) / slope_);
 }
 
+std::uint32_t ToleranceControl::step_in(const shared::View& view, const FrameSettings& settings) const {
+  const double all = tiles_of(view, settings).all();
+  // The more, the more tiles differ.
+  const double wanted = std::max(
+      {static_cast<double>(settings.probe_tiles), all / share_max, unevenness_ / (deviation * deviation)});
+  return std::max(1u, static_cast<std::uint32_t>(std::sqrt(all / wanted)));
+}
+
 Probe ToleranceControl::next_probe(std::span<const shared::View> views, const FrameSettings& settings) {
   if (views_.size() != views.size()) {
     views_.assign(views.size(), {});
@@ -79,24 +97,23 @@ Probe ToleranceControl::next_probe(std::span<const shared::View> views, const Fr
   if (!same_rule(settings, settings_)) begin(settings, views.front().lens.y);
   settings_.quality = settings.quality;
   const auto count = static_cast<std::uint32_t>(views.size());
-  if (holds_) found_ = 0;
+  if (holds_) {
+    found_ = 0;
+    for (Estimate& view : views_) view.measured = false;
+  }
   probe_ = {.view = static_cast<std::uint32_t>(next_ + found_) % count};
   const shared::View& view = views[probe_.view];
-  const auto side = static_cast<std::uint32_t>(settings.tile_size);
-  const std::uint32_t across = (view.width + side - 1) / side, down = (view.height + side - 1) / side;
-  // After a cut all of it; then more, the more tiles differ.
-  const double all = static_cast<double>(across) * down;
-  const double wanted = std::max(
-      {static_cast<double>(settings.probe_tiles), all / share_max, unevenness_ / (deviation * deviation)});
-  while (!fresh_ && (probe_.step + 1.0) * (probe_.step + 1.0) * wanted <= all) ++probe_.step;
+  const Tiles tiles = tiles_of(view, settings);
+  is_small_ = step_in(view, settings) == 1;
+  if (!fresh_) probe_.step = step_in(view, settings);  // after a cut all of it
   // A golden step, so that the places of a few probes are spread evenly.
   const std::uint32_t places = probe_.step * probe_.step;
   std::uint32_t stride = std::max(1u, static_cast<std::uint32_t>(std::lround(0.618 * places)));
   while (std::gcd(stride, places) != 1) ++stride;
   const std::uint32_t place = next_ / count * stride % places;
-  probe_.column = std::min(place % probe_.step, across - 1);
-  probe_.row = std::min(place / probe_.step, down - 1);
-  probe_tiles_ = all / places;
+  probe_.column = std::min(place % probe_.step, tiles.across - 1);
+  probe_.row = std::min(place / probe_.step, tiles.down - 1);
+  probe_tiles_ = tiles.all() / places;
   return probe_;
 }
 
@@ -109,7 +126,7 @@ float ToleranceControl::next_tolerance() {
   if (exact_) return 0.0f;
   if (attempts_ > 1) {
     tolerance_ = std::clamp(searched_tolerance(target()), tolerance_min, tolerance_max);
-  } else if (!fresh_) {
+  } else if (!fresh_ && found_ == 0) {
     tolerance_ = std::clamp(followed_tolerance(target()), tolerance_min, tolerance_max);
   }
   return static_cast<float>(tolerance_);
@@ -147,7 +164,7 @@ void ToleranceControl::take(const Probed& probed) {
   // others.
   if (view.weight > 0.0 && !fresh_ &&
       (error > surprise * expected || (whole && surprise * error < expected))) {
-    for (Estimate& any : views_) any.weight = 0.0;
+    for (Estimate& any : views_) any.weight = any.measured ? any.weight : 0.0;
   }
   unevenness_ = std::max(probed.unevenness, fading * unevenness_);
   // These may be the sky: a larger probe is to tell.
@@ -162,13 +179,15 @@ void ToleranceControl::take(const Probed& probed) {
   if (follows && view.error > 0.0) {
     const double trend = std::pow(view.error / expected, attempts_ > 1 ? 1.0 : 0.5);
     for (Estimate& any : views_) {
-      if (&any == &view) continue;
+      if (&any == &view || (any.measured && any.tolerance == tolerance_)) continue;
       any.error = trend * error_now(any);
       any.tolerance = tolerance_;
+      any.measured = false;
     }
   }
   view.weight += probe_tiles_;
   view.tolerance = tolerance_;
+  view.measured = whole;
 }
 
 // What two attempts at a frame say of the error's law about here.
@@ -198,22 +217,30 @@ void ToleranceControl::measured(const Probed& probed, bool settled) {
       const bool too_good = above > fresh_above && found_ == 0 && attempts_ <= attempts_max - 3;
       holds_ = settled && above >= -fresh_below && !too_good;
       if (settled) learn(target());
-      if (holds_ && cut_ && ++found_ < views_.size()) {  // others may err more at this tolerance
-        holds_ = false;
-        attempts_ = 0;
-        bracket_ = {};
-      }
     } else {
       const double wanted = std::pow(10.0, -0.1 * settings_.quality);
       holds_ = settled && worst() <= wanted * std::pow(10.0, 0.1 * miss) &&
                probed.squared_error <= wanted * std::pow(10.0, 0.1 * miss_of_one);
     }
   }
-  fresh_ = !holds_;  // further attempts see the whole of this view: two views have no law of error together
+  const bool goes_on = holds_ && (cut_ || is_small_) && !exact_ && ++found_ < views_.size();
+  if (goes_on) {  // others may err more at this tolerance
+    holds_ = false;
+    attempts_ = 0;
+    bracket_ = {};
+  }
+  // Further attempts see the whole of this view: two views have no law of error together.
+  fresh_ = !holds_ && (!goes_on || cut_);
   if (holds_) {
     cut_ = false;
     ++next_;
   }
+}
+
+bool ToleranceControl::is_measured() const {
+  return exact_ || std::ranges::all_of(views_, [this](const Estimate& view) {
+           return view.measured && view.tolerance == tolerance_;
+         });
 }
 
 double ToleranceControl::target() const { return std::pow(10.0, -0.1 * (settings_.quality + margin)); }

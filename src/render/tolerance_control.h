@@ -19,15 +19,17 @@ namespace binosplat::render {
 /// to frame; the tolerance follows it likewise.
 ///
 /// A frame that does not hold is to be drawn again: after a camera cut, until every view was seen to hold, or
-/// where a probe shows much more error than was expected. Each attempt is
+/// where a probe shows much more error than was expected; and where a view has so few tiles that a
+/// probe has all of them, until all views were measured. Each attempt is
 ///   next_probe(), next_tolerance(), the drawing, measured(), and again unless holds().
 class ToleranceControl {
  public:
   /// Forgets what was measured, which is of other views. The tolerance stays, as a first guess.
   void forget();
 
-  /// Whether enough is known of a frame of these settings to draw it at tolerance(), without a probe.
-  bool knows(const FrameSettings& settings) const;
+  /// Whether enough is known of a frame of these settings to draw it at tolerance(), without a probe. Never
+  /// of views that a probe has all of: single Gaussians may change their error by some dB a frame.
+  bool knows(std::span<const shared::View> views, const FrameSettings& settings) const;
   float tolerance() const { return static_cast<float>(tolerance_); }
 
   /// The tiles that the next attempt draws exactly, too: after a cut all of a view's.
@@ -46,12 +48,15 @@ class ToleranceControl {
   /// PSNR in dB of the view that errs most, at the tolerance last given, as far as is known; infinite for no
   /// error.
   double quality() const;
+  /// Whether the last attempt measured that on all that it drew. Else it is an estimate.
+  bool is_measured() const;
 
  private:
   struct Estimate {
     double error = 0.0;      // mean squared error of the view's tiles that were seen
     double weight = 0.0;     // how many tiles; those seen longer ago count less
     double tolerance = 0.0;  // to which `error` belongs
+    bool measured = false;   // on all of the view as it is in this frame
   };
   // The largest tolerance that attempts at one frame showed to hold, the smallest shown to miss, and their
   // errors.
@@ -60,6 +65,8 @@ class ToleranceControl {
     double missed = 0.0, missed_error = 0.0;
   };
   void begin(const FrameSettings& settings, double focal);
+  /// Of a probe of this view.
+  std::uint32_t step_in(const shared::View& view, const FrameSettings& settings) const;
   double searched_tolerance(double target) const;
   double followed_tolerance(double target) const;
   void take(const Probed& probed);
@@ -71,6 +78,7 @@ class ToleranceControl {
   FrameSettings settings_;  // the last frame's
   double slope_ = 1.0;      // squared error grows about as tolerance^slope_ here
   double tolerance_ = 0.0;  // the last attempt's that was not exact
+  bool is_small_ = false;   // a probe has all tiles of a view
   bool cut_ = true;         // no frame was kept since the cut
   bool fresh_ = true;       // after a cut or a miss: the next probe has all of a view
   std::size_t found_ = 0;   // views that hold in the frame after a cut

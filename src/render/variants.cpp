@@ -89,6 +89,7 @@ bool BlendVariant::is_legal() const {
   if (mesh_depth && (!draws() || measure != MEASURE_NONE || depth == DEPTH_VISIBILITY)) return false;
   const bool may_be_larger = program == BlendProgram::subgroups && !long_lists && depth == DEPTH_NONE &&
                              !approximate && projection == PROJECTION_AFFINE;
+  if (broad && projection != PROJECTION_TANGENT) return false;
   return !large_splats || may_be_larger;
 }
 
@@ -97,7 +98,7 @@ std::string_view BlendVariant::shader() const {
   return program == BlendProgram::software ? "blend_blocks.comp" : "blend.comp";
 }
 
-std::array<gl::Number, 15> BlendVariant::numbers() const {
+std::array<gl::Number, 16> BlendVariant::numbers() const {
   const BlendColumns columns = columns_of(*this);
   return {number("TILE_SIZE", tile_size, 33),
           number("SUPERTILE_SIDE", supertile_side, 3),
@@ -112,6 +113,7 @@ std::array<gl::Number, 15> BlendVariant::numbers() const {
           number("DEPTH", depth, DEPTH_MEDIAN_OF_TWO_ROWS + 1),
           number("APPROXIMATE", approximate, flag),
           number("CANVASES", canvases, MAX_CANVASES + 1),
+          number("BROAD", broad, flag),
           number("MESH_DEPTH", mesh_depth, flag),
           projection_number(projection)};
 }
@@ -141,9 +143,9 @@ std::vector<BlendVariant> blend_variants() {
        std::array{DEPTH_NONE, DEPTH_MEAN, DEPTH_VISIBILITY, DEPTH_MEDIAN, DEPTH_MEDIAN_OF_TWO_ROWS});
   vary(&BlendVariant::canvases, std::array{0, 1, 2, 3, 4});
   vary(&BlendVariant::projection, std::array{PROJECTION_AFFINE, PROJECTION_TANGENT});
-  for (const auto member :
-       {&BlendVariant::probed, &BlendVariant::regions, &BlendVariant::long_lists, &BlendVariant::half,
-        &BlendVariant::approximate, &BlendVariant::mesh_depth, &BlendVariant::large_splats}) {
+  for (const auto member : {&BlendVariant::probed, &BlendVariant::regions, &BlendVariant::long_lists,
+                            &BlendVariant::half, &BlendVariant::approximate, &BlendVariant::broad,
+                            &BlendVariant::mesh_depth, &BlendVariant::large_splats}) {
     vary(member, either);
     std::erase_if(all, [](const BlendVariant& v) { return !v.is_legal(); });
   }

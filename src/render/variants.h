@@ -57,6 +57,7 @@ struct BlendVariant {
   bool approximate = false;
   int canvases = 0;
   int projection = PROJECTION_AFFINE;
+  bool broad = false;         // tiles are that wide splats may lie ahead of and behind
   bool mesh_depth = false;    // some splats lie behind meshes of the caller's
   bool large_splats = false;  // that touch many tiles: invocations draw more pixels
 
@@ -64,7 +65,7 @@ struct BlendVariant {
   /// Which combinations frames may ask for.
   bool is_legal() const;
   std::string_view shader() const;
-  std::array<gl::Number, 15> numbers() const;
+  std::array<gl::Number, 16> numbers() const;
 };
 
 /// All variants that are legal.

@@ -14,6 +14,7 @@ namespace binosplat {
 namespace {
 
 constexpr float opacity_rounding = 1e-3f;  // a step of halves beyond 1
+constexpr float scale_most = 1e13f;  // in pictures, its square must not overflow fp32
 
 bool finite(const glm::vec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 
@@ -58,8 +59,9 @@ bool place(Model& model, std::size_t i, const GaussianValues& values) {
   model.rotation[i] = unit ? rotation : glm::vec4(q / norm);
   model.opacity[i] = opacity;
   std::copy(sh, sh + count, &model.sh[i * count]);
-  return finite(position) && finite(scale) && glm::all(glm::greaterThanEqual(scale, glm::vec3(0.0f))) &&
-         opacity >= 0.0f && opacity <= 1.0f && std::isfinite(norm) && norm > 0.0 &&
+  return finite(position) && glm::all(glm::greaterThanEqual(scale, glm::vec3(0.0f))) &&
+         glm::all(glm::lessThanEqual(scale, glm::vec3(scale_most))) && opacity >= 0.0f && opacity <= 1.0f &&
+         std::isfinite(norm) && norm > 0.0 &&
          std::all_of(sh, sh + count, [](float v) { return std::isfinite(v); });
 }
 

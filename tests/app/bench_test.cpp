@@ -152,6 +152,10 @@ TEST_F(BenchTest, FailsWhereItHasBecomeSlower) {
   }
   EXPECT_TRUE(ended(compared("50"), 1, "more than --fail-if-slower 50"));
   EXPECT_TRUE(good(compared("1e9")));
+  const ordered_json whole = old;
+  old["points"][0]["frame_ms"] = 0;
+  EXPECT_TRUE(ended(compared("1e9"), 1, "could not be compared"));
+  old = whole;
   for (ordered_json& point : old["points"]) point["scene"] = "another";
   EXPECT_TRUE(ended(compared("50"), 2, "no point of this run is in"));
   EXPECT_TRUE(ended(bench({"--merge", out, "--fail-if-slower", "3"}, out), 2,

@@ -119,6 +119,30 @@ TEST_F(Compare, PngAndExrOfOnePictureAreEqualToRounding) {
   }
 }
 
+TEST_F(Compare, AValueThatIsNoNumberLeavesEverythingUndefinedAndIsNamed) {
+  Picture picture(24, 16);
+  const std::string plain_exr = folder / "plain.exr", broken = folder / "broken.exr";
+  save_exr(plain_exr, picture, {false, true, glm::vec3(0.0f), {}});
+  EXPECT_TRUE(has(compare(plain_exr, plain_exr).out, "infinite")) << "planted: without such a value";
+  for (const float value : {NAN, INFINITY, -INFINITY}) {
+    picture.colour[24 * 5 + 7].y = value;
+    save_exr(broken, picture, {false, true, glm::vec3(0.0f), {}});
+    for (const std::string& other : {plain_exr, broken}) {
+      for (const auto& [a, b] : {std::pair(broken, other), std::pair(other, broken)}) {
+        const Outcome outcome = compare(a, b, {"--min-psnr", "10"});
+        const std::string place = "undefined: " + broken + " holds a NaN or an infinity at x 7, y 5, green";
+        EXPECT_EQ(outcome.code, 1);
+        for (const char* name : {"PSNR           ", "SSIM           ", "FLIP           "})
+          EXPECT_TRUE(has(outcome.out, name + place)) << outcome.out;
+        EXPECT_TRUE(said()["psnr_db"].is_null() && said()["ssim"].is_null() && said()["flip"].is_null());
+        EXPECT_FALSE(said()["equal"].get<bool>());
+        EXPECT_TRUE(said()["largest_error"]["value"].is_null());
+        EXPECT_EQ(said()["largest_error"]["x"], 7);
+      }
+    }
+  }
+}
+
 TEST_F(Compare, GreyIsComparedWithColour) {
   const std::string grey = png("g.png", plain(16, 1, 0.4f));
   Image colour = plain(16, 3, 0.4f);

@@ -136,6 +136,36 @@ TEST_F(TrimTest, AModelThatNeedsAllIsReturnedAsItWas) {
   EXPECT_EQ(test::read_text(folder / "a.splat"), test::read_text(folder / "b.splat"));
 }
 
+// 3DGUT's, whose run's file beside it says that there is hardly a low-pass.
+TEST_F(TrimTest, CandidatesHaveTheModelsLowPassAndItsLossIsSaid) {
+  Model thin = seen();
+  for (glm::vec3& scale : thin.scale) scale *= glm::vec3(1.0f, 0.05f, 0.05f);
+  save_ply(model, thin);
+  test::write_text(folder / "cfg.yml", "result_dir: x\nwith_eval3d: true\nwith_ut: true\n");
+  std::filesystem::create_directories(folder / "to");
+  const std::string sentence = "does not tell the low-pass of 0.001 px^2: draw it with --kernel-px2 0.001";
+  const auto said_of = [&](std::vector<std::string> words) {
+    const Outcome outcome = run_program(words);
+    EXPECT_TRUE(outcome.code == 0 || words[0] == "refit") << outcome.err;
+    return words[0] == "refit" && outcome.code != 0 ? sentence : outcome.err;
+  };
+  for (const char* name : {"t.ply", "t.spz", "t.sog"}) {
+    const std::string to = folder / "to" / name;
+    EXPECT_TRUE(test::has(said_of({"trim", model, "--quality", "30", "-o", to, "--json", folder / "r.json"}),
+                          sentence))
+        << name;
+    for (const json& step : report()["steps"])
+      EXPECT_GE(step["held_back"]["mean_db"].get<double>(), 30.0) << step;  // 22 dB with the usual low-pass
+    EXPECT_TRUE(test::has(
+        said_of({"refit", model, "--against", "exact", "--rounds", "1", "-o", folder / "to" / "r.ply"}),
+        sentence));
+  }
+  EXPECT_TRUE(test::has(said_of({"levels", model, "--levels", "2", "-o", folder / "levels"}), sentence));
+  std::filesystem::remove(folder / "cfg.yml");
+  EXPECT_FALSE(
+      test::has(said_of({"trim", model, "--quality", "30", "-o", folder / "to" / "u.ply"}), sentence));
+}
+
 TEST_F(TrimTest, WritesEveryFormat) {
   for (const WrittenFormat& format : written_formats) {
     const std::string file = std::string("t") + format.ending;

@@ -73,6 +73,27 @@ TEST(BenchComparison, KnowsNoNoiseOfASingleRepeat) {
   EXPECT_EQ(found.slower_percent, 0.0);
 }
 
+TEST(BenchComparison, NamesPointsWithoutTimesAndComparesTheOthers) {
+  std::vector<BenchPoint> now = run_with(3, 2);
+  for (double& ms : now[4].repeats_ms) ms *= 1000.0;
+  now[4].frame_ms = mean(now[4].repeats_ms);
+  for (const double broken : {0.0, -1.0, static_cast<double>(INFINITY), static_cast<double>(NAN)}) {
+    for (const bool in_repeats : {false, true}) {
+      std::vector<BenchPoint> before = run_with(3, 1);
+      (in_repeats ? before[6].repeats_ms[1] : before[6].frame_ms) = broken;
+      const BenchComparison found = compare_results(before, now);
+      EXPECT_EQ(found.slowest, "fox, one eye, own, way 5") << broken;
+      EXPECT_EQ(found.matched, 8u);
+      EXPECT_EQ(found.timed, 7u);
+      ASSERT_EQ(found.lines.size(), 3u);
+      EXPECT_EQ(found.lines[0].find("fox, one eye, own, way 7: its times cannot be compared"), 0u);
+      EXPECT_EQ(found.lines.back(), "1 of 7 points in both runs changed beyond noise; 0 are new, 0 are gone");
+      EXPECT_EQ(compare_results(now, before).timed, 7u);
+    }
+  }
+  EXPECT_EQ(compare_results(run_with(3, 1), now).timed, 8u) << "planted: none is broken";
+}
+
 TEST(BenchComparison, TakesOlderResults) {
   BenchPoint older = timed("a", {4.0});
   older.repeats_ms.clear();  // which were not kept, but for half their spread

@@ -81,6 +81,18 @@ TEST(BenchResults, FrontHoldsWhatNothingBeats) {
   EXPECT_TRUE(pareto_front(other)[1] && pareto_front(other)[3]);
 }
 
+TEST(BenchResults, NoiseAloneDecidesNothingOfTheFront) {
+  std::vector<BenchPoint> points = {point("ellipse", 4.0, 60.0), point("aabb", 4.04, 60.0),
+                                    point("squared, 0.1", 3.98, 50.0), point("squared, 0.2", 2.0, 45.0)};
+  EXPECT_EQ(pareto_front(points), (std::vector<bool>{true, true, true, true}));
+  points[1] = point("aabb", 8.0, 60.0);
+  EXPECT_EQ(pareto_front(points), (std::vector<bool>{true, false, true, true})) << "planted: beyond noise";
+  for (BenchPoint& p : points) p.repeats_ms = {p.frame_ms};  // of which nothing tells the noise
+  points[1] = point("aabb", 4.04, 60.0);
+  points[1].repeats_ms = {4.04};
+  EXPECT_EQ(pareto_front(points), (std::vector<bool>{true, false, true, true}));
+}
+
 TEST(BenchResults, CsvHasALineAPoint) {
   const std::string text = csv(bench_results().points);
   std::istringstream lines(text);

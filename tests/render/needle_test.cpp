@@ -57,6 +57,27 @@ TEST(Needles, AreExactAtEveryFocalLength) {
   EXPECT_GE(least_db({}, 0.1), 68.0) << "Mip-Splatting's low-pass";
 }
 
+// exp() of log-scales that ran away.
+TEST(Needles, OfDivergedTrainingsAreExactOrLeftOut) {
+  for (const double length : {1e6, 1e9, 1e12}) {
+    for (const int projection : {PROJECTION_AFFINE, PROJECTION_TANGENT}) {
+      Model model = wires({length, 0.004}, 1);
+      model.perspective = {ORDER_DISTANCE, projection};
+      const shared::View view = view_of_focal(1536.0);
+      const Picture expected = reference::render(model, view);
+      EXPECT_GE(test::psnr(test::draw(model, view), expected), 68.0) << length << " " << projection;
+      for (glm::vec3& scale : model.scale) scale.y = scale.z = 0.0f;  // planted: without their width
+      EXPECT_LT(test::psnr(test::draw(model, view), expected), 60.0) << length << " " << projection;
+    }
+  }
+  Model one = wires({1.0, 0.004}, 1);
+  const auto is_kept = [&](float scale) {
+    return place(one, 0, {glm::vec3(0.0f), glm::vec3(scale, 1.0f, 1.0f), {1, 0, 0, 0}, 0.5f, one.sh.data()});
+  };
+  EXPECT_TRUE(is_kept(1e12f));
+  EXPECT_FALSE(is_kept(1e19f));
+}
+
 TEST(Needles, TheDeterminantOfTheCovarianceWouldNotDo) {
   const test::FaultyShaders fault(
       "projection.glsl",

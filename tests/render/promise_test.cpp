@@ -232,6 +232,76 @@ TEST(Promise, HoldsInMistBehindFrontsAndUnderCuts) {
   }
 }
 
+// Random Gaussians in a room's size: usual ones; with giants; needles; mist.
+Model random_room(int kind, std::uint32_t seed) {
+  test::Uniform uniform(seed);
+  Model model;
+  model.name = "room";
+  for (int i = 0; i < 300; ++i) {
+    const auto scale = [&] {
+      const double usual = std::exp(uniform(-4.0, -1.5));
+      return static_cast<float>(kind == 1 && i % 10 == 0  ? 20.0 * usual
+                                : kind == 2 && i % 2 == 0 ? usual * std::exp(uniform(-3.0, 3.0))
+                                                          : usual);
+    };
+    const glm::vec3 scales(scale(), scale(), scale());
+    const glm::vec4 rotation(uniform(-1, 1), uniform(-1, 1), uniform(-1, 1), uniform(-1, 1));
+    test::add(model, {uniform(-2, 2), uniform(-1, 1), uniform(-2, 2)}, scales,
+              static_cast<float>(uniform(0.05, kind == 3 ? 0.15 : 1.0)),
+              glm::vec3(uniform(0, 1), uniform(0, 1), uniform(0, 1)), rotation);
+  }
+  return model;
+}
+
+// A number that is not said to be an estimate is within 1 dB of the truth, on whatever way. In pictures as
+// small as these single Gaussians decide what a frame is worth.
+TEST(Promise, ReportsTheTruthOrAnEstimate) {
+  const std::uint32_t paths = test::switched_on("BINOSPLAT_LONG") ? 50 : 10;
+  double off_most = 0.0, stale_most = 0.0;
+  int estimates = 0, frames = 0;
+  for (std::uint32_t n = 0; n < paths; ++n) {
+    Model model = random_room(static_cast<int>(n % 4), 700 + n);
+    model.antialiased = n % 5 == 1;
+    std::vector<Camera> cameras;
+    for (int k = 0; k < 5; ++k) {
+      const double angle = 1.3 * k;
+      cameras.push_back(look_at({3.0 * std::cos(angle), -0.5, 3.0 * std::sin(angle)}, {0, 0, 0}, {0, -1, 0},
+                                70.0, 64 + 16 * static_cast<int>(n % 3), 48));
+    }
+    const auto heads = tour(cameras, {.motion = head_motions().at(n % 3)});
+    const FrameSettings exact{.precision = n % 5 == 2 ? PRECISION_HALF : PRECISION_FULL};
+    FrameSettings settings = exact;
+    settings.th = n % 4 == 3 ? TH_PERIPHERAL : TH_SQUARED;
+    settings.quality = 35.0f + 5.0f * static_cast<float>(n % 3);
+    render::Frame judge(test::gl_context(), model), frame(test::gl_context(), model);
+    double told_before = 0.0;
+    for (std::size_t k = 0; k < 12; ++k, ++frames) {
+      const auto rig = stereo::make_rig(heads.at(40 + k), {});
+      const Views views(rig.views.begin(), rig.views.begin() + (n % 2 == 0 ? 2 : 1));
+      const auto report = frame.draw(views, settings);
+      const auto drawn = shown_images(frame);
+      judge.draw(views, exact);
+      const auto truth = shown_images(judge);
+      double db = equal_pictures;
+      for (std::size_t eye = 0; eye < views.size(); ++eye)
+        db = std::min(db, measure::psnr(drawn[eye], truth[eye]));
+      const double told = std::min(report.quality, equal_pictures);
+      if (report.quality_is_estimate) {
+        ++estimates;
+      } else {
+        off_most = std::max(off_most, std::abs(told - db));
+        if (std::abs(told - db) > 1.0) ADD_FAILURE() << n << " " << k << ": " << told << " for " << db;
+      }
+      if (k > 0) stale_most = std::max(stale_most, std::abs(told_before - db));
+      told_before = told;
+    }
+  }
+  fmt::print("off by {:.2f} dB at most, {} of {} estimated\n", off_most, estimates, frames);
+  EXPECT_LE(off_most, 1.0);
+  EXPECT_LT(estimates, frames / 4);
+  EXPECT_GT(stale_most, 1.0) << "planted: the number of the frame before";
+}
+
 TEST(Promise, HoldsFromTheFirstFrameOnOfAWalkThroughFox) {
   if (!test::switched_on("BINOSPLAT_LONG") && test::gl_context().software())
     GTEST_SKIP() << "more than a minute on llvmpipe: set BINOSPLAT_LONG=1";

@@ -276,9 +276,9 @@ TEST(ToleranceControl, AQualityThatChangesALittleIsFollowed) {
     EXPECT_LT(course.told_off, 0.4) << power;
     EXPECT_LT(course.attempts, 95) << power;
     settings.quality += 0.2f;
-    EXPECT_TRUE(control.knows(settings));
+    EXPECT_TRUE(control.knows(scene.views, settings));
     settings.quality += 0.2f;
-    EXPECT_FALSE(control.knows(settings)) << "of a frame that must be better";
+    EXPECT_FALSE(control.knows(scene.views, settings)) << "of a frame that must be better";
     settings.quality = 43.0f;  // at once
     course = {};
     draw();

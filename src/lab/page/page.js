@@ -59,13 +59,15 @@ function seriesOf(section) {
   const series = groups.flatMap((group) => chart.y.map((column) => {
     const name = chart.y.length === 1 ? group ?? column : groups.length === 1 ? column : `${group}: ${column}`;
     const points = rows.filter((row) => at(row, chart.by) === group).map((row) => ({
-      x: at(row, chart.x), y: at(row, column), filled: at(row, chart.filled) === "yes",
+      x: at(row, chart.x), y: at(row, column), filled: at(row, chart.filled) === "yes", spread: at(row, chart.spread),
       label: chart.label ? shown(at(row, chart.label)) : "" }));
     const good = points.filter(fits);
     const bad = chart.y.length > 1 ? [] : points.filter((p) => !fits(p) && p.y !== "" && typeof p.x !== "string");
     return { name, column, good, bad, line: chart.line, steps: chart.steps, dots: chart.dots };
   }));
-  const front = chart.front ? series.flatMap((s) => s.good).filter((p) => p.filled).sort((p, q) => p.x - q.x) : [];
+  let best = -Infinity;
+  const front = chart.front ? series.flatMap((s) => s.good).filter((p) => p.filled).sort((p, q) => p.x - q.x)
+    .filter((p) => p.y > best && ((best = p.y), true)) : [];
   if (front.length) series.push({ name: "Pareto front", good: front, bad: [], line: true, steps: true, dots: false });
   return series.map((s, i) => ({ ...s, style: seriesStyle(i), on: true }));
 }
@@ -103,6 +105,8 @@ function curves(chart, chosen, width) {
     const at = { x: "x", y: "y" };
     if (s.line) marks.push(Plot.line(s.good, { ...at, stroke: s.style.colour, strokeWidth: 1.75,
       strokeDasharray: s.style.dash, ...(s.steps ? { curve: "step-after" } : {}) }));
+    if (chart.spread && s.dots) marks.push(Plot.ruleY(s.good.filter((p) => p.spread > 0), { y: "y",
+      x1: (p) => p.x - p.spread, x2: (p) => p.x + p.spread, stroke: s.style.colour }));
     if (s.dots) marks.push(Plot.dot(s.good, { ...at, symbol: s.style.symbol, stroke: s.style.colour,
       strokeWidth: 1.75, r: 4, fill: (p) => p.filled ? s.style.colour : "var(--paper)" }));
   }
