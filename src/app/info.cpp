@@ -104,9 +104,9 @@ void print_sizes(const Model& model) {
   const auto size = [&](ModelFormat format) {
     return megabytes(static_cast<std::int64_t>(bytes_in(format, model.count(), model.degree)));
   };
-  fmt::print("{:<14} ply {}, compressed ply {}, .splat {}{}, spz at most {}, SOG at most {}\n", "as a file",
-             size(ModelFormat::ply), size(ModelFormat::compressed_ply), size(ModelFormat::splat),
-             model.degree > 0 ? " (without harmonics)" : "", size(ModelFormat::spz), size(ModelFormat::sog));
+  fmt::print("{:<14} ply {}, .splat {}{}, spz at most {}, SOG at most {}\n", "as a file",
+             size(ModelFormat::ply), size(ModelFormat::splat), model.degree > 0 ? " (without harmonics)" : "",
+             size(ModelFormat::spz), size(ModelFormat::sog));
 }
 
 void print_info(const SeenOfViews& seen, std::size_t all) {

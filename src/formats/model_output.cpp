@@ -17,8 +17,6 @@ Losses write(OutputFile& file, const Model& model, ModelFormat format, int harmo
   switch (format) {
     case ModelFormat::ply:
       return write_ply(file, model);
-    case ModelFormat::compressed_ply:
-      return write_compressed_ply(file, model);
     case ModelFormat::splat:
       return write_splat(file, model);
     case ModelFormat::sog:
@@ -61,15 +59,11 @@ std::string written_endings() {
 
 std::optional<ModelFormat> model_format_of(const std::filesystem::path& path) {
   const std::string name = lowered(path.filename().string());
-  std::optional<ModelFormat> found;  // .compressed.ply ends in .ply, too
-  std::size_t longest = 0;
+  if (name.ends_with(".compressed.ply")) return std::nullopt;
   for (std::size_t k = 0; k < std::size(written_formats); ++k) {
-    const std::string_view ending = written_formats[k].ending;
-    if (!name.ends_with(ending) || ending.size() <= longest) continue;
-    found = static_cast<ModelFormat>(k);
-    longest = ending.size();
+    if (name.ends_with(written_formats[k].ending)) return static_cast<ModelFormat>(k);
   }
-  return found;
+  return std::nullopt;
 }
 
 std::uint64_t bytes_in(ModelFormat format, std::size_t count, int degree) {
@@ -77,8 +71,6 @@ std::uint64_t bytes_in(ModelFormat format, std::size_t count, int degree) {
   switch (format) {
     case ModelFormat::ply:
       return count * 4 * (17 + higher);
-    case ModelFormat::compressed_ply:
-      return count * (16 + higher) + (count + 255) / 256 * 72;
     case ModelFormat::splat:
       return count * 32;
     case ModelFormat::sog:

@@ -14,7 +14,7 @@
 
 namespace binosplat {
 
-enum class ModelFormat { ply, compressed_ply, splat, spz, sog };
+enum class ModelFormat { ply, splat, spz, sog };
 
 struct WrittenFormat {
   const char* name;     // as --to and reports call it
@@ -24,7 +24,6 @@ struct WrittenFormat {
 
 /// In the order of the enum.
 constexpr WrittenFormat written_formats[] = {{"ply", ".ply", "ply"},
-                                             {"compressed-ply", ".compressed.ply", "compressed ply"},
                                              {"splat", ".splat", ".splat"},
                                              {"spz", ".spz", "spz"},
                                              {"sog", ".sog", "SOG"}};
@@ -34,10 +33,10 @@ constexpr const WrittenFormat& written_format(ModelFormat format) {
   return written_formats[static_cast<std::size_t>(format)];
 }
 
-/// ".ply, .compressed.ply, .splat, .spz or .sog".
+/// ".ply, .splat, .spz or .sog".
 std::string written_endings();
 
-/// By the end of a name, in any case.
+/// By the end of a name, in any case; none for .compressed.ply, which is read and not written.
 std::optional<ModelFormat> model_format_of(const std::filesystem::path& path);
 
 /// The frame in which a format's numbers are by convention; of these files only spz says so itself.
@@ -52,12 +51,11 @@ std::uint64_t bytes_in(ModelFormat format, std::size_t count, int degree);
 /// format is for, is none of it.
 ///  - ply: INRIA's (formats/ply.h), all numbers as floats: a model that came from a ply reads back the same
 ///    to the bit.
-///  - compressed ply: PlayCanvas' (formats/compressed_ply.h), in Morton order (formats/morton.h).
 ///  - .splat: antimatter15's (formats/splat.h).
 ///  - spz: version 3 within gzip (formats/spz.h). `harmonic_bits`, 1 to 8, are those of a coefficient of
 ///    degrees 2 and 3; degree 1 has one more where 8 leave it. Niantic's own writer takes 4. An extension
 ///    names the axes.
-///  - SOG: version 2 as an archive (formats/sog.h), in Morton order; harmonics of degrees 1 to 3 from a
+///  - SOG: version 2 as an archive (formats/sog.h), in Morton order (formats/morton.h); harmonics of degrees 1 to 3 from a
 ///  palette
 ///    of 65,536 at most (formats/codebook.h).
 /// Progress is shown where it takes long. Throws Error where the disk is full, for a model that the format

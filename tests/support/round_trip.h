@@ -15,8 +15,7 @@
 
 namespace binosplat::test {
 
-constexpr ModelFormat formats[] = {ModelFormat::ply, ModelFormat::compressed_ply, ModelFormat::splat,
-                                   ModelFormat::spz, ModelFormat::sog};
+constexpr ModelFormat formats[] = {ModelFormat::ply, ModelFormat::splat, ModelFormat::spz, ModelFormat::sog};
 
 inline std::string name_of(ModelFormat format) { return written_format(format).name; }
 
@@ -187,42 +186,6 @@ inline Expected of_sog(const Model& model, std::size_t i, const SogEnds& ends) {
   return e;
 }
 
-/// `chunk` holds the indices of the Gaussians that share bounds with this one.
-inline Expected of_compressed(const Model& model, std::size_t i, std::span<const std::uint32_t> chunk) {
-  constexpr double fine = 1.0 / 2047, coarse = 1.0 / 1023;  // 11, 10 and 11 bits
-  const auto log_scale = [&](std::size_t k) {
-    return glm::clamp(glm::log(glm::dvec3(model.scale[k])), -20.0, 20.0);
-  };
-  glm::dvec3 low[3] = {}, high[3] = {};
-  Expected e = exact(model, i);
-  for (std::size_t k = 0; k < chunk.size(); ++k) {
-    const Expected other = exact(model, chunk[k]);
-    const glm::dvec3 values[] = {other.position, log_scale(chunk[k]),
-                                 glm::dvec3(other.sh[0], other.sh[1], other.sh[2])};
-    for (int a = 0; a < 3; ++a) {
-      low[a] = k == 0 ? values[a] : glm::min(low[a], values[a]);
-      high[a] = k == 0 ? values[a] : glm::max(high[a], values[a]);
-    }
-  }
-  const glm::dvec3 half = 0.5 * glm::dvec3(fine, coarse, fine);
-  e.position_error = (high[0] - low[0]) * half + glm::max(glm::abs(low[0]), glm::abs(high[0])) * rounding;
-  e.log_scale = log_scale(i);
-  e.log_scale_error = (high[1] - low[1]) * half + 20 * rounding;
-  e.opacity_error = 0.5 / 255 + rounding;
-  e.rotation_error = smallest_three_error(0.5 * std::sqrt(2.0) / 1023);
-  for (std::size_t k = 0; k < e.sh.size(); ++k) {
-    if (k < 3) {
-      const int c = static_cast<int>(k);
-      e.sh_error[k] = (high[2][c] - low[2][c]) * 0.5 / 255 + 16 * rounding;
-    } else {
-      // Readers take the middle of a step of 1/32, but -4 and 4 for the first and the last.
-      e.sh[k] = std::clamp(e.sh[k], -4.0, 4.0);
-      e.sh_error[k] = std::abs(e.sh[k]) >= 4 - 1.0 / 32 ? 1.0 / 32 : 1.0 / 64;
-    }
-  }
-  return e;
-}
-
 /// The first attribute of Gaussian `j` of `back` that is farther from what is expected than it may be.
 inline std::string difference(const Expected& e, const glm::vec4& rotation, const Model& back,
                               std::size_t j) {
@@ -250,19 +213,14 @@ inline std::string difference(const Model& model, const Model& back, ModelFormat
   if (back.axes.letters != model.axes.letters) return "axes";
   std::vector<std::uint32_t> order(model.count());
   for (std::size_t i = 0; i < order.size(); ++i) order[i] = static_cast<std::uint32_t>(i);
-  if (format == ModelFormat::compressed_ply || format == ModelFormat::sog)
-    order = morton_order(model.position);
+  if (format == ModelFormat::sog) order = morton_order(model.position);
   const SogEnds ends = sog_ends(model);
   for (std::size_t j = 0; j < order.size(); ++j) {
-    const std::size_t i = order[j], chunk = j / 256 * 256;
+    const std::size_t i = order[j];
     const Expected e = format == ModelFormat::ply     ? of_ply(model, i)
                        : format == ModelFormat::splat ? of_splat(model, i)
                        : format == ModelFormat::sog   ? of_sog(model, i, ends)
-                       : format == ModelFormat::spz
-                           ? of_spz(model, i, harmonic_bits)
-                           : of_compressed(model, i,
-                                           std::span(order).subspan(
-                                               chunk, std::min<std::size_t>(256, order.size() - chunk)));
+                                                      : of_spz(model, i, harmonic_bits);
     if (std::string found = difference(e, model.rotation[i], back, j); !found.empty()) return found;
   }
   return "";
