@@ -22,12 +22,7 @@ layout(std430, binding = 6) writeonly buffer Harmonics { uvec4 harmonics[]; };  
 layout(std430, binding = 5) writeonly buffer Gaussians { Gaussian gaussians[]; };      // (decoding, anchor, k)
 layout(std430, binding = 6) writeonly buffer Harmonics { vec4 harmonics[]; };          // of degree 0, likewise
 #endif
-layout(std430, binding = 9) writeonly buffer Kept { uint kept[]; };  // (decoding, anchor), bit k; KEPT_HIDDEN
-#if REUSE == 1
-#include "threshold/threshold.glsl"                                          // binding 7
-layout(std430, binding = 10) readonly buffer KeptLast { uint kept_last[]; };  // of the last frame
-uniform uint page_first;
-#endif
+layout(std430, binding = 9) writeonly buffer Kept { uint kept[]; };  // (decoding, anchor), bit k
 
 // As trained: as if it were a Gaussian of its offsets' scales that must touch a tile of 3D-GS.
 bool sees(View view, Anchor anchor) {
@@ -43,25 +38,6 @@ vec3 mean_of(Anchor anchor, uint n, uint k) {
   precise vec3 mean = anchor.position.xyz + vec3(offsets[at], offsets[at + 1u], offsets[at + 2u]) * anchor.offset_scale.xyz;
   return mean;
 }
-
-#if REUSE == 1
-
-// Whether Th leaves out of view v all that the last frame had of an anchor, whatever the networks would make of it now: no
-// Gaussian is wider than the anchor's scale, and none has an alpha of more than 1.
-bool is_hidden(uint v, Anchor anchor, uint n, uint bits) {
-  float widest = max(max(anchor.scale.x, anchor.scale.y), anchor.scale.z);
-  for (uint k = 0u; k < frame.offset_count; ++k) {
-    if ((bits >> k & 1u) == 0u) continue;
-    Gaussian g = Gaussian(vec4(mean_of(anchor, n, k), 1.0), vec4(1.0, 0.0, 0.0, 0.0), vec4(vec3(widest), 0.0));
-    Splat splat;
-    if (!project(views[v], g, scaled_axes(g), splat)) return false;
-    float bound = bound_of(page_first + n * uint(OFFSETS) + k, v, splat.depth);
-    if (!(threshold_of(v, splat, bound) > 1.0)) return false;
-  }
-  return bits != 0u;
-}
-
-#endif
 
 vec3 sigmoid(vec3 x) { return 1.0 / (1.0 + exp(-x)); }
 
@@ -125,15 +101,6 @@ void main() {
     eye += (views[v].anchor.xyz - views[first].anchor.xyz) + views[v].eye.xyz;
     seen = seen || sees(views[v], anchor);
   }
-#if REUSE == 1
-  uint last = kept_last[at] & ~KEPT_HIDDEN;
-  bool hidden = seen && frame.has_bounds != 0u;
-  for (uint v = first; v < end; ++v) hidden = hidden && is_hidden(v, anchor, n, last);
-  if (hidden) {
-    kept[at] = last | KEPT_HIDDEN;
-    return;
-  }
-#endif
   vec3 towards = (anchor.position.xyz - views[first].anchor.xyz) - eye / float(end - first);
   kept[at] = seen ? decode_anchor(anchor, n, towards, at * uint(OFFSETS)) : 0u;
 }

@@ -27,14 +27,7 @@ uint place_of(uint i, uint v) {
 bool is_kept(uint i, uint v) {
   uint place = place_of(i, v);
   uint bits = kept[place / uint(OFFSETS)];
-  return (bits & KEPT_HIDDEN) == 0u && (bits >> (place % uint(OFFSETS)) & 1u) != 0u;
-}
-
-// Whether view v had it, and its anchor was not decoded again because Th would leave it out.
-bool is_hidden(uint i, uint v) {
-  uint place = place_of(i, v);
-  uint bits = kept[place / uint(OFFSETS)];
-  return (bits & KEPT_HIDDEN) != 0u && (bits >> (place % uint(OFFSETS)) & 1u) != 0u;
+  return (bits >> (place % uint(OFFSETS)) & 1u) != 0u;
 }
 
 #else
@@ -42,7 +35,5 @@ bool is_hidden(uint i, uint v) {
 uint place_of(uint i, uint v) { return i; }
 
 bool is_kept(uint i, uint v) { return true; }
-
-bool is_hidden(uint i, uint v) { return false; }
 
 #endif

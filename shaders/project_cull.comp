@@ -23,7 +23,7 @@ uniform uint view_end;  // without the probe
 #if MEASURES
 void age_bound(uint gaussian, uint v, bool projected, bool drawn, Splat splat) {
   if (v >= frame.asked) return;  // a probe
-  bool left_out = is_hidden(gaussian - page_first, v);
+  bool left_out = false;
 #if TH != TH_TAU
   if (projected && !drawn) {
     splat.colour.w = visible_level(splat.opacity);

@@ -142,7 +142,6 @@ struct Counters {
   uint tile_pairs;  // Gaussian-tile pairs wanted, over all views, where supertiles are of several tiles
 };
 
-#define KEPT_HIDDEN 0x80000000u  // bit of an anchor that was not decoded; the others are the last frame's
 #define COUNT_MAX 0xFFFFFFFFu
 #define PROBE_SCALE 4194304.0       // 2^22: a work group's sum of at most 3 * THREADS stays below 2^32
 #define DEPTH_KEY_NONE 0xFFFFFFFFu  // the key of a Gaussian that no view of the order group draws

@@ -107,11 +107,9 @@ void FrameBuffers::reserve(const FramePlan& plan, const ModelBuffers& model, con
     transmittance.measured.reserve(capacity.slots * plan.view_count() * 4);
   }
   for (std::size_t page = 0; plan.offset_count > 0 && page < model.pages.size(); ++page) {
-    for (auto* each : {&kept, &kept_last}) {
-      if (page == each->size())
-        each->push_back(std::make_unique<gl::Buffer>(context_, "Gaussians kept by anchor"));
-      (*each)[page]->reserve(std::int64_t{plan.decoding_count()} * model.pages[page].anchors->count * 4);
-    }
+    if (page == kept.size())
+      kept.push_back(std::make_unique<gl::Buffer>(context_, "Gaussians kept by anchor"));
+    kept[page]->reserve(std::int64_t{plan.decoding_count()} * model.pages[page].anchors->count * 4);
   }
   ordering.order.reserve(capacity.slots);
   ordering.pair_offsets.reserve(capacity.slots * 4);
@@ -153,7 +151,6 @@ std::vector<DrawnGaussian> FrameBuffers::read_drawn(const FramePlan& plan, std::
 
 void FrameBuffers::keep_last(bool measured_now) {
   if (measured_now) std::swap(transmittance.bounds, transmittance.next_bounds);
-  std::swap(kept, kept_last);
 }
 
 }  // namespace binosplat::render

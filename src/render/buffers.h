@@ -42,8 +42,8 @@ struct FrameBuffers {
   /// Makes room for a frame of this plan, as `capacity` says. To be called before upload().
   void reserve(const FramePlan& plan, const ModelBuffers& model, const Capacity& capacity);
 
-  /// To be called once a frame is complete: `kept` becomes the next frame's `kept_last`, and `next_bounds`
-  /// its `bounds`, if the frame measured.
+  /// To be called once a frame is complete: `next_bounds` become the next frame's `bounds`, if this one
+  /// measured.
   void keep_last(bool measured_now);
 
   /// The Gaussians that the last frame drew in its view `v`, in index order.
@@ -64,9 +64,8 @@ struct FrameBuffers {
     gl::Buffer measured;                              // uint by splat, bits of the largest float
   } transmittance;
 
-  // For Scaffold-GS, by page of the model, uint (decoding, anchor): bit k: Gaussian k is there; KEPT_HIDDEN:
-  // none is, these are the last frame's. Written while the last frame's is read.
-  std::vector<std::unique_ptr<gl::Buffer>> kept, kept_last;
+  // For Scaffold-GS, by page of the model, uint (decoding, anchor): bit k: Gaussian k is there.
+  std::vector<std::unique_ptr<gl::Buffer>> kept;
 
   std::vector<std::unique_ptr<DrawnBuffers>> drawn;  // by order group
 

@@ -7,35 +7,23 @@ namespace binosplat::render {
 
 namespace {
 
-bool reuses(const FramePlan& plan) {
-  const FrameSettings& s = plan.settings;
-  // What is hidden is told by the area of a splat as the affine projection, which the anchor cull goes by,
-  // has it.
-  return plan.anchor_reuse && plan.perspective.projection == PROJECTION_AFFINE && measures(s.transmittance) &&
-         !is_exact(s.th) && !plan.probe && plan.kernel_px2 == KERNEL_PX2;
-}
-
 // Of shared memory: what every driver has.
 constexpr std::int64_t shared_bytes = 32768;
 
 // The anchor cull goes by 3D-GS's own tiles.
-std::array<gl::Number, 13> decode_variant(const FramePlan& plan, const NetworkBuffers& networks) {
+std::array<gl::Number, 12> decode_variant(const FramePlan& plan, const NetworkBuffers& networks) {
   const FrameSettings& s = plan.settings;
-  const bool reuse = reuses(plan);
-  const int th = reuse ? s.th : TH_TAU;
-  const int transmittance = reuse ? s.transmittance : TRANSMITTANCE_ONE;
   const std::int64_t weights = networks.bytes <= shared_bytes ? networks.bytes / 16 : 0;
   return {gl::Number{"TILES", TILES_AABB, std::size(tiles_choices), tiles_choices[TILES_AABB].name},
           {"TILE_SIZE", ANCHOR_TILE, 33},
-          {"TH", static_cast<std::uint64_t>(th), std::size(th_choices), th_choices[th].name},
-          {"TRANSMITTANCE", static_cast<std::uint64_t>(transmittance), std::size(transmittance_choices)},
+          {"TH", TH_TAU, std::size(th_choices), th_choices[TH_TAU].name},
+          {"TRANSMITTANCE", TRANSMITTANCE_ONE, std::size(transmittance_choices)},
           {"ANTIALIASED", 0, 2},
           {"HIDDEN", networks.hidden, 4096},
           {"BANK", networks.bank, 2},
           {"OFFSETS", plan.offset_count, 32},
           {"WEIGHTS", static_cast<std::uint64_t>(weights), shared_bytes},
           {"HALF", s.precision == PRECISION_HALF, 2},
-          {"REUSE", reuse, 2},
           {"ORDER", ORDER_DEPTH, std::size(order_choices)},
           projection_number(PROJECTION_AFFINE)};
 }
@@ -60,10 +48,8 @@ void decode(gl::Dispatcher& dispatcher, const FramePlan& plan, const ModelBuffer
                     {"ViewFree", anchors.view_free},
                     {"Gaussians", *page.gaussians},
                     {"Harmonics", *page.harmonics},
-                    {"Kept", *buffers.kept[p]},
-                    {"KeptLast", *buffers.kept_last[p]},
-                    {"Bounds", *buffers.transmittance.bounds}},
-                   {{"anchor_count", anchors.count}, {"page_first", page.first}});
+                    {"Kept", *buffers.kept[p]}},
+                   {{"anchor_count", anchors.count}});
   }
 }
 

@@ -159,7 +159,6 @@ FramePlan make_plan(std::span<const shared::View> views, const FrameSettings& se
   FramePlan plan;
   plan.settings = settings;
   plan.tolerance = request.tolerance.value_or(settings.tolerance);
-  plan.anchor_reuse = workings.anchor_reuse;
   plan.between_pixels = workings.between_pixels;
   plan.visibility_as_depth = workings.visibility_as_depth;
   plan.supertile_side = std::max(workings.supertile_side, 1);

@@ -51,7 +51,6 @@ struct Meshes {
 struct FramePlan {
   FrameSettings settings;
   float tolerance = 0.0f;            // K or kappa: the settings', or one that was found for a quality
-  bool anchor_reuse = true;          // Workings
   bool between_pixels = false;       // likewise
   bool visibility_as_depth = false;  // likewise
   int supertile_side = 1;            // tiles along a side of a supertile

@@ -39,9 +39,6 @@ struct Workings {
   /// With a quality, at least 1 of `probe_every` frames measures its error, and each whose eyes have gone a
   /// fifteenth of the way to a camera cut since the last that did (history.h), such as a turn by a degree.
   int probe_every = 4;
-  /// For Scaffold-GS, in frames that use measured transmittance and have no probe: an anchor is not decoded
-  /// where Th would leave out all of the Gaussians that it had in the last frame, whatever they had become.
-  bool anchor_reuse = true;
   /// The lists also hold splats that are seen only between the centres of pixels, for ray_blend.h. For
   /// TILES_ELLIPSE.
   bool between_pixels = false;
