@@ -85,10 +85,8 @@ render::MemoryNeeds headset_needs(const Model& model) {
 }
 
 void print_bounds(const char* name, const Bounds& b) {
-  const auto side = [&](int i) {
-    return fmt::format("{} to {}", coordinate(b.low[i]), coordinate(b.high[i]));
-  };
-  fmt::print("{:<14} {}, {}, {}\n", name, side(0), side(1), side(2));
+  fmt::print("{:<14} {} to {}, {} to {}, {} to {}\n", name, coordinate(b.low.x), coordinate(b.high.x),
+             coordinate(b.low.y), coordinate(b.high.y), coordinate(b.low.z), coordinate(b.high.z));
 }
 
 /// One line of a histogram: the share of all as a number and as a bar.

@@ -51,6 +51,7 @@ Model load_written(const fs::path& file, const Model& model) {
   written.perspective = model.perspective;
   move_origin(written, model.axes.origin);
   written.kernel_px2 = model.kernel_px2;
+  written.antialiased = model.antialiased;
   return written;
 }
 

@@ -27,7 +27,7 @@ void refuse_scaffold(const Model& model, const std::string& scene);
 void add_harmonic_bits_option(CLI::App& sub, std::optional<int>& bits);
 void check_harmonic_bits(const std::optional<int>& bits, ModelFormat format);
 
-/// Reads what was written of a model, in that model's perspective, which some formats do not tell, and from
+/// Reads what was written of a model, to be seen as that model is, which some formats do not tell, and from
 /// its origin.
 Model load_written(const std::filesystem::path& file, const Model& model);
 

@@ -205,8 +205,7 @@ CameraList listed_cameras(const SceneOptions& scene, const CameraOptions& camera
   if (!known.units_per_metre && built_in.empty()) {
     known.units_per_metre = usd_units_per_metre(model_file(scene.name));
     if (known.units_per_metre.value_or(1.0) != 1.0)
-      log_info("{}: {:.6g} units make a metre, says its metersPerUnit (--units-per-metre for others)",
-               scene.name, *known.units_per_metre);
+      log_info("{}: {:.6g} units make a metre, says its metersPerUnit", scene.name, *known.units_per_metre);
   }
   if (camera.made_up()) {
     if (built_in.empty() && !(camera.eye && camera.up)) learn_beside(scene.name, camera, known);

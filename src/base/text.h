@@ -2,7 +2,6 @@
 // Letters in names, and bytes as letters.
 
 #include <fmt/core.h>
-
 #include <algorithm>
 #include <cctype>
 #include <cmath>

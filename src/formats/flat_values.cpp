@@ -97,10 +97,9 @@ std::size_t end_of_value(std::string_view text) {
 
 FlatValues yaml_values(const std::string& source, std::string_view text) {
   // In UTF-16, which begins with its mark, zeros are halves of letters.
-  const bool is_wide = text.starts_with("\xff\xfe") || text.starts_with("\xfe\xff");
   const auto bad = std::ranges::find_if(
       text, [](unsigned char c) { return (c < 0x20 && c != '\t' && c != '\n' && c != '\r') || c == 0x7f; });
-  if (bad != text.end() && !is_wide) {
+  if (bad != text.end() && !text.starts_with("\xff\xfe") && !text.starts_with("\xfe\xff")) {
     fail("{}, line {}: the control character {}, which YAML does not allow", source,
          1 + std::count(text.begin(), bad, '\n'), static_cast<int>(*bad));
   }

@@ -147,10 +147,9 @@ class PlyReader {
     if (layout_.rgb && !layout_.rgb_bytes) settle_colours();
     model_.cut_db = cut_harmonics_db(model_, cut_);
     keep_only(model_, kept_);
-    if (!places_.empty()) {
-      std::size_t kept = 0;
-      for (std::size_t i = 0; i < kept_.size(); ++i)
-        if (kept_[i] != 0) places_[kept++] = places_[i];
+    if (layout_.wide) {
+      std::size_t i = 0;
+      std::erase_if(places_, [&](const glm::dvec3&) { return kept_[i++] == 0; });
       set_far_positions(model_, places_);
     }
     return std::move(model_);

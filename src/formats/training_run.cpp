@@ -161,8 +161,8 @@ void tell(const FlatValues& values, const RunKind& kind, TrainingRun& run) {
     (is_advice ? run.advice : run.otherwise).emplace_back(clue.sentence);
   }
   const auto value = value_of(values, kind, kind.antialiasing);
-  const bool is_truth = std::string_view(kind.word_for_it) == "true";
-  if (value && (!is_truth || *value == "true" || *value == "false"))
+  // In the place of true or false, text says nothing.
+  if (value && (*kind.word_for_it != 't' || *value == "true" || *value == "false"))
     run.antialiased = *value == kind.word_for_it;
 }
 

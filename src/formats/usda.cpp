@@ -55,8 +55,8 @@ void read_attribute(UsdaText& text, std::string_view word, UsdaPrim& prim) {
   if (text.next() == '(') text.value();
 }
 
-/// OpenUSD holds a sample until the next, and the first one before it: where all are the same, and so where
-/// there is one, they are the value at every time.
+/// OpenUSD holds a sample until the next, and the first before it: what are all alike are the value at all
+/// times.
 void hold_still(UsdaValues& attributes) {
   constexpr std::string_view ending = ".timeSamples";
   for (auto at = attributes.begin(); at != attributes.end();) {

@@ -50,8 +50,6 @@ double TimeNoise::between(const BenchPoint& a, const BenchPoint& b, std::size_t 
          std::max(deviation(), own.deviation()) * std::sqrt(1.0 / count(a) + 1.0 / count(b));
 }
 
-double TimeNoise::deviation() const { return freedom_ > 0 ? std::sqrt(squares_ / freedom_) : 0.0; }
-
 std::vector<bool> pareto_front(const std::vector<BenchPoint>& points) {
   std::map<std::string, TimeNoise> charts;
   for (const BenchPoint& point : points) {

@@ -110,7 +110,7 @@ class TimeNoise {
   double between(const BenchPoint& a, const BenchPoint& b, std::size_t pairs) const;
 
  private:
-  double deviation() const;
+  double deviation() const { return freedom_ > 0 ? std::sqrt(squares_ / freedom_) : 0.0; }
 
   double squares_ = 0.0;
   int freedom_ = 0;

@@ -53,8 +53,7 @@ Image empty_image(const py::array& array, const std::string& name) {
         "1, 3 or 4 channels",
         name, std::string(py::str(array.attr("shape"))));
   }
-  if (4.0 * static_cast<double>(side(0)) * static_cast<double>(side(1) * side(2)) > memory_bytes())
-    throw std::bad_alloc();
+  if (4.0 * static_cast<double>(array.size()) > memory_bytes()) throw std::bad_alloc();
   return {static_cast<int>(side(1)), static_cast<int>(side(0)), static_cast<int>(side(2))};
 }
 

@@ -145,6 +145,14 @@ py::array_t<typename Row::value_type> array_of_rows(const std::vector<Row>& rows
       {static_cast<py::ssize_t>(rows.size()), static_cast<py::ssize_t>(Row::length())}, first);
 }
 
+/// From zero, which far away takes doubles.
+py::array means_of(const Model& model) {
+  if (model.axes.origin == glm::dvec3(0.0)) return array_of_rows(model.position);
+  std::vector<glm::dvec3> means;
+  for (const glm::vec3& p : model.position) means.push_back(model.axes.origin + glm::dvec3(p));
+  return array_of_rows(means);
+}
+
 /// A property; a Scaffold-GS model has none to show.
 template <typename Get>
 auto of_gaussians(const char* name, const Get& get) {
@@ -178,15 +186,7 @@ void add_model_arrays(py::class_<Model, std::shared_ptr<Model>>& model) {
            }),
            py::arg("means"), py::arg("quats"), py::arg("scales"), py::arg("opacities"), py::arg("sh"),
            py::kw_only(), py::arg("name") = "arrays", py::arg("axes") = "RDF", py::arg("antialiased") = false)
-      .def_property_readonly("means", of_gaussians("means",
-                                                   [](const Model& m) -> py::array {
-                                                     if (m.axes.origin == glm::dvec3(0.0))
-                                                       return array_of_rows(m.position);
-                                                     std::vector<glm::dvec3> means;
-                                                     for (const glm::vec3& p : m.position)
-                                                       means.push_back(m.axes.origin + glm::dvec3(p));
-                                                     return array_of_rows(means);
-                                                   }))
+      .def_property_readonly("means", of_gaussians("means", &means_of))
       .def_property_readonly("quats",
                              of_gaussians("quats", [](const Model& m) { return array_of_rows(m.rotation); }))
       .def_property_readonly("scales",

@@ -37,10 +37,8 @@ void translate(std::exception_ptr thrown) {
         PyUnicode_DecodeUTF8(text.data(), static_cast<Py_ssize_t>(text.size()), "replace"));
     PyErr_SetObject(error_types[static_cast<std::size_t>(error.code())], words.ptr());
   } catch (const std::bad_alloc&) {
-    PyErr_SetString(error_types[static_cast<std::size_t>(ExitCode::out_of_memory)],
-                    "there is no memory for this: it takes more than there is");
+    PyErr_SetString(error_types[static_cast<std::size_t>(ExitCode::out_of_memory)], "no memory is left");
   } catch (const py::cast_error& error) {
-    // So pybind11 says it of what a shared pointer holds.
     if (std::string_view(error.what()).find("non-held") == std::string_view::npos) throw;
     PyErr_SetString(PyExc_TypeError, not_made);
   }

@@ -26,6 +26,7 @@ constexpr double surprise = 2.7;
 // one of so many.
 constexpr double deviation = 0.12;
 constexpr double share_max = 64.0;
+constexpr double small_most = 1024.0;  // tiles
 // Attempts at a frame: the last is exact; those before it may be better than need be.
 constexpr int attempts_max = 8;
 // Of the tolerance: the most it changes by from one frame to the next and between attempts.
@@ -43,14 +44,10 @@ double careful_tolerance_at_40_db(const FrameSettings& s, double focal) {
   return threshold_rules[s.th].careful_tolerance * std::pow(std::min(1.0, focal / 700.0), 1.75);
 }
 
-struct Tiles {
-  std::uint32_t across, down;
-  double all() const { return static_cast<double>(across) * down; }
-};
-
-Tiles tiles_of(const shared::View& view, const FrameSettings& settings) {
-  const auto side = static_cast<std::uint32_t>(settings.tile_size);
-  return {(view.width + side - 1) / side, (view.height + side - 1) / side};
+// Whether a probe has all tiles of a view, whatever they show.
+bool is_small(const shared::View& view, const FrameSettings& settings) {
+  const double side = settings.tile_size, all = std::ceil(view.width / side) * std::ceil(view.height / side);
+  return all < std::min(4.0 * settings.probe_tiles, small_most);
 }
 
 bool same_rule(const FrameSettings& a, const FrameSettings& b) {
@@ -69,7 +66,7 @@ bool ToleranceControl::knows(std::span<const shared::View> views, const FrameSet
   const bool saw_all =
       std::all_of(views_.begin(), views_.end(), [](const Estimate& v) { return v.weight > 0.0; });
   return saw_all && !fresh_ && holds_ && !exact_ && same_rule(settings, settings_) &&
-         settings.quality <= settings_.quality + unnoticed && step_in(views.front(), settings) > 1;
+         settings.quality <= settings_.quality + unnoticed && !is_small(views.front(), settings);
 }
 
 void ToleranceControl::begin(const FrameSettings& settings, double focal) {
@@ -79,14 +76,6 @@ void ToleranceControl::begin(const FrameSettings& settings, double focal) {
   unevenness_ = 0.0;
   tolerance_ =
       careful_tolerance_at_40_db(settings, focal) * std::pow(10.0, -0.1 * (settings.quality - 40.0) / slope_);
-}
-
-std::uint32_t ToleranceControl::step_in(const shared::View& view, const FrameSettings& settings) const {
-  const double all = tiles_of(view, settings).all();
-  // The more, the more tiles differ.
-  const double wanted = std::max(
-      {static_cast<double>(settings.probe_tiles), all / share_max, unevenness_ / (deviation * deviation)});
-  return std::max(1u, static_cast<std::uint32_t>(std::sqrt(all / wanted)));
 }
 
 Probe ToleranceControl::next_probe(std::span<const shared::View> views, const FrameSettings& settings) {
@@ -103,17 +92,22 @@ Probe ToleranceControl::next_probe(std::span<const shared::View> views, const Fr
   }
   probe_ = {.view = static_cast<std::uint32_t>(next_ + found_) % count};
   const shared::View& view = views[probe_.view];
-  const Tiles tiles = tiles_of(view, settings);
-  is_small_ = step_in(view, settings) == 1;
-  if (!fresh_) probe_.step = step_in(view, settings);  // after a cut all of it
+  is_small_ = is_small(view, settings);
+  const auto side = static_cast<std::uint32_t>(settings.tile_size);
+  const std::uint32_t across = (view.width + side - 1) / side, down = (view.height + side - 1) / side;
+  // After a cut all of it; then more, the more tiles differ.
+  const double all = static_cast<double>(across) * down;
+  const double wanted = std::max(
+      {static_cast<double>(settings.probe_tiles), all / share_max, unevenness_ / (deviation * deviation)});
+  while (!fresh_ && (probe_.step + 1.0) * (probe_.step + 1.0) * wanted <= all) ++probe_.step;
   // A golden step, so that the places of a few probes are spread evenly.
   const std::uint32_t places = probe_.step * probe_.step;
   std::uint32_t stride = std::max(1u, static_cast<std::uint32_t>(std::lround(0.618 * places)));
   while (std::gcd(stride, places) != 1) ++stride;
   const std::uint32_t place = next_ / count * stride % places;
-  probe_.column = std::min(place % probe_.step, tiles.across - 1);
-  probe_.row = std::min(place / probe_.step, tiles.down - 1);
-  probe_tiles_ = tiles.all() / places;
+  probe_.column = std::min(place % probe_.step, across - 1);
+  probe_.row = std::min(place / probe_.step, down - 1);
+  probe_tiles_ = all / places;
   return probe_;
 }
 

@@ -65,8 +65,6 @@ class ToleranceControl {
     double missed = 0.0, missed_error = 0.0;
   };
   void begin(const FrameSettings& settings, double focal);
-  /// Of a probe of this view.
-  std::uint32_t step_in(const shared::View& view, const FrameSettings& settings) const;
   double searched_tolerance(double target) const;
   double followed_tolerance(double target) const;
   void take(const Probed& probed);

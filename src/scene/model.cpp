@@ -97,15 +97,14 @@ void keep_only(Model& model, const std::vector<std::uint8_t>& kept) {
 }
 
 bool choose_origin(Model& model) {
-  constexpr std::size_t sample = 20000;
-  Model some;
-  for (std::size_t i = 0; i < model.count(); i += model.count() / sample + 1) {
+  Model some;  // of which a sample is enough
+  for (std::size_t i = 0; i < model.count(); i += model.count() / 20000 + 1) {
     some.position.push_back(model.position[i]);
     some.scale.push_back(model.scale[i]);
   }
   if (some.count() == 0) return false;
   const auto [middle, radius] = core_of(some);
-  constexpr double far = 256.0;  // where floats round by a hundredth of a pixel of a picture of 1,000 px
+  constexpr double far = 1024.0;  // where floats round by some hundredths of a pixel
   if (glm::length(middle) <= far * radius) return false;
   const double step = std::exp2(std::ceil(std::log2(radius)));
   model.axes.origin = glm::round(middle / step) * step;  // of so few digits that it rounds nothing

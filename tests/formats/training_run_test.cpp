@@ -81,7 +81,7 @@ TEST(FlatValues, OfHostileYamlAreAnError) {
   const auto refuses = [](const std::string& text, std::initializer_list<std::string> parts) {
     return test::fails_saying([&] { yaml_values("f.yml", text); }, parts);
   };
-  EXPECT_TRUE(refuses("a: 'x\n", {"f.yml, line "}));
+  EXPECT_TRUE(refuses("a: [1\n", {"f.yml, line "}));
   EXPECT_TRUE(refuses(std::string("a: 1\nb\0: 2\n", 12), {"f.yml, line 2: the control character 0"}));
   EXPECT_TRUE(refuses("a: tr\4ue\n", {"f.yml, line 1: the control character 4"}));
   EXPECT_TRUE(refuses(std::string(1 << 20, '['), {"f.yml"}));
@@ -188,7 +188,7 @@ TEST_F(TrainingRunTest, TextIsNoTruthValue) {
   EXPECT_EQ(said("antialiased:\n  false\n"), false);
   for (const char* text : {"|\n  true\n", "'true'\n", "99999999999999999999\n", "\n", "[true]\n"})
     EXPECT_EQ(said(std::string("antialiased: ") + text), std::nullopt) << text;
-  EXPECT_FALSE(found(gsplat_ply, "run/cfg.yml", gsplat_with("x: 'y\n"))) << "with a warning";
+  EXPECT_FALSE(found(gsplat_ply, "run/cfg.yml", gsplat_with("x: [y\n"))) << "with a warning";
 }
 
 TEST_F(TrainingRunTest, OfNerfstudioIsNested) {

@@ -177,18 +177,20 @@ TEST(Usd, PlacesKeepTheirDigits) {
 
 // OpenUSD holds a value until the next, and the first one before it.
 TEST(Usd, OneTimeSampleIsEveryTime) {
-  const Model model = some_model(1);
-  const std::string text = usd_file(usd_prim(model));
-  for (const char* name : {"positions", "orientations", "scales", "opacities"}) {
-    const std::size_t at = text.find(std::string(name) + " = ") + std::string(name).size();
-    const std::size_t end = text.find('\n', at);
-    const std::string value = text.substr(at + 3, text.find("]", at) - at - 2);
+  const Model model = some_model(1, 2);
+  const std::string text = usd_file(usd_prim(model)), other = usd_file(usd_prim(some_model(1, 1)));
+  for (const std::string name : {"positions", "orientations", "scales", "opacities"}) {
+    const auto value_in = [&](const std::string& file) {
+      const std::size_t begin = file.find(name + " = ") + name.size() + 3;
+      return file.substr(begin, file.find('\n', begin) - begin);
+    };
+    const std::string value = value_in(text);
     const auto with = [&](const std::string& samples) {
-      return text.substr(0, at) + ".timeSamples = {" + samples + "}" + text.substr(end);
+      return test::replaced(text, name + " = " + value, name + ".timeSamples = {" + samples + "}");
     };
     EXPECT_TRUE(test::equal(load_usd_text(with("1: " + value + ",")), model)) << name;
     EXPECT_TRUE(test::equal(load_usd_text(with("-1.5: " + value + ", 3: " + value)), model)) << name;
-    EXPECT_TRUE(refuses_usd(with("1: " + value + ", 2: [" + value.substr(1) + "\n"), {name}))
+    EXPECT_TRUE(refuses_usd(with("1: " + value + ", 2: " + value_in(other)), {name + " changes with time"}))
         << "planted fault";
   }
   const std::string order = "uniform token[] xformOpOrder = [\"xformOp:translate\"]";
@@ -226,7 +228,7 @@ TEST(Usd, SaysItsUnit) {
   const test::TempFolder folder;
   const auto units = [&](const std::string& more) {
     test::write_text(folder / "a.usda",
-                     test::replaced(usd_file(usd_prim(some_model(0, 1))), "upAxis", more + "upAxis"));
+                     test::replaced(usd_file(usd_prim(some_model(0, 1))), "metersPerUnit = 1\n", more));
     return usd_units_per_metre(folder / "a.usda");
   };
   EXPECT_EQ(units("metersPerUnit = 0.01\n"), 100.0);
@@ -339,7 +341,9 @@ TEST(Usd, ErrorsNameTheLine) {
                       {"has 1 values; expected 16"}));
   EXPECT_TRUE(refuses("}\n", "uniform int radiance:sphericalHarmonicsDegree = 7}\n",
                       {"line 11", "harmonics of degree 7"}));
-  EXPECT_TRUE(refuses("positions =", "positions.timeSamples =", {"line 10", "positions changes with time"}));
+  EXPECT_TRUE(refuses("positions = [(1, 2, 3)]", "positions.timeSamples = { 1: [(1, 2, 3)], 2: [] }",
+                      {"line 10", "positions changes with time"}));
+  EXPECT_TRUE(refuses("positions =", "positions.timeSamples =", {"line 10", "expected '{'"}));
   EXPECT_TRUE(refuses("}\n", "uniform token[] xformOpOrder = [\"xformOp:shear\"]}\n",
                       {"line 11", "'xformOp:shear' of 'a' is not there"}));
   EXPECT_TRUE(refuses("}\n", "float xformOp:shear = 1\nuniform token[] xformOpOrder = [\"xformOp:shear\"]}\n",

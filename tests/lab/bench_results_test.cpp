@@ -152,7 +152,7 @@ TEST(BenchResults, PageSaysWhatItShows) {
   const Table& front = *page.sections[0].numbers;
   ASSERT_EQ(front.rows.size(), 4u);
   EXPECT_EQ(std::ranges::count(front.rows, Cell("yes"), [](const auto& cells) { return cells[2]; }), 3);
-  EXPECT_EQ(front.rows.back()[4], equal_db) << "an equal picture is drawn at the top";
+  EXPECT_EQ(front.rows.back()[5], equal_db) << "an equal picture is drawn at the top";
   EXPECT_NE(page.sections[1].sentence.find("75 % goes to blend"), std::string::npos);
   EXPECT_EQ(page.sections[3].problem, "obb: 0001: two frames differ; snug: not measured yet");
   const Table& pair = *page.sections[6].table;

@@ -265,8 +265,8 @@ TEST(Promise, ReportsTheTruthOrAnEstimate) {
     std::vector<Camera> cameras;
     for (int k = 0; k < 5; ++k) {
       const double angle = 1.3 * k;
-      cameras.push_back(look_at({3.0 * std::cos(angle), -0.5, 3.0 * std::sin(angle)}, {0, 0, 0}, {0, -1, 0},
-                                70.0, 64 + 16 * static_cast<int>(n % 3), 48));
+      cameras.push_back(binosplat::look_at({3.0 * std::cos(angle), -0.5, 3.0 * std::sin(angle)}, {0, 0, 0},
+                                           {0, -1, 0}, 70.0, 64 + 16 * static_cast<int>(n % 3), 48));
     }
     const auto heads = tour(cameras, {.motion = head_motions().at(n % 3)});
     const FrameSettings exact{.precision = n % 5 == 2 ? PRECISION_HALF : PRECISION_FULL};

@@ -191,7 +191,8 @@ inline std::string difference(const Expected& e, const glm::vec4& rotation, cons
                               std::size_t j) {
   const auto beyond = [](double a, double b, double error) { return !(a == b || std::abs(a - b) <= error); };
   for (int c = 0; c < 3; ++c) {
-    if (beyond(back.position[j][c], e.position[c], e.position_error[c])) return "position";
+    if (beyond(back.axes.origin[c] + back.position[j][c], e.position[c], e.position_error[c]))
+      return "position";
     if (beyond(std::log(double{back.scale[j][c]}), e.log_scale[c], e.log_scale_error[c])) return "scale";
   }
   const double apart = std::min(glm::length(glm::dvec4(rotation) - glm::dvec4(back.rotation[j])),
