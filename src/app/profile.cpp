@@ -100,9 +100,8 @@ std::vector<std::vector<shared::View>> frames_to_profile(const ProfileOptions& o
   const double most = std::min(frames_most, std::floor(0.5 * memory_bytes() / frame_bytes));
   if (count > most)
     fail(
-        "profile: {:.4g} frames, and a recording of at most {:.4g} fits in memory: fewer --seconds, at most "
-        "{:.4g} "
-        "at {:g} frames a second, or a lower --fps",
+        "profile: {:.4g} frames, and {:.4g} fit in memory: fewer --seconds, at most {:.4g} at {:g} frames a "
+        "second, or a lower --fps",
         count, most, most / pose_rate(o), pose_rate(o));
   if (moves) {
     for (const Shot& shot : shots) frames.push_back(views_of(shot));
@@ -163,8 +162,7 @@ lab::Profile record(const ProfileOptions& o, const std::optional<lab::Table>& be
       all.stream ? all.stream->gpu_model(*all.context, all.run.settings.precision)
                  : std::make_shared<render::GpuModel>(*all.context, all.loaded, all.run.settings.precision);
   lab::ProfileDrawer drawer(model, all.run, all.stream.get());
-  const double period_ms = o.fps > 0.0 ? 1000.0 / o.fps : 0.0;
-  tell_how_long(std::max(drawer.warm_up(), period_ms), all.run.frames.size());
+  tell_how_long(drawer.warm_up(), all.run.frames.size());
   {
     Progress progress("profiling", all.run.frames.size(), "frames");
     all.profile.recording = drawer.record([&](std::size_t done) { progress.update(done); });

@@ -20,7 +20,7 @@ void save_profile(const std::filesystem::path& folder, const lab::Profile& profi
     OutputFile& file = files.emplace_back(folder / profile_files[files.size()]);
     return [&file](std::string_view text) { file.write(text); };
   };
-  lab::write_html(with_command(lab::profile_page(profile, summary, changes)), json, next_file());
+  next_file()(lab::html(with_command(lab::profile_page(profile, summary, changes)), json));
   lab::write_trace(profile, next_file());
   lab::write_frames(profile.recording, next_file());
   next_file()(json_text(json));

@@ -113,38 +113,29 @@ std::string device_text(const gl::Context& context) {
   return fmt::format("{}, OpenGL {}", context.renderer(), context.version());
 }
 
-void write_html(const Page& page, const ordered_json& data, const Write& write) {
+std::string html(const Page& page, const ordered_json& data) {
   for (const Section& section : page.sections) check(section);
   const auto& ours = page_files();
   const auto& others = third_party_files();
-  write("<!doctype html>\n<html lang=\"en\">\n<meta charset=\"utf-8\">\n");
-  write("<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n");
-  write("<meta name=\"generator\" content=\"binosplat\">\n");
-  write("<title>" + escaped(page.title) + "</title>\n");
-  write("<style id=\"style\">\n" + ours.at("page.css") + "</style>\n");
-  write("<main></main>\n");
-  write(
+  std::string out = "<!doctype html>\n<html lang=\"en\">\n<meta charset=\"utf-8\">\n";
+  out += "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n";
+  out += "<meta name=\"generator\" content=\"binosplat\">\n";
+  out += "<title>" + escaped(page.title) + "</title>\n";
+  out += "<style id=\"style\">\n" + ours.at("page.css") + "</style>\n";
+  out += "<main></main>\n";
+  out +=
       "<noscript><p>The plots on this page are drawn by JavaScript, which is switched off "
-      "here.</p></noscript>\n");
-  write("<script type=\"application/json\" id=\"page\">{\"sections\":[");
-  // One by one: each has its numbers as JSON and as text meanwhile.
-  for (const Section& section : page.sections)
-    write((&section == &page.sections.front() ? "" : ",") + for_script(section));
-  const ordered_json rest =
-      object("title", page.title, "sentence", page.sentence, "facts", page.facts, "data", data);
-  write("]," + for_script(rest).substr(1) + "</script>\n");
+      "here.</p></noscript>\n";
+  out += "<script type=\"application/json\" id=\"page\">" +
+         for_script(object("title", page.title, "sentence", page.sentence, "facts", page.facts, "sections",
+                           page.sections, "data", data)) +
+         "</script>\n";
   for (const auto& [folder, bundle] :
        {std::pair{"d3/", "d3.min.js"}, std::pair{"plot/", "plot.umd.min.js"}}) {
     const std::string at = folder;
-    write("<script>\n/*\n" + others.at(at + "LICENSE") + "*/\n" + others.at(at + bundle) + "</script>\n");
+    out += "<script>\n/*\n" + others.at(at + "LICENSE") + "*/\n" + others.at(at + bundle) + "</script>\n";
   }
-  write("<script>\n" + ours.at("page.js") + "</script>\n</html>\n");
-}
-
-std::string html(const Page& page, const ordered_json& data) {
-  std::string text;
-  write_html(page, data, [&](std::string_view part) { text += part; });
-  return text;
+  return out + "<script>\n" + ours.at("page.js") + "</script>\n</html>\n";
 }
 
 void save_page(const std::filesystem::path& path, const Page& page, const ordered_json& data) {

@@ -6,11 +6,9 @@
 #include <concepts>
 #include <cstdint>
 #include <filesystem>
-#include <functional>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -108,14 +106,9 @@ struct Page {
   std::vector<Section> sections;
 };
 
-/// Takes a file's text, part after part.
-using Write = std::function<void(std::string_view)>;
-
-/// Writes the whole file, with everything that was measured, which it offers to save. Light and dark,
-/// readable at 400 px and printed; colours are told apart by everyone, and never alone. Throws
-/// std::logic_error for a table whose rows do not fit its columns, and for a chart of columns that are not
-/// there, before it writes.
-void write_html(const Page& page, const nlohmann::ordered_json& data, const Write& write);
+/// The whole file, with everything that was measured, which it offers to save. Light and dark, readable at
+/// 400 px and printed; colours are told apart by everyone, and never alone. Throws std::logic_error for a
+/// table whose rows do not fit its columns, and for a chart of columns that are not there.
 std::string html(const Page& page, const nlohmann::ordered_json& data);
 
 /// Writes it whole or not at all. Throws Error where that fails.

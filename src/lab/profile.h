@@ -2,8 +2,10 @@
 // What a recording of frames says: which were bad and why, and what they all wait for.
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "lab/page.h"
@@ -78,6 +80,9 @@ std::vector<std::string> lines_of(const Profile& profile, const ProfileSummary& 
 Table frames_table(const render::Recording& recording, std::size_t first = 0, std::size_t count = SIZE_MAX);
 /// As many of those rows as are made at once: all of a long run would fill the memory.
 constexpr std::size_t rows_at_once = 1000;
+
+/// Takes a file's text, part after part.
+using Write = std::function<void(std::string_view)>;
 
 void write_frames(const render::Recording& recording, const Write& write);
 

@@ -27,6 +27,7 @@ Table some_columns(const Recording& recording,
       at.push_back(static_cast<std::size_t>(std::ranges::find(all.columns, name) - all.columns.begin()));
     for (std::vector<Cell>& from : all.rows) {
       std::vector<Cell>& cells = some.rows.emplace_back();
+      cells.reserve(at.size() + 1);
       for (const std::size_t k : at) cells.push_back(std::move(from[k]));
     }
   }

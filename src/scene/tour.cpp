@@ -32,6 +32,7 @@ constexpr double samples_least = 64.0;
 constexpr double seconds_to_full_speed = 0.25;
 /// More would hardly fit in memory.
 constexpr double tour_frames_most = 1e6;
+constexpr double tour_seconds_most = 1e9;  // of which a step is still a number of 64 bits apart
 
 /// Where the head stops by, in metres.
 struct Stop {
@@ -293,14 +294,17 @@ void check_length(const std::vector<Stop>& stops, const TourSettings& settings) 
   double least = 0.0;  // s
   for (std::size_t k = 1; k < stops.size(); ++k)
     least += time_between(stops[k - 1], stops[k], settings.motion);
+  if (least > tour_seconds_most) {
+    fail("a tour of {:.2g} s, and {:.0e} fit: go faster (--tour), or name another scale (--units-per-metre)",
+         least, tour_seconds_most);
+  }
   // Between frames that are far apart there are samples, too.
   const double rate = std::max(settings.frames_per_second, 10.0);
   const double frames = std::min(least, settings.seconds) * rate;
   if (frames < tour_frames_most) return;
   fail(
       "a tour of {:.2g} frames or more, and {:.0e} fit: go faster (--tour), for less time (--seconds, at "
-      "most "
-      "{:.4g}) or at fewer frames a second (--fps)",
+      "most {:.4g}) or at fewer frames a second (--fps)",
       frames, tour_frames_most, tour_frames_most / rate);
 }
 
