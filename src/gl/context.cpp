@@ -226,8 +226,13 @@ void Context::prepare(const std::function<void()>& record) {
   }
   is_preparing_ = false;
   for (auto& [name, variants] : programs_) {
-    for (auto program = variants.begin(); program != variants.end(); ++program)
-      if (!program->second.is_complete()) complete(variants, program);
+    for (auto next = variants.begin(); next != variants.end();) {
+      const auto program = next++;
+      try {
+        if (!program->second.is_complete()) complete(variants, program);
+      } catch (const Error&) {  // its use says why
+      }
+    }
   }
 }
 

@@ -32,7 +32,7 @@ constexpr double samples_least = 64.0;
 constexpr double seconds_to_full_speed = 0.25;
 /// More would hardly fit in memory.
 constexpr double tour_frames_most = 1e6;
-constexpr double tour_seconds_most = 1e9;  // of which a step is still a number of 64 bits apart
+constexpr double tour_seconds_most = 1e12;  // of which a step is still a number of 64 bits apart
 
 /// Where the head stops by, in metres.
 struct Stop {
