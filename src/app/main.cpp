@@ -23,8 +23,10 @@ namespace {
 using binosplat::ExitCode;
 
 constexpr const char* epilogue =
-    "`binosplat SUBCOMMAND --help` has the options and examples.\nExit codes: 0 done; 1 a comparison fell "
-    "short; 2 input, output or usage is wrong; 3 no usable OpenGL, display or headset; 4 out of memory.";
+    "`binosplat SUBCOMMAND --help` has the options and examples. `render --th adagscale` draws by AdaGScale\n"
+    "(Jo et al.): docs/adagscale.md.\nExit codes: 0 done; 1 a comparison fell short; 2 input, output or "
+    "usage is "
+    "wrong; 3 no usable OpenGL, display or headset; 4 out of memory.";
 
 // Options that cannot be understood end in CLI::ParseError, everything else that is wrong in Error.
 int run(int argc, char** argv) {

@@ -187,7 +187,7 @@ TEST_F(CalibrateTest, DropsAreAgainstPhotos) {
 
 // Tests are every Nth view by the order of names, whatever the file's order is: no tolerance may see them.
 TEST_F(CalibrateTest, ViewsForTestsHaveNoSay) {
-  ordered_json cameras;
+  nlohmann::json cameras;
   for (const char* name : {"c", "b", "a", "e", "d", "i", "h", "g", "f"})
     cameras.push_back(test::camera_json(name, 0.02 * static_cast<double>(cameras.size())));
   write_text(folder / "cameras.json", cameras.dump());
