@@ -53,12 +53,13 @@ lab::Analysis analyse_scene(MeasuredOptions options, const AnalysesOptions& anal
   };
   // No view serves both: those for tests are left out of all for calibration.
   std::vector<lab::CalibrationView> tested = views_of(to_test(scene.list));
-  if (tested.empty()) fail("study: there is no view for tests, which --test names: {} are", chosen);
+  if (tested.empty() && !options.photos.empty())
+    fail("--photos {}: there is no photo of any view for tests: {}", options.photos, chosen);
   std::vector<std::string> without = hold_out(scene.list, analyses.hold_out).test;
   if (!analyses.test.empty()) without = analyses.test;
   std::vector<lab::CalibrationView> calibrated =
       views_of({named, calibration_views, named.empty() ? without : std::vector<std::string>()});
-  const auto context = open_context_for_all("study", true, options.context);
+  const auto context = open_context(options.context);
   leave_out_blind("study", *context, scene.model, scene.near_plane, tested);
   leave_out_blind("study", *context, scene.model, scene.near_plane, calibrated);
   if (calibrated.empty()) {

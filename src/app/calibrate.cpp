@@ -65,7 +65,7 @@ ExitCode calibrate(const CalibrateOptions& o) {
     log_info("calibrating on {} training views; for tests are {}", views.size(),
              hold_out(scene.list, o.hold_out).how);
   }
-  const auto context = open_context_for_all("calibrate", false, o.context);
+  const auto context = open_context(o.context);
   leave_out_blind("calibrate", *context, scene.model, scene.near_plane, views);
   const std::vector<lab::Rule> rules = rules_of(o.rules);
   Progress progress("calibrating", lab::calibrated_settings(rules).size());

@@ -11,6 +11,7 @@
 #include "app/content_key.h"
 #include "app/run_file.h"
 #include "base/log.h"
+#include "base/output_file.h"
 #include "formats/whole.h"
 #include "lab/fields.h"
 
@@ -120,7 +121,9 @@ lab::Keep keep_steps(const fs::path& result, const MeasuredOptions& options, con
     const fs::path file = folder / (text_key(json_text(run) + step) + ".json");
     if (is_whole(file)) return load_json(file);
     const ordered_json measured = measure();
-    save_json(file, measured);
+    OutputFile kept(file);
+    kept.write(json_text(measured));
+    kept.commit(false);
     return measured;
   };
 }

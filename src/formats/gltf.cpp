@@ -106,6 +106,15 @@ std::vector<float> square_sums(const std::vector<std::vector<float>>& coefficien
   return sums;
 }
 
+/// Splits colours with alpha into base coefficients and opacities.
+void split_colours(const std::vector<float>& colours, std::vector<float>& base,
+                   std::vector<float>& opacities) {
+  for (std::size_t k = 0; k < colours.size(); k += 4) {
+    for (std::size_t c = 0; c < 3; ++c) base.push_back(static_cast<float>((colours[k + c] - 0.5) / sh_c0));
+    opacities.push_back(colours[k + 3]);
+  }
+}
+
 class GltfReader {
  public:
   GltfReader(const std::filesystem::path& path, std::span<const std::byte> bytes)
@@ -261,12 +270,7 @@ class GltfReader {
     // In drafts the base colour and the opacity were those of points.
     if (!attributes.has(name("OPACITY")) && !attributes.has(coefficient(0, 0)) && attributes.has("COLOR_0")) {
       const std::vector<float> colours = attribute(attributes, "COLOR_0", 4, n);
-      std::vector<float>& dc = harmonics.emplace_back();
-      for (std::size_t i = 0; i < n; ++i) {
-        for (std::size_t c = 0; c < 3; ++c)
-          dc.push_back(static_cast<float>((colours[4 * i + c] - 0.5) / sh_c0));
-        opacities.push_back(colours[4 * i + 3]);
-      }
+      split_colours(colours, harmonics.emplace_back(), opacities);
     } else {
       opacities = attribute(attributes, name("OPACITY"), 1, n);
       harmonics.push_back(attribute(attributes, coefficient(0, 0), 3, n));

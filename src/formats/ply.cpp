@@ -106,6 +106,22 @@ class PlyText {
   std::size_t line_;  // lines read so far
 };
 
+/// Base colours that are no bytes were read as 0 to 1. Some programs write 0 to 255: the largest decides.
+void settle_colours(const std::filesystem::path& path, const std::vector<std::uint8_t>& kept, Model& model) {
+  const std::size_t values = 3 * static_cast<std::size_t>(sh_count(model.degree));
+  constexpr double most = 2.0;  // of 0 to 1: trainers' may be beyond that
+  double largest = 0.0;
+  for (std::size_t k = 0; k < model.sh.size(); ++k) {
+    if (k % values < 3 && kept[k / values] != 0) largest = std::max(largest, 0.5 + sh_c0 * model.sh[k]);
+  }
+  if (largest > 255.5)
+    fail("{}: properties red, green and blue reach {:.6g}; expected 0 to 1, or 0 to 255", path.string(),
+         largest);
+  for (std::size_t k = 0; largest > most && k < model.sh.size(); ++k) {
+    if (k % values < 3) model.sh[k] = static_cast<float>(((0.5 + sh_c0 * model.sh[k]) / 255.0 - 0.5) / sh_c0);
+  }
+}
+
 /// Walks the elements of a ply file in order and decodes the Gaussians among them.
 class PlyReader {
  public:
@@ -144,7 +160,7 @@ class PlyReader {
       log_info("{}: its Gaussians are flat (2D Gaussian Splatting) and drawn as 3D ones without thickness",
                path_.string());
     }
-    if (layout_.rgb && !layout_.rgb_bytes) settle_colours();
+    if (layout_.rgb && !layout_.rgb_bytes) settle_colours(path_, kept_, model_);
     model_.cut_db = cut_harmonics_db(model_, cut_);
     keep_only(model_, kept_);
     if (layout_.wide) {
@@ -162,23 +178,6 @@ class PlyReader {
     kept_.assign(layout_.vertices->count, 0);
     if (layout_.cut_at > 0) cut_.assign(layout_.vertices->count, 0.0f);
     if (layout_.wide) places_.resize(layout_.vertices->count);
-  }
-
-  /// Base colours that are no bytes were read as 0 to 1. Some programs write 0 to 255: the largest decides.
-  void settle_colours() {
-    const std::size_t values = 3 * static_cast<std::size_t>(sh_count(layout_.degree));
-    constexpr double most = 2.0;  // of 0 to 1: trainers' may be beyond that
-    double largest = 0.0;
-    for (std::size_t k = 0; k < model_.sh.size(); ++k) {
-      if (k % values < 3 && kept_[k / values] != 0) largest = std::max(largest, 0.5 + sh_c0 * model_.sh[k]);
-    }
-    if (largest > 255.5)
-      fail("{}: properties red, green and blue reach {:.6g}; expected 0 to 1, or 0 to 255", path_.string(),
-           largest);
-    for (std::size_t k = 0; largest > most && k < model_.sh.size(); ++k) {
-      if (k % values < 3)
-        model_.sh[k] = static_cast<float>(((0.5 + sh_c0 * model_.sh[k]) / 255.0 - 0.5) / sh_c0);
-    }
   }
 
   /// Gaussian i, of which number(source) is each number.

@@ -76,7 +76,7 @@ struct AnalysedRule {
   render::FrameSettings settings;
 };
 
-std::vector<AnalysedRule> rules_of(const Analysis& analysis, const std::vector<Rule>& wanted) {
+std::vector<AnalysedRule> analysed_rules(const Analysis& analysis, const std::vector<Rule>& wanted) {
   std::vector<AnalysedRule> rules;
   for (render::FrameSettings rule : calibrated_settings(wanted)) {
     rule.depth_table = analysis.depth_table;
@@ -125,8 +125,8 @@ std::vector<AnalysedSystem> from_targets(const std::vector<AnalysedSystem>& targ
 Analysis analyse(gl::Context& context, const Model& model, const std::vector<CalibrationView>& calibration,
                  const std::vector<CalibrationView>& test, const AnalysisSettings& settings,
                  const std::function<void(const std::string&, std::size_t, std::size_t)>& progress) {
-  Calibrator calibrator(context, model, calibration, settings.near_plane, settings.kind, settings.keep);
-  Calibrator tester(context, model, test, settings.near_plane, settings.kind, settings.keep);
+  Calibrator calibrator(context, model, calibration, settings.near_plane, settings.kind, {settings.keep});
+  Calibrator tester(context, model, test, settings.near_plane, settings.kind, {settings.keep});
   Analysis analysis{.device = device_text(context),
                     .scene = settings.scene,
                     .gaussians = model.count(),
@@ -148,7 +148,7 @@ Analysis analyse(gl::Context& context, const Model& model, const std::vector<Cal
   for (const auto& system : exact_systems)
     analysis.systems.push_back(system_of(system.name, {.tiles = system.tiles}, tester, test));
 
-  const std::vector<AnalysedRule> rules = rules_of(analysis, settings.rules);
+  const std::vector<AnalysedRule> rules = analysed_rules(analysis, settings.rules);
   done = 0;
   const auto one_more = [&] { progress("tolerances", ++done, 2 * settings.targets.size() * rules.size()); };
   analysis.found = at_targets(calibrator, tester, test, rules, settings.targets, one_more);

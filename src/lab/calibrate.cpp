@@ -52,9 +52,9 @@ struct Calibrator::Reference {
 };
 
 Calibrator::Calibrator(gl::Context& context, const Model& model, const std::vector<CalibrationView>& views,
-                       double near_plane, CalibrationTarget::Kind kind, Keep keep,
-                       const render::FrameSettings& exact)
-    : context_(context), frame_(context, model), kind_(kind), keep_(std::move(keep)) {
+                       double near_plane, CalibrationTarget::Kind kind, CalibratorOptions options)
+    : context_(context), frame_(context, model), kind_(kind), keep_(std::move(options.keep)) {
+  const render::FrameSettings exact{.order = options.order, .projection = options.projection};
   if (views.empty()) fail("calibration needs at least one view");
   for (const CalibrationView& view : views) {
     const bool drop = kind == CalibrationTarget::Kind::drop;
@@ -169,7 +169,8 @@ Calibration calibrate(gl::Context& context, const Model& model, const std::vecto
                       double near_plane, const CalibrationSettings& wanted,
                       const std::function<void(std::size_t, std::size_t)>& done) {
   const render::FrameSettings exact{.order = wanted.table.order, .projection = wanted.table.projection};
-  Calibrator calibrator(context, model, views, near_plane, wanted.target.kind, wanted.keep, exact);
+  Calibrator calibrator(context, model, views, near_plane, wanted.target.kind,
+                        {wanted.keep, exact.order, exact.projection});
   Calibration c;
   c.model_name = model.name;
   c.gaussians = model.count();

@@ -40,15 +40,20 @@ struct ViewSplit {
   double near_plane = near_default;  // world units
 };
 
+/// What a Calibrator may be told beyond what it compares.
+struct CalibratorOptions {
+  Keep keep = {};                        // of costs
+  std::optional<int> order, projection;  // of the exact pictures; none: the model's
+};
+
 /// A model in some views, and what each way to draw it costs there.
 class Calibrator {
  public:
-  /// Draws the exact pictures, in order and projection of `exact`. Context and model must outlive it. Throws
+  /// Draws the exact pictures. Context and model must outlive it. Throws
   /// Error for no views, views of different photos (some with, some without), or none where the target is a
   /// drop.
   Calibrator(gl::Context& context, const Model& model, const std::vector<CalibrationView>& views,
-             double near_plane, CalibrationTarget::Kind kind, Keep keep = {},
-             const render::FrameSettings& exact = {});
+             double near_plane, CalibrationTarget::Kind kind, CalibratorOptions options = {});
   ~Calibrator();
 
   struct Cost {

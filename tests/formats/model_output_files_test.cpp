@@ -48,7 +48,7 @@ TEST(ModelOutputFiles, OthersModelsStayWithinTheSteps) {
       EXPECT_TRUE(test::same_bits(written.model, model)) << name;
     }
   }
-  EXPECT_EQ(own, 43);
+  EXPECT_EQ(own, 39);
   EXPECT_EQ(exact, 13);
 }
 

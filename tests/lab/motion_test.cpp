@@ -157,15 +157,15 @@ TEST_F(Motions, WhatHasNoRoomIsDrawnAgain) {
 
 TEST_F(Motions, RulesComeToOneTrueQuality) {
   const MotionPath path = small_path();
-  const MotionSettings settings{.quality = 44.0f, .target = 37.0, .rounds = 1};
+  const MotionSettings settings{.quality = 44.0f, .target = 33.0, .rounds = 1};
   const MotionResult result = measured(path, {one, last}, settings);
   ASSERT_EQ(result.rules.size(), 2u);
   for (const MovedRule& rule : result.rules) {
     SCOPED_TRACE(rule.name());
     EXPECT_EQ(rule.problem, "");
     ASSERT_TRUE(rule.equal);
-    EXPECT_NEAR(rule.equal->moving.true_db, 37.0, settings.equal_within);
-    EXPECT_GT(std::abs(rule.asked.moving.true_db - 37.0), settings.equal_within);
+    EXPECT_NEAR(rule.equal->moving.true_db, 33.0, settings.equal_within);
+    EXPECT_GT(std::abs(rule.asked.moving.true_db - 33.0), settings.equal_within);
     EXPECT_LT(rule.equal->request, 44.0f);
     EXPECT_EQ(rule.equal->moving.frames, 8u);
     EXPECT_EQ(rule.equal->stop.frames, 0u);
