@@ -93,7 +93,7 @@ int main(int argc, char** argv) try {
   binosplat::Placement placement = model.placement();
   const auto [low, high] = model.bounds();
   const glm::dvec3 back = placement.axes[2];
-  glm::dvec3 cube = 0.5f * (low + high);
+  glm::dvec3 cube = 0.5 * (low + high);
   placement.origin = cube + 1.2 * back * glm::dot(glm::abs(back), glm::dvec3(high - low));
   for (int k = 0; argc == 10 && k < 3; ++k) {
     placement.origin[k] = std::stod(argv[4 + k]);

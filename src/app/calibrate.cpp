@@ -52,8 +52,9 @@ ExitCode calibrate(const CalibrateOptions& o) {
   const PhotoSource photos = photos_of(o);
   const auto choice = [&](const CameraList& list) {
     ViewChoice views{o.camera.views, static_cast<std::size_t>(o.views)};
-    const HeldOut held = hold_out(list, o.hold_out);
-    if (views.views.empty() && !held.training.empty()) views.without = held.test;
+    if (!views.views.empty()) return views;
+    views.without = hold_out(list, o.hold_out).test;
+    if (photographed_cameras(views, o.photos, o.camera.lens, list).empty()) views.without.clear();
     return views;
   };
   const OpenScene scene = open_scene(o.scene, o.camera, no_rig, [&](const CameraList& list) {
@@ -61,9 +62,11 @@ ExitCode calibrate(const CalibrateOptions& o) {
   });
   std::vector<lab::CalibrationView> views =
       photographed_views(choice(scene.list), photos, o.camera.lens, scene.list);
-  if (o.camera.views.empty()) {
+  if (!choice(scene.list).without.empty()) {
     log_info("calibrating on {} training views; for tests are {}", views.size(),
              hold_out(scene.list, o.hold_out).how);
+  } else if (o.camera.views.empty()) {
+    log_warning("there are no other views than those for tests: tolerances are found on them");
   }
   const auto context = open_context(o.context);
   leave_out_blind("calibrate", *context, scene.model, scene.near_plane, views);

@@ -46,7 +46,7 @@ TEST_F(CalibrateTest, ViewsThatSeeNothingHaveNoSay) {
   for (const std::size_t k : {0u, 2u, 3u}) turn(k);
   EXPECT_TRUE(ended(calibrate({"--quality", "38"}), 2,
                     "calibrate: none of its views sees anything of the model, so that all would look equal: "
-                    "view front looks away from the model"));
+                    "view side looks away from the model"));
   EXPECT_FALSE(std::filesystem::exists(file));
   for (const std::vector<std::string>& words : std::vector<std::vector<std::string>>{
            {"bench", model, "--axes", "quick", "-o", folder / "chart"},
@@ -197,8 +197,8 @@ TEST_F(CalibrateTest, ViewsForTestsHaveNoSay) {
     EXPECT_TRUE(good(outcome));
     EXPECT_NE(outcome.err.find("training views; for tests are"), std::string::npos) << outcome.err;
     std::string names;
-    for (const ordered_json& view : ordered_json::parse(read_text(file))["views"])
-      names += view["name"].get<std::string>();
+    const ordered_json found = ordered_json::parse(read_text(file));
+    for (const ordered_json& view : found["views"]) names += view["name"].get<std::string>();
     return names;
   };
   EXPECT_EQ(taken({}), "cbedhgf") << "a and i are for tests";
