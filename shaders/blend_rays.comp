@@ -50,7 +50,8 @@ void main() {
       float q = (across * across + down * down) * nearness;
       float alpha = min(float(ALPHA_MAX), splat.opacity * exp(-0.5 * q));
 #if PROJECTION == PROJECTION_TANGENT
-      if (is_wide(splat) && dot(direction_of(direction_in_bytes(view, splat)), vec3(slope, 1.0)) < 0.0) alpha = 0.0;
+      float facing = 1.0 + dot((splat.mean + 0.5 - view.lens.zw) / view.lens.xy, slope);
+      alpha = is_wide(splat) && facing * splat.conic.w < 0.0 ? 0.0 : alpha;
 #endif
       bool is_seen = at + k < end && !is_done && alpha >= float(ALPHA_MIN);  // not a number: no
       float left = transmittance * (1.0 - alpha);

@@ -63,9 +63,6 @@ float depth_of(uint at) { return batch_colour[at].a; }
 OF_TILE float farthest;  // the largest |d|^2
 OF_TILE vec2 heart;      // the slope of its middle
 float nearness[COLUMN];  // of each pixel: 1 / |d|^2
-#if BROAD
-vec3 rays[COLUMN];
-#endif
 #else
 #define OF_TILE
 #endif
@@ -119,24 +116,28 @@ void blend(uint at[AHEAD], const bool may_be_hidden) {
     precise float t = fma(across.x, column, across.y);
     precise float level = fma(t, t, across.w);
     precise float slope = fma(t, across.z, down.x);
-#if BROAD
-    vec3 towards = direction_of(down.w);
-#endif
     for (uint p = 0u; p < COLUMN; ++p) {
       precise float exponent = fma(row[p], fma(row[p], down.y, slope), level);
 #if PROJECTION == PROJECTION_TANGENT
       exponent = fma(nearness[p], exponent, down.z);
 #endif
       precise float a = exp2(-exponent);
-#if BROAD
-      if (dot(towards, rays[p]) < 0.0) a = 0.0;
-#endif
       bool is_seen = a >= float(ALPHA_MIN) && REACHES(at[k]);  // not a number: no
       if (may_be_hidden) is_seen = is_seen && depth_of(at[k]) <= farthest[p];
       weights[p][k] = is_seen ? min(float(ALPHA_MAX), a) : 0.0;
       MEET(p, k, a);
     }
   }
+#if BROAD
+  for (uint p = 0u; p < COLUMN; ++p) {
+    vec3 ray = vec3(slope_at(views[view_index], vec2(first_pixel + uvec2(0u, p))), 1.0);
+    for (uint k = 0u; k < AHEAD; ++k) {
+      if (dot(direction_of(batch_down[at[k]].w), ray) >= 0.0) continue;
+      weights[p][k] = 0.0;
+      MEET(p, k, 0.0);
+    }
+  }
+#endif
   float left[COLUMN];
   bool some_stop = false;  // asked of all pixels at once: a branch each took 2 % of the time
   for (uint p = 0u; p < COLUMN; ++p) {

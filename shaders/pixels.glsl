@@ -66,9 +66,6 @@ void begin_pixels(uvec2 in_tile) {
     precise vec2 ray = (vec2(first_pixel + uvec2(0u, p)) + 0.5 - view.lens.zw) * step;
     precise float inverse = 1.0 / fma(ray.y, ray.y, fma(ray.x, ray.x, 1.0));
     nearness[p] = inverse;
-#if BROAD
-    rays[p] = vec3(ray, 1.0);
-#endif
 #endif
     least[p] = inside ? float(TRANSMITTANCE_MIN) : -1.0;
     begin_measuring(view, p, inside);
