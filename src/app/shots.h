@@ -58,8 +58,8 @@ struct CameraList {
 /// The cameras that --cameras, a file beside the model, or the built-in scene gives; empty if none does, the
 /// options make up their own, or those beside the model, for which no option asks, cannot be used
 /// (Known::unusable). Quick: comes before the model is read. `saved` as find_saved() has it. What
-/// is known of metres is the rig's, where it says so, or the scene's: the list's cameras, and those made up, go
-/// by that.
+/// is known of metres is the rig's, where it says so, or the scene's: the list's cameras, and those made up,
+/// go by that.
 CameraList listed_cameras(const SceneOptions& scene, const CameraOptions& camera, const RigOptions& rig = {},
                           const std::optional<SavedPose>& saved = {});
 

@@ -23,10 +23,8 @@ struct WrittenFormat {
 };
 
 /// In the order of the enum.
-constexpr WrittenFormat written_formats[] = {{"ply", ".ply", "ply"},
-                                             {"splat", ".splat", ".splat"},
-                                             {"spz", ".spz", "spz"},
-                                             {"sog", ".sog", "SOG"}};
+constexpr WrittenFormat written_formats[] = {
+    {"ply", ".ply", "ply"}, {"splat", ".splat", ".splat"}, {"spz", ".spz", "spz"}, {"sog", ".sog", "SOG"}};
 static_assert(std::size(written_formats) == static_cast<std::size_t>(ModelFormat::sog) + 1);
 
 constexpr const WrittenFormat& written_format(ModelFormat format) {
@@ -55,8 +53,8 @@ std::uint64_t bytes_in(ModelFormat format, std::size_t count, int degree);
 ///  - spz: version 3 within gzip (formats/spz.h). `harmonic_bits`, 1 to 8, are those of a coefficient of
 ///    degrees 2 and 3; degree 1 has one more where 8 leave it. Niantic's own writer takes 4. An extension
 ///    names the axes.
-///  - SOG: version 2 as an archive (formats/sog.h), in Morton order (formats/morton.h); harmonics of degrees 1 to 3 from a
-///  palette
+///  - SOG: version 2 as an archive (formats/sog.h), in Morton order (formats/morton.h); harmonics of degrees
+///  1 to 3 from a palette
 ///    of 65,536 at most (formats/codebook.h).
 /// Progress is shown where it takes long. Throws Error where the disk is full, for a model that the format
 /// cannot hold at all, and for a Scaffold-GS model, whose Gaussians no file has.

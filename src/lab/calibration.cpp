@@ -115,8 +115,8 @@ ordered_json to_json(const Calibration& c) {
       "format", "binosplat calibration", "version", 1, "model",
       object("name", c.model_name, "gaussians", c.gaussians, "hash", fmt::format("{:016x}", c.hash)), "order",
       order_choices[c.perspective.order].name, "projection",
-      projection_choices[c.perspective.projection].name, "width", c.width, "height", c.height, "focal_px", c.focal, "near", c.near_plane, "target",
-      object(target, c.target.db), "depth_table",
+      projection_choices[c.perspective.projection].name, "width", c.width, "height", c.height, "focal_px",
+      c.focal, "near", c.near_plane, "target", object(target, c.target.db), "depth_table",
       object("far", c.depth_table.far, "upper", c.depth_table.bounds, "seconds", c.depth_table_seconds),
       "views", ordered_json::array(), "entries", ordered_json::array());
   for (const CalibratedView& view : c.views)

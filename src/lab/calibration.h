@@ -3,10 +3,10 @@
 // which tolerance costs as much as was asked for.
 //
 // The file is JSON: format "binosplat calibration", version 1; model (name, gaussians, hash), order and
-// projection that it holds for, width, height, focal_px and near of the views, views (name, position), target (drop_db against the photos, or psnr_db
-// against the exact pictures), depth_table (far, upper) and entries: th, transmittance, tolerance, and what
-// it reached: reached_db and worst_db of worst_view in the target's terms, pairs_removed (share),
-// evaluations, seconds.
+// projection that it holds for, width, height, focal_px and near of the views, views (name, position), target
+// (drop_db against the photos, or psnr_db against the exact pictures), depth_table (far, upper) and entries:
+// th, transmittance, tolerance, and what it reached: reached_db and worst_db of worst_view in the target's
+// terms, pairs_removed (share), evaluations, seconds.
 
 #include <cstdint>
 #include <filesystem>
@@ -47,9 +47,9 @@ struct CalibratedView {
 struct Calibration {
   std::string model_name;
   std::size_t gaussians = 0;
-  std::uint64_t hash = 0;  // model_hash()
+  std::uint64_t hash = 0;   // model_hash()
   Perspective perspective;  // that the views were drawn with; a table of another's depths says nothing
-  int width = 0;           // px, of the first view
+  int width = 0;            // px, of the first view
   int height = 0;
   double focal = 0.0;       // px, mean over the views
   double near_plane = 0.0;  // world units

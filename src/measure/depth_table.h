@@ -1,6 +1,6 @@
 #pragma once
-// AdaGScale's table: the transmittance bound at each depth of a scene (Jo et al., sections 3.2 and 3.4; docs/method.md
-// 5, `depth`).
+// AdaGScale's table: the transmittance bound at each depth of a scene (Jo et al., sections 3.2 and 3.4;
+// docs/method.md 5, `depth`).
 
 #include <optional>
 #include <span>

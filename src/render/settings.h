@@ -16,8 +16,8 @@
 namespace binosplat::render {
 
 /// The table of TRANSMITTANCE_DEPTH: the largest T in front of any Gaussian whose view depth lies in a bin
-/// (AdaGScale, sections 3.2 and 3.4), in equal bins over [0, far) world units. A bin of 0 is one in which no Gaussian
-/// was seen: there, and beyond `far`, frames take 1.
+/// (AdaGScale, sections 3.2 and 3.4), in equal bins over [0, far) world units. A bin of 0 is one in which no
+/// Gaussian was seen: there, and beyond `far`, frames take 1.
 struct DepthTable {
   float far = 0.0f;
   std::vector<float> bounds;

@@ -14,7 +14,7 @@ namespace binosplat {
 namespace {
 
 constexpr float opacity_rounding = 1e-3f;  // a step of halves beyond 1
-constexpr float scale_most = 1e13f;  // in pictures, its square must not overflow fp32
+constexpr float scale_most = 1e13f;        // in pictures, its square must not overflow fp32
 
 bool finite(const glm::vec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 

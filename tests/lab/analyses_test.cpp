@@ -253,7 +253,8 @@ Analysis sample_analysis() {
 
 TEST(AnalysisPage, JsonHasWhatIsKnown) {
   const auto json = nlohmann::ordered_json::parse(to_json(sample_analysis()).dump());
-  EXPECT_EQ(json["views"], nlohmann::ordered_json({{"calibration", {"a"}}, {"test", {"b", "c"}}, {"chosen", ""}}));
+  EXPECT_EQ(json["views"],
+            nlohmann::ordered_json({{"calibration", {"a"}}, {"test", {"b", "c"}}, {"chosen", ""}}));
   EXPECT_EQ(json["photo_db"]["test"], 30.25);
   EXPECT_TRUE(json["contributions"]["by_depth"][0]["light"]["p90"].is_null());
   EXPECT_EQ(json["contributions"]["skipping"][3]["points"][0]["drop_db"], 0.01);
