@@ -120,7 +120,7 @@ lab::Keep keep_steps(const fs::path& result, const MeasuredOptions& options, con
   return [folder = steps_of(result), run](const std::string& step, const auto& measure) {
     const fs::path file = folder / (text_key(json_text(run) + step) + ".json");
     if (is_whole(file)) return load_json(file);
-    const ordered_json measured = measure();
+    ordered_json measured = measure();
     OutputFile kept(file);
     kept.write(json_text(measured));
     kept.commit(false);
