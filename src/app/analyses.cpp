@@ -34,14 +34,12 @@ lab::Analysis analyse_scene(MeasuredOptions options, const AnalysesOptions& anal
     options.photos = photos_folder(options.photos, listed_cameras(options.scene, options.camera));
   const PhotoSource source = photos_of(options);
   const std::vector<std::string>& named = options.camera.views;
-  std::string chosen;
+  const auto held_out = [&](const CameraList& list) {
+    return analyses.test.empty() ? hold_out(list, analyses.hold_out) : HeldOut{analyses.test, {}, ""};
+  };
   const auto to_test = [&](const CameraList& list) {
-    const HeldOut held = hold_out(list, analyses.hold_out);
-    ViewChoice choice{analyses.test, most_test_views, {}};
-    if (!analyses.test.empty()) return choice;
-    chosen = held.how;
-    choice.without = held.training;
-    choice.without.insert(choice.without.end(), named.begin(), named.end());
+    ViewChoice choice{analyses.test, most_test_views, held_out(list).training};
+    if (analyses.test.empty()) choice.without.insert(choice.without.end(), named.begin(), named.end());
     return choice;
   };
   const OpenScene scene = open_scene(options.scene, options.camera, no_rig, [&](const CameraList& list) {
@@ -52,13 +50,12 @@ lab::Analysis analyse_scene(MeasuredOptions options, const AnalysesOptions& anal
     return photographed_views(choice, source, options.camera.lens, scene.list);
   };
   // No view serves both: those for tests are left out of all for calibration.
+  const HeldOut held = held_out(scene.list);
   std::vector<lab::CalibrationView> tested = views_of(to_test(scene.list));
   if (tested.empty() && !options.photos.empty())
-    fail("--photos {}: there is no photo of any view for tests: {}", options.photos, chosen);
-  std::vector<std::string> without = hold_out(scene.list, analyses.hold_out).test;
-  if (!analyses.test.empty()) without = analyses.test;
+    fail("--photos {}: there is no photo of any view for tests: {}", options.photos, held.how);
   std::vector<lab::CalibrationView> calibrated =
-      views_of({named, calibration_views, named.empty() ? without : std::vector<std::string>()});
+      views_of({named, calibration_views, named.empty() ? held.test : std::vector<std::string>()});
   const auto context = open_context(options.context);
   leave_out_blind("study", *context, scene.model, scene.near_plane, tested);
   leave_out_blind("study", *context, scene.model, scene.near_plane, calibrated);
@@ -67,7 +64,7 @@ lab::Analysis analyse_scene(MeasuredOptions options, const AnalysesOptions& anal
     calibrated = tested;
   }
   log_info("{} views for tests{}; tolerances are found on {} others", tested.size(),
-           chosen.empty() ? "" : ": " + chosen, calibrated.size());
+           held.how.empty() ? "" : ": " + held.how, calibrated.size());
 
   const fs::path result = folder / "study.json";
   Parts parts;
@@ -83,7 +80,7 @@ lab::Analysis analyse_scene(MeasuredOptions options, const AnalysesOptions& anal
        .rules = rules_of(options.rules),
        .keep = keep_steps(result, options, source.exposures, scene.list, *context)},
       [&](const std::string& what, std::size_t done, std::size_t of) { parts.update(what, done, of); });
-  analysis.chosen = chosen;
+  analysis.chosen = held.how;
   const lab::Page page = lab::analysis_page(analysis);
   save_report(folder, "study.json", to_json(analysis), page);
   forget_steps(result);

@@ -60,9 +60,9 @@ ExitCode calibrate(const CalibrateOptions& o) {
   const OpenScene scene = open_scene(o.scene, o.camera, no_rig, [&](const CameraList& list) {
     check_photos(o.photos, photographed_cameras(choice(list), o.photos, o.camera.lens, list));
   });
-  std::vector<lab::CalibrationView> views =
-      photographed_views(choice(scene.list), photos, o.camera.lens, scene.list);
-  if (!choice(scene.list).without.empty()) {
+  const ViewChoice chosen = choice(scene.list);
+  std::vector<lab::CalibrationView> views = photographed_views(chosen, photos, o.camera.lens, scene.list);
+  if (!chosen.without.empty()) {
     log_info("calibrating on {} training views; for tests are {}", views.size(),
              hold_out(scene.list, o.hold_out).how);
   } else if (o.camera.views.empty()) {

@@ -182,11 +182,13 @@ ExitCode profile(const ProfileOptions& o) {
   const lab::Profile profile = record(o, before);
   const lab::ProfileSummary summary = lab::summary_of(profile);
   std::vector<std::string> changes;
-  save_profile(o.folder, profile, changes);
-  if (before) {  // once more, so that a comparison that fails loses no recording
-    changes = lab::compare_frames(*before, lab::frames_table(profile.recording));
-    save_profile(o.folder, profile, changes);
+  try {
+    if (before) changes = lab::compare_frames(*before, lab::frames_table(profile.recording));
+  } catch (...) {  // a comparison that fails loses no recording
+    save_profile(o.folder, profile, {});
+    throw;
   }
+  save_profile(o.folder, profile, changes);
   for (const std::string& line : lab::lines_of(profile, summary)) fmt::print("{}\n", line);
   if (before) fmt::print("\nSince {}:\n{}\n", o.compare, fmt::join(changes, "\n"));
   fmt::print("{}: report.html, trace.json (for ui.perfetto.dev), frames.csv, profile.json\n", o.folder);

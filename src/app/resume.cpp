@@ -113,12 +113,12 @@ void check_alone(const OutputPlan& plan, const std::optional<ordered_json>& run)
 
 lab::Keep keep_steps(const fs::path& result, const MeasuredOptions& options, const Exposures& exposures,
                      const CameraList& list, const gl::Context& context) {
-  const ordered_json run =
-      lab::object("program", BINOSPLAT_VERSION, "options", options.given, "scene",
-                  scene_identity(options, exposures, {options.scene.name, options.scene, list}), "device",
-                  lab::device_text(context));
+  const std::string run =
+      json_text(lab::object("program", BINOSPLAT_VERSION, "options", options.given, "scene",
+                            scene_identity(options, exposures, {options.scene.name, options.scene, list}),
+                            "device", lab::device_text(context)));
   return [folder = steps_of(result), run](const std::string& step, const auto& measure) {
-    const fs::path file = folder / (text_key(json_text(run) + step) + ".json");
+    const fs::path file = folder / (text_key(run + step) + ".json");
     if (is_whole(file)) return load_json(file);
     ordered_json measured = measure();
     OutputFile kept(file);

@@ -40,7 +40,7 @@ struct ViewSplit {
   double near_plane = near_default;  // world units
 };
 
-/// What a Calibrator may be told beyond what it compares.
+/// What a Calibrator takes beside what it compares.
 struct CalibratorOptions {
   Keep keep = {};                        // of costs
   std::optional<int> order, projection;  // of the exact pictures; none: the model's
@@ -49,9 +49,8 @@ struct CalibratorOptions {
 /// A model in some views, and what each way to draw it costs there.
 class Calibrator {
  public:
-  /// Draws the exact pictures. Context and model must outlive it. Throws
-  /// Error for no views, views of different photos (some with, some without), or none where the target is a
-  /// drop.
+  /// Draws the exact pictures. Context and model must outlive it. Throws Error for no views, views of
+  /// different photos (some with, some without), or none where the target is a drop.
   Calibrator(gl::Context& context, const Model& model, const std::vector<CalibrationView>& views,
              double near_plane, CalibrationTarget::Kind kind, CalibratorOptions options = {});
   ~Calibrator();

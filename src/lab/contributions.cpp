@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 #include <vector>
 
 #include "base/statistics.h"
@@ -69,15 +70,6 @@ std::vector<DepthBin> bins_by_depth(const std::vector<ShownGaussian>& shown,
   return bins;
 }
 
-void add_up(std::vector<reference::DistanceBin>& sum, const std::vector<reference::DistanceBin>& of_view) {
-  if (sum.empty()) return void(sum = of_view);
-  for (std::size_t b = 0; b < sum.size(); ++b) {
-    sum[b].fragments += of_view[b].fragments;
-    sum[b].sum += of_view[b].sum;
-    sum[b].largest = std::max(sum[b].largest, of_view[b].largest);
-  }
-}
-
 double capped(double db) { return std::min(db, equal_db); }
 
 }  // namespace
@@ -96,7 +88,9 @@ Contributions contributions(const Model& model, std::span<const ContributionView
     const auto splats = reference::project_all(model, one.view);
     const auto lists = reference::make_lists(splats, reference::depth_order(splats), one.view, TILES_ELLIPSE);
     const auto transmittance = reference::measure_transmittance(splats, lists, one.view);
-    add_up(found.by_distance, reference::contributions_by_distance(splats, lists, one.view));
+    auto by_distance = reference::contributions_by_distance(splats, lists, one.view);
+    if (!found.by_distance.empty()) reference::add(by_distance, found.by_distance);
+    found.by_distance = std::move(by_distance);
     for (std::size_t i = 0; i < splats.size(); ++i) {
       if (transmittance[i] > 0.0) shown.push_back({splats[i].depth, transmittance[i]});
     }

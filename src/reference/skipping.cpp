@@ -75,39 +75,40 @@ std::size_t distance_bin(double px) {
 
 }  // namespace
 
+void add(std::vector<DistanceBin>& bins, const std::vector<DistanceBin>& more) {
+  for (std::size_t b = 0; b < bins.size(); ++b) {
+    bins[b].fragments += more[b].fragments;
+    bins[b].sum += more[b].sum;
+    bins[b].largest = std::max(bins[b].largest, more[b].largest);
+  }
+}
+
 std::vector<DistanceBin> contributions_by_distance(const std::vector<Splat>& splats, const TileLists& lists,
                                                    const shared::View& view) {
-  // Whole numbers add up to the same sum in any order.
-  constexpr double unit = 0x1p-32;
-  std::array<std::uint64_t, distance_bins> sums{};
   std::vector<DistanceBin> bins(distance_bins);
   for (std::size_t b = 0; b < distance_bins; ++b) {
     const double octave = 0.5 * static_cast<double>(b);
     bins[b].from = b == 0 ? 0.0 : std::exp2(octave - 0.5);
     bins[b].to = std::exp2(octave);
   }
+  constexpr double unit = 0x1p-28;  // multiples of it add up to the same sum in any order
   std::mutex adding;
   parallel_chunks(lists.begin.size() - 1, 1, [&](std::size_t begin, std::size_t end) {
-    std::array<DistanceBin, distance_bins> found{};
-    std::array<std::uint64_t, distance_bins> found_sums{};
+    std::vector<DistanceBin> found(distance_bins);
     for_each_pixel({splats, lists, view, {}}, begin, end,
                    [&](std::size_t pixel, const std::vector<Fragment>& fragments) {
                      const glm::dvec2 at(pixel % view.width, pixel / view.width);
                      for (const Fragment& fragment : fragments) {
-                       const std::size_t b = distance_bin(glm::distance(at, splats[fragment.gaussian].mean));
-                       ++found[b].fragments;
-                       found_sums[b] += static_cast<std::uint64_t>(std::llround(fragment.score / unit));
-                       found[b].largest = std::max(found[b].largest, fragment.score);
+                       DistanceBin& bin =
+                           found[distance_bin(glm::distance(at, splats[fragment.gaussian].mean))];
+                       ++bin.fragments;
+                       bin.sum += std::round(fragment.score / unit) * unit;
+                       bin.largest = std::max(bin.largest, fragment.score);
                      }
                    });
     const std::lock_guard lock(adding);
-    for (std::size_t b = 0; b < distance_bins; ++b) {
-      bins[b].fragments += found[b].fragments;
-      bins[b].largest = std::max(bins[b].largest, found[b].largest);
-      sums[b] += found_sums[b];
-    }
+    add(bins, found);
   });
-  for (std::size_t b = 0; b < distance_bins; ++b) bins[b].sum = static_cast<double>(sums[b]) * unit;
   return bins;
 }
 

@@ -25,6 +25,9 @@ struct DistanceBin {
   double largest = 0.0;  // alpha T
 };
 
+/// Adds bins of other fragments to as many.
+void add(std::vector<DistanceBin>& bins, const std::vector<DistanceBin>& more);
+
 /// The fragments of a view by distance: below 1 px, then two bins an octave; those beyond 2,048 px lie in the
 /// last bin. The same bits with any number of threads.
 std::vector<DistanceBin> contributions_by_distance(const std::vector<Splat>& splats, const TileLists& lists,
