@@ -75,21 +75,21 @@ std::size_t distance_bin(double px) {
 
 }  // namespace
 
-void add(std::vector<DistanceBin>& bins, const std::vector<DistanceBin>& more) {
-  for (std::size_t b = 0; b < bins.size(); ++b) {
-    bins[b].fragments += more[b].fragments;
-    bins[b].sum += more[b].sum;
-    bins[b].largest = std::max(bins[b].largest, more[b].largest);
+void add(std::vector<DistanceBin>& sums, const std::vector<DistanceBin>& more) {
+  for (std::size_t b = 0; b < sums.size(); ++b) {
+    sums[b].fragments += more[b].fragments;
+    sums[b].sum += more[b].sum;
+    sums[b].largest = std::max(sums[b].largest, more[b].largest);
   }
 }
 
 std::vector<DistanceBin> contributions_by_distance(const std::vector<Splat>& splats, const TileLists& lists,
                                                    const shared::View& view) {
-  std::vector<DistanceBin> bins(distance_bins);
+  std::vector<DistanceBin> sums(distance_bins);
   for (std::size_t b = 0; b < distance_bins; ++b) {
     const double octave = 0.5 * static_cast<double>(b);
-    bins[b].from = b == 0 ? 0.0 : std::exp2(octave - 0.5);
-    bins[b].to = std::exp2(octave);
+    sums[b].from = b == 0 ? 0.0 : std::exp2(octave - 0.5);
+    sums[b].to = std::exp2(octave);
   }
   constexpr double unit = 0x1p-28;  // multiples of it add up to the same sum in any order
   std::mutex adding;
@@ -107,9 +107,9 @@ std::vector<DistanceBin> contributions_by_distance(const std::vector<Splat>& spl
                      }
                    });
     const std::lock_guard lock(adding);
-    add(bins, found);
+    add(sums, found);
   });
-  return bins;
+  return sums;
 }
 
 std::vector<Skipped> skip_lowest(const std::vector<Splat>& splats, const TileLists& lists,

@@ -26,7 +26,7 @@ struct DistanceBin {
 };
 
 /// Adds bins of other fragments to as many.
-void add(std::vector<DistanceBin>& bins, const std::vector<DistanceBin>& more);
+void add(std::vector<DistanceBin>& sums, const std::vector<DistanceBin>& more);
 
 /// The fragments of a view by distance: below 1 px, then two bins an octave; those beyond 2,048 px lie in the
 /// last bin. The same bits with any number of threads.
