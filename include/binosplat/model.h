@@ -32,8 +32,8 @@ struct Bounds {
 class SplatModel {
  public:
   /// Reads a file, or a folder that holds a model. What it is, is decided by its content, never by its name:
-  /// INRIA's .ply and PlayCanvas' compressed one, .spz, .splat, .ksplat, SOG (a folder, .sog, or streamed by
-  /// a lod-meta.json), glTF and OpenUSD's text with Gaussians, and Scaffold-GS's .ply with the networks
+  /// INRIA's ply and PlayCanvas' compressed ply, spz, .splat, .ksplat, SOG (a folder or .sog), streamed SOG
+  /// (by a lod-meta.json), glTF and OpenUSD's text with Gaussians, and Scaffold-GS's ply with the networks
   /// beside it. Gaussians whose numbers are not finite are left out, and counted on standard error. The
   /// anti-aliasing and the low-pass are those of the file, or else of the trainer's file beside it; standard
   /// error has what the training did and is not drawn. Throws Error(bad_input) for a path that is no such

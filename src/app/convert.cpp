@@ -124,7 +124,7 @@ std::string decibels_or_equal(double psnr) {
 }
 
 void print_converted(const ConvertOptions& o, const Converted& c) {
-  const char* format = written_format(c.format).name;
+  const char* format = row_of(c.format).name;
   fmt::print("{}: {}, {} Gaussians\n", o.output, format, c.count);
   fmt::print("{} bytes, {:.2f} a Gaussian", c.bytes, c.bytes_each());
   if (c.bytes_before) {
@@ -144,7 +144,7 @@ void print_converted(const ConvertOptions& o, const Converted& c) {
 nlohmann::ordered_json converted_json(const ConvertOptions& o, const Converted& c) {
   nlohmann::ordered_json json =
       lab::object("version", BINOSPLAT_VERSION, "model", o.scene.name, "output", o.output, "format",
-                  written_format(c.format).name, "gaussians", c.count, "bytes", c.bytes, "bytes_per_gaussian",
+                  word_of(c.format), "gaussians", c.count, "bytes", c.bytes, "bytes_per_gaussian",
                   c.bytes_each(), "losses", c.losses, "model_bytes", c.bytes_before);
   if (c.views.empty()) return json;
   const auto psnr = [](const ViewCost& view) {
@@ -170,10 +170,10 @@ ExitCode convert(const ConvertOptions& o) {
     originals = draw(views, model, "drawing the original");
   }
 
-  const std::string axes = model.axes.letters, wanted(axes_of(done.format));
+  const std::string axes = model.axes.letters, wanted(row_of(done.format).axes);
   if (axes != wanted)
     log_info("{}: its axes are turned from {} to {}, the ones of {}", o.output, axes, wanted,
-             written_format(done.format).name);
+             row_of(done.format).name);
   if (done.format == ModelFormat::spz)
     log_info(
         "{}: its axes are RUB, as the format has them and as the file says; programs that take them for "
@@ -205,8 +205,7 @@ void add_convert(CLI::App& program, Command& command) {
       ->type_name("FILE")
       ->required();
   Words<ModelFormat> formats;
-  for (const WrittenFormat& format : written_formats)
-    formats.emplace_back(format.name, static_cast<ModelFormat>(formats.size()));
+  for (const ModelFormat format : written_formats()) formats.emplace_back(word_of(format), format);
   choose(*sub, "--to", o->to, "The format, where FILE's ending does not say it", formats);
   add_harmonic_bits_option(*sub, o->harmonic_bits);
   add_lod_option(*sub, o->scene);

@@ -99,12 +99,13 @@ void print_bar(const std::string& label, std::size_t count, std::size_t all) {
 
 /// What `binosplat convert` would write.
 void print_sizes(const Model& model) {
-  const auto size = [&](ModelFormat format) {
-    return megabytes(static_cast<std::int64_t>(bytes_in(format, model.count(), model.degree)));
-  };
-  fmt::print("{:<14} ply {}, .splat {}{}, spz at most {}, SOG at most {}\n", "as a file",
-             size(ModelFormat::ply), size(ModelFormat::splat), model.degree > 0 ? " (without harmonics)" : "",
-             size(ModelFormat::spz), size(ModelFormat::sog));
+  std::vector<std::string> sizes;
+  for (const ModelFormat format : written_formats()) {
+    const std::uint64_t bytes = bytes_in(format, model.count(), model.degree);
+    sizes.push_back(fmt::format("{} {}{}", row_of(format).name, format == ModelFormat::ply ? "" : "at most ",
+                                megabytes(static_cast<std::int64_t>(bytes))));
+  }
+  fmt::print("{:<14} {}\n", "as a file", fmt::join(sizes, ", "));
 }
 
 void print_info(const SeenOfViews& seen, std::size_t all) {
@@ -241,9 +242,8 @@ ordered_json info_json(const Model& model, const ModelSummary& s, const render::
       info_json(s.core), "origin", std::array{model.axes.origin.x, model.axes.origin.y, model.axes.origin.z},
       "gpu_bytes", object("model", needs.model, "headset_frame", needs.frame));
   if (model.scaffold) return json;  // the rest is made for each eye
-  for (std::size_t k = 0; k < std::size(written_formats); ++k)
-    json["file_bytes"][written_formats[k].name] =
-        bytes_in(static_cast<ModelFormat>(k), model.count(), model.degree);
+  for (const ModelFormat format : written_formats())
+    json["file_bytes"][word_of(format)] = bytes_in(format, model.count(), model.degree);
   lab::FieldWriter{json}("opacity", object("median", s.opacity_median, "tenths", s.opacity), "largest_scale",
                          object("median", s.scale_median, "decades", scale), "degrees_in_use", s.degree,
                          "odd",

@@ -138,7 +138,7 @@ ExitCode levels(const LevelsOptions& o) {
   const bool again = has_run(o, run);
   Model model = load_scene(o.scene);
   refuse_scaffold(model, o.scene.name);
-  bring_into_axes(model, axes_of(ModelFormat::sog));
+  bring_into_axes(model, row_of(ModelFormat::sog).axes);
   const auto context = open_context(o.context);
   claim_run(fs::path(o.output) / levels_run_name, run, "levels");
   Folder folder(o.output);

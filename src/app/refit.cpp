@@ -131,7 +131,7 @@ ExitCode refit(const RefitOptions& o) {
   const CameraList list = needed_cameras("refit", o);
   Model model = load_scene(o.scene, {}, list.cameras);
   refuse_scaffold(model, o.scene.name);
-  bring_into_axes(model, axes_of(format));
+  bring_into_axes(model, row_of(format).axes);
   lab::ViewSplit views = split_views("refit", o, source, o.split, list,
                                      [](std::size_t can_judge, std::size_t) { return can_judge / 4; });
   const auto context = open_context(o.context);
@@ -161,7 +161,7 @@ ExitCode refit(const RefitOptions& o) {
   steps.push_back(judge.step(fmt::format("after {} rounds", found.best_round), fitted));
   const lab::WrittenModel written = trial_writer(o.output, format)(fitted, o.harmonic_bits.value_or(8));
   steps.push_back(
-      judge.step(fmt::format("as {}, {} bytes", written_format(format).name, written.bytes), written.model));
+      judge.step(fmt::format("as {}, {} bytes", row_of(format).name, written.bytes), written.model));
   print_refit(steps, o, views, photos);
   const bool nearer =
       found.best_round > 0 && steps.back().held_back >= before && steps.back().held_back_own >= before_own;

@@ -23,9 +23,8 @@ DetailRequest parse_detail(const std::string& text) {
 
 void add_scene_options(CLI::App& sub, SceneOptions& o) {
   sub.add_option("SCENE", o.name,
-                 "A model (ply, SOG in a folder, .sog or streamed, spz, .splat,\n.ksplat, glTF, .usda, "
-                 "Scaffold-GS), or one that is built in:\ndemo:room, a room, or demo:city, streets of any "
-                 "size")
+                 "A model's file or folder, of the formats\n" + names_of_formats() +
+                     ";\nor one that is built in: demo:room, a room, or demo:city, streets\nof any size")
       ->required();
   sub.option_defaults()->group("Scene");
   add_lod_option(sub, o, "Level of detail of a streamed SOG, 0 the finest (the finest that\nis there)");

@@ -53,7 +53,7 @@ std::optional<fs::path> same_format(const TrimOptions& o, const Model& model, Mo
   const fs::path file = model_file(o.scene.name);
   const auto run = run_of(file);
   if (!kernel_loss(model, format).empty() || (run && run->antialiased)) return std::nullopt;
-  const std::string_view name = written_format(format).read_as;
+  const std::string_view name = row_of(format).name;
   // A SOG may be read from a meta.json beside its pictures, and is written as an archive.
   const bool same = (model.format == name || model.format.starts_with(fmt::format("{} ", name))) &&
                     (format != ModelFormat::sog || model_format_of(file) == format);
@@ -122,8 +122,8 @@ ordered_json trimmed_json(const Calibrator::Cost& cost, const std::vector<lab::C
 ordered_json trimmed_json(const TrimOptions& o, const lab::Trimmed& found, const lab::ViewSplit& views,
                           ModelFormat format, const std::vector<std::string>& losses) {
   ordered_json json = lab::object("version", BINOSPLAT_VERSION, "model", o.scene.name, "output", o.output,
-                                  "format", written_format(format).name, "as_it_was", !found.less, "unseen",
-                                  found.unseen, "views_weighed", views.training.size(), "losses", losses);
+                                  "format", word_of(format), "as_it_was", !found.less, "unseen", found.unseen,
+                                  "views_weighed", views.training.size(), "losses", losses);
   if (o.bound.max_drop) json["target"]["drop_db"] = *o.bound.max_drop;
   if (o.bound.quality) json["target"]["quality_db"] = *o.bound.quality;
   for (const lab::TrimStep& s : found.steps) {
@@ -155,7 +155,7 @@ ExitCode trim(const TrimOptions& o) {
   Model model = load_scene(o.scene, {}, list.cameras);
   refuse_scaffold(model, o.scene.name);
   const std::optional<fs::path> original = same_format(o, model, format);
-  bring_into_axes(model, axes_of(format));
+  bring_into_axes(model, row_of(format).axes);
   lab::ViewSplit views = split_views("trim", o, photos, o.split, list,
                                      [](std::size_t, std::size_t cameras) { return cameras / 2; });
   lab::TrimSettings settings{o.bound.target(), format, trial_writer(o.output, format), {}};

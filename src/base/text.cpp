@@ -39,6 +39,13 @@ std::vector<std::string_view> words_of(std::string_view line, std::size_t most) 
   return words;
 }
 
+std::string alternatives(const std::vector<std::string>& words) {
+  std::string all;
+  for (std::size_t k = 0; k < words.size(); ++k)
+    all += (k == 0 ? "" : k + 1 == words.size() ? " or " : ", ") + words[k];
+  return all;
+}
+
 std::string base64(std::string_view bytes) {
   constexpr std::string_view letters = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
   std::string text;

@@ -38,6 +38,9 @@ inline std::string coordinate(double value) {
   return fmt::format("{:.{}g}", value, std::abs(value) < 1e4 ? 4 : 10);
 }
 
+/// Words for a sentence, as in "a, b or c".
+std::string alternatives(const std::vector<std::string>& words);
+
 /// Bytes as base64 (RFC 4648), filled up by =.
 std::string base64(std::string_view bytes);
 

@@ -3,15 +3,9 @@
 #include <set>
 
 #include "base/mapped_file.h"
-#include "formats/content.h"
-#include "formats/gltf.h"
 #include "formats/json_file.h"
 #include "formats/model_file.h"
-#include "formats/ply.h"
-#include "formats/scaffold_file.h"
-#include "formats/sog.h"
-#include "formats/sog_levels.h"
-#include "formats/streamed_sog.h"
+#include "formats/registry.h"
 #include "formats/zip_file.h"
 
 namespace binosplat {
@@ -21,32 +15,12 @@ namespace {
 namespace fs = std::filesystem;
 using Files = std::vector<fs::path>;
 
-Files files_of_levels(const fs::path& lod_meta, const nlohmann::json& json) {
-  const SogLevels levels(lod_meta, json);
-  Files files = levels.files();
-  if (levels.environment()) files.push_back(*levels.environment());
-  return files;
-}
-
 /// What a file names besides itself.
 Files named_by(const fs::path& path) {
   const MappedFile file(path);
-  switch (content_of(file.bytes())) {
-    case Content::ply:
-      if (is_scaffold(read_ply_header(path, file.bytes()))) return files_of_networks(path);
-      return {};
-    case Content::glb:
-      return files_of_gltf(path, file.bytes());
-    case Content::json: {
-      const nlohmann::json json = parse_json(path.string(), as_text(file.bytes()));
-      if (is_sog_levels(json)) return files_of_levels(path, json);
-      if (is_sog_meta(json)) return pictures_of_sog(path, json);
-      if (is_gltf(json)) return files_of_gltf(path, file.bytes());
-      return {};
-    }
-    default:
-      return {};
-  }
+  const ModelBytes bytes = examine(path, file.bytes());
+  const FormatRow* const format = format_of(bytes);
+  return format != nullptr && format->named_by != nullptr ? format->named_by(bytes) : Files();
 }
 
 }  // namespace

@@ -9,26 +9,15 @@
 #include "base/numbers.h"
 #include "base/text.h"
 #include "formats/compressed_ply.h"
-#include "formats/content.h"
-#include "formats/gltf.h"
-#include "formats/json_file.h"
-#include "formats/ksplat.h"
-#include "formats/ply.h"
-#include "formats/scaffold_file.h"
-#include "formats/sog.h"
-#include "formats/splat.h"
-#include "formats/spz.h"
+#include "formats/ply_header.h"
+#include "formats/registry.h"
 #include "formats/streamed_sog.h"
-#include "formats/usd.h"
 
 namespace binosplat {
 
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr const char* known_formats =
-    "a ply, spz, .splat, .ksplat, glTF, OpenUSD, or a SOG (meta.json, lod-meta.json or .sog)";
 
 /// Of the files folder/BEFORE N AFTER, or of those of the name `inside` in such folders, the one of the
 /// largest N.
@@ -57,11 +46,9 @@ bool is_named_as_model(const fs::path& path) {
   for (const char* points : {"input.ply", "points3d.ply", "sparse_pc.ply", "sparse.ply"}) {
     if (name == points) return false;
   }
-  for (const char* of_model :
-       {".ply", ".spz", ".splat", ".ksplat", ".sog", ".glb", ".gltf", ".usda", ".usd", ".usdc", ".usdz"}) {
-    if (ending == of_model) return true;
-  }
-  return false;
+  return std::ranges::any_of(format_rows(), [&](const FormatRow& row) {
+    return std::ranges::count(words_of(row.endings), ending) > 0;
+  });
 }
 
 /// Whether a file is there and has a text in it, as that one may, too, which is cut short.
@@ -94,58 +81,18 @@ void refuse_level(const fs::path& path, const ModelOptions& options) {
   }
 }
 
-Model load_scaffold_model(const fs::path& path, const ModelOptions& options) {
-  const std::shared_ptr<Scaffold> scaffold = load_scaffold(path);
-  if (options.appearance) choose_appearance(*scaffold, *options.appearance);
-  return stand_in(scaffold);
-}
-
-Model load_json_model(const fs::path& path, std::string_view text, const ModelOptions& options) {
-  const nlohmann::json root = parse_json(path.string(), text);
-  if (is_sog_levels(root)) return load_streamed_sog(path, root, options.lod);
-  refuse_level(path, options);
-  if (is_sog_meta(root)) return load_sog(path, root);
-  if (is_gltf(root)) return load_gltf(path, std::as_bytes(std::span(text)));
-  fail("{} is a JSON file, but no glTF and not the meta.json or lod-meta.json of a SOG model{}",
-       path.string(), root.is_array() ? "; it may hold cameras, which --cameras takes" : "");
-}
-
-/// Formats without a mark of their own. A name helps to say what is wrong, but does not decide what a file
-/// is.
-Model load_unmarked(const fs::path& path, std::span<const std::byte> bytes) {
-  if (is_ksplat(bytes) || path.extension() == ".ksplat") return load_ksplat(path.string(), bytes);
-  if (is_splat(bytes) || path.extension() == ".splat") return load_splat(path.string(), bytes);
-  fail("{} is not a model that can be read: expected {}, but it looks like {}", path.string(), known_formats,
-       describe(Content::unknown));
-}
-
 Model load_content(const fs::path& path, const ModelOptions& options) {
   const MappedFile file(path);
-  const Content content = content_of(file.bytes());
-  if (content != Content::json) refuse_level(path, options);
-  switch (content) {
-    case Content::ply:
-      if (is_scaffold(read_ply_header(path, file.bytes()))) return load_scaffold_model(path, options);
-      return load_ply(path);
-    case Content::zip:
-      return is_usdz(path, file.bytes()) ? load_usdz(path, file.bytes()) : load_sog(path);
-    case Content::usda:
-      return load_usda(path, as_text(file.bytes()));
-    case Content::usdc:
-      refuse_usd_crate(path);
-    case Content::json:
-      return load_json_model(path, as_text(file.bytes()), options);
-    case Content::glb:
-      return load_gltf(path, file.bytes());
-    case Content::gzip:
-    case Content::spz:
-      return load_spz(path.string(), file.bytes());
-    case Content::unknown:
-      return load_unmarked(path, file.bytes());
-    default:
-      fail("{} is not a model that can be read: expected {}, but it looks like {}", path.string(),
-           known_formats, describe(content));
+  const ModelBytes bytes = examine(path, file.bytes());
+  const FormatRow* const format = format_of(bytes);
+  if (format != &row_of(ModelFormat::streamed_sog)) refuse_level(path, options);
+  if (format != nullptr) return format->read(bytes, options);
+  if (bytes.content == Content::json) {
+    fail("{} is a JSON file, but no glTF and not the meta.json or lod-meta.json of a SOG model{}",
+         path.string(), bytes.json.is_array() ? "; it may hold cameras, which --cameras takes" : "");
   }
+  fail("{} is not a model that can be read: expected {}, but it looks like {}", path.string(),
+       names_of_formats(), describe(bytes.content));
 }
 
 }  // namespace

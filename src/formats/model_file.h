@@ -20,13 +20,11 @@ std::vector<std::filesystem::path> models_in(const std::filesystem::path& folder
 /// The file itself, or the model that a folder stands for. Throws Error for a folder with none or several.
 std::filesystem::path file_of(const std::filesystem::path& path);
 
-/// Reads a trained model: INRIA's ply and PlayCanvas' compressed one (formats/ply.h), Scaffold-GS's with the
-/// networks beside it (formats/scaffold_file.h), SOG as a folder, a .sog archive, or streamed
-/// (formats/sog.h), spz, .splat, .ksplat, and glTF or OpenUSD (formats/usd.h) with Gaussians. `path` may be a
-/// folder with one of models_in(). Says on standard error how many Gaussians were left out because a value is
-/// not finite or the quaternion is zero. Throws Error for anything that is not such a model; the text says
-/// what the file looks like instead. Whether a model was trained with anti-aliasing its file says, or else
-/// the run beside it (run_of). Warns of what the run did and is not drawn.
+/// Reads a trained model of any format of the registry (formats/registry.h). `path` may be a folder with one
+/// of models_in(). Says on standard error how many Gaussians were left out because a value is not finite or
+/// the quaternion is zero. Throws Error for anything that is not such a model; the text says what the file
+/// looks like instead. Whether a model was trained with anti-aliasing its file says, or else the run beside
+/// it (run_of). Warns of what the run did and is not drawn.
 Model load_model(const std::filesystem::path& path, const ModelOptions& options = {});
 
 /// The same by the model's file alone, whatever lies beside it: for files that binosplat has just written.

@@ -11,26 +11,8 @@
 
 namespace binosplat {
 
-namespace {
-
-Losses write(OutputFile& file, const Model& model, ModelFormat format, int harmonic_bits) {
-  switch (format) {
-    case ModelFormat::ply:
-      return write_ply(file, model);
-    case ModelFormat::splat:
-      return write_splat(file, model);
-    case ModelFormat::sog:
-      return write_sog(file, model);
-    case ModelFormat::spz:
-      break;
-  }
-  return write_spz(file, model, harmonic_bits);
-}
-
-}  // namespace
-
 void read_back(OutputFile& file, const Model& model, ModelFormat format) {
-  const char* name = written_format(format).name;
+  const char* name = row_of(format).name;
   file.flush();
   std::size_t count = 0;
   try {
@@ -48,43 +30,28 @@ void read_back(OutputFile& file, const Model& model, ModelFormat format) {
 }
 
 std::string written_endings() {
-  std::string all;
-  for (std::size_t k = 0; k < std::size(written_formats); ++k) {
-    const bool is_last = k + 1 == std::size(written_formats);
-    all += k == 0 ? "" : is_last ? " or " : ", ";
-    all += written_formats[k].ending;
-  }
-  return all;
+  std::vector<std::string> endings;
+  for (const ModelFormat format : written_formats()) endings.emplace_back(row_of(format).endings);
+  return alternatives(endings);
 }
 
 std::optional<ModelFormat> model_format_of(const std::filesystem::path& path) {
   const std::string name = lowered(path.filename().string());
   if (name.ends_with(".compressed.ply")) return std::nullopt;
-  for (std::size_t k = 0; k < std::size(written_formats); ++k) {
-    if (name.ends_with(written_formats[k].ending)) return static_cast<ModelFormat>(k);
+  for (const ModelFormat format : written_formats()) {
+    if (name.ends_with(row_of(format).endings)) return format;
   }
   return std::nullopt;
 }
 
 std::uint64_t bytes_in(ModelFormat format, std::size_t count, int degree) {
-  const auto higher = 3 * static_cast<std::uint64_t>(sh_count(degree) - 1);
-  switch (format) {
-    case ModelFormat::ply:
-      return count * 4 * (17 + higher);
-    case ModelFormat::splat:
-      return count * 32;
-    case ModelFormat::sog:
-      return count * (degree > 0 ? 19 : 17) + std::min<std::uint64_t>(count, 65536) * higher;
-    case ModelFormat::spz:
-      break;
-  }
-  return count * (20 + higher);
+  return row_of(format).bytes(count, 3 * static_cast<std::uint64_t>(sh_count(degree) - 1));
 }
 
 std::vector<std::string> kernel_loss(const Model& model, ModelFormat format) {
   if (model.kernel_px2 == KERNEL_PX2 || (format == ModelFormat::ply && is_mip_splatting(model))) return {};
   return {fmt::format("{} does not tell the low-pass of {:.4g} px^2: draw it with --kernel-px2 {:.4g}",
-                      written_format(format).name, model.kernel_px2, model.kernel_px2)};
+                      row_of(format).name, model.kernel_px2, model.kernel_px2)};
 }
 
 std::vector<std::string> write_model(OutputFile& file, const Model& model, ModelFormat format,
@@ -96,9 +63,9 @@ std::vector<std::string> write_model(OutputFile& file, const Model& model, Model
         "it",
         model.name);
   }
-  if (model.axes.letters != axes_of(format)) {
-    fail("{}: its axes are {}, and {} has {}", model.name, model.axes.letters, written_format(format).name,
-         axes_of(format));
+  if (model.axes.letters != row_of(format).axes) {
+    fail("{}: its axes are {}, and {} has {}", model.name, model.axes.letters, row_of(format).name,
+         row_of(format).axes);
   }
   if (model.axes.origin != glm::dvec3(0.0) && format != ModelFormat::ply && format != ModelFormat::sog) {
     Model rounded = model;
@@ -106,14 +73,14 @@ std::vector<std::string> write_model(OutputFile& file, const Model& model, Model
     Losses losses = write_model(file, rounded, format, harmonic_bits);
     losses.push_back(fmt::format(
         "positions so far from zero are rounded by up to {:.2g} units: {} has floats (ply and SOG keep them)",
-        by, written_format(format).name));
+        by, row_of(format).name));
     return losses;
   }
-  Losses losses = write(file, model, format, harmonic_bits);
+  Losses losses = row_of(format).write(file, model, harmonic_bits);
   std::ranges::move(kernel_loss(model, format), std::back_inserter(losses));
-  if ((format == ModelFormat::spz || format == ModelFormat::splat) && model.perspective != Perspective{}) {
+  if (format == ModelFormat::spz && model.perspective != Perspective{}) {
     losses.push_back(fmt::format("{} does not tell how it is seen: draw it with --order {} --projection {}",
-                                 written_format(format).name, order_choices[model.perspective.order].name,
+                                 row_of(format).name, order_choices[model.perspective.order].name,
                                  projection_choices[model.perspective.projection].name));
   }
   return losses;

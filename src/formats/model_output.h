@@ -3,53 +3,29 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <iterator>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
-#include "base/output_file.h"
-#include "scene/model.h"
+#include "formats/registry.h"
 
 namespace binosplat {
 
-enum class ModelFormat { ply, splat, spz, sog };
-
-struct WrittenFormat {
-  const char* name;     // as --to and reports call it
-  const char* ending;   // of files
-  const char* read_as;  // what Model::format of one that is read begins with
-};
-
-/// In the order of the enum.
-constexpr WrittenFormat written_formats[] = {
-    {"ply", ".ply", "ply"}, {"splat", ".splat", ".splat"}, {"spz", ".spz", "spz"}, {"sog", ".sog", "SOG"}};
-static_assert(std::size(written_formats) == static_cast<std::size_t>(ModelFormat::sog) + 1);
-
-constexpr const WrittenFormat& written_format(ModelFormat format) {
-  return written_formats[static_cast<std::size_t>(format)];
-}
-
-/// ".ply, .splat, .spz or .sog".
+/// ".ply, .sog or .spz".
 std::string written_endings();
 
-/// By the end of a name, in any case; none for .compressed.ply, which is read and not written.
+/// The format that is written, by the end of a name, in any case; none for .compressed.ply, which is read and
+/// not written.
 std::optional<ModelFormat> model_format_of(const std::filesystem::path& path);
 
-/// The frame in which a format's numbers are by convention; of these files only spz says so itself.
-constexpr std::string_view axes_of(ModelFormat format) { return format == ModelFormat::spz ? "RUB" : "RDF"; }
-
-/// Bytes that a model takes in a format, but for the header; of spz before gzip, which takes off more than a
-/// third of trained ones; of SOG before WebP, which takes off about as much.
+/// Bytes that a model takes in a format (FormatRow::bytes).
 std::uint64_t bytes_in(ModelFormat format, std::size_t count, int degree);
 
-/// Writes a model whose axes are axes_of(format) (bring_into_axes does that) to `file`, which the caller
+/// Writes a model whose axes are FormatRow::axes (bring_into_axes does that) to `file`, which the caller
 /// commits. Returns what the format could not keep, a line each: quantisation within its range, which the
 /// format is for, is none of it.
 ///  - ply: INRIA's (formats/ply.h), all numbers as floats: a model that came from a ply reads back the same
 ///    to the bit.
-///  - .splat: antimatter15's (formats/splat.h).
 ///  - spz: version 3 within gzip (formats/spz.h). `harmonic_bits`, 1 to 8, are those of a coefficient of
 ///    degrees 2 and 3; degree 1 has one more where 8 leave it. Niantic's own writer takes 4. An extension
 ///    names the axes.

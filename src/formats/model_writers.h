@@ -16,7 +16,6 @@ namespace binosplat {
 using Losses = std::vector<std::string>;
 
 Losses write_ply(OutputFile& file, const Model& model);
-Losses write_splat(OutputFile& file, const Model& model);
 Losses write_sog(OutputFile& file, const Model& model);
 Losses write_spz(OutputFile& file, const Model& model, int harmonic_bits);
 

@@ -155,11 +155,11 @@ class Trimmer {
       judge_.start_from(*refitted_);
       add_step("colours fitted", *refitted_, 0);
     }
-    const bool has_harmonics = whole().degree > 0 && settings_.format != ModelFormat::splat;
+    const bool has_harmonics = whole().degree > 0;
     weights_ = weigh(context_, whole(), views_.training, views_.near_plane, has_harmonics);
     found_.unseen = weights_.unseen();
     model_ = whole();
-    const std::string name = written_format(settings_.format).name;
+    const std::string name = row_of(settings_.format).name;
     const bool packs = settings_.format == ModelFormat::spz;
     if (!holds(model_, 8, 1.0)) {
       found_.fits = false;

@@ -85,9 +85,9 @@ TEST_F(RefitTest, WritesNothingThatIsWorse) {
   EXPECT_TRUE(ended(same, 1, "no nearer than before, 100.000 dB"));
   EXPECT_FALSE(std::filesystem::exists(folder / "m.ply"));
   // The format costs more than the fit gains.
-  const Outcome coarse = refit("m.splat", {"--against", "exact", "--order", "distance"});
-  EXPECT_TRUE(ended(coarse, 1, "m.splat is not written"));
-  EXPECT_FALSE(std::filesystem::exists(folder / "m.splat"));
+  const Outcome coarse = refit("m.sog", {"--against", "exact", "--order", "distance"});
+  EXPECT_TRUE(ended(coarse, 1, "m.sog is not written"));
+  EXPECT_FALSE(std::filesystem::exists(folder / "m.sog"));
 }
 
 TEST_F(RefitTest, WhatMakesNoSenseIsNamed) {

@@ -128,12 +128,12 @@ TEST_F(TrimTest, AModelThatNeedsAllIsReturnedAsItWas) {
   EXPECT_EQ(report()["as_it_was"], true);
   // What the format alone loses is more than the bound.
   EXPECT_TRUE(
-      ended(trim("m.splat", {"--quality", "65"}), 2, "the format alone costs more than the bound allows"));
-  EXPECT_FALSE(std::filesystem::exists(folder / "m.splat"));
-  ASSERT_TRUE(good(run_program({"convert", model, "-o", folder / "a.splat"})));
-  const Outcome same = run_program({"trim", folder / "a.splat", "-o", folder / "b.splat", "--quality", "99"});
+      ended(trim("m.sog", {"--quality", "65"}), 2, "the format alone costs more than the bound allows"));
+  EXPECT_FALSE(std::filesystem::exists(folder / "m.sog"));
+  ASSERT_TRUE(good(run_program({"convert", model, "-o", folder / "a.spz"})));
+  const Outcome same = run_program({"trim", folder / "a.spz", "-o", folder / "b.spz", "--quality", "99"});
   ASSERT_TRUE(good(same));
-  EXPECT_EQ(test::read_text(folder / "a.splat"), test::read_text(folder / "b.splat"));
+  EXPECT_EQ(test::read_text(folder / "a.spz"), test::read_text(folder / "b.spz"));
 }
 
 // 3DGUT's, whose run's file beside it says that there is hardly a low-pass.
@@ -170,10 +170,10 @@ TEST_F(TrimTest, CandidatesHaveTheModelsLowPassAndItsLossIsSaid) {
 }
 
 TEST_F(TrimTest, WritesEveryFormat) {
-  for (const WrittenFormat& format : written_formats) {
-    const std::string file = std::string("t") + format.ending;
+  for (const ModelFormat format : written_formats()) {
+    const std::string file = "t." + word_of(format);
     ASSERT_TRUE(good(trim(file, {"--quality", "12"}))) << file;
-    EXPECT_TRUE(load_model(folder / file).format.starts_with(format.read_as)) << file;
+    EXPECT_TRUE(load_model(folder / file).format.starts_with(row_of(format).name)) << file;
   }
 }
 

@@ -17,6 +17,8 @@
 #include <random>
 #include <thread>
 
+#include "base/text.h"
+#include "formats/registry.h"
 #include "support/program.h"
 
 namespace {
@@ -29,7 +31,6 @@ using binosplat::test::TempFolder;
 constexpr std::size_t seed_most = 300000;  // bytes
 constexpr double seconds_most = 20.0;      // a run, on a busy machine
 constexpr long kib_most = 400 * 1024;  // a run: what a million Gaussians take, which a small file may promise
-constexpr const char* written_as[] = {"ply", "splat", "spz", "sog"};
 
 struct Seed {
   std::string kind;  // model, picture or cameras
@@ -59,8 +60,8 @@ class Random {
 
 std::string kind_of(const fs::path& path) {
   const std::string ending = path.extension();
-  for (const char* model : {".ply", ".spz", ".splat", ".ksplat", ".glb", ".gltf", ".sog"})
-    if (ending == model) return "model";
+  for (const binosplat::FormatRow& row : binosplat::format_rows())
+    if (std::ranges::count(binosplat::words_of(row.endings), ending) > 0) return "model";
   for (const char* picture : {".png", ".jpg", ".exr"})
     if (ending == picture) return "picture";
   return ending == ".json" && path.string().find("camera") != std::string::npos ? "cameras" : "";
@@ -139,8 +140,8 @@ class Campaign {
  public:
   Campaign(std::uint64_t seed, fs::path findings) : seed_(seed), findings_(std::move(findings)) {
     const TempFolder made;
-    for (const char* ending : written_as) {
-      const std::string file = made / (std::string("room.") + ending);
+    for (const binosplat::ModelFormat format : binosplat::written_formats()) {
+      const std::string file = made / ("room." + word_of(format));
       if (run_program({"convert", BINOSPLAT_SOURCE_DIR "/tests/fuzz/corpus/ply/degree_3.ply", "-o", file})
                   .code == 0 ||
           run_program({"convert", BINOSPLAT_SOURCE_DIR "/tests/fuzz/corpus/ply/ascii.ply", "-o", file})
@@ -164,7 +165,7 @@ class Campaign {
     Tally tally{.files = 1};
     std::string problem;
     if (seed.kind == "model") {
-      problem = try_model(file, folder, random.of(written_as), tally);
+      problem = try_model(file, folder, word_of(written_[random.below(written_.size())]), tally);
     } else if (seed.kind == "picture") {
       Outcome outcome;
       problem = run({"compare", file, file}, {0, 1, 2, 4}, tally, outcome);
@@ -261,6 +262,7 @@ class Campaign {
   std::uint64_t seed_;
   fs::path findings_;
   std::vector<Seed> seeds_;
+  const std::vector<binosplat::ModelFormat> written_ = binosplat::written_formats();
   std::mutex mutex_;
   std::map<std::string, Tally> tallies_;
   int found_ = 0;

@@ -15,9 +15,9 @@
 
 namespace binosplat::test {
 
-constexpr ModelFormat formats[] = {ModelFormat::ply, ModelFormat::splat, ModelFormat::spz, ModelFormat::sog};
+constexpr ModelFormat formats[] = {ModelFormat::ply, ModelFormat::spz, ModelFormat::sog};
 
-inline std::string name_of(ModelFormat format) { return written_format(format).name; }
+inline std::string name_of(ModelFormat format) { return row_of(format).name; }
 
 struct Written {
   Model model;
@@ -39,7 +39,7 @@ inline Written round_trip(const Model& model, ModelFormat format, int harmonic_b
 }
 
 inline Model in_axes_of(Model model, ModelFormat format) {
-  bring_into_axes(model, axes_of(format));
+  bring_into_axes(model, row_of(format).axes);
   return model;
 }
 
@@ -103,17 +103,6 @@ inline Expected of_ply(const Model& model, std::size_t i) {
   e.log_scale_error = glm::abs(e.log_scale) * 0x1p-24 + rounding;
   e.opacity_error = rounding;
   e.rotation_error = rounding;  // of those that some readers leave less than a unit long
-  return e;
-}
-
-inline Expected of_splat(const Model& model, std::size_t i) {
-  Expected e = exact(model, i);
-  e.sh.resize(3);
-  for (double& dc : e.sh) dc = std::clamp(dc, -0.5 / binosplat::sh_c0, 0.5 / binosplat::sh_c0);
-  e.sh_error.assign(3, 0.5 / 255 / binosplat::sh_c0 + rounding);
-  e.opacity_error = 0.5 / 255 + rounding;
-  // Four components within half of 1/128: a vector of 1/128, which turns a unit vector by asin(1/128).
-  e.rotation_error = 2 * std::sin(0.5 * std::asin(1.0 / 128)) + rounding;
   return e;
 }
 
@@ -219,7 +208,6 @@ inline std::string difference(const Model& model, const Model& back, ModelFormat
   for (std::size_t j = 0; j < order.size(); ++j) {
     const std::size_t i = order[j];
     const Expected e = format == ModelFormat::ply     ? of_ply(model, i)
-                       : format == ModelFormat::splat ? of_splat(model, i)
                        : format == ModelFormat::sog   ? of_sog(model, i, ends)
                                                       : of_spz(model, i, harmonic_bits);
     if (std::string found = difference(e, model.rotation[i], back, j); !found.empty()) return found;

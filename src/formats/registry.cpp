@@ -1,0 +1,135 @@
+#include "formats/registry.h"
+
+#include <algorithm>
+#include <iterator>
+
+#include "base/text.h"
+#include "formats/compressed_ply.h"
+#include "formats/files_of_model.h"
+#include "formats/gltf.h"
+#include "formats/json_file.h"
+#include "formats/ksplat.h"
+#include "formats/model_writers.h"
+#include "formats/ply.h"
+#include "formats/scaffold_file.h"
+#include "formats/sog.h"
+#include "formats/splat.h"
+#include "formats/spz.h"
+#include "formats/streamed_sog.h"
+#include "formats/usd.h"
+
+namespace binosplat {
+
+namespace {
+
+using Files = std::vector<std::filesystem::path>;
+
+bool is_ply_with(const ModelBytes& f, bool (*has)(const PlyHeader&)) {
+  return f.content == Content::ply && has(read_ply_header(f.path, f.bytes));
+}
+
+bool is_usd(const ModelBytes& f) {
+  return f.content == Content::usda || f.content == Content::usdc ||
+         (f.content == Content::zip && is_usdz(f.path, f.bytes));
+}
+
+/// Formats without a mark of their own are recognised by their numbers. A name lets a damaged file be read
+/// for the sake of the error, but does not decide what another file is.
+bool is_unmarked(const ModelBytes& f, const char* ending, bool (*is)(std::span<const std::byte>)) {
+  return f.content == Content::unknown && (is(f.bytes) || f.path.extension() == ending);
+}
+
+Model read_scaffold(const ModelBytes& f, const ModelOptions& options) {
+  const std::shared_ptr<Scaffold> scaffold = load_scaffold(f.path);
+  if (options.appearance) choose_appearance(*scaffold, *options.appearance);
+  return stand_in(scaffold);
+}
+
+Model read_ply(const ModelBytes& f, const ModelOptions&) { return load_ply(f.path); }
+
+Model read_usd(const ModelBytes& f, const ModelOptions&) {
+  if (f.content == Content::usda) return load_usda(f.path, as_text(f.bytes));
+  if (f.content == Content::zip) return load_usdz(f.path, f.bytes);
+  refuse_usd_crate(f.path);
+}
+
+Files files_of_levels(const ModelBytes& f) {
+  const SogLevels levels(f.path, f.json);
+  Files files = levels.files();
+  if (levels.environment()) files.push_back(*levels.environment());
+  return files;
+}
+
+constexpr FormatRow rows[] = {
+    {"Scaffold-GS", "", [](const ModelBytes& f) { return is_ply_with(f, is_scaffold); }, read_scaffold,
+     [](const ModelBytes& f) { return files_of_networks(f.path); }},
+    {"compressed ply", "", [](const ModelBytes& f) { return is_ply_with(f, is_compressed_ply); }, read_ply},
+    {"ply", ".ply", [](const ModelBytes& f) { return f.content == Content::ply; }, read_ply, nullptr,
+     [](OutputFile& file, const Model& model, int) { return write_ply(file, model); },
+     [](std::uint64_t count, std::uint64_t higher) { return count * 4 * (17 + higher); }},
+    {"streamed SOG", "", [](const ModelBytes& f) { return is_sog_levels(f.json); },
+     [](const ModelBytes& f, const ModelOptions& options) {
+       return load_streamed_sog(f.path, f.json, options.lod);
+     },
+     files_of_levels},
+    {"OpenUSD", ".usda .usdz .usd .usdc", is_usd, read_usd},
+    {"SOG", ".sog", [](const ModelBytes& f) { return is_sog_meta(f.json) || f.content == Content::zip; },
+     [](const ModelBytes& f, const ModelOptions&) {
+       return f.content == Content::zip ? load_sog(f.path) : load_sog(f.path, f.json);
+     },
+     [](const ModelBytes& f) {
+       return f.content == Content::zip ? Files() : pictures_of_sog(f.path, f.json);
+     },
+     [](OutputFile& file, const Model& model, int) { return write_sog(file, model); },
+     [](std::uint64_t count, std::uint64_t higher) {
+       return count * (higher > 0 ? 19 : 17) + std::min<std::uint64_t>(count, sog_palette_most) * higher;
+     }},
+    {"spz", ".spz",
+     [](const ModelBytes& f) { return f.content == Content::gzip || f.content == Content::spz; },
+     [](const ModelBytes& f, const ModelOptions&) { return load_spz(f.path.string(), f.bytes); }, nullptr,
+     write_spz, [](std::uint64_t count, std::uint64_t higher) { return count * (20 + higher); }, "RUB"},
+    {"glTF", ".gltf .glb", [](const ModelBytes& f) { return f.content == Content::glb || is_gltf(f.json); },
+     [](const ModelBytes& f, const ModelOptions&) { return load_gltf(f.path, f.bytes); },
+     [](const ModelBytes& f) { return files_of_gltf(f.path, f.bytes); }},
+    {".ksplat", ".ksplat", [](const ModelBytes& f) { return is_unmarked(f, ".ksplat", is_ksplat); },
+     [](const ModelBytes& f, const ModelOptions&) { return load_ksplat(f.path.string(), f.bytes); }},
+    {".splat", ".splat", [](const ModelBytes& f) { return is_unmarked(f, ".splat", is_splat); },
+     [](const ModelBytes& f, const ModelOptions&) { return load_splat(f.path.string(), f.bytes); }},
+};
+static_assert(std::size(rows) == static_cast<std::size_t>(ModelFormat::splat) + 1);
+
+}  // namespace
+
+std::span<const FormatRow> format_rows() { return rows; }
+
+const FormatRow& row_of(ModelFormat format) { return rows[static_cast<std::size_t>(format)]; }
+
+std::vector<ModelFormat> written_formats() {
+  std::vector<ModelFormat> found;
+  for (std::size_t k = 0; k < std::size(rows); ++k) {
+    if (rows[k].write != nullptr) found.push_back(static_cast<ModelFormat>(k));
+  }
+  return found;
+}
+
+std::string word_of(ModelFormat format) { return row_of(format).endings + 1; }
+
+const FormatRow* format_of(const ModelBytes& file) {
+  const FormatRow* const found =
+      std::ranges::find_if(rows, [&](const FormatRow& row) { return row.recognises(file); });
+  return found == std::end(rows) ? nullptr : found;
+}
+
+ModelBytes examine(const std::filesystem::path& path, std::span<const std::byte> bytes) {
+  ModelBytes file{path, bytes, content_of(bytes), {}};
+  if (file.content == Content::json) file.json = parse_json(path.string(), as_text(bytes));
+  return file;
+}
+
+std::string names_of_formats() {
+  std::vector<std::string> names;
+  for (const FormatRow& row : rows) names.emplace_back(row.name);
+  return alternatives(names);
+}
+
+}  // namespace binosplat

@@ -1,0 +1,57 @@
+// The registry's rows reach every list of formats.
+
+#include "formats/registry.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "support/program.h"
+
+namespace binosplat {
+namespace {
+
+const std::string root = BINOSPLAT_SOURCE_DIR;
+
+/// "Scaffold-GS" as fuzzers' names have it: scaffold_gs.
+std::string identifier(const char* name) {
+  std::string word;
+  for (const char c : std::string_view(name)) {
+    if (std::isalnum(static_cast<unsigned char>(c))) word += static_cast<char>(std::tolower(c));
+    if (!std::isalnum(static_cast<unsigned char>(c)) && !word.empty()) word += '_';
+  }
+  return word;
+}
+
+bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+
+/// The first list that lacks a format, empty where none does.
+std::string lacks(const char* name) {
+  std::vector<std::string> texts = {"README.md", "include/binosplat/model.h"};
+  for (const std::string& text : texts) {
+    if (!has(test::read_text(root + "/" + text), name)) return text;
+  }
+  if (!has(test::run_program({"render", "--help"}).out, name)) return "the help of SCENE";
+  const std::string fuzzer = identifier(name), fuzzers = test::read_text(root + "/tests/fuzz/CMakeLists.txt");
+  if (!has(fuzzers, " " + fuzzer + " ")) return "tests/fuzz/CMakeLists.txt";
+  return std::filesystem::is_directory(root + "/tests/fuzz/corpus/" + fuzzer) ? "" : "tests/fuzz/corpus";
+}
+
+TEST(FormatRegistry, PagesHelpAndFuzzersHaveEveryFormat) {
+  for (const FormatRow& row : format_rows()) EXPECT_EQ(lacks(row.name), "") << row.name;
+  EXPECT_EQ(lacks("nerf"), "README.md");
+}
+
+TEST(FormatRegistry, RowsAreWhole) {
+  for (const FormatRow& row : format_rows()) {
+    EXPECT_NE(row.recognises, nullptr) << row.name;
+    EXPECT_NE(row.read, nullptr) << row.name;
+    EXPECT_EQ(row.write == nullptr, row.bytes == nullptr) << row.name;
+    EXPECT_TRUE(row.write == nullptr || *row.endings == '.') << row.name;
+  }
+  EXPECT_EQ(names_of_formats().substr(0, 11), "Scaffold-GS");
+}
+
+}  // namespace
+}  // namespace binosplat
