@@ -1,6 +1,10 @@
 #include "base/job_queue.h"
 
+#include <algorithm>
+#include <limits>
 #include <utility>
+
+#include "base/parallel.h"
 
 namespace binosplat {
 
@@ -59,6 +63,26 @@ void JobQueue::finish() {
   std::unique_lock lock(mutex_);
   changed_.wait(lock, [&] { return waiting_.empty() && running_ == 0; });
   if (failure_) std::rethrow_exception(failure_);
+}
+
+void JobQueue::share(std::size_t count, std::size_t chunk, const Body& body) {
+  if (threads_.empty() || count <= chunk || is_sharing_.exchange(true)) return body(0, count);
+  // Nothing is handed over from chunk to chunk: relaxed, so that the thread sanitizer sees where bodies do.
+  std::atomic<std::size_t> next = 0;
+  const auto work = [&] {
+    const auto take = [&] { return next.fetch_add(chunk, std::memory_order_relaxed); };
+    for (std::size_t begin = take(); begin < count; begin = take())
+      body(begin, std::min(begin + chunk, count));
+  };
+  for (std::size_t k = 0; k < std::min(threads_.size(), (count - 1) / chunk); ++k) add(work);
+  work();
+  finish();
+  is_sharing_ = false;
+}
+
+void frame_chunks(std::size_t count, std::size_t chunk, const JobQueue::Body& body) {
+  static JobQueue queue(core_count() / 4 - 1, std::numeric_limits<std::size_t>::max());
+  queue.share(count, chunk, body);
 }
 
 }  // namespace binosplat

@@ -1,7 +1,8 @@
 #pragma once
-// Work that threads of its own do while the caller goes on: pictures are encoded and written so while the
-// next ones are drawn.
+// Threads of their own: they work while the caller goes on, as pictures are encoded and written while the
+// next ones are drawn, or share a frame's copying with it.
 
+#include <atomic>
 #include <condition_variable>
 #include <cstddef>
 #include <deque>
@@ -29,6 +30,11 @@ class JobQueue {
   /// Waits until all jobs are done. Throws as add() does.
   void finish();
 
+  /// Calls body(begin, end) for chunks of `chunk` at most that make up [0, count), on this thread and the
+  /// queue's; on this thread alone while another one shares. `body` must not throw.
+  using Body = std::function<void(std::size_t begin, std::size_t end)>;
+  void share(std::size_t count, std::size_t chunk, const Body& body);
+
  private:
   struct Job {
     std::function<void()> work, then;
@@ -38,6 +44,7 @@ class JobQueue {
   void run(std::unique_lock<std::mutex>& lock, const std::function<void()>& part);
 
   std::size_t waiting_max_;
+  std::atomic<bool> is_sharing_ = false;
   std::mutex mutex_;
   std::condition_variable_any changed_;
   std::deque<Job> waiting_;
@@ -46,5 +53,13 @@ class JobQueue {
   std::exception_ptr failure_;         // of the job that failed first
   std::vector<std::jthread> threads_;  // last: they end first
 };
+
+/// JobQueue::share of one queue for all frames, which has a quarter of the cores with this one. The threads
+/// of parallel_chunks may be others' for some ms, and give way to others once they worked in the background:
+/// a frame that waits for them has no time for that.
+void frame_chunks(std::size_t count, std::size_t chunk, const JobQueue::Body& body);
+
+/// Numbers of 4 bytes to copy that are worth a thread's while: some 20 us.
+inline constexpr std::size_t frame_chunk_numbers = std::size_t{1} << 15;
 
 }  // namespace binosplat

@@ -8,8 +8,8 @@
 #include <numeric>
 #include <span>
 
+#include "base/job_queue.h"
 #include "base/parallel.h"
-#include "base/worker_pool.h"
 #include "render/halves.h"
 
 namespace binosplat::render {

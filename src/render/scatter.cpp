@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <bit>
 
-#include "base/worker_pool.h"
+#include "base/job_queue.h"
 #include "shared/limits.h"
 
 namespace binosplat::render {

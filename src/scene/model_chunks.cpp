@@ -4,7 +4,7 @@
 #include <bit>
 #include <utility>
 
-#include "base/worker_pool.h"
+#include "base/job_queue.h"
 #include "scene/reduce.h"
 
 namespace binosplat {

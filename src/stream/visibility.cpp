@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstddef>
 
-#include "base/worker_pool.h"
+#include "base/job_queue.h"
 #include "render/stages.h"
 
 namespace binosplat {

@@ -132,5 +132,54 @@ TEST(JobQueue, EndsWithoutWhatNobodyWaitsFor) {
   EXPECT_LT(done, 50);
 }
 
+std::vector<int> times_called(JobQueue& queue, std::size_t count, std::size_t chunk) {
+  std::vector<std::atomic<int>> times(count);
+  queue.share(count, chunk, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) ++times[i];
+  });
+  return {times.begin(), times.end()};
+}
+
+TEST(JobQueue, SharesEachChunkOnce) {
+  for (const int threads : {-1, 0, 1, 3}) {
+    JobQueue queue(threads, 8);
+    for (const std::size_t count : {0, 1, 2, 7, 1000, 12345}) {
+      for (const std::size_t chunk : {1, 3, 1000, 20000}) {
+        EXPECT_EQ(times_called(queue, count, chunk), std::vector<int>(count, 1))
+            << threads << " threads, " << count << " by " << chunk;
+      }
+    }
+  }
+}
+
+TEST(JobQueue, SharesWithAllItsThreads) {
+  JobQueue queue(1, 8);
+  std::atomic<int> there = 0;
+  queue.share(2, 1, [&](std::size_t, std::size_t) {
+    ++there;
+    while (there < 2) std::this_thread::yield();  // alone it would wait forever
+  });
+  EXPECT_EQ(there, 2);
+}
+
+TEST(JobQueue, SharesForSeveralThreadsAndWithinItself) {
+  JobQueue queue(2, 8);
+  std::atomic<int> wrong = 0;
+  {
+    std::vector<std::jthread> threads;
+    for (int k = 0; k < 3; ++k) {
+      threads.emplace_back([&] {
+        for (int n = 0; n < 300; ++n) wrong += times_called(queue, 500, 7) != std::vector<int>(500, 1);
+      });
+    }
+  }
+  EXPECT_EQ(wrong, 0);
+  std::atomic<int> inner = 0;
+  queue.share(8, 1, [&](std::size_t, std::size_t) {
+    queue.share(10, 1, [&](std::size_t begin, std::size_t end) { inner += static_cast<int>(end - begin); });
+  });
+  EXPECT_EQ(inner, 80);
+}
+
 }  // namespace
 }  // namespace binosplat

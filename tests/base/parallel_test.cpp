@@ -14,8 +14,8 @@
 #include <thread>
 #include <vector>
 
+#include "base/job_queue.h"
 #include "base/parallel_sort.h"
-#include "base/worker_pool.h"
 
 namespace binosplat {
 namespace {
@@ -205,8 +205,7 @@ TEST(PlantedRaces, AreReported) {
   const testing::ExitedWithCode reported(66);
   const std::string report = "WARNING: ThreadSanitizer: data race";
   EXPECT_EXIT(parallel_for(8, [&](int) { race(); }), reported, report);
-  EXPECT_EXIT(WorkerPool(3).run(8, 1, [&](std::size_t, std::size_t) { race(); }), reported, report);
-  EXPECT_EXIT(frame_chunks(8, 1, [&](std::size_t, std::size_t) { race(); }), reported, report);
+  EXPECT_EXIT(JobQueue(3, 8).share(8, 1, [&](std::size_t, std::size_t) { race(); }), reported, report);
   const auto stages = [&] {
     const auto begins = [](std::size_t k) { return k < 8; };
     parallel_stages(
