@@ -38,7 +38,7 @@ void end_dark() {
     precise float scale = is_done(p) ? 1.0 : 1.0 / (1.0 - transmittance[p]);
     colour[p] *= scale;
     z_sum[p] *= DEPTH == DEPTH_MEAN ? scale : 1.0;
-    debug_scale(p, scale);
+    debug_scale(scale);
 #if MEASURE == MEASURE_TRANSMITTANCE
     dark_colour[p] = vec4(colour[p], z_sum[p]);
     dark_left[p] = is_done(p) ? transmittance_left(p) : 0.0;

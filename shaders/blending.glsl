@@ -5,9 +5,10 @@
 //   LISTS       LISTS_LONG: only tiles of more than LONG_LIST pairs; LISTS_SHORT: only the others
 //   APPROXIMATE 1: the blend of docs/method.md 5.2 (blend_approximate.glsl)
 //   DEPTH       what z_sums tell, DEPTH_ of shared/limits.h (blend_depth.glsl)
-//   CANVASES    above 0: the pictures of so many views go into images, and z_sums are depths (blend_pictures.glsl)
+//   CANVASES    1: pictures of views go into images, and z_sums are depths (blend_pictures.glsl)
 //   MEASURE     what is measured of each splat, MEASURE_ of shared/limits.h (blend_measure.glsl)
-//   DEBUG_VIEW  SHOW_ of shared/axes.h: what of each pixel is told in the place of its picture (blend_debug.glsl)
+//   DEBUG_VIEW  1: a number of each pixel is shown in the place of its picture (blend_debug.glsl)
+//   PLAIN       1: whole views, no probe, supertiles of 2 x 2 tiles: without those choices a GPU blends 5 % faster
 //   BROAD       1: with the tangent projection, wide splats may lie ahead of some pixels of a tile, and behind others
 //   MESH_DEPTH  1: splats behind the caller's meshes are not seen (blend_mesh.glsl)
 //   ANY         whether something holds in an invocation that goes with this one
@@ -17,6 +18,14 @@
 #include "shared/limits.h"
 #include "shared/types.h"
 #include "shared/grid.glsl"
+#include "frame.glsl"
+#if PLAIN
+#define SUPERTILE_SIDE 2
+#else
+#define PROBED 1
+#define REGIONS 1
+#define SUPERTILE_SIDE frame.supertile_side
+#endif
 #include "projection.glsl"
 #include "supertiles.glsl"
 #include "tiles/places.glsl"
@@ -43,7 +52,6 @@ layout(std430, binding = 6) buffer FrameCounters { Counters counters; };
 #if LISTS == LISTS_LONG
 layout(std430, binding = 9) readonly buffer LongLists { uint long_lists[]; };  // tiles
 #endif
-#include "frame.glsl"
 
 // -log2(alpha) in a pixel (x, y) of the cell is (t^2 + s) + y ((2 b t + v) + c y), t = a x + u. See stage(). With the tangent
 // projection that is divided by |d|^2, d being the pixel's ray, before -log2(sigma), which is no part of s, is added.
@@ -89,15 +97,15 @@ bool are_done() {
 float transmittance_left(uint p) { return is_done(p) ? -least[p] : transmittance[p]; }
 
 #include "blend_pictures.glsl"
-#include "blend_debug.glsl"
 #include "blend_measure.glsl"
+#include "blend_debug.glsl"
 #include "blend_mesh.glsl"
 #include "blend_depth.glsl"
 #include "blend_approximate.glsl"
 
 #if !PACKED
 // What is told of each splat in a pixel may need the transmittance in front of it.
-#define FOLLOWS_TRANSMITTANCE (MEASURE != MEASURE_NONE || DEPTH == DEPTH_VISIBILITY || DEBUG_VIEW == SHOW_MEDIAN_DEPTH)
+#define FOLLOWS_TRANSMITTANCE (MEASURE != MEASURE_NONE || DEPTH == DEPTH_VISIBILITY || DEBUG_VIEW != 0)
 
 // AHEAD splats of the batch at once: their alphas do not wait for one another, only what they leave of T does.
 // Where some may lie behind meshes each pixel is asked.
@@ -141,7 +149,7 @@ void blend(uint at[AHEAD], const bool may_be_hidden) {
   float left[COLUMN];
   bool some_stop = false;  // asked of all pixels at once: a branch each took 2 % of the time
   for (uint p = 0u; p < COLUMN; ++p) {
-    debug_evaluated(at[0], p);
+    debug_evaluated(at[0]);
     precise float next = transmittance[p];
     for (uint k = 0u; k < AHEAD; ++k) {
       precise float weight = weights[p][k] * next;
@@ -161,9 +169,7 @@ void blend(uint at[AHEAD], const bool may_be_hidden) {
         bool is_kept = next >= least[p];
         weights[p][k] = is_kept ? weights[p][k] : 0.0;
         last = is_kept ? next : last;
-        debug_kept(p, is_kept);
       }
-      debug_stopped(at[0], p);
       least[p] = -last;
       left[p] = 0.0;
     }
@@ -185,7 +191,7 @@ void blend(uint at[AHEAD], const bool may_be_hidden) {
       precise float b = fma(weight, c.b, colour[p].b);
       add_depth(p, weight, c.a);
       if (FOLLOWS_TRANSMITTANCE) transmittance[p] -= weight;
-      debug_blended(at[k], p, weight);
+      debug_blended(at[k], weight);
       colour[p] = vec3(r, g, b);
     }
     end_measuring_splat(at[k]);

@@ -1,44 +1,25 @@
 // Images of the caller's, in which the blend writes views' pictures as they are shown.
-//   CANVASES    how many views there are
 //   MESH_DEPTH  1: over the colours that are there
 #include "shared/types.h"
 #include "shown.glsl"
 
 layout(std430, binding = 4) readonly buffer Canvases { Canvas canvases[]; };
 layout(binding = 0) writeonly uniform image2D image_0;
-#if CANVASES > 1
 layout(binding = 1) writeonly uniform image2D image_1;
-#endif
-#if CANVASES > 2
 layout(binding = 2) writeonly uniform image2D image_2;
-#endif
-#if CANVASES > 3
 layout(binding = 3) writeonly uniform image2D image_3;
-#endif
 
 #if MESH_DEPTH
 // The same images, each read before it is written.
 layout(binding = 0) uniform sampler2D behind_0;
-#if CANVASES > 1
 layout(binding = 1) uniform sampler2D behind_1;
-#endif
-#if CANVASES > 2
 layout(binding = 2) uniform sampler2D behind_2;
-#endif
-#if CANVASES > 3
 layout(binding = 3) uniform sampler2D behind_3;
-#endif
 
 vec4 behind_at(uint nth, ivec2 at) {
-#if CANVASES > 1
   if (nth == 1u) return texelFetch(behind_1, at, 0);
-#endif
-#if CANVASES > 2
   if (nth == 2u) return texelFetch(behind_2, at, 0);
-#endif
-#if CANVASES > 3
   if (nth == 3u) return texelFetch(behind_3, at, 0);
-#endif
   return texelFetch(behind_0, at, 0);
 }
 #endif
@@ -54,13 +35,7 @@ void write_on_canvas(uint nth, Canvas canvas, uint height, uvec2 at, vec4 pixel,
 #endif
   vec4 shown = in_image(over_it, canvas.linear != 0u, canvas.steps);
   if (nth == 0u) imageStore(image_0, to, shown);
-#if CANVASES > 1
   if (nth == 1u) imageStore(image_1, to, shown);
-#endif
-#if CANVASES > 2
   if (nth == 2u) imageStore(image_2, to, shown);
-#endif
-#if CANVASES > 3
   if (nth == 3u) imageStore(image_3, to, shown);
-#endif
 }

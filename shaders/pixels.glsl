@@ -20,8 +20,8 @@ bool find_tile() {
   begin = ranges[2u * list];
   end = ranges[2u * list + 1u];
   bool is_own = LISTS != LISTS_SHORT || end - begin <= LONG_LIST || frame.list_per_view != 0u;
-#if REGIONS
-  if (!is_drawn(tile_of(tile, views[view_index]), views[view_index])) end = begin;
+#if !PLAIN
+  if (frame.has_regions != 0u && !is_drawn(tile_of(tile, views[view_index]), views[view_index])) end = begin;
 #endif
   return is_own;
 }
@@ -56,6 +56,7 @@ void begin_pixels(uvec2 in_tile) {
   heart = first + float(TILE_SIZE - 1) * 0.5 * step;
 #endif
   begin_block(view, view_index < frame.asked);
+  begin_debug_view();
   for (uint p = 0u; p < COLUMN; ++p) {
     bool inside = first_pixel.x <= last_drawn(view).x && first_pixel.y + p <= last_drawn(view).y;
     row[p] = float(first_pixel.y + p) - middle.y;
@@ -70,7 +71,6 @@ void begin_pixels(uvec2 in_tile) {
     least[p] = inside ? float(TRANSMITTANCE_MIN) : -1.0;
     begin_measuring(view, p, inside);
     begin_meshes(p, inside);
-    begin_debug_view(p);
   }
 }
 
@@ -80,8 +80,8 @@ void write_pixels() {
     if (first_pixel.x > last_drawn(view).x || first_pixel.y + p > last_drawn(view).y) continue;
     uint to = place_of(view, p);
     float left = finished(p);
-#if DEBUG_VIEW != SHOW_PICTURE
-    write_debug_view(to, p, left, end - begin);
+#if DEBUG_VIEW
+    write_debug_view(to, left, end - begin);
 #else
     write_picture(view, view_index, to, first_pixel + uvec2(0u, p) - first_drawn(view), vec4(colour[p], left));
     write_depth(to, p, left);

@@ -60,12 +60,15 @@ struct FrameParameters {
   uint slots;           // how many each view has room for
   uint tile_count;      // tiles of all supertiles, over all views
   uint list_per_view;   // 1 with --tiles all: a view's tiles share one list
+  uint supertile_side;  // tiles along a side of a supertile
+  uint has_regions;     // 1: of some views only regions are drawn
   // For Scaffold-GS:
   uint offset_count;        // K
   uint views_per_decoding;  // views that share what the networks made
   uint decoding_of_probe;   // number of the decoding that the probe shares with its view
   uint anchor_cull;         // 1: anchors that touch no tile of 3D-GS are not decoded
   float depth_slack;        // how much nearer splats may be than those before them in a list, world units
+  uint unused_1, unused_2;
 };
 
 // A Gaussian of the model as the GPU keeps it. Its SH coefficients lie in a buffer of their own.
@@ -165,7 +168,7 @@ struct DispatchArguments {
 
 #ifdef __cplusplus
 static_assert(sizeof(View) == 192 && offsetof(View, slopes) == 96 && offsetof(View, low_pass_share) == 188);
-static_assert(sizeof(FrameParameters) == 80 && offsetof(FrameParameters, tolerance) == 16);
+static_assert(sizeof(FrameParameters) == 96 && offsetof(FrameParameters, tolerance) == 16);
 static_assert(sizeof(Gaussian) == 48 && offsetof(Gaussian, scale) == 32);
 static_assert(sizeof(Anchor) == 64 && offsetof(Anchor, scale) == 48);
 static_assert(sizeof(Splat) == 48 && offsetof(Splat, conic) == 16 && offsetof(Splat, colour) == 32);

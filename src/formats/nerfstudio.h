@@ -20,7 +20,7 @@ bool is_camera_path(const nlohmann::json& root);
 /// Frames are row-major; keyframes are so as lists, and column-major in quotes, as older viewers wrote them.
 /// render_width and render_height are the pictures' size. Throws Error naming the file and the key
 /// for paths of fisheyes and panoramas and all that is missing or wrong.
-std::vector<Camera> load_camera_path(const std::filesystem::path& path, const nlohmann::json& root);
+std::vector<Camera> load_camera_path(const std::filesystem::path& path, const nlohmann::json& json);
 
 /// Whether a JSON file has poses alone: a list of objects with file_path and transform.
 bool is_pose_list(const nlohmann::json& root);

@@ -46,24 +46,23 @@ bool has_broad_tiles(const FramePlan& plan) {
 const gl::Program& program(gl::Context& context, const FramePlan& plan, const BlendTask& task,
                            bool long_lists, bool large_splats) {
   BlendVariant v{.tile_size = plan.settings.tile_size,
-                 .supertile_side = plan.supertile_side,
-                 .probed = plan.probe.has_value(),
-                 .regions = plan.draws_regions(),
                  .long_lists = long_lists,
                  .half = plan.settings.precision == PRECISION_HALF,
                  .measure = task.measure,
-                 .debug_view = task.debug_view,
+                 .debug_view = task.debug_view != SHOW_PICTURE,
                  .approximate = plan.is_approximate(),
                  .projection = plan.perspective.projection,
                  .broad = plan.perspective.projection == PROJECTION_TANGENT && has_broad_tiles(plan),
                  .large_splats = large_splats};
   if (v.draws()) {
     v.depth = plan.depth();
-    v.canvases = static_cast<int>(plan.canvases.size());
+    v.canvases = !plan.canvases.empty();
     v.mesh_depth = !plan.meshes.depths.empty();
   }
   v.program = program_for(context, plan, v);
   if (!v.is_legal()) v.large_splats = false;
+  v.plain = !plan.probe && !plan.draws_regions() && plan.supertile_side == 2;
+  if (!v.is_legal()) v.plain = false;
   if (!v.is_legal()) throw std::logic_error("a blend that no frame has: render/variants.cpp");
   return context.program(v.shader(), v);
 }
@@ -98,7 +97,8 @@ void run(gl::Dispatcher& dispatcher, const FramePlan& plan, FrameBuffers& buffer
                       {"LongLists", buffers.lists.long_lists},
                       {"Measured", measured},
                       {"DebugView", buffers.pictures.debug_values}},
-                     {{"scale", std::bit_cast<std::uint32_t>(task.scale)}});
+                     {{"scale", std::bit_cast<std::uint32_t>(task.scale)},
+                      {"shown", static_cast<std::uint32_t>(task.debug_view)}});
   };
   draw(true, gl::DispatchSize::indirect(buffers.counters, offsetof(shared::Counters, long_x)));
   draw(false, gl::DispatchSize::of_groups(plan.tile_count()));
@@ -127,7 +127,8 @@ void blend(gl::Dispatcher& dispatcher, const FramePlan& plan, bool measures, dou
 
 void blend_debug_view(gl::Dispatcher& dispatcher, const FramePlan& plan, int what, FrameBuffers& buffers) {
   buffers.pictures.debug_values.reserve(plan.pixel_count * 4);
-  if (what == SHOW_LIGHT) {  // which is measured first
+  buffers.pictures.debug_transmittance.reserve(4);  // which only one of them reads
+  if (what == SHOW_LIGHT) {                         // which is measured first
     buffers.pictures.debug_transmittance.reserve_zeros(std::int64_t{buffers.slots} * plan.view_count() * 4);
     run(dispatcher, plan, buffers, {.measure = MEASURE_TRANSMITTANCE, .debug_view = SHOW_VISIBLE},
         buffers.pictures.debug_transmittance);

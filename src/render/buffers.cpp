@@ -27,6 +27,8 @@ shared::FrameParameters parameters_of(const FramePlan& plan, std::uint32_t slots
           .slots = slots,
           .tile_count = plan.tile_count(),
           .list_per_view = s.tiles == TILES_ALL,
+          .supertile_side = static_cast<std::uint32_t>(plan.supertile_side),
+          .has_regions = plan.draws_regions(),
           .offset_count = plan.offset_count,
           .views_per_decoding = plan.views_per_decoding,
           .decoding_of_probe = plan.decoding_of_probe(),
@@ -82,6 +84,7 @@ void FrameBuffers::upload(const FramePlan& plan, bool uses_measured) {
   for (std::size_t v = 0; v < plan.meshes.depths.size(); ++v)
     meshes.push_back(on_gpu(plan.meshes.depths[v], plan.meshes.whole_sizes[v]));
   if (!meshes.empty()) pictures.mesh_sources.upload(meshes);
+  region_rows.reserve(sizeof(glm::uvec2));  // programs that never read it need it bound
   if (plan.draws_regions()) region_rows.upload(plan.region_rows);
   if (plan.settings.transmittance != TRANSMITTANCE_DEPTH) return;
   std::vector<float> table = plan.settings.depth_table.bounds;

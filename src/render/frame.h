@@ -81,8 +81,9 @@ class Frame {
   /// transmittance. Throws Error: bad views or settings (bad_input), no room (out_of_memory).
   ///
   /// With canvases the blend writes pictures there and not into colours(), and depths into z_sums(): one row
-  /// of every `depth_rows` (1 or 2), 0 where a pixel has none. Where a probe needs the pictures, or something
-  /// stands in for the blend, it writes into colours() as usual; FrameReport::on_canvases tells which.
+  /// of every `depth_rows` (1 or 2), 0 where a pixel has none. Where a probe needs the pictures, something
+  /// stands in for the blend, or tiles have another size than the default, it writes into colours() as usual;
+  /// FrameReport::on_canvases tells which.
   ///
   /// With mesh depths nothing is drawn of what lies behind them, and z_sums() has depths in any case: where
   /// half or less of a pixel is covered, the mesh's. Not with a measured transmittance, nor with a stand-in.

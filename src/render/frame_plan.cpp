@@ -175,7 +175,8 @@ FramePlan make_plan(std::span<const shared::View> views, const FrameSettings& se
   }
   plan.asked = static_cast<std::uint32_t>(views.size());
   const CallersTextures& textures = request.textures;
-  plan.canvases.assign(textures.canvases.begin(), textures.canvases.end());
+  if (settings.tile_size == TILE_SIZE_DEFAULT)
+    plan.canvases.assign(textures.canvases.begin(), textures.canvases.end());
   plan.depth_rows = textures.depth_rows;
   plan.meshes.depths.assign(textures.mesh_depths.begin(), textures.mesh_depths.end());
   const auto region_of = [&](std::size_t v) {

@@ -46,26 +46,24 @@ enum class BlendProgram { general, software, subgroups };
 struct BlendVariant {
   BlendProgram program = BlendProgram::general;
   int tile_size = TILE_SIZE_DEFAULT;
-  int supertile_side = 1;
-  bool probed = false;
-  bool regions = false;
+  bool plain = false;       // whole views, no probe, supertiles of 2 x 2 tiles: as most frames are
   bool long_lists = false;  // LISTS of lists.glsl
   bool half = false;
-  int measure = MEASURE_NONE;     // MEASURE_ of shared/limits.h
-  int debug_view = SHOW_PICTURE;  // SHOW_ of shared/axes.h
-  int depth = DEPTH_NONE;         // DEPTH_ of shared/limits.h
+  int measure = MEASURE_NONE;  // MEASURE_ of shared/limits.h
+  bool debug_view = false;     // a number of each pixel in the place of its picture
+  int depth = DEPTH_NONE;      // DEPTH_ of shared/limits.h
   bool approximate = false;
-  int canvases = 0;
+  bool canvases = false;  // pictures go into images of the caller's
   int projection = PROJECTION_AFFINE;
   bool broad = false;         // tiles are that wide splats may lie ahead of and behind
   bool mesh_depth = false;    // some splats lie behind meshes of the caller's
   bool large_splats = false;  // that touch many tiles: invocations draw more pixels
 
-  bool draws() const { return measure <= MEASURE_TRANSMITTANCE && debug_view == SHOW_PICTURE; }
+  bool draws() const { return measure <= MEASURE_TRANSMITTANCE && !debug_view; }
   /// Which combinations frames may ask for.
   bool is_legal() const;
   std::string_view shader() const;
-  std::array<gl::Number, 16> numbers() const;
+  std::array<gl::Number, 14> numbers() const;
 };
 
 /// All variants that are legal.

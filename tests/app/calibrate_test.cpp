@@ -81,7 +81,7 @@ TEST_F(CalibrateTest, GoesOnWhereItWasEnded) {
   const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(60);
   const auto kept = [&] {
     std::size_t count = 0;
-    for (const std::string& name : folder.files()) count += name.find(".unfinished/") != name.npos;
+    for (const std::string& name : folder.files()) count += name.find(".unfinished/") != std::string::npos;
     return count;
   };
   while (kept() < 2 && std::chrono::steady_clock::now() < end)
@@ -92,7 +92,7 @@ TEST_F(CalibrateTest, GoesOnWhereItWasEnded) {
   const auto there = folder.files();
   ASSERT_GT(there.size(), before.size());
   const std::string step = *std::ranges::find_if(
-      there, [](const std::string& name) { return name.find(".unfinished/") != name.npos; });
+      there, [](const std::string& name) { return name.find(".unfinished/") != std::string::npos; });
   const auto written = std::filesystem::last_write_time(folder / step);
   // Other options go on from none of it, and leave it.
   ASSERT_TRUE(good(test::run_program({"calibrate", model, "-o", folder / "other.json", "--quality", "38",

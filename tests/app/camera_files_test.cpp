@@ -48,8 +48,8 @@ struct CameraFiles : test::SceneTest {
   }
 
   /// The one picture of a run, in a folder that is then gone.
-  std::vector<float> picture(std::vector<std::string> arguments) const {
-    EXPECT_TRUE(good(mono(std::move(arguments))));
+  std::vector<float> picture(const std::vector<std::string>& arguments) const {
+    EXPECT_TRUE(good(mono(arguments)));
     std::vector<float> pixels;
     for (const auto& entry : fs::directory_iterator(out)) {
       if (entry.path().extension() == ".png") pixels = load_image(entry.path()).data;

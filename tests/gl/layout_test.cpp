@@ -101,11 +101,15 @@ TEST(Layout, FrameParametersAreWhereTheDriverPutsThem) {
                             AT(FrameParameters, slots),
                             AT(FrameParameters, tile_count),
                             AT(FrameParameters, list_per_view),
+                            AT(FrameParameters, supertile_side),
+                            AT(FrameParameters, has_regions),
                             AT(FrameParameters, offset_count),
                             AT(FrameParameters, views_per_decoding),
                             AT(FrameParameters, decoding_of_probe),
                             AT(FrameParameters, anchor_cull),
                             AT(FrameParameters, depth_slack),
+                            AT(FrameParameters, unused_1),
+                            AT(FrameParameters, unused_2),
                             STRIDE(FrameParameters)};
   EXPECT_EQ(driver_offsets("FrameParameters"), expected);
   Offsets in_block = expected;  // of a frame there is one
