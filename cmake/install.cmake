@@ -7,15 +7,9 @@ install(TARGETS binosplat RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 if(TARGET binosplat_view)
   install(TARGETS binosplat_view RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} OPTIONAL)  # ./demo builds without it
 endif()
-# The program's own words, for man and shells.
-foreach(text man bash fish zsh)
-  add_custom_command(TARGET binosplat POST_BUILD COMMAND binosplat --print ${text} > ${PROJECT_BINARY_DIR}/binosplat.${text} VERBATIM)
-endforeach()
-install(FILES ${PROJECT_BINARY_DIR}/binosplat.man RENAME binosplat.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
-install(FILES ${PROJECT_BINARY_DIR}/binosplat.bash RENAME binosplat
-        DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions)
-install(FILES ${PROJECT_BINARY_DIR}/binosplat.zsh RENAME _binosplat DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/vendor-completions)
-install(FILES ${PROJECT_BINARY_DIR}/binosplat.fish DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d)
+# The program's own help, for man.
+add_custom_command(TARGET binosplat POST_BUILD COMMAND binosplat --print-manual > ${PROJECT_BINARY_DIR}/binosplat.1 VERBATIM)
+install(FILES ${PROJECT_BINARY_DIR}/binosplat.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
 if(TARGET binosplat_python)
   # Where this Python looks for modules, below the prefix: of a Debian package Debian's own place.
   execute_process(

@@ -12,7 +12,7 @@
 
 #include "app/command.h"
 #include "app/command_line.h"
-#include "app/command_words.h"
+#include "app/manual.h"
 #include "base/log.h"
 #include "base/mapped_file.h"
 #include "base/memory.h"
@@ -56,7 +56,7 @@ int run(int argc, char** argv) {
     if (name != "compare" && name != "devices" && name != "view") binosplat::app::add_max_memory(*sub);
     if (name != "view") binosplat::app::add_quiet(*sub);
   }
-  binosplat::app::add_print(program);
+  binosplat::app::add_manual(program);
   try {
     binosplat::app::check_arguments(argc, argv);
     std::vector<std::string> words = binosplat::app::with_command(program, argc, argv);
