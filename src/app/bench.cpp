@@ -203,13 +203,14 @@ ExitCode finish(const BenchOptions& options, const BenchFolder& folder) {
 }
 
 BenchFolder merge(const BenchOptions& options) {
-  const BenchFolder first(options.merge.front());
+  const std::vector<std::string> folders =
+      separated(options.merge, [](const std::string& text) { return fs::exists(text); });
+  const BenchFolder first(folders.front());
   BenchFolder into(options.output, first.plan());
-  for (const std::string& name : options.merge) {
+  for (const std::string& name : folders) {
     const BenchFolder from(name);
     if (!from.same_plan(first))
-      fail("--merge: {} and {} are shards of different runs (see their plan.json)", options.merge.front(),
-           name);
+      fail("--merge: {} and {} are shards of different runs (see their plan.json)", folders.front(), name);
     for (std::size_t i = 0; i < from.size(); ++i) {
       if (from.has(i) && !into.has(i)) into.save(i, from.load(i));
     }
@@ -271,8 +272,7 @@ void add_bench(CLI::App& program, Command& command) {
       ->type_name("FILE");
   sub->add_option("--cameras", o->camera.file, "Cameras, where they are not beside the model")
       ->type_name("FILE");
-  sub->add_option("--view", o->camera.views, "Views by name, instead of the axes' number of them")
-      ->type_name("NAME...");
+  add_names_option(*sub, "--view", o->camera.views, "Views by name, instead of the axes' number of them");
   add_photos_options(*sub, *o, "Compare with DIR/NAME.jpg or .png as well");
   sub->add_option(
          "--far", o->far,
@@ -286,7 +286,7 @@ void add_bench(CLI::App& program, Command& command) {
                 "Set each stage beside what it must move and compute at least, at this GPU's best rates");
   add_measured_options(*sub, *o);
   add_shard_option(*sub, o->shard, "Measure every Nth point from the Ith on: one job of N");
-  sub->add_option("--merge", o->merge, "Join the folders of shards in -o")->type_name("DIR...");
+  add_names_option(*sub, "--merge", o->merge, "Join the folders of shards in -o", "DIR");
   sub->add_option("--compare", o->compare, "Print what changed beyond noise since an older results.json")
       ->type_name("FILE");
   sub->add_option(
@@ -302,7 +302,7 @@ void add_bench(CLI::App& program, Command& command) {
       "  binosplat bench garden.ply --axes headset --compare last/results.json -o out/headset\n"
       "  binosplat bench fox.ply --compare main/results.json --fail-if-slower 3 -o out/ci\n"
       "  binosplat bench fox.ply --axes paper --shard $I/8 -o out/shard$I     # on 8 machines\n"
-      "  binosplat bench --merge out/shard1 out/shard2 -o out/chart");
+      "  binosplat bench --merge out/shard1,out/shard2 -o out/chart");
   sub->callback([o, &command] { command = [o] { return bench(*o); }; });
 }
 

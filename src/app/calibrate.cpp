@@ -106,7 +106,7 @@ void add_calibrate(CLI::App& program, Command& command) {
   add_photos_options(*sub, *o);
   sub->add_option("--cameras", o->camera.file, "Cameras, where they are not beside the model")
       ->type_name("FILE");
-  sub->add_option("--view", o->camera.views, "Views by name, instead of --views")->type_name("NAME...");
+  add_names_option(*sub, "--view", o->camera.views, "Views by name, instead of --views");
   sub->add_option("--views", o->views, "So many views, spread evenly over the cameras (16)")
       ->type_name("N")
       ->check(range(1, 10000));

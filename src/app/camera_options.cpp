@@ -17,10 +17,9 @@ void add_camera_options(CLI::App& sub, CameraOptions& o) {
                  "cameras.json, transforms.json, camera_path.json or the folder of a\nCOLMAP reconstruction; "
                  "default: what lies beside the model")
       ->type_name("FILE|DIR");
-  sub.add_option("--view", o.views,
-                 "Cameras to draw by name, or all; default: the first. NAME also\nmeans the pair NAME_left, "
-                 "NAME_right")
-      ->type_name("NAME...");
+  add_names_option(sub, "--view", o.views,
+                   "A camera to draw by name, or all (the first); may be given again, or as\nA,B where no "
+                   "camera is called so. NAME also means the pair NAME_left,\nNAME_right");
   sub.add_option(
          "--path", o.path,
          "cameras.json, or nerfstudio's or LichtFeld Studio's JSON of one path: of\nkeys, as `view` saves "

@@ -63,36 +63,6 @@ std::vector<std::string> option_names(const CLI::App& command) {
   return names;
 }
 
-// As CLI11 sees it: a number below zero is none.
-bool is_option(const std::string& word) {
-  return word.size() > 1 && word[0] == '-' && word != "--" &&
-         std::isdigit(static_cast<unsigned char>(word[1])) == 0;
-}
-
-const CLI::Option* option_called(const CLI::App& command, const std::string& word) {
-  const std::string name = word.substr(0, word.find('='));
-  for (const CLI::Option* option : command.get_options()) {
-    if (!option->get_positional() && option->check_name(name)) return option;
-  }
-  return nullptr;
-}
-
-bool is_scene(const std::string& word) {
-  std::error_code ignored;
-  return is_built_in(word) || fs::exists(word, ignored);
-}
-
-// What an option that takes many words may have swallowed, where the scene is missed.
-std::string swallowed(const CLI::App& command) {
-  for (const CLI::Option* option : command.get_options()) {
-    const std::vector<std::string> words = option->results();
-    if (option->get_positional() || option->get_items_expected_max() < 2 || words.size() < 2) continue;
-    return fmt::format("; {} was taken for a word of {}: if it is the model, there is none of that name",
-                       words.back(), option->get_name());
-  }
-  return "";
-}
-
 void note(const std::string& value) {
   note_input(value);
   std::error_code ignored;
@@ -159,13 +129,8 @@ std::vector<std::string> with_command(const CLI::App& program, int argc, const c
   for (const CLI::App* sub : program.get_subcommands({})) commands.push_back(sub->get_name());
   const auto first = std::find_if(words.begin(), words.end(),
                                   [](const std::string& word) { return !word.starts_with("-"); });
-  if (first != words.end() && std::find(commands.begin(), commands.end(), *first) != commands.end()) {
-    // `view` does it by itself: its options are those of another program.
-    const std::vector<std::string> others =
-        with_scene_first(*program.get_subcommand(*first), {first + 1, words.end()});
-    std::copy(others.begin(), others.end(), first + 1);
+  if (first != words.end() && std::find(commands.begin(), commands.end(), *first) != commands.end())
     return words;
-  }
   if (words.empty() || words[0].starts_with("-")) return words;
   if (words[0].find("://") != std::string::npos) fail_to_read(words[0], ENOENT);
   std::error_code ignored;
@@ -178,40 +143,6 @@ std::vector<std::string> with_command(const CLI::App& program, int argc, const c
   return words;
 }
 
-std::vector<std::string> with_scene_first(const CLI::App& command, std::vector<std::string> words) {
-  int missing = 0;  // words that stand for themselves; `bench --merge` has none, but needs none either
-  bool has_many = false;
-  for (const CLI::Option* option : command.get_options()) {
-    if (!option->get_positional()) continue;
-    missing += std::max(1, option->get_items_expected_min());
-    has_many = has_many || option->get_items_expected_max() > 1;
-  }
-  auto scene = words.begin(), behind = scene;  // the scenes among the words of an option
-  for (auto word = words.begin(); word != words.end(); ++word) {
-    if (*word == "--") {
-      missing -= static_cast<int>(words.end() - word) - 1;
-      break;
-    }
-    const CLI::Option* option = is_option(*word) ? option_called(command, *word) : nullptr;
-    if (option == nullptr) {
-      if (!is_option(*word)) --missing;
-      continue;
-    }
-    const int most = option->get_allow_extra_args() ? option->get_items_expected_max()
-                                                    : std::min(1, option->get_items_expected_max());
-    int taken = word->find('=') != std::string::npos ? 1 : 0;
-    for (; taken < most && word + 1 != words.end() && !is_option(word[1]) && word[1] != "--"; ++taken) ++word;
-    if (option->check_name("--merge")) continue;  // whose words are folders
-    const int spare = taken - option->get_items_expected_min();
-    for (int n = 0; n < (has_many ? spare : std::min(spare, 1)) && is_scene(*(word - n)); ++n) {
-      if (n == 0) behind = word + 1;
-      scene = word - n;
-    }
-  }
-  if (missing > 0) std::rotate(words.begin(), scene, behind);
-  return words;
-}
-
 std::string explain(const CLI::App& command, const std::string& name, const CLI::ParseError& error) {
   // Words before a sub-command are not its own.
   const bool has_extras = dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr;
@@ -219,7 +150,6 @@ std::string explain(const CLI::App& command, const std::string& name, const CLI:
   if (!chosen.empty() && !(has_extras && command.remaining_size() > 0))
     return explain(*chosen.front(), name + " " + chosen.front()->get_name(), error);
   std::string text = error.what();
-  if (dynamic_cast<const CLI::RequiredError*>(&error) != nullptr) text += swallowed(command);
   if (has_extras) {
     const std::vector<std::string> extras = command.remaining();
     const auto option = std::find_if(extras.begin(), extras.end(),

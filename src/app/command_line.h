@@ -19,12 +19,6 @@ bool has_display();
 /// there are a display and the preview, else `render`; says so. Throws Error for a word that is neither.
 std::vector<std::string> with_command(const CLI::App& program, int argc, const char* const* argv);
 
-/// The words of a command line with the scene first, where it stands behind the words of an option that takes
-/// many, as in `--view 0042 garden.ply`: the last of these is the scene where none stands elsewhere and it is
-/// there or built in; of a command that takes several scenes so are those before it. `words` begin behind the
-/// name of the command.
-std::vector<std::string> with_scene_first(const CLI::App& command, std::vector<std::string> words);
-
 /// "; did you mean WORD?", if one of the words is near enough.
 std::string suggestion(const std::string& word, const std::vector<std::string>& words);
 

@@ -210,23 +210,20 @@ void add_convert(CLI::App& program, Command& command) {
   add_harmonic_bits_option(*sub, o->harmonic_bits);
   add_lod_option(*sub, o->scene);
   add_axes_option(*sub, o->scene);
-  sub->add_option_function<int>(
-         "--report", [o](const int& views) { o->report = views; },
-         "Draw N views (3) of the original and of what was written, and print\ntheir PSNR")
-      ->expected(0, 1)
-      ->default_str("3")
+  sub->add_option("--report", o->report,
+                  "Draw N views of the original and of what was written, and print their\nPSNR")
       ->check(range(1, 10000))
-      ->type_name("[N]");
+      ->type_name("N");
   sub->add_option("--cameras", o->camera.file, "Of the views, where they are not beside the model")
       ->type_name("FILE");
-  sub->add_option("--view", o->camera.views, "Views by name, instead of N")->type_name("NAME...");
+  add_names_option(*sub, "--view", o->camera.views, "Views by name, instead of N");
   add_size_option(*sub, o->camera.lens);
   sub->add_option("--json", o->json, "Write everything printed as JSON")->type_name("FILE");
   add_measured_options(*sub, *o);
   sub->footer(
       "What a format cannot keep is said on standard error. Cameras are those beside MODEL, or around it.\n"
       "Examples:\n"
-      "  binosplat convert garden.ply -o garden.spz --report\n"
+      "  binosplat convert garden.ply -o garden.spz --report 3\n"
       "  binosplat convert scan.spz --axes rdf -o scan.ply");
   sub->callback([o, &command] { command = [o] { return convert(*o); }; });
 }

@@ -93,6 +93,23 @@ CLI::Option* choose_explained(CLI::App& sub, const char* option, Into& into, std
   return choose(sub, option, into, help, words);
 }
 
+/// A new option of names: one a word. It may be given again, or have several with commas (separated()).
+inline CLI::Option* add_names_option(CLI::App& sub, const char* option, std::vector<std::string>& into,
+                                     const std::string& help, const char* type = "NAME") {
+  return sub.add_option(option, into, help)->type_name(type)->allow_extra_args(false);
+}
+
+/// Each text by itself where it `is_one` name, since names may have commas; else its parts between commas.
+template <typename IsOne>
+std::vector<std::string> separated(const std::vector<std::string>& texts, const IsOne& is_one) {
+  std::vector<std::string> names;
+  for (const std::string& text : texts) {
+    const std::vector<std::string> parts = is_one(text) ? std::vector{text} : CLI::detail::split(text, ',');
+    names.insert(names.end(), parts.begin(), parts.end());
+  }
+  return names;
+}
+
 /// "1,-2.5,3". Throws Error, naming the option, for anything else.
 inline glm::dvec3 parse_three(const std::string& option, const std::string& text) {
   glm::dvec3 v{0.0};

@@ -132,7 +132,7 @@ lab::CalibrationView with_photo(const PhotoSource& photos, const Camera& camera)
 
 std::vector<Camera> photographed_cameras(const ViewChoice& choice, const std::string& photos,
                                          const Lens& lens, const CameraList& list) {
-  const std::vector<std::string>& without = choice.without;
+  const std::vector<std::string> without = view_names(choice.without, list);
   const bool named = !choice.views.empty();
   check_cameras_of(photos, list);
   if (!photos.empty()) check_photos_apart(photos, list.cameras);

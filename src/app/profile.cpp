@@ -55,8 +55,6 @@ void check(const ProfileOptions& o) {
     fail("profile: --tour, --path and --view (or --eye) are ways of their own: choose one of them");
   if (o.camera.eye.has_value() != o.camera.at.has_value())
     fail("--eye and --at go together: where the camera is, and what it looks at");
-  if (o.camera.views.size() > 1 || (stands && !o.camera.eye && o.camera.views.front() == all_views.front()))
-    fail("profile: --view stands at one camera: name one");
   if (o.fps > 0.0 && o.fps < fps_least) fail("--fps {:g}: expected 0, or {:g} to 1000", o.fps, fps_least);
   check_foveate(o);
 }
@@ -126,6 +124,8 @@ Profiled open_profiled(ProfileOptions o) {
   CalibratedSettings calibrated(o.drawing);
   CameraList list = listed_cameras(o.scene, o.camera, o.rig);
   check_views(o.camera.views, o.rig.mono, list);
+  if (o.camera.views == all_views || view_names(o.camera.views, list).size() > 1)
+    fail("profile: --view stands at one camera: name one");
   Profiled all;
   std::string way = choose_way(o, list);
   all.context = open_context(o.context);

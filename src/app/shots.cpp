@@ -7,6 +7,7 @@
 
 #include "app/load_scene.h"
 #include "app/model_files.h"
+#include "app/option_checks.h"
 #include "base/error.h"
 #include "base/inputs.h"
 #include "base/log.h"
@@ -69,13 +70,13 @@ std::vector<ShotChoice> chosen(const std::vector<std::string>& views, const Came
   if (everything || views.empty()) {
     std::vector<ShotChoice> choices = all_choices(list.cameras, !mono);
     if (everything || choices.size() == 1) return choices;
-    log_info("{} has {} views; drawing the first, {} (--view NAME... or --view all for others)", list.source,
+    log_info("{} has {} views; drawing the first, {} (--view NAME or --view all for others)", list.source,
              choices.size(), choices[0].name);
     choices.resize(1);
     return choices;
   }
   std::vector<ShotChoice> choices;
-  for (const std::string& name : views) choices.push_back(choose(name, list, mono, option));
+  for (const std::string& name : view_names(views, list)) choices.push_back(choose(name, list, mono, option));
   return choices;
 }
 
@@ -332,9 +333,16 @@ std::vector<shared::View> views_of(const Shot& shot) {
   return views;
 }
 
+std::vector<std::string> view_names(const std::vector<std::string>& texts, const CameraList& list) {
+  return separated(texts, [&](const std::string& text) {
+    return stereo::find_eyes(list.cameras, text) ||
+           std::ranges::any_of(list.cameras, [&](const Camera& c) { return c.name == text; });
+  });
+}
+
 void check_views(const std::vector<std::string>& views, bool mono, const CameraList& list) {
   if (!list.listed || list.path || views == all_views) return;
-  for (const std::string& name : views) choose(name, list, mono, "--view");
+  for (const std::string& name : view_names(views, list)) choose(name, list, mono, "--view");
 }
 
 std::vector<Camera> chosen_cameras(const std::vector<std::string>& views, const Lens& lens,

@@ -116,6 +116,9 @@ inline const std::vector<std::string>& views_or_all(const std::vector<std::strin
   return views.empty() ? all_views : views;
 }
 
+/// The names that texts of --view stand for: a text that is a view's name, or else its parts between commas.
+std::vector<std::string> view_names(const std::vector<std::string>& texts, const CameraList& list);
+
 /// Throws Error for a view that a list in a file does not have, as make_shots() does, but before the model is
 /// read.
 void check_views(const std::vector<std::string>& views, bool mono, const CameraList& list);

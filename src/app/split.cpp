@@ -18,12 +18,11 @@ void add_split_options(CLI::App& sub, MeasuredOptions& measured, SplitOptions& s
   sub.add_option("--cameras", measured.camera.file, "Cameras, where they are not beside the model")
       ->type_name("FILE");
   sub.add_option("--views", split.held_back, views_help)->type_name("N")->check(range(1, 10000));
-  sub.add_option("--held-back", split.judges,
-                 "Views by name to hold back instead: photos that the model was not\ntrained on judge best")
-      ->type_name("NAME...")
+  add_names_option(sub, "--held-back", split.judges,
+                   "Views by name to hold back instead, as A,B: photos that the model was\nnot trained on "
+                   "judge best")
       ->excludes("--views");
-  sub.add_option("--test", split.tests, "Views by name that decide nothing: what they lose is stated")
-      ->type_name("NAME...");
+  add_names_option(sub, "--test", split.tests, "Views by name that decide nothing: what they lose is stated");
   add_size_option(sub, measured.camera.lens);
   add_lod_option(sub, measured.scene);
   add_axes_option(sub, measured.scene);

@@ -76,7 +76,8 @@ Studied open_studied(const StudyOptions& options) {
   });
   std::vector<Shot> shots = make_shots(options.camera.views, options.camera.lens, no_rig, scene.list,
                                        scene.near_plane, scene.model.axes);
-  if (shots.size() > 1) fail("--view all: a study is of one view");
+  if (shots.size() > 1)
+    fail("--view {}: this study is of one view", fmt::join(options.camera.views, " --view "));
   return {std::make_shared<const Model>(std::move(scene.model)), std::move(scene.list), scene.near_plane,
           std::move(shots)};
 }
@@ -98,7 +99,6 @@ ExitCode study_scene(StudyOptions options, Study study) {
   if (study == Study::motion) study_motion(options);
   if (study == Study::levels) study_levels(options);
   if (study == Study::turn) {
-    if (options.camera.views.size() > 1) fail("--view: this study is of one view");
     if (options.rays && std::int64_t{options.rays->x} * options.rays->y > 1'000'000)
       fail("--rays {}x{}: at most a million", options.rays->x, options.rays->y);
     const Studied studied = open_studied(options);
@@ -113,13 +113,11 @@ ExitCode study_scene(StudyOptions options, Study study) {
 void add_studied_options(CLI::App& sub, StudyOptions& o) {
   sub.add_option("--cameras", o.camera.file, "cameras.json; default: the one beside the model")
       ->type_name("FILE");
-  sub.add_option("--view", o.camera.views,
-                 "Views to calibrate on; default: 16 of those for training, evenly spread.\n"
-                 "With --turn: the one to turn in (the first); with --levels: those to draw;\n"
-                 "default: 8, evenly spread")
-      ->type_name("NAME...");
-  sub.add_option("--test", o.analyses.test, "Views to test on; default: those held out, at most 24")
-      ->type_name("NAME...");
+  add_names_option(sub, "--view", o.camera.views,
+                   "Views to calibrate on; default: 16 of those for training, evenly spread.\n"
+                   "With --turn: the one to turn in (the first); with --levels: those to draw;\n"
+                   "default: 8, evenly spread");
+  add_names_option(sub, "--test", o.analyses.test, "Views to test on; default: those held out, at most 24");
   add_hold_out_option(sub, o.analyses.hold_out);
   sub.add_option("--far", o.analyses.far,
                  "Where the table by depth of AdaGScale's own protocol ends, world units (100)")

@@ -180,6 +180,7 @@ void add_motion_options(CLI::App& sub, MotionOptions& options) {
   sub.add_option("--motions", options.motions,
                  fmt::format("With --motion: which; default: {}", fmt::join(names, ",")))
       ->delimiter(',')
+      ->allow_extra_args(false)
       ->type_name("NAME,...")
       ->check(CLI::IsMember(names).description(""));
   const auto count = [&](const char* name, std::size_t& into, const char* help) {

@@ -122,7 +122,7 @@ TEST_F(BenchTest, ShardsJoinToOneRun) {
   ASSERT_TRUE(good(measure(two, {"--shard", "2/2"})));
   EXPECT_FALSE(results(one)["points"][1].contains("frame_ms"));
   EXPECT_NE(read_text(one + "/report.html").find("not measured yet"), std::string::npos);
-  ASSERT_TRUE(good(bench({"--merge", one, two}, out)));
+  ASSERT_TRUE(good(bench({"--merge", one, "--merge", two}, out)));
   EXPECT_EQ(without_times(results(out)), without_times(results(whole)));
   // One shard alone is not the table.
   ASSERT_TRUE(good(bench({"--merge", one}, folder / "half")));

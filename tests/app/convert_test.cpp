@@ -47,7 +47,7 @@ TEST_F(ConvertTest, WritesEveryFormatAndSaysWhatItCosts) {
     EXPECT_TRUE(has(run_program({"info", folder / c.file}).out, c.format));
   }
   // A ply is drawn the same to the bit, and whoever reads that would see that a difference is one.
-  const Outcome same = convert("m.ply", {"--report", "--size", "36x24", "--json", folder / "r.json"});
+  const Outcome same = convert("m.ply", {"--report", "3", "--size", "36x24", "--json", folder / "r.json"});
   ASSERT_TRUE(good(same));
   const json report = test::load_json(folder / "r.json");
   ASSERT_EQ(report["views"].size(), 3);
@@ -65,11 +65,11 @@ TEST_F(ConvertTest, ViewsAreChosenOrMadeUp) {
   EXPECT_TRUE(has(around.err, "no cameras beside"));
   EXPECT_TRUE(has(around.out, "orbit_001"));
   add_cameras();
-  const Outcome named = convert("m.spz", {"--report", "--view", "side"});
+  const Outcome named = convert("m.spz", {"--report", "3", "--view", "side"});
   ASSERT_TRUE(good(named));
   EXPECT_TRUE(has(named.out, "worst: side"));
   EXPECT_FALSE(has(named.out, "front"));
-  EXPECT_TRUE(ended(convert("m.spz", {"--report", "--view", "nowhere"}), 2, "nowhere"));
+  EXPECT_TRUE(ended(convert("m.spz", {"--report", "3", "--view", "nowhere"}), 2, "nowhere"));
 }
 
 // There and back by other axes, and a file whose numbers are not what its format says.

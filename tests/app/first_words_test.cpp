@@ -1,6 +1,7 @@
 // What a new user types first, right or wrong: the program does what is meant, or says what was not.
 
 #include <cmath>
+#include <set>
 
 #include "app/scene.h"
 #include "formats/image_file.h"
@@ -53,41 +54,32 @@ TEST_F(FirstWords, MistakesInWordsGetASuggestion) {
   EXPECT_FALSE(has(far.err, "did you mean"));
 }
 
-// Wherever an option takes many words, the last of them may be the scene.
-TEST_F(FirstWords, TheSceneMayStandBehindTheNames) {
-  for (const Words& names : {Words{"--view", "side"}, {"--view", "front", "side"}, {"--view=side"}}) {
+// Every option takes one word, so that the scene may stand anywhere.
+TEST_F(FirstWords, NamesAreRepeatedOrHaveCommas) {
+  const json cameras = {test::camera_json("front", 0.0), test::camera_json("side", 0.5),
+                        test::camera_json("a,b", 0.1)};
+  test::write_text(folder / "cameras.json", cameras.dump());
+  const std::vector<std::pair<Words, std::set<std::string>>> cases = {
+      {{"--view", "side"}, {"side"}},
+      {{"--view=side"}, {"side"}},
+      {{"--view", "front", "--view", "side"}, {"front", "side"}},
+      {{"--view", "front,side"}, {"front", "side"}},
+      {{"--view", "a,b"}, {"a,b"}},
+      {{"--view", "a,b", "--view", "front,side"}, {"a,b", "front", "side"}}};
+  for (const auto& [names, drawn] : cases) {
     fs::remove_all(out);
-    EXPECT_TRUE(
+    ASSERT_TRUE(
         good(run(joined(joined({"render", "--mono", "--size", "36x24"}, names), {model, "-o", out}))));
-    EXPECT_TRUE(fs::exists(out + "/side.png"));
-    EXPECT_EQ(fs::exists(out + "/front.png"), names.size() == 3);
+    std::set<std::string> stems;
+    for (const auto& file : fs::directory_iterator(out)) stems.insert(file.path().stem().string());
+    EXPECT_EQ(stems, drawn) << names.back();
   }
-  // These end at what comes next, a view that is not there.
-  const std::string file = folder / "new.ply";
-  for (const Words& words : std::vector<Words>{
-           {"trim", "--held-back", "nobody", model, "-o", file, "--quality", "40"},
-           {"trim", "--test", "front", "nobody", model, "-o", file, "--quality", "40"},
-           {"refit", "--held-back", "nobody", model, "-o", file, "--against", "exact"},
-           {"calibrate", "--view", "nobody", model, "-o", folder / "c.json", "--quality", "40"},
-           {"convert", "--view", "nobody", model, "-o", file, "--report", "2"},
-           {"bench", "--view", "nobody", model, "-o", out},
-           {"study", "--view", "nobody", model, "--turn"},
-           {"--quiet", "render", "--view", "nobody", model, "-o", out}}) {
-    const Outcome outcome = run(words);
-    EXPECT_TRUE(ended(outcome, 2, "nobody")) << words[0];
-    EXPECT_TRUE(has(outcome.err, "has no camera of this name")) << words[0];
-  }
-  // What is a name stays one: where the scene stands elsewhere, and where no file is called so.
-  test::write_text(folder / "side", "no model");
-  EXPECT_TRUE(good(run({"render", "--view", "front", "side", "--size", "36x24", "-o", out, model})));
-  EXPECT_TRUE(good(run({"render", "--size", "36x24", "-o", out, "--view", "front", "side", "--", model})));
-  EXPECT_TRUE(ended(run({"render", "--view", "front", "nosuch.ply", "-o", out}), 2,
-                    "nosuch.ply was taken for a word of --view"));
+  EXPECT_TRUE(ended(run({"render", "--view", "front,nobody", model, "-o", out}), 2, "--view nobody: "));
+  EXPECT_TRUE(
+      ended(run({"render", model, "--view", "front", "side", "-o", out}), 2, "side: one word too many"));
   EXPECT_TRUE(ended(run({"render", "-o", out}), 2, "SCENE is required"));
-  // Several scenes, and an option that takes one word at a time.
-  for (const Words& words : {Words{"--view", "front"}, {"--detail", "1"}})
-    EXPECT_TRUE(ended(run(joined(joined({"study", "--levels"}, words), {model, "demo:room", "-o", out})), 2,
-                      model + " is no folder with levels of detail"));
+  EXPECT_TRUE(ended(run({"profile", model, "--view", "front,side", "-o", out}), 2, "name one"));
+  EXPECT_TRUE(ended(run({"study", "--turn", model, "--view", "front,side"}), 2, "of one view"));
 }
 
 TEST_F(FirstWords, LengthsHaveAUnit) {

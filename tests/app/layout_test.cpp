@@ -99,7 +99,7 @@ TEST_F(Layout, AScreenStandsWhereItSuitsTheFirstView) {
   }
 
   // One for all views, and for all parts of a run.
-  const Words both = {"--layout", "parallel", "--view", "front", "side"};
+  const Words both = {"--layout", "parallel", "--view", "front,side"};
   with_eyes(both);
   const auto of_front = metres(0);
   EXPECT_EQ(metres(1), of_front);

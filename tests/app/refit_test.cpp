@@ -71,7 +71,7 @@ TEST_F(RefitTest, BringsThePhotosBack) {
 
 TEST_F(RefitTest, ForAnotherOrderAndProjection) {
   ASSERT_TRUE(good(refit("m.ply", {"--against", "exact", "--order", "distance", "--projection", "tangent",
-                                   "--held-back", "view2", "view4"})));
+                                   "--held-back", "view2,view4"})));
   EXPECT_EQ(test::load_json(folder / "r.json")["held_back"], json({"view2", "view4"}));
   const json all = steps();
   ASSERT_EQ(all.size(), 4u);

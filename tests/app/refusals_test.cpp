@@ -37,7 +37,7 @@ TEST_F(Refusals, Cameras) {
       {{"--view", "pair", "--ipd", "0.06"}, "is a pair of eyes that the cameras give"},
       {{"--view", "pair", "--preset", "headset"}, "use --size"},
       {{"--view", "all", "-o", png}, "name a folder"},
-      {{"--view", "front", "side", "-o", png}, "is one file, and 2 views are to be drawn (front, side)"},
+      {{"--view", "front,side", "-o", png}, "is one file, and 2 views are to be drawn (front, side)"},
       {{"--cameras", folder / "no.json"}, "no.json"},
       {{"--axes", "xyz"}, "axes 'XYZ': expected three letters"},
   });

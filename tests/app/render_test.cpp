@@ -50,7 +50,7 @@ TEST_F(Render, WithoutCamerasTheModelIsFramed) {
 TEST_F(Render, ViewsAreChosenByName) {
   add_cameras();
   EXPECT_TRUE(has(render({}).err, "has 3 views; drawing the first, front"));
-  draw("two", {"--view", "side", "pair", "--only", "right"});
+  draw("two", {"--view", "side", "--view", "pair", "--only", "right"});
   draw("all", {"--view", "all"});
   draw("mono", {"--view", "all", "--mono"});
   Names expected = {"cameras.json",        "model.ply",          "out/front_left.png",
@@ -103,7 +103,7 @@ TEST_F(Render, OneFileHasBothEyes) {
   const Words far = {"--convergence", "3"};
   draw("aside.png", far);
   draw("pair.exr", joined(far, {"--layout", "parallel", "--exr", "float", "--exr-encoding", "display"}));
-  draw("above", joined(far, {"--view", "front", "side", "--layout", "over-under"}));
+  draw("above", joined(far, {"--view", "front,side", "--layout", "over-under"}));
   draw("out", far);
   EXPECT_EQ(folder.files(), (Names{"cameras.json", "model.ply", "aside.png", "pair.exr", "above/front.png",
                                    "above/side.png", "out/front_left.png", "out/front_right.png"}));

@@ -205,8 +205,8 @@ TEST_F(TrimTest, DropsAreAgainstPhotosAndTestViewsDecideNothing) {
   save_ply(model, blurred);
   ASSERT_TRUE(good(render({"--mono", "--view", "all", "-o", folder / "photos"})));
   save_ply(model, with_useless());
-  const Outcome outcome = trim("m.ply", {"--photos", folder / "photos", "--max-drop", "0.5", "--views", "2",
-                                         "--test", "view1", "view3"});
+  const Outcome outcome = trim(
+      "m.ply", {"--photos", folder / "photos", "--max-drop", "0.5", "--views", "2", "--test", "view1,view3"});
   ASSERT_TRUE(good(outcome));
   const json last = report()["steps"].back();
   EXPECT_LE(last["held_back"]["mean_db"], 0.5);
@@ -242,8 +242,8 @@ TEST_F(TrimTest, ABoundHoldsInTheCamerasOwnSizeToo) {
     }
     return sum / 3.0;
   };
-  const std::vector<std::string> judges = {"--quality",   "32",    "--size", "12x8",
-                                           "--held-back", "view1", "view3",  "view5"};
+  const std::vector<std::string> judges = {"--quality", "32",          "--size",
+                                           "12x8",      "--held-back", "view1,view3,view5"};
   const Outcome outcome = trim("m.ply", judges);
   ASSERT_TRUE(good(outcome));
   EXPECT_NE(outcome.out.find("at 12 x 8 px and, as `own`, at the cameras' own 72 x 48 px"), std::string::npos)
@@ -288,9 +288,9 @@ TEST_F(TrimTest, ViewsThatSeeNothingHaveNoSay) {
     EXPECT_TRUE(view["name"] != "view4" && view["name"] != "view5") << view;
     EXPECT_LT(view["db"], 100.0) << view;
   }
-  EXPECT_TRUE(ended(trim("n.ply", {"--quality", "25", "--held-back", "view4", "view5"}), 2,
+  EXPECT_TRUE(ended(trim("n.ply", {"--quality", "25", "--held-back", "view4,view5"}), 2,
                     "none of the views held back to judge by sees anything"));
-  EXPECT_TRUE(ended(trim("n.ply", {"--quality", "25", "--held-back", "view0", "view1", "view2", "view3"}), 2,
+  EXPECT_TRUE(ended(trim("n.ply", {"--quality", "25", "--held-back", "view0,view1,view2,view3"}), 2,
                     "none of the views to learn from sees anything"));
 }
 
@@ -324,8 +324,8 @@ TEST_F(TrimTest, ErrorsSayWhatToDo) {
   EXPECT_TRUE(ended(trim("m.obj", {"--quality", "40"}), 2, "its ending names no format that can be written"));
   EXPECT_TRUE(ended(trim("model.ply", {"--quality", "40"}), 2, "this run reads it"));
   EXPECT_TRUE(ended(trim("m.ply", {"--quality", "40", "--test", "nowhere"}), 2, "nowhere"));
-  EXPECT_TRUE(ended(trim("m.ply", {"--quality", "40", "--test", "view0", "view1", "view2", "view3", "view4"}),
-                    2, "which needs two at least"));
+  EXPECT_TRUE(ended(trim("m.ply", {"--quality", "40", "--test", "view0,view1,view2,view3,view4"}), 2,
+                    "which needs two at least"));
   std::filesystem::create_directories(folder / "photos");
   std::filesystem::copy(model, folder / "photos/view0.png");
   EXPECT_TRUE(ended(trim("m.ply", {"--max-drop", "1", "--photos", folder / "photos"}), 2, "view0.png"));
@@ -381,7 +381,7 @@ TEST(TrimScenes, FoxAtHalfADecibelIsLessThanHalf) {
   }
   const Outcome outcome =
       run_program({"trim", scene / "fox.ply", "--cameras", folder / "cameras.json", "--photos",
-                   folder / "photos", "--max-drop", "0.5", "--views", "4", "--test", "0001", "0089", "-o",
+                   folder / "photos", "--max-drop", "0.5", "--views", "4", "--test", "0001,0089", "-o",
                    folder / "fox.spz", "--json", folder / "r.json"});
   ASSERT_TRUE(good(outcome));
   const json steps = test::load_json(folder / "r.json")["steps"];

@@ -161,9 +161,7 @@ int run(int argc, char** argv) {
     add_max_memory(program);
     add_quiet(program);
     check_arguments(argc, argv);
-    std::vector<std::string> words = with_scene_first(program, {argv + 1, argv + argc});
-    std::reverse(words.begin(), words.end());  // as CLI11 wants them
-    program.parse(std::move(words));
+    program.parse(argc, argv);
     note_inputs(program);
     view(options);
     return 0;
