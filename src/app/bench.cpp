@@ -274,14 +274,11 @@ void add_bench(CLI::App& program, Command& command) {
       ->type_name("FILE");
   add_names_option(*sub, "--view", o->camera.views, "Views by name, instead of the axes' number of them");
   add_photos_options(*sub, *o, "Compare with DIR/NAME.jpg or .png as well");
-  sub->add_option(
-         "--far", o->far,
-         "Where the table of --transmittance depth ends, world units; AdaGScale's\nis 100 (fits the scene)")
-      ->type_name("DEPTH")
-      ->check(positive);
-  sub->add_option("--ppd", o->ppd, "For FLIP: pixels per degree that the viewer has (67)")
-      ->check(between(1.0, 1000.0, "a number from 1 to 1000"))
-      ->type_name("N");
+  add_value(
+      *sub, "--far", "DEPTH", o->far, positive,
+      "Where the table of --transmittance depth ends, world units; AdaGScale's\nis 100 (fits the scene)");
+  add_value(*sub, "--ppd", "N", o->ppd, between(1.0, 1000.0, "a number from 1 to 1000"),
+            "For FLIP: pixels per degree that the viewer has (67)");
   sub->add_flag("--profile", o->profile,
                 "Set each stage beside what it must move and compute at least, at this GPU's best rates");
   add_measured_options(*sub, *o);
@@ -289,12 +286,9 @@ void add_bench(CLI::App& program, Command& command) {
   add_names_option(*sub, "--merge", o->merge, "Join the folders of shards in -o", "DIR");
   sub->add_option("--compare", o->compare, "Print what changed beyond noise since an older results.json")
       ->type_name("FILE");
-  sub->add_option(
-         "--fail-if-slower", o->fail_if_slower,
-         "With --compare: end with exit code 1 if a frame time has risen\nbeyond noise, and by more than "
-         "PERCENT")
-      ->type_name("PERCENT")
-      ->check(not_negative);
+  add_value(*sub, "--fail-if-slower", "PERCENT", o->fail_if_slower, not_negative,
+            "With --compare: end with exit code 1 if a frame time has risen\nbeyond noise, and by more than "
+            "PERCENT");
   sub->footer(
       "A run that was ended goes on where it was when it is started again with the same options.\n"
       "Examples:\n"

@@ -96,33 +96,25 @@ void add_calibrate(CLI::App& program, Command& command) {
   const auto o = std::make_shared<CalibrateOptions>();
   sub->add_option("SCENE", o->scene.name, "A model, demo:room or demo:city")->required();
   sub->add_option("-o,--output", o->output, "The file to write")->type_name("CALIB.json")->required();
-  sub->add_option("--quality", o->target.quality,
-                  "Target: PSNR against the exact pictures, mean over the views")
-      ->type_name("DB")
-      ->check(quality_range);
-  sub->add_option("--max-drop", o->target.max_drop, "Target: dB lost against the photos, mean over the views")
-      ->type_name("DB")
-      ->check(positive);
+  add_value(*sub, "--quality", "DB", o->target.quality, quality_range,
+            "Target: PSNR against the exact pictures, mean over the views");
+  add_value(*sub, "--max-drop", "DB", o->target.max_drop, positive,
+            "Target: dB lost against the photos, mean over the views");
   add_photos_options(*sub, *o);
   sub->add_option("--cameras", o->camera.file, "Cameras, where they are not beside the model")
       ->type_name("FILE");
   add_names_option(*sub, "--view", o->camera.views, "Views by name, instead of --views");
-  sub->add_option("--views", o->views, "So many views, spread evenly over the cameras (16)")
-      ->type_name("N")
-      ->check(range(1, 10000));
+  add_value(*sub, "--views", "N", o->views, range(1, 10000),
+            "So many views, spread evenly over the cameras (16)");
   add_hold_out_option(*sub, o->hold_out);
   add_size_option(*sub, o->camera.lens);
   choose_explained(*sub, "--order", o->table.order, "What Gaussians are sorted by (as the model was trained)",
                    order_choices);
   choose_explained(*sub, "--projection", o->table.projection,
                    "What a ray sees of a Gaussian (as the model was trained)", projection_choices);
-  sub->add_option("--bins", o->table.bins, "Of the transmittance by depth (20)")
-      ->type_name("N")
-      ->check(range(1, 10000));
-  sub->add_option("--far", o->table.far,
-                  "Where its bins end, in world units; AdaGScale's is 100 (fits the scene)")
-      ->type_name("DEPTH")
-      ->check(positive);
+  add_value(*sub, "--bins", "N", o->table.bins, range(1, 10000), "Of the transmittance by depth (20)");
+  add_value(*sub, "--far", "DEPTH", o->table.far, positive,
+            "Where its bins end, in world units; AdaGScale's is 100 (fits the scene)");
   add_rule_option(*sub, o->rules);
   add_measured_options(*sub, *o);
   sub->footer(

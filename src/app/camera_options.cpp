@@ -7,10 +7,8 @@ namespace binosplat::app {
 
 void add_camera_options(CLI::App& sub, CameraOptions& o) {
   const auto three = [&sub](const char* name, std::optional<glm::dvec3>& into, const char* help) {
-    return sub
-        .add_option_function<std::string>(
-            name, [name, &into](const std::string& text) { into = parse_three(name, text); }, help)
-        ->type_name("X,Y,Z");
+    add_parsed(
+        sub, name, "X,Y,Z", into, [name](const std::string& text) { return parse_three(name, text); }, help);
   };
   sub.option_defaults()->group("Cameras");
   sub.add_option("--cameras", o.file,
@@ -30,12 +28,9 @@ void add_camera_options(CLI::App& sub, CameraOptions& o) {
   three("--up", o.up,
         "What is up in the picture (as the cameras stand, or else found in\nthe model); for --eye, --orbit "
         "and models without cameras");
-  sub.add_option("--fov", o.fov, "Vertical field of view of such cameras (60)")
-      ->type_name("DEGREES")
-      ->check(between(1e-6, 179.999999, "degrees between 0 and 180"));
-  sub.add_option("--orbit", o.orbit, "N cameras around the model instead")
-      ->type_name("N")
-      ->check(range(1, 10000));
+  add_value(sub, "--fov", "DEGREES", o.fov, between(1e-6, 179.999999, "degrees between 0 and 180"),
+            "Vertical field of view of such cameras (60)");
+  add_value(sub, "--orbit", "N", o.orbit, range(1, 10000), "N cameras around the model instead");
   add_size_option(sub, o.lens, "Pixels of each eye; keeps the vertical field of view");
   add_preset_option(sub, o.lens, "preview: 1280 x 720 an eye; headset: 3660 x 3200 an eye,\n100 degrees");
   add_near_option(sub, o,
@@ -43,14 +38,10 @@ void add_camera_options(CLI::App& sub, CameraOptions& o) {
 }
 
 CLI::Option* add_size_option(CLI::App& sub, Lens& lens, const char* help) {
-  return sub
-      .add_option_function<std::string>(
-          "--size",
-          [&lens](const std::string& text) {
-            lens.size = parse_two("--size", text, "pixels as WIDTHxHEIGHT, for one 1280x720");
-          },
-          help)
-      ->type_name("WxH");
+  const auto parse = [](const std::string& text) {
+    return parse_two("--size", text, "pixels as WIDTHxHEIGHT, for one 1280x720");
+  };
+  return add_parsed(sub, "--size", "WxH", lens.size, parse, help);
 }
 
 CLI::Option* add_preset_option(CLI::App& sub, Lens& lens, const char* help) {
@@ -59,7 +50,7 @@ CLI::Option* add_preset_option(CLI::App& sub, Lens& lens, const char* help) {
 }
 
 CLI::Option* add_near_option(CLI::App& sub, CameraOptions& o, const char* help) {
-  return sub.add_option("--near", o.near_plane, help)->type_name("DEPTH")->check(positive);
+  return add_value(sub, "--near", "DEPTH", o.near_plane, positive, help);
 }
 
 Camera sized(const Lens& lens, const Camera& camera) {

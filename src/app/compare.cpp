@@ -175,28 +175,23 @@ void add_compare(CLI::App& program, Command& command) {
   const auto options = std::make_shared<CompareOptions>();
   sub->add_option("A", options->a, "Picture: PNG, JPEG or OpenEXR")->required();
   sub->add_option("B", options->b, "Picture of the same size")->required();
-  sub->add_option("--min-psnr", options->min_psnr, "Exit code 1 if PSNR is below this")
-      ->type_name("DB")
-      ->check(between(-INFINITY, INFINITY, "decibels"));
+  add_value(*sub, "--min-psnr", "DB", options->min_psnr, between(-INFINITY, INFINITY, "decibels"),
+            "Exit code 1 if PSNR is below this");
   sub->add_option_function<std::string>(
          "--background", [options](const std::string& text) { options->background = parse_background(text); },
          "Colour from 0 to 1 before which pictures with alpha are compared;\nby default alpha counts where "
          "both have some, and is before black\nwhere one has (0,0,0)")
       ->type_name("R,G,B|none");
-  sub->add_option("--ppd", options->pixels_per_degree, "For FLIP: pixels per degree that the viewer has (67)")
-      ->check(between(1.0, 1000.0, "a number from 1 to 1000"))
-      ->type_name("N");
+  add_value(*sub, "--ppd", "N", options->pixels_per_degree, between(1.0, 1000.0, "a number from 1 to 1000"),
+            "For FLIP: pixels per degree that the viewer has (67)");
   sub->add_option_function<std::string>(
          "--foveate-at", [options](const std::string& text) { options->gaze = parse_gaze(text); },
          "What an eye sees of it that looks at pixel X,Y of a picture FOV degrees\nacross: PSNR by degrees "
          "from "
          "there, and the share of the pixels whose\ndifference can be seen")
       ->type_name("X,Y,FOV");
-  sub->add_option(
-         "--max-memory", options->max_memory,
-         "Refuse pictures that take more than so many MB to compare\n(three quarters of the machine's)")
-      ->check(positive)
-      ->type_name("MB");
+  add_value(*sub, "--max-memory", "MB", options->max_memory, positive,
+            "Refuse pictures that take more than so many MB to compare\n(three quarters of the machine's)");
   sub->add_option(
          "--difference", options->difference,
          "Write the absolute error as PNG, amplified so that about one value\nin a thousand is white")

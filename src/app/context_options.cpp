@@ -25,9 +25,7 @@ void add_context_options(CLI::App& sub, ContextOptions& o) {
 }
 
 CLI::Option* add_device_option(CLI::App& sub, ContextOptions& o) {
-  return sub.add_option("--device", o.device, "Number of the EGL device")
-      ->type_name("N")
-      ->check(range(0, 1000));
+  return add_value(sub, "--device", "N", o.device, range(0, 1000), "Number of the EGL device");
 }
 
 void check(const ContextOptions& o, const char* with_devices) {

@@ -2,18 +2,24 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
+#include <functional>
 #include <limits>
 #include <utility>
 
+#include "app/command_line.h"
 #include "app/empty_view.h"
 #include "app/followed.h"
-#include "app/foveate_options.h"
 #include "app/sequence.h"
-#include "app/shot_files.h"
 #include "app/vr180.h"
 #include "base/clock.h"
+#include "base/job_queue.h"
 #include "base/log.h"
+#include "base/memory.h"
+#include "base/output_file.h"
+#include "base/parallel.h"
 #include "base/progress.h"
+#include "measure/comparison.h"
 #include "measure/depth_table.h"
 #include "render/frame.h"
 #include "render/read_back.h"
@@ -62,7 +68,7 @@ std::optional<double> exact_frame_ms(render::Frame& frame, const Work& work, con
   const RenderOptions& o = report.options;
   if (!o.drawing.quality || !work.list.path ||
       report.drawn.size() < (report.context.software() ? some : many) || work.stream || o.foveate ||
-      work.plan.vr180 || !report.drawn[0].shot.model.empty())
+      work.outputs.vr180 || !report.drawn[0].shot.model.empty())
     return std::nullopt;
   render::FrameSettings exact = render::exact_of(settings_of(o.drawing));
   exact.precision = o.drawing.precision;
@@ -71,17 +77,123 @@ std::optional<double> exact_frame_ms(render::Frame& frame, const Work& work, con
   return frame.draw(views, exact).total_ms;
 }
 
+/// A shot's pictures, and what is shown of them.
+struct ShotPictures {
+  std::vector<Picture> pictures;
+  std::optional<stereo::DebugPictures> shown;  // none: the pictures
+};
+
+bool is_empty(const Picture& picture) {
+  return std::all_of(picture.colour.begin(), picture.colour.end(),
+                     [](const glm::vec4& c) { return c.a == 1.0f; });
+}
+
+// PSNR of the picture as 8 bits would keep it against the photo, where there is a folder of them.
+std::optional<double> photo_psnr(const PhotoSource& photos, const glm::vec3& background, const Shot& shot,
+                                 const Picture& picture) {
+  if (photos.folder.empty()) return std::nullopt;
+  const auto file = find_view_photo(photos.folder, shot.eyes.front().camera);
+  if (!file) {
+    log_info("no photo of {} in {}", shot.name, photos.folder);
+    return std::nullopt;
+  }
+  const Image photo = load_view_photo(*file, shot.eyes.front().camera, background);
+  return measure::photo_psnr(composite(picture, background), exposure_of(photos.exposures, shot.name), photo);
+}
+
+// Memory of a shot from the GPU to the file: twice its colours and depths, and what they are encoded to.
+double bytes_of(const Shot& shot) {
+  constexpr double bytes_a_pixel = 2 * 20 + 24;
+  double pixels = 0.0;
+  for (const Eye& eye : shot.eyes) pixels += double{1} * eye.camera.width * eye.camera.height;
+  return bytes_a_pixel * pixels;
+}
+
+/// What becomes of shots' pictures while the next shots are drawn: threads judge, encode and write them. A
+/// video gets its frames one by one, in order.
+class ShotFiles {
+ public:
+  /// For the shots to come. Pictures that are drawn and not written yet take a quarter of the machine's
+  /// memory at most, or what --max-memory allows if that is less; those of three shots in any case. There are
+  /// as many threads as cores where memory allows that.
+  ShotFiles(const RenderReport& report, const Work& work)
+      : report_(report), work_(work), video_(open_video(work.outputs, work.shots)) {
+    double most = 1.0;
+    for (const Shot& shot : work.shots) most = std::max(most, bytes_of(shot));
+    const double budget = std::min(0.25 * memory_bytes(), picture_memory_allowed.load());
+    // Besides one that waits and one that is on its way from the GPU.
+    const double fit = budget / most - 2.0;
+    const double useful = std::min<double>(core_count(), static_cast<double>(work.shots.size()));
+    threads_ = static_cast<int>(std::clamp(fit, 1.0, std::max(1.0, useful)));
+    queue_ = std::make_unique<JobQueue>(threads_, 1);
+  }
+
+  /// Takes a shot, whose pictures `take` hands out on another thread; until finish() its comfort and PSNR of
+  /// `drawn` are to come, which must stay where it is. Waits while there is no memory for more. Throws Error
+  /// for a file of this or an earlier shot that could not be written; then no other is begun.
+  void add(Drawn& drawn, std::function<ShotPictures()> take) {
+    const auto frame = std::make_shared<std::string>();
+    const auto encode_all = [this, &drawn, take = std::move(take), frame] {
+      ShotPictures of = take();
+      judge(drawn, of.pictures);
+      if (!of.shown) of.shown = {std::move(of.pictures), std::nullopt};
+      for (const PictureFile& file : drawn.shot.files) {
+        const auto begin = Clock::now();
+        *frame = encoded(file, report_.options, work_.outputs, drawn.shot, *of.shown);
+        encoding_ms_ += ms_since(begin);
+        if (!video_) write([&] { write_file(file.name, *frame); });
+      }
+    };
+    if (!video_) return queue_->add(encode_all);
+    queue_->add(encode_all, [this, frame] { write([&] { video_->add(*frame); }); });
+  }
+
+  /// Waits until all is written. Throws as add() does.
+  void finish(RunTimes& times) {
+    queue_->finish();
+    if (video_) video_->finish();
+    times.encoding = 1e-3 * encoding_ms_;
+    times.writing = 1e-3 * writing_ms_;
+    times.threads = threads_;
+  }
+
+  /// Whether no picture shows anything.
+  bool all_empty() const { return all_empty_; }
+
+ private:
+  void judge(Drawn& drawn, const std::vector<Picture>& pictures) {
+    const RenderOptions& o = report_.options;
+    if (!std::all_of(pictures.begin(), pictures.end(), is_empty)) all_empty_ = false;
+    if (!work_.outputs.vr180) drawn.comfort = comfort_of(drawn.shot, o.camera.lens.headset(), pictures[0]);
+    drawn.photo_psnr = photo_psnr(work_.photos, o.output.backdrop(), drawn.shot, pictures[0]);
+  }
+
+  void write(const auto& bytes_to_file) {
+    const auto begin = Clock::now();
+    bytes_to_file();
+    writing_ms_ += ms_since(begin);
+  }
+
+  const RenderReport& report_;
+  const Work& work_;
+  std::unique_ptr<Video> video_;
+  std::atomic<bool> all_empty_ = true;
+  std::atomic<double> encoding_ms_ = 0.0, writing_ms_ = 0.0;
+  int threads_ = 1;
+  std::unique_ptr<JobQueue> queue_;  // last: its jobs end first
+};
+
 /// What draws shots: the frame, or what the options want in its place.
 struct Drawer {
-  Drawer(gl::Context& of, const RenderReport& report, const std::optional<int>& panorama_width,
+  Drawer(gl::Context& on, const RenderReport& of, const Work& work,
          const std::shared_ptr<render::GpuModel>& model)
-      : context(of), options(report.options), frame(model), show(model) {
-    if (panorama_width) panorama.emplace(model, *panorama_width);
-    if (options.foveate) foveated.emplace(model);
+      : context(on), report(of), frame(model), show(model) {
+    if (work.outputs.vr180) panorama.emplace(model, work.shots[0].eyes[0].camera.width);
+    if (report.options.foveate) foveated.emplace(model);
   }
 
   gl::Context& context;
-  const RenderOptions& options;
+  const RenderReport& report;
   render::Frame frame;
   stereo::DebugView show;
   std::optional<stereo::Panorama> panorama;
@@ -90,7 +202,20 @@ struct Drawer {
 
   /// Whether the frame's own pictures are all that is wanted, which are read while the next ones are drawn.
   bool reads_behind() const {
-    return !panorama && !foveated && options.output.show == SHOW_PICTURE && !options.output.detail_report;
+    const OutputOptions& o = report.options.output;
+    return !panorama && !foveated && o.show == SHOW_PICTURE && !o.detail_report;
+  }
+
+  /// Draws a shot. `meanwhile` is called where the GPU has its work and the CPU would wait.
+  render::FrameReport draw(const Shot& shot, const std::vector<shared::View>& views,
+                           const render::FrameSettings& settings, const std::function<void()>& meanwhile) {
+    const RenderOptions& o = report.options;
+    const render::Workings workings = workings_of(o.drawing);
+    if (panorama) return app::draw(*panorama, shot, report.model.axes, report.near_plane);
+    if (foveated) return foveated->draw(views, *o.foveate, settings, workings);
+    frame.submit(views, settings, workings);
+    meanwhile();
+    return frame.finish();
   }
 
   /// The pictures of a shot that was drawn, where they are read at once.
@@ -100,9 +225,9 @@ struct Drawer {
                     : foveated ? foveated->read_pictures()
                                : frame.read_pictures(),
                     {}};
-    const OutputOptions& output = options.output;
+    const OutputOptions& output = report.options.output;
     if (output.detail_report) {
-      if (!finest) finest.emplace(options.scene, context);
+      if (!finest) finest.emplace(report.options.scene, context);
       drawn.levels->finest_psnr = finest->psnr(views, of.pictures, settings, settings.background);
     }
     if (output.show != SHOW_PICTURE) {
@@ -113,143 +238,92 @@ struct Drawer {
   }
 };
 
-/// Shots on their way from the GPU to files, and what that takes of the time of the thread that draws.
-class ShotPipeline {
- public:
-  ShotPipeline(gl::Context& context, const Work& work, const RenderReport& report)
-      : read_back_(context), files_(report.options, work.plan, work.photos, work.shots) {}
-
-  /// Asks for the pictures that the frame has of a shot.
-  void read(Drawn& drawn, const render::Frame& frame) {
-    pictures_ = read_back_.start(frame);
-    of_ = &drawn;
-  }
-
-  /// Hands over what was asked for, if anything was, once the GPU has copied it.
-  void hand_over() {
-    if (!pictures_) return;
-    const auto begin = Clock::now();
-    pictures_->wait();
-    times_.reading += ms_since(begin);
-    add(*of_, [taken = std::exchange(pictures_, nullptr)] { return ShotPictures{taken->take(), {}}; });
-  }
-
-  /// Takes the pictures of a shot that was drawn: while the next one is, or at once.
-  void take(Drawer& drawer, Drawn& drawn, const std::vector<shared::View>& views,
-            const render::FrameSettings& settings) {
-    if (drawer.reads_behind()) return read(drawn, drawer.frame);
-    const auto pictures = std::make_shared<ShotPictures>(drawer.read(drawn, views, settings));
-    add(drawn, [pictures] { return std::move(*pictures); });
-  }
-
-  void add(Drawn& drawn, std::function<ShotPictures()> take) {
-    const auto begin = Clock::now();
-    files_.add(drawn, std::move(take));
-    times_.waiting += ms_since(begin);
-  }
-
-  /// Waits until all files are there.
-  RunTimes finish() {
-    hand_over();
-    const auto begin = Clock::now();
-    files_.finish();
-    times_.waiting += ms_since(begin);
-    times_.all = ms_since(start_);
-    times_.encoding = files_.encoding_seconds();
-    times_.writing = files_.writing_seconds();
-    times_.threads = files_.threads();
-    times_.is_video = files_.is_video();
-    return times_;
-  }
-
-  bool all_empty() const { return files_.all_empty(); }
-
- private:
-  render::ReadBack read_back_;
-  ShotFiles files_;
-  std::shared_ptr<render::ReadBack::Pictures> pictures_;  // after those two, so that it goes first
-  Drawn* of_ = nullptr;
-  RunTimes times_;
-  Clock::time_point start_ = Clock::now();
-};
-
 }  // namespace
 
-void draw_all(gl::Context& context, Work& work, RenderReport& report) {
-  const DrawingOptions& drawing = report.options.drawing;
-  const OutputOptions& output = report.options.output;
-  render::FrameSettings settings = settings_of(drawing);
-  settings.background = output.backdrop();
-  const render::Workings workings = workings_of(drawing);
+void draw_all(gl::Context& context, const Work& work, RenderReport& report) {
+  const RenderOptions& o = report.options;
+  render::FrameSettings settings = settings_of(o.drawing);
+  settings.background = o.output.backdrop();
   if (!work.list.path) settings.probe_tiles = std::numeric_limits<int>::max();  // single pictures: all
-  auto gpu_model = work.stream
-                       ? work.stream->gpu_model(context, settings.precision)
-                       : std::make_shared<render::GpuModel>(context, report.model, settings.precision);
-  std::optional<Model> shown;  // of a sequence, where it is not the report's
-  std::optional<int> panorama_width;
-  if (work.plan.vr180) panorama_width = work.shots[0].eyes[0].camera.width;
-  std::optional<Drawer> drawer(std::in_place, context, report, panorama_width, std::move(gpu_model));
-  work.calibrated.check_model(report.model, settings);
-  if (settings.transmittance == TRANSMITTANCE_DEPTH && drawing.calibration.empty())
-    settings.depth_table = depth_table(drawer->frame, report.options.camera.lens, work.list,
-                                       report.near_plane, report.model.axes, settings);
+  const auto drawer_of = [&](std::shared_ptr<render::GpuModel> model) {
+    return std::make_unique<Drawer>(context, report, work, std::move(model));
+  };
+  auto drawer =
+      drawer_of(work.stream ? work.stream->gpu_model(context, settings.precision)
+                            : std::make_shared<render::GpuModel>(context, report.model, settings.precision));
+  if (settings.transmittance == TRANSMITTANCE_DEPTH && o.drawing.calibration.empty())
+    settings.depth_table =
+        depth_table(drawer->frame, o.camera.lens, work.list, report.near_plane, report.model.axes, settings);
   if (work.screen) report.convergence = find_screen(drawer->frame, settings, *work.screen);
-  if (work.screen && report.convergence) {
-    for (Shot& shot : work.shots) converge(shot, *report.convergence);
-  }
   std::optional<glm::vec3> of_switches;  // the background, where they are reported
-  if (output.detail_report && work.heads_turn) of_switches = settings.background;
+  if (o.output.detail_report && work.heads_turn) of_switches = settings.background;
 
   std::optional<ModelsInTurn> in_turn;
-  if (!work.shots[0].model.empty()) in_turn.emplace(report.options.scene, report.model, work.shots);
+  std::optional<Model> shown;  // of them, where it is not the report's
+  if (!work.shots[0].model.empty()) in_turn.emplace(o.scene, report.model, work.shots);
 
-  ShotPipeline pipeline(context, work, report);
-  Progress progress("drawing", work.shots.size() * static_cast<std::size_t>(drawing.frames),
-                    drawing.frames == 1 ? "views" : "frames");
-  std::size_t done = 0;
-  double gpu_ms = 0.0;
-  report.drawn.reserve(work.shots.size());  // the pipeline refers to them
-  for (Shot& shot : work.shots) {
+  const auto begin = Clock::now();
+  RunTimes& times = report.run;
+  const auto adding = [&](double& ms, const auto& wait) {
+    const auto since = Clock::now();
+    wait();
+    ms += ms_since(since);
+  };
+  render::ReadBack read_back(context);
+  ShotFiles files(report, work);
+  // A shot's pictures on their way from the GPU; before the files, so that they go first.
+  std::shared_ptr<render::ReadBack::Pictures> on_way;
+  Drawn* of = nullptr;
+  const auto add = [&](Drawn& drawn, std::function<ShotPictures()> take) {
+    adding(times.waiting, [&] { files.add(drawn, std::move(take)); });
+  };
+  const auto hand_over = [&] {
+    if (!on_way) return;
+    adding(times.reading, [&] { on_way->wait(); });
+    add(*of, [taken = std::exchange(on_way, nullptr)] { return ShotPictures{taken->take(), {}}; });
+  };
+  Progress progress("drawing", work.shots.size() * static_cast<std::size_t>(o.drawing.frames),
+                    o.drawing.frames == 1 ? "views" : "frames");
+  report.drawn.reserve(work.shots.size());  // threads refer to them
+  for (const Shot& shot : work.shots) {
     if (in_turn && !report.drawn.empty()) {
-      pipeline.hand_over();
+      hand_over();
       drawer.reset();
       shown = in_turn->take();
-      drawer.emplace(context, report, panorama_width,
-                     std::make_shared<render::GpuModel>(context, *shown, settings.precision));
+      drawer = drawer_of(std::make_shared<render::GpuModel>(context, *shown, settings.precision));
     }
-    render::Frame& frame = drawer->frame;
     // Single pictures do not depend on which were drawn before them.
-    if (!work.list.path) (drawer->foveated ? drawer->foveated->frame() : frame).start_over();
+    if (!work.list.path) (drawer->foveated ? drawer->foveated->frame() : drawer->frame).start_over();
     Drawn& drawn = report.drawn.emplace_back();
-    drawn.shot = std::move(shot);
+    drawn.shot = shot;
+    if (work.screen && report.convergence) converge(drawn.shot, *report.convergence);
     const std::vector<shared::View> views = views_of(drawn.shot);
     render::FrameSettings of_shot = work.calibrated.of(drawn.shot, settings);
-    of_shot.depth = output.exr_depth;
+    of_shot.depth = o.output.exr_depth;
     if (work.stream) {
-      drawn.levels = settle_shot(*work.stream, frame, drawer->show, views, of_shot, of_switches);
+      drawn.levels = settle_shot(*work.stream, drawer->frame, drawer->show, views, of_shot, of_switches);
       of_shot.quality = static_cast<float>(drawn.levels->left);
     }
-    for (int n = 0; n < drawing.frames; ++n) {
-      if (drawer->panorama) {
-        drawn.report = draw(*drawer->panorama, drawn.shot, report.model.axes, report.near_plane);
-      } else if (drawer->foveated) {
-        drawn.report = drawer->foveated->draw(views, *report.options.foveate, of_shot, workings);
-      } else {
-        frame.submit(views, of_shot, workings);
-        pipeline.hand_over();
-        drawn.report = frame.finish();
-      }
-      report.times.add(drawn.report);
-      gpu_ms += drawn.report.total_ms;
-      progress.update(++done);
+    for (int n = 0; n < o.drawing.frames; ++n) {
+      drawn.report = drawer->draw(drawn.shot, views, of_shot, hand_over);
+      report.frames.push_back(drawn.report);
+      times.gpu += drawn.report.total_ms;
+      progress.update(report.frames.size());
     }
     if (drawer->foveated) drawn.foveated = drawer->foveated->parts();
-    pipeline.take(*drawer, drawn, views, of_shot);
+    if (drawer->reads_behind()) {
+      on_way = read_back.start(drawer->frame);
+      of = &drawn;
+    } else {
+      const auto pictures = std::make_shared<ShotPictures>(drawer->read(drawn, views, of_shot));
+      add(drawn, [pictures] { return std::move(*pictures); });
+    }
   }
-  report.run = pipeline.finish();
-  report.run.gpu = gpu_ms;
+  hand_over();
+  adding(times.waiting, [&] { files.finish(times); });
+  times.all = ms_since(begin);
   report.exact_ms = exact_frame_ms(drawer->frame, work, report);
-  if (pipeline.all_empty() && !drawing.reference_until && !report.drawn.empty())
+  if (files.all_empty() && !o.drawing.reference_until)
     log_warning("the pictures are empty: {}",
                 why_empty(report.model, report.drawn[0].shot, report.near_plane));
 }

@@ -3,13 +3,11 @@
 
 #include <memory>
 #include <optional>
-#include <string>
 #include <vector>
 
 #include "app/calibrated.h"
 #include "app/photos.h"
-#include "app/render_outputs.h"
-#include "app/render_report.h"
+#include "app/render_table.h"
 #include "app/shots.h"
 #include "stream/stream.h"
 
@@ -17,7 +15,7 @@ namespace binosplat::app {
 
 /// What is drawn, and by what.
 struct Work {
-  OutputPlan plan;
+  Outputs outputs;
   CalibratedSettings calibrated;
   CameraList list;
   std::vector<Shot> shots;
@@ -29,8 +27,8 @@ struct Work {
 
 /// Draws every shot as often as asked for, and leaves the files of its last frame. All of OpenGL is called on
 /// the thread that calls this: while the GPU draws a shot, it waits for the copy of the one before
-/// (render/read_back.h) and hands that to the threads of files (app/shot_files.h). What has to be made of a
-/// frame with OpenGL, as with --show, --foveate and --vr180, is read at once.
-void draw_all(gl::Context& context, Work& work, RenderReport& report);
+/// (render/read_back.h) and hands that to threads that encode and write it. What has to be made of a frame
+/// with OpenGL, as with --show, --foveate and --vr180, is read at once.
+void draw_all(gl::Context& context, const Work& work, RenderReport& report);
 
 }  // namespace binosplat::app

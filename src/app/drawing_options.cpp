@@ -21,15 +21,11 @@ void add_drawing_options(CLI::App& sub, DrawingOptions& o, bool in_window) {
     o.adagscale = rule == "adagscale";
     if (o.adagscale) o.transmittance = TRANSMITTANCE_DEPTH;
   });
-  sub.add_option("--tolerance,--loss", o.tolerance, "How much that may cost, in the unit of --th")
-      ->type_name("X")
-      ->check(not_negative);
-  sub.add_option("--quality", o.quality,
-                 "Choose the tolerance so that pictures come to about DB against the exact\nones, from the "
-                 "first frame "
-                 "on: one in four draws some tiles exactly, too")
-      ->type_name("DB")
-      ->check(quality_range);
+  add_value(sub, "--tolerance", "X", o.tolerance, not_negative,
+            "How much that may cost, in the unit of --th");
+  add_value(sub, "--quality", "DB", o.quality, quality_range,
+            "Choose the tolerance so that pictures come to about DB against the exact\nones, from the first "
+            "frame on: one in four draws some tiles exactly, too");
   sub.add_option("--calibration", o.calibration, "Take the tolerance from a file of binosplat calibrate")
       ->type_name("FILE");
   choose_explained(sub, "--transmittance", o.transmittance,
@@ -54,9 +50,8 @@ void add_drawing_options(CLI::App& sub, DrawingOptions& o, bool in_window) {
                   fmt::join(std::span(render::stage_names).first(render::stages_with_twins), ", ")),
       stages)
       ->type_name("STAGE");
-  sub.add_option("--frames", o.frames, "Draw each view N times, for the table of times (1)")
-      ->type_name("N")
-      ->check(range(1, 100000));
+  add_value(sub, "--frames", "N", o.frames, range(1, 100000),
+            "Draw each view N times, for the table of times (1)");
 }
 
 void check(const DrawingOptions& o) {
@@ -69,15 +64,11 @@ void check(const DrawingOptions& o) {
          transmittance_choices[o.transmittance].name);
   }
   // A tolerance beside a table that was calibrated goes by that table.
-  if (given && calibrated && !(o.tolerance && o.transmittance == TRANSMITTANCE_DEPTH)) {
-    fail("{} with --calibration: each chooses the tolerance: leave one of them out",
-         o.tolerance ? "--tolerance" : "--quality");
-  }
+  if (o.tolerance && calibrated && o.transmittance != TRANSMITTANCE_DEPTH)
+    fail("--tolerance with --calibration: each chooses the tolerance: leave one of them out");
   if (!exact && !given && !calibrated)
     fail("--th {} needs --tolerance, --quality or --calibration: what it may cost", th);
   if (exact && calibrated) fail("--calibration has no effect with --th {}, which is exact", th);
-  if (o.reference_until && calibrated)
-    fail("--reference-until: the reference goes by no calibration: leave --calibration out");
   render::check_choice(settings, "--");
   render::check(workings_of(o), settings, "--");
 }

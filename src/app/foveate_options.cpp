@@ -84,27 +84,16 @@ stereo::Foveation parse_foveation(const std::string& text) {
 }  // namespace
 
 void add_foveate_option(CLI::App& sub, std::optional<stereo::Foveation>& foveate) {
-  sub.add_option_function<std::string>(
-         "--foveate", [&foveate](const std::string& text) { foveate = parse_foveation(text); },
-         "Draw exactly an inset of so many degrees across where the eyes look, and\naround it a share of the "
-         "pixels along each axis: inset=20deg,context=0.4;\ngaze=RIGHT,UP, degrees from straight ahead "
-         "(0,0), or those of both eyes;\nseam, of the inset (0.1). --tolerance is for what lies around")
-      ->type_name("inset=DEGREES,context=SHARE,...")
+  add_parsed(
+      sub, "--foveate", "inset=DEGREES,context=SHARE,...", foveate, parse_foveation,
+      "Draw exactly an inset of so many degrees across where the eyes look, and\naround it a share of the "
+      "pixels along each axis: inset=20deg,context=0.4;\ngaze=RIGHT,UP, degrees from straight ahead "
+      "(0,0), or those of both eyes;\nseam, of the inset (0.1). --tolerance is for what lies around")
       ->group("Drawing");
 }
 
 void check_foveate(const RenderOptions& o) {
   if (!o.foveate) return;
-  if (o.drawing.quality || !o.drawing.calibration.empty()) {
-    fail(
-        "--foveate with {}: its tolerance is one for whole pictures; give what lies around the inset a "
-        "--tolerance",
-        o.drawing.quality ? "--quality" : "--calibration");
-  }
-  if (o.drawing.reference_until)
-    fail("--foveate with --reference-until: the reference draws whole pictures: leave one of them out");
-  if (o.scene.detail)
-    fail("--foveate with --detail: levels of detail go by whole pictures; take --lod or --gpu-memory");
   if (o.output.show >= SHOW_ALPHAS) {
     fail("--foveate with --show {}: it tells of the lists that one picture is blended by, and these are two",
          show_choices[o.output.show].name);
@@ -121,13 +110,6 @@ render::MemoryNeeds foveated_memory(std::span<const shared::View> eyes, const st
   render::MemoryNeeds needs = render::memory_needs(render::make_plan(drawn.views, drawn.settings, model));
   for (const shared::View& eye : eyes) needs.frame += std::int64_t{eye.width} * eye.height * 20;
   return needs;
-}
-
-std::string describe(const stereo::FoveatedEye& eye) {
-  const glm::uvec2 inset = eye.inset_end - eye.inset_begin;
-  return fmt::format("inset of {} x {} px from ({}, {}), drawn as {} x {}; context of {} x {} px", inset.x,
-                     inset.y, eye.inset_begin.x, eye.inset_begin.y, eye.window.size.x, eye.window.size.y,
-                     eye.context.width, eye.context.height);
 }
 
 }  // namespace binosplat::app

@@ -21,7 +21,4 @@ void check_foveate(const RenderOptions& options);
 render::MemoryNeeds foveated_memory(std::span<const shared::View> eyes, const stereo::Foveation& foveation,
                                     const render::FrameSettings& settings, const Model& model);
 
-/// What is drawn of an eye, as a line for people.
-std::string describe(const stereo::FoveatedEye& eye);
-
 }  // namespace binosplat::app

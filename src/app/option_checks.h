@@ -93,6 +93,21 @@ CLI::Option* choose_explained(CLI::App& sub, const char* option, Into& into, std
   return choose(sub, option, into, help, words);
 }
 
+/// A new option of one value, which the check must let pass.
+template <typename Into>
+CLI::Option* add_value(CLI::App& sub, const char* option, const char* type, Into& into,
+                       const CLI::Validator& check, const std::string& help) {
+  return sub.add_option(option, into, help)->type_name(type)->check(check);
+}
+
+/// A new option of one value, which `parse` makes of its text. It throws Error for what it cannot understand.
+template <typename Into, typename Parse>
+CLI::Option* add_parsed(CLI::App& sub, const char* option, const char* type, Into& into, Parse parse,
+                        const std::string& help) {
+  const auto take = [&into, parse](const std::string& text) { into = parse(text); };
+  return sub.add_option_function<std::string>(option, take, help)->type_name(type);
+}
+
 /// A new option of names: one a word. It may be given again, or have several with commas (separated()).
 inline CLI::Option* add_names_option(CLI::App& sub, const char* option, std::vector<std::string>& into,
                                      const std::string& help, const char* type = "NAME") {

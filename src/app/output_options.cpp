@@ -26,10 +26,8 @@ void add_look_options(CLI::App& sub, OutputOptions& o, bool in_window) {
                    "What is shown in place of the picture; numbers as colours from 0\n(dark) to yellow "
                    "(picture)",
                    show_choices);
-  sub.add_option_function<std::string>(
-         "--background", [&o](const std::string& text) { o.background = parse_background(text); },
-         "Colour behind the model, 0 to 1, or none: keep alpha (0,0,0)")
-      ->type_name("R,G,B|none");
+  add_parsed(sub, "--background", "R,G,B|none", o.background, parse_background,
+             "Colour behind the model, 0 to 1, or none: keep alpha (0,0,0)");
 }
 
 void add_output_options(CLI::App& sub, OutputOptions& o) {
@@ -44,15 +42,12 @@ void add_output_options(CLI::App& sub, OutputOptions& o) {
          "(out/SCENE)")
       ->type_name("DIR|FILE");
   add_look_options(sub, o, false);
-  sub.add_option("--fps", o.fps,
-                 "Frames a second of a tour, of a way through keys (30), or of a video\n(by the path's "
-                 "times, or 30); a folder of models is drawn one after\nthe other, a model a frame")
-      ->type_name("N")
-      ->check(fps_range);
+  add_value(sub, "--fps", "N", o.fps, fps_range,
+            "Frames a second of a tour, of a way through keys (30), or of a video\n(by the path's times, or "
+            "30); a folder of models is drawn one after\nthe other, a model a frame");
   choose<int>(sub, "--bits", o.bits, "Bits a channel of PNG (8)", {{"8", 8}, {"16", 16}});
-  sub.add_option("--png-level", o.png_level, "How small PNG is made: 0 (fast) to 12, slower by each (1)")
-      ->type_name("N")
-      ->check(between(0, 12, "a level from 0 to 12"));
+  add_value(sub, "--png-level", "N", o.png_level, between(0, 12, "a level from 0 to 12"),
+            "How small PNG is made: 0 (fast) to 12, slower by each (1)");
   choose<bool>(sub, "--exr", o.exr_half, "Write OpenEXR too, with depth; half where only -o FILE.exr asks",
                {{"half", true}, {"float", false}});
   choose<bool>(sub, "--exr-encoding", o.exr_display,

@@ -177,12 +177,9 @@ HeldOut hold_out(const CameraList& list, const std::optional<int>& every) {
 }
 
 void add_hold_out_option(CLI::App& sub, std::optional<int>& every) {
-  sub.add_option(
-         "--hold-out", every,
-         "Every Nth view by name is for tests, and no tolerance is found on it (8, or the\nviews that "
-         "INRIA's cameras.json lists first)")
-      ->type_name("N")
-      ->check(range(2, 1000000));
+  add_value(sub, "--hold-out", "N", every, range(2, 1000000),
+            "Every Nth view by name is for tests, and no tolerance is found on it (8, or the\nviews that "
+            "INRIA's cameras.json lists first)");
 }
 
 std::vector<lab::CalibrationView> photographed_views(const ViewChoice& choice, const PhotoSource& photos,

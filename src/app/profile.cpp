@@ -15,6 +15,7 @@
 #include "app/load_scene.h"
 #include "app/option_checks.h"
 #include "app/shots.h"
+#include "app/together.h"
 #include "app/tour.h"
 #include "base/log.h"
 #include "base/mapped_file.h"
@@ -48,13 +49,7 @@ constexpr std::array not_profiled = {"--orbit", "--keys", "--frames", "--referen
 void check(const ProfileOptions& o) {
   check(o.scene);
   check(o.drawing);
-  check(o.rig);
   check(o.context);
-  const bool stands = !o.camera.views.empty() || o.camera.eye;
-  if (int{stands} + int{o.camera.tour.has_value()} + int{!o.camera.path.empty()} > 1)
-    fail("profile: --tour, --path and --view (or --eye) are ways of their own: choose one of them");
-  if (o.camera.eye.has_value() != o.camera.at.has_value())
-    fail("--eye and --at go together: where the camera is, and what it looks at");
   if (o.fps > 0.0 && o.fps < fps_least) fail("--fps {:g}: expected 0, or {:g} to 1000", o.fps, fps_least);
   check_foveate(o);
 }
@@ -215,11 +210,9 @@ void add_profile(CLI::App& program, Command& command) {
   sub->get_option("--preset")
       ->description(
           "preview: 1280 x 720 an eye; headset: 3660 x 3200 an eye,\n100 degrees (headset, without --size)");
-  sub->add_option("--fps", o.fps,
-                  "Frames begin so often a second, as in a headset of 72, 90 or 120;\n0: as soon as the last "
-                  "one is drawn (90)")
-      ->type_name("N")
-      ->check(between(0.0, 1000.0, "frames a second from 0 to 1000"));
+  add_value(*sub, "--fps", "N", o.fps, between(0.0, 1000.0, "frames a second from 0 to 1000"),
+            "Frames begin so often a second, as in a headset of 72, 90 or 120;\n0: as soon as the last "
+            "one is drawn (90)");
   sub->add_option("-o,--output", o.folder,
                   "Folder for report.html, trace.json, frames.csv and profile.json\n(out/profile)")
       ->type_name("DIR");
@@ -230,7 +223,7 @@ void add_profile(CLI::App& program, Command& command) {
   sub->add_flag_callback(
       "--no-clock", [&o] { o.asks_clock = false; },
       "Do not ask the driver for the GPU's clock meanwhile, which it may take\ntime for");
-  for (const char* name : not_profiled) sub->get_option(name)->group("");
+  for (const char* name : not_profiled) sub->remove_option(sub->get_option(name));
   sub->footer(
       "trace.json opens in ui.perfetto.dev and chrome://tracing.\n"
       "Examples:\n"
@@ -238,12 +231,8 @@ void add_profile(CLI::App& program, Command& command) {
       "  binosplat profile garden.ply --tour calm --seconds 5 --quality 40 --fps 72\n"
       "  binosplat profile garden.ply --view DSC07956 --fps 0 --compare out/profile/frames.csv -o out/new\n"
       "  binosplat profile demo:room --size 320x180 --seconds 2");
-  sub->parse_complete_callback([sub] {
-    for (const char* name : not_profiled) {
-      if (sub->count(name) > 0) fail("{} is for `binosplat render`: leave it out", name);
-    }
-  });
-  sub->callback([options, &command] {
+  sub->callback([options, sub, &command] {
+    check_together(*sub);
     Lens& lens = options->camera.lens;
     if (lens.preset.empty() && !lens.size) lens.preset = "headset";
     command = [options] { return profile(*options); };

@@ -10,22 +10,23 @@
 
 #include "app/command.h"
 #include "app/command_line.h"
-#include "app/demo_eyes.h"
-#include "app/detail.h"
 #include "app/draw_shots.h"
 #include "app/followed.h"
 #include "app/foveate_options.h"
 #include "app/load_scene.h"
+#include "app/outputs.h"
 #include "app/photos.h"
 #include "app/render_options.h"
-#include "app/render_outputs.h"
-#include "app/render_report.h"
+#include "app/render_table.h"
 #include "app/resume.h"
 #include "app/sequence.h"
 #include "app/shots.h"
+#include "app/together.h"
 #include "app/tour.h"
 #include "app/vr180.h"
 #include "base/log.h"
+#include "demo/city.h"
+#include "demo/room.h"
 #include "formats/cameras_file.h"
 #include "scene/axes.h"
 #include "scene/framing.h"
@@ -46,15 +47,16 @@ void check_any_photo(const std::string& folder, const std::vector<Camera>& camer
 }
 
 // What the model takes on the GPU, and the shot that takes most.
-render::MemoryNeeds memory_needs(render::FrameSettings settings, const Model& model,
-                                 const std::vector<Shot>& shots, std::optional<double> vr180_near,
-                                 const std::optional<stereo::Foveation>& foveate) {
+render::MemoryNeeds memory_needs(const RenderOptions& o, const Work& work, double near_plane,
+                                 const Model& model) {
+  render::FrameSettings settings = settings_of(o.drawing);
   settings.depth_table = {1.0f, {1.0f}};  // not measured yet
   render::MemoryNeeds most;
-  for (const Shot& shot : shots) {
-    const auto needs = vr180_near ? vr180_memory(shot, model, *vr180_near)
-                       : foveate  ? foveated_memory(views_of(shot), *foveate, settings, model)
-                                  : render::memory_needs(render::make_plan(views_of(shot), settings, model));
+  for (const Shot& shot : work.shots) {
+    const std::vector<shared::View> views = views_of(shot);
+    const auto needs = work.outputs.vr180 ? vr180_memory(shot, model, near_plane)
+                       : o.foveate        ? foveated_memory(views, *o.foveate, settings, model)
+                                          : render::memory_needs(render::make_plan(views, settings, model));
     most = {needs.model, std::max(most.frame, needs.frame)};
   }
   return most;
@@ -64,11 +66,16 @@ std::optional<double> finite(const std::optional<double>& metres) {
   return metres && std::isfinite(*metres) ? metres : std::nullopt;
 }
 
-// Whether pictures are for a screen whose distance no option says: both eyes in one, and not for a headset.
-bool seeks_screen(const RenderOptions& o, const OutputPlan& plan) {
-  const bool flat = plan.layout != LAYOUT_SEPARATE && plan.layout != LAYOUT_MULTI_VIEW;
-  return flat && !plan.vr180 && !o.rig.convergence && o.rig.cant.value_or(0.0) == 0.0 &&
-         !o.camera.lens.headset();
+// The shot that tells how far the screen is, which no option says: where pictures are for one, with both eyes
+// in one picture, and not for a headset.
+std::optional<Shot> shot_for_screen(const RenderOptions& o, const Outputs& outputs,
+                                    const std::vector<Shot>& shots) {
+  const bool flat = outputs.layout != LAYOUT_SEPARATE && outputs.layout != LAYOUT_MULTI_VIEW;
+  if (!flat || outputs.vr180 || o.rig.convergence || o.rig.cant.value_or(0.0) != 0.0 ||
+      o.camera.lens.headset())
+    return std::nullopt;
+  const auto head = std::ranges::find_if(shots, [](const Shot& shot) { return !shot.given_eyes; });
+  return head == shots.end() ? std::nullopt : std::optional(*head);
 }
 
 // Of those that are drawn, before the model is read; and that each has a photo of its own.
@@ -96,7 +103,7 @@ void log_model(const std::string& scene, const std::optional<int>& decode, const
 }
 
 // Those that options or a saved pose choose; none where they are to be made up.
-CameraList find_list(const RenderOptions& o, const OutputPlan& plan) {
+CameraList find_list(const RenderOptions& o, const Outputs& outputs) {
   const auto saved = find_saved(o.scene);
   // Photos are of the cameras that the model was trained on.
   if (const auto pose = o.output.photos.empty() ? saved_camera(o.scene, o.camera, saved) : std::nullopt) {
@@ -104,35 +111,71 @@ CameraList find_list(const RenderOptions& o, const OutputPlan& plan) {
     return *pose;
   }
   CameraList list = listed_cameras(o.scene, o.camera, o.rig, saved);
-  if (o.camera.tour) return go_on_tour(o.scene, o.camera, o.rig, *plan.fps, std::move(list));
-  if (!o.camera.path.empty()) return go_along_path(o.camera, plan.fps, !plan.video.empty(), std::move(list));
+  if (o.camera.tour) return go_on_tour(o.scene, o.camera, o.rig, *outputs.fps, std::move(list));
+  if (!o.camera.path.empty()) return go_along_path(o.camera, outputs.fps, outputs.video, std::move(list));
   return list;
+}
+
+// What the cameras become: the views that are drawn, and the files of each.
+std::vector<Shot> plan_shots(const RenderOptions& o, const Work& work, const std::vector<fs::path>& sequence,
+                             double near_plane, const ModelAxes& axes) {
+  std::vector<Shot> shots = make_shots(o.camera.views, o.camera.lens, o.rig, work.list, near_plane, axes);
+  if (work.outputs.vr180) {
+    for (Shot& shot : shots) level(shot, up_of(o.camera, work.list.known));
+  }
+  if (!sequence.empty()) show_in_turn(sequence, shots);
+  place_files(work.outputs, o.output.json, shots);
+  return shots;
 }
 
 // Leaves the shots that this run is to draw. What tells it from others, with --resume.
 std::optional<ordered_json> take_what_is_left(const RenderOptions& o, double near_plane, Work& work) {
+  const fs::path& folder = work.outputs.folder;
+  const std::size_t all = work.shots.size();
   std::optional<ordered_json> run;
   if (o.resume) run = identity_of(o, work.list, near_plane, work.shots);
-  const std::size_t all = work.shots.size();
   take_share(o.shard, work.shots);
   if (!o.shard.all())
     log_info("--shard {}/{}: {} of {} views", o.shard.index + 1, o.shard.count, work.shots.size(), all);
   if (run) {
-    leave_out_drawn(work.plan, *run, work.shots);
+    leave_out_drawn(folder, *run, work.shots);
   } else {
-    forget_run(work.plan);
+    forget_run(folder);
   }
   return run;
+}
+
+// A built-in scene's own views are drawn, where no option says anything of eyes, screen, lens or way, with a
+// pair of eyes and a screen that make all of them comfortable (stereo/comfort.h). A head's eyes with the
+// screen infinitely far, as for models, ask for more than that of whoever looks at the pictures on a screen.
+RenderOptions with_eyes_of_demo(RenderOptions o) {
+  const bool asked = o.rig.places_eyes() || o.rig.units_per_metre || o.camera.lens.headset() ||
+                     o.camera.lens.vr180() || !o.camera.file.empty() || o.camera.made_up() ||
+                     o.camera.along_path();
+  if (asked || o.rig.mono || !is_built_in(o.scene.name)) return o;
+  if (o.scene.name == demo_room_name) {
+    // A plant stands half a metre from the first view, and that looks out of the window.
+    o.rig.ipd = 0.020;
+    o.rig.convergence = 1.2;
+    log_info(
+        "{}: eyes 20 mm apart and the screen at 1.2 m, which is comfortable so near to its plant (--ipd 63mm "
+        "--convergence inf: as a head sees it)",
+        o.scene.name);
+  } else if (o.scene.name == demo_city_name) {
+    o.rig.convergence = 5.0;
+    log_info("{}: the screen at 5 m (--convergence METRES for another, or inf)", o.scene.name);
+  }
+  return o;
 }
 
 ExitCode render(const RenderOptions& asked) {
   check(asked);
   RenderOptions o = with_eyes_of_demo(asked);
   std::unique_ptr<gl::Context> context;  // outlives what draws with it
-  Work work{.plan = plan_outputs(o), .calibrated = CalibratedSettings(o.drawing)};
+  Work work{.outputs = outputs_of(o), .calibrated = CalibratedSettings(o.drawing)};
   const std::vector<fs::path> sequence = sequence_of(o);
   if (!sequence.empty()) o.scene.name = sequence[0].string();
-  work.list = find_list(o, work.plan);
+  work.list = find_list(o, work.outputs);
   check_views(o.camera.views, o.rig.mono, work.list);
   work.photos = photo_source(o.scene.name, photos_folder(o.output.photos, work.list), o.output.exposure);
   note_photos(work.photos.folder);
@@ -140,7 +183,7 @@ ExitCode render(const RenderOptions& asked) {
   const render::FrameSettings settings = settings_of(o.drawing);
   std::optional<DetailBudget> budget;
   if (o.scene.detail || may_share(o)) {
-    work.heads_turn = work.list.path || work.plan.vr180;  // such a picture shows what lies beside the view
+    work.heads_turn = work.list.path || work.outputs.vr180;  // such a picture shows what lies beside the view
     work.stream = open_for_shots(o.scene, settings, work.heads_turn);
     if (!o.scene.detail && !work.stream->files().has_errors()) work.stream.reset();
   }
@@ -158,22 +201,14 @@ ExitCode render(const RenderOptions& asked) {
   }
   const Model& model = work.stream ? work.stream->model() : loaded;
   log_model(o.scene.name, o.drawing.decode, model, work.stream.get());
+  work.calibrated.check_model(model, settings);
   if (!work.list.listed) work.list = made_up_cameras(o.scene, o.camera, work.list.known, model);
 
   const double near_plane = near_plane_of(o.camera, work.list);
-  work.shots = make_shots(o.camera.views, o.camera.lens, o.rig, work.list, near_plane, model.axes);
-  if (work.plan.vr180) {
-    for (Shot& shot : work.shots) level(shot, up_of(o.camera, work.list.known));
-  }
-  if (!sequence.empty()) show_in_turn(sequence, work.shots);
-  check_shots(work.plan, work.shots, o.output.json);
+  work.shots = plan_shots(o, work, sequence, near_plane, model.axes);
   if (!work.photos.folder.empty() && !work.list.listed)
     check_any_photo(work.photos.folder, work.list.cameras);
-  if (seeks_screen(o, work.plan)) {
-    const auto head =
-        std::find_if(work.shots.begin(), work.shots.end(), [](const Shot& shot) { return !shot.given_eyes; });
-    if (head != work.shots.end()) work.screen = *head;
-  }
+  work.screen = shot_for_screen(o, work.outputs, work.shots);
   const std::vector<shared::View> first =
       views_of(work.shots[0]);  // whichever part of the views is drawn here
   const std::optional<ordered_json> run = take_what_is_left(o, near_plane, work);
@@ -183,19 +218,18 @@ ExitCode render(const RenderOptions& asked) {
     work.stream->gpu_model(*context, settings.precision);
     work.stream->settle(first, settings);
   }
-  const auto vr180_near = work.plan.vr180 ? std::optional(near_plane) : std::nullopt;
   RenderReport report{o,
+                      work.outputs,
                       model,
                       *context,
                       near_plane,
-                      memory_needs(settings, model, work.shots, vr180_near, o.foveate),
-                      finite(o.rig.convergence),
-                      {},
-                      {}};
-  print_needs(report.needs);
-  if (o.output.output.empty()) claim_folder(work.plan.folder, asked.scene.name);
+                      memory_needs(o, work, near_plane, model),
+                      finite(o.rig.convergence)};
+  log_info("GPU memory: {} for the model, at least {} for a frame", megabytes(report.needs.model),
+           megabytes(report.needs.frame));
+  if (o.output.output.empty()) claim_folder(work.outputs.folder, asked.scene.name);
   draw_all(*context, work, report);
-  check_alone(work.plan, run);
+  check_alone(work.outputs.folder, run);
   print(report);
   if (!o.output.json.empty()) save(o.output.json, report);
   return ExitCode::done;
@@ -224,6 +258,7 @@ void add_render(CLI::App& program, Command& command) {
       "  binosplat render garden.ply --view all --shard $I/8 --resume -o out     # on 8 machines\n"
       "  binosplat render garden.ply --tour 0.5,30 --seconds 2 --preset headset --quality 40 -o frames");
   sub->callback([options, sub, &command] {
+    check_together(*sub);
     options->given = options_given(*sub);
     command = [options] { return render(*options); };
   });

@@ -6,6 +6,7 @@
 
 #include "app/foveate_options.h"
 #include "app/option_checks.h"
+#include "app/together.h"
 #include "app/tour.h"
 #include "app/vr180.h"
 #include "base/error.h"
@@ -15,45 +16,6 @@
 namespace binosplat::app {
 
 namespace {
-
-void check_cameras(const CameraOptions& o, const OutputOptions& output, bool frames) {
-  if (o.eye.has_value() != o.at.has_value())
-    fail("--eye and --at go together: where the camera is, and what it looks at");
-  if (o.eye && o.orbit) fail("--eye and --orbit: choose one of them");
-  if (o.made_up() && (!o.file.empty() || !o.views.empty())) {
-    fail("{} makes its own camera: leave --cameras and --view out", o.eye ? "--eye" : "--orbit");
-  }
-  const bool others = o.made_up() || !o.views.empty() || frames;
-  if (o.tour && (others || !o.path.empty())) {
-    fail(
-        "--tour goes through all cameras of the scene or of --cameras, each frame drawn once: leave --view, "
-        "--path, --eye, --orbit and --frames out");
-  }
-  if (o.tour && !output.photos.empty())
-    fail("--photos with --tour: between the cameras no photos were taken");
-  if (o.seconds && !o.along_path())
-    fail("--seconds is for --tour, how much of it is drawn, and for --path, how long its way takes");
-  if (o.keys && (o.path.empty() || o.seconds))
-    fail("--keys draws the keys of --path FILE alone: name that, and leave --seconds out");
-  if (!o.path.empty() && (others || !o.file.empty())) {
-    fail(
-        "--path names its own cameras, each frame drawn once: leave --cameras, --view, --eye, --orbit and "
-        "--frames "
-        "out");
-  }
-  if (o.fov && o.lens.headset())
-    fail("--fov with --preset headset: the preset's lens has 100 degrees across");
-}
-
-// What needs both eyes, or the camera itself.
-void check_eyes(const RigOptions& rig, const DrawingOptions& drawing, const OutputOptions& output) {
-  if (rig.one_picture() && drawing.decode == DECODE_CYCLOPEAN)
-    fail("--decode cyclopean is for both eyes together: leave --mono and --only out");
-  if (rig.one_picture() && output.show == SHOW_DISAGREEMENT)
-    fail("--show disagreement is between both eyes: leave --mono and --only out");
-  if (!rig.mono && !output.photos.empty())
-    fail("--photos needs --mono: a photo shows what the camera sees, not an eye beside it");
-}
 
 // What is drawn in parts must not go by what would have been drawn before it.
 void check_regions(const RenderOptions& o) {
@@ -75,8 +37,6 @@ void check_regions(const RenderOptions& o) {
         "the path in one run, or take another --transmittance",
         part, transmittance_choices[o.drawing.transmittance].name);
   }
-  if (o.resume && !(o.output.json.empty() && o.output.photos.empty()))
-    fail("--json and --photos tell of all views, and --resume leaves out those that are there: choose");
 }
 
 // What a window that goes where its user goes does not do.
@@ -120,25 +80,20 @@ void add_view_options(CLI::App& sub, RenderOptions& o) {
   add_look_options(sub, o.output, true);
   sub.add_option("-o,--output", o.output.output, "A folder for pictures and paths (out/SCENE)")
       ->type_name("DIR");
-  sub.add_option(
-         "--fps", o.output.fps,
-         "Of a folder with the models of a moving scene: show so many a second, or\nas many as can be "
-         "read")
-      ->type_name("N")
-      ->check(fps_range);
+  add_value(
+      sub, "--fps", "N", o.output.fps, fps_range,
+      "Of a folder with the models of a moving scene: show so many a second, or\nas many as can be read");
   add_headset_options(sub, o.headset);
   add_foveate_option(sub, o.foveate);
   sub.get_option("--foveate")->group("Headset");
   sub.option_defaults()->group("Options");
   sub.get_option("--size")->description("Pixels of the window (1280x720, or more where displays are dense)");
   sub.get_option("--view")->description("The camera to start at, by name (the first)")->type_name("NAME");
-  for (const char* name : render_only) sub.get_option(name)->group("");  // understood, but in no help
+  for (const char* name : render_only) sub.remove_option(sub.get_option(name));
   for (const char* name : not_in_windows) sub.get_option(name)->group("Headset");
   sub.footer(keys_text());
   sub.parse_complete_callback([&sub, &o] {
-    for (const char* name : render_only) {
-      if (sub.count(name) > 0) fail("{} is for `binosplat render`: leave it out", name);
-    }
+    check_together(sub);
     for (const char* name : not_in_windows) {
       if (sub.count(name) > 0 && !o.headset.xr)
         fail("{} is for `binosplat render`, and for --xr: leave it out", name);
@@ -163,10 +118,15 @@ void check(const RenderOptions& o) {
         "levels get half of what may be lost",
         *o.scene.detail->db, *o.drawing.quality);
   }
-  check_cameras(o.camera, o.output, o.drawing.frames > 1);
+  if (o.camera.seconds && !o.camera.along_path())
+    fail("--seconds is for --tour, how much of it is drawn, and for --path, how long its way takes");
+  if (o.camera.fov && o.camera.lens.headset())
+    fail("--fov with --preset headset: the preset's lens has 100 degrees across");
   check(o.drawing);
-  check(o.rig);
-  check_eyes(o.rig, o.drawing, o.output);
+  if (o.rig.one_picture() && o.drawing.decode == DECODE_CYCLOPEAN)
+    fail("--decode cyclopean is for both eyes together: leave --mono and --only out");
+  if (o.rig.one_picture() && o.output.show == SHOW_DISAGREEMENT)
+    fail("--show disagreement is between both eyes: leave --mono and --only out");
   if (o.drawing.reference_until == render::Stage::blend && o.output.show >= SHOW_ALPHAS) {
     fail("--show {}: the GPU's blend tells it, which --reference-until blend leaves out",
          show_choices[o.output.show].name);

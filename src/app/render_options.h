@@ -38,8 +38,7 @@ void add_picture_options(CLI::App& sub, RenderOptions& options, bool in_window);
 /// end it with CLI::ParseError or Error.
 void add_options(CLI::App& sub, RenderOptions& options);
 
-/// Adds those that the preview takes; those that only `render` has end the parsing with an Error that names
-/// them. The help ends with the window's keys.
+/// Adds those that the preview takes. The help ends with the window's keys.
 void add_view_options(CLI::App& sub, RenderOptions& options);
 
 /// Whether --quality is for levels of detail, too, if the scene has any that tell what they lose.

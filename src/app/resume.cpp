@@ -41,15 +41,6 @@ std::string views_key(const std::vector<Shot>& shots) {
 
 fs::path steps_of(const fs::path& result) { return fs::path(result) += ".unfinished"; }
 
-std::optional<std::string> first_there(const OutputPlan& plan, const std::vector<Shot>& shots) {
-  for (const Shot& shot : shots) {
-    for (const std::string& picture : files_of(plan, shot)) {
-      if (fs::exists(picture)) return picture;
-    }
-  }
-  return std::nullopt;
-}
-
 }  // namespace
 
 std::vector<std::string> options_given(const CLI::App& sub) {
@@ -75,40 +66,44 @@ ordered_json identity_of(const RenderOptions& o, const CameraList& list, double 
   return ordered_json::parse(run.dump(-1, ' ', false, ordered_json::error_handler_t::replace));
 }
 
-void leave_out_drawn(const OutputPlan& plan, const ordered_json& run, std::vector<Shot>& shots) {
-  const fs::path file = plan.folder / render_run_name;
-  // Pictures first: whoever draws them has written the file before.
-  const std::optional<std::string> picture = first_there(plan, shots);
-  if (picture && !fs::exists(file))
+void leave_out_drawn(const fs::path& folder, const ordered_json& run, std::vector<Shot>& shots) {
+  const fs::path file = folder / render_run_name;
+  const auto is_there = [](const PictureFile& picture) { return fs::exists(picture.name); };
+  for (const Shot& shot : shots) {
+    // Pictures first: whoever draws them has written the file before.
+    const auto picture = std::ranges::find_if(shot.files, is_there);
+    if (picture == shot.files.end()) continue;
+    if (fs::exists(file)) break;
     fail(
         "{}: nothing says how it was drawn, so that --resume cannot go on from it. Name another folder with "
         "-o, or remove it",
-        *picture);
+        picture->name);
+  }
   claim_run(file, run, "pictures");
   const std::size_t all = shots.size();
   std::size_t cut = 0;
   const std::size_t there = std::erase_if(shots, [&](const Shot& shot) {
-    const std::vector<std::string> files = files_of(plan, shot);
-    if (!std::ranges::all_of(files, [](const std::string& name) { return fs::exists(name); })) return false;
-    const bool whole = std::ranges::all_of(files, [](const std::string& name) { return is_whole(name); });
+    if (!std::ranges::all_of(shot.files, is_there)) return false;
+    const bool whole =
+        std::ranges::all_of(shot.files, [](const PictureFile& picture) { return is_whole(picture.name); });
     cut += whole ? 0 : 1;
     return whole;
   });
-  log_info("{} of {} views are in {} already", there, all, plan.folder.string());
+  log_info("{} of {} views are in {} already", there, all, folder.string());
   if (cut > 0)
     log_warning("{} of the views there {} cut short, and drawn again", cut, cut == 1 ? "is" : "are");
 }
 
-void check_alone(const OutputPlan& plan, const std::optional<ordered_json>& run) {
-  if (plan.folder.empty()) return;
-  const fs::path file = plan.folder / render_run_name;
+void check_alone(const fs::path& folder, const std::optional<ordered_json>& run) {
+  if (folder.empty()) return;
+  const fs::path file = folder / render_run_name;
   const bool there = fs::exists(file);
   if (there && run) return check_same_run(file, *run, "pictures");
   if (there || run)
     fail(
         "{}: another run has drawn into the folder meanwhile, and its pictures may be among these: draw them "
         "again, in a folder of their own",
-        plan.folder.string());
+        folder.string());
 }
 
 lab::Keep keep_steps(const fs::path& result, const MeasuredOptions& options, const Exposures& exposures,
@@ -133,9 +128,9 @@ void forget_steps(const fs::path& result) {
   fs::remove_all(steps_of(result), ignored);
 }
 
-void forget_run(const OutputPlan& plan) {
+void forget_run(const fs::path& folder) {
   std::error_code ignored;
-  if (!plan.folder.empty()) fs::remove(plan.folder / render_run_name, ignored);
+  if (!folder.empty()) fs::remove(folder / render_run_name, ignored);
 }
 
 }  // namespace binosplat::app

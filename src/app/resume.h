@@ -1,6 +1,7 @@
 #pragma once
 // render --resume: what an earlier run of the same kind has drawn is left as it is.
 
+#include <filesystem>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
@@ -9,7 +10,6 @@
 #include "app/cli.h"
 #include "app/measured_options.h"
 #include "app/render_options.h"
-#include "app/render_outputs.h"
 #include "app/shots.h"
 #include "formats/exposures.h"
 #include "lab/calibrate.h"
@@ -28,7 +28,8 @@ nlohmann::ordered_json identity_of(const RenderOptions& options, const CameraLis
 /// Takes the shots off whose files are all in the folder, whole, and says how many these are. That they are
 /// of this run is told by a file beside them, which the first run writes. Throws Error where it is of another
 /// run, and where there are files and none that tells of them.
-void leave_out_drawn(const OutputPlan& plan, const nlohmann::ordered_json& run, std::vector<Shot>& shots);
+void leave_out_drawn(const std::filesystem::path& folder, const nlohmann::ordered_json& run,
+                     std::vector<Shot>& shots);
 
 /// Keeps what is measured for the file `result` beside it until forget_steps(), for runs of the same kind,
 /// which go on from there when one is ended: of the same options, content of files and device.
@@ -36,11 +37,11 @@ lab::Keep keep_steps(const std::filesystem::path& result, const MeasuredOptions&
                      const Exposures& exposures, const CameraList& list, const gl::Context& context);
 void forget_steps(const std::filesystem::path& result);
 
-/// For runs that draw all: what they leave in the folder is not what the file there tells of.
-void forget_run(const OutputPlan& plan);
+/// For runs that draw all: what they leave in the folder, if it is one, is not what the file there tells of.
+void forget_run(const std::filesystem::path& folder);
 
 /// After the last shot: throws Error if a run of another kind began to draw into the folder since this one,
 /// which was handed `run` to leave_out_drawn(), or nothing and called forget_run().
-void check_alone(const OutputPlan& plan, const std::optional<nlohmann::ordered_json>& run);
+void check_alone(const std::filesystem::path& folder, const std::optional<nlohmann::ordered_json>& run);
 
 }  // namespace binosplat::app

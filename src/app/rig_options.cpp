@@ -48,11 +48,8 @@ double parse_convergence(const std::string& text) {
 }  // namespace
 
 CLI::Option* add_ipd_option(CLI::App& sub, RigOptions& o) {
-  return sub
-      .add_option_function<std::string>(
-          "--ipd", [&o](const std::string& text) { o.ipd = parse_ipd(text); },
-          "Distance between the eyes, in metres or with a unit: 64mm, 3m (0.063)")
-      ->type_name("METRES");
+  return add_parsed(sub, "--ipd", "METRES", o.ipd, parse_ipd,
+                    "Distance between the eyes, in metres or with a unit: 64mm, 3m (0.063)");
 }
 
 void add_rig_options(CLI::App& sub, RigOptions& o) {
@@ -60,22 +57,12 @@ void add_rig_options(CLI::App& sub, RigOptions& o) {
   sub.add_flag("--mono", o.mono, "Draw the camera itself, one picture");
   choose<int>(sub, "--only", o.only, "Draw one eye of the pair", {{"left", 0}, {"right", 1}});
   add_ipd_option(sub, o);
-  sub.add_option("--units-per-metre", o.units_per_metre, "World units that make a metre (1)")
-      ->type_name("N")
-      ->check(positive);
-  sub.add_option_function<std::string>(
-         "--convergence", [&o](const std::string& text) { o.convergence = parse_convergence(text); },
-         "Distance without disparity, where the screen stands, in metres or with\na unit: 80cm; inf: "
-         "infinitely far (what suits the first view where one\npicture has both eyes, as for screens; else "
-         "inf)")
-      ->type_name("METRES|inf");
+  add_value(sub, "--units-per-metre", "N", o.units_per_metre, positive, "World units that make a metre (1)");
+  add_parsed(sub, "--convergence", "METRES|inf", o.convergence, parse_convergence,
+             "Distance without disparity, where the screen stands, in metres or with\na unit: 80cm; inf: "
+             "infinitely far (what suits the first view where one\npicture has both eyes, as for screens; "
+             "else inf)");
   sub.add_option("--cant", o.cant, "Turn each eye outwards (0)")->type_name("DEGREES");
-}
-
-void check(const RigOptions& o) {
-  if (o.mono && o.only)
-    fail("--mono draws the camera itself and --only an eye beside it: choose one of them");
-  if (o.mono && o.places_eyes()) fail("--mono has no rig: leave --ipd, --convergence and --cant out");
 }
 
 }  // namespace binosplat::app

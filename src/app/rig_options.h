@@ -30,7 +30,4 @@ void add_rig_options(CLI::App& sub, RigOptions& options);
 /// One of them, for commands that take few.
 CLI::Option* add_ipd_option(CLI::App& sub, RigOptions& options);
 
-/// Throws Error for options that contradict each other.
-void check(const RigOptions& options);
-
 }  // namespace binosplat::app

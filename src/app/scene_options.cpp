@@ -28,19 +28,14 @@ void add_scene_options(CLI::App& sub, SceneOptions& o) {
       ->required();
   sub.option_defaults()->group("Scene");
   add_lod_option(sub, o, "Level of detail of a streamed SOG, 0 the finest (the finest that\nis there)");
-  sub.add_option_function<std::string>(
-         "--detail", [&o](const std::string& text) { o.detail = parse_detail(text); },
-         "Of a streamed SOG instead: for each view levels whose Gaussians are\nseen no farther than PX "
-         "apart, the same for both eyes (render: the\nfinest, always; view: 0); 0: the finest that fit; or "
-         "as in 40dB\n(20dB to 80dB) those that cost so much against the finest, of files\nthat tell their "
-         "levels' errors")
-      ->type_name("PX|DB");
-  sub.add_option(
-         "--gpu-memory", o.gpu_memory,
-         "Of a streamed SOG: levels, near the eyes the finest, that fit in so\nmany MB; for each view "
-         "with --detail, else one choice for all")
-      ->type_name("MB")
-      ->check(positive);
+  add_parsed(sub, "--detail", "PX|DB", o.detail, parse_detail,
+             "Of a streamed SOG instead: for each view levels whose Gaussians are\nseen no farther than PX "
+             "apart, the same for both eyes (render: the\nfinest, always; view: 0); 0: the finest that fit; "
+             "or as in 40dB\n(20dB to 80dB) those that cost so much against the finest, of files\nthat tell "
+             "their levels' errors");
+  add_value(sub, "--gpu-memory", "MB", o.gpu_memory, positive,
+            "Of a streamed SOG: levels, near the eyes the finest, that fit in so\nmany MB; for each view "
+            "with --detail, else one choice for all");
   add_axes_option(sub, o);
   auto* antialias = sub.add_flag_callback(
       "--antialias", [&o] { o.antialias = true; },
@@ -49,67 +44,51 @@ void add_scene_options(CLI::App& sub, SceneOptions& o) {
   sub.add_flag_callback(
          "--no-antialias", [&o] { o.antialias = false; }, "Draw as one that was not")
       ->excludes(antialias);
-  sub.add_option(
-         "--kernel-px2", o.kernel_px2,
-         "Variance of the low-pass of projected Gaussians in px^2 (0.3; 0.1\nfor Mip-Splatting's files)")
-      ->type_name("S")
-      ->check(positive);
-  sub.add_option("--appearance", o.appearance,
-                 "Which of the appearances that a Scaffold-GS model was trained with\n(0)")
-      ->type_name("ID")
-      ->check(whole_number);
+  add_value(sub, "--kernel-px2", "S", o.kernel_px2, positive,
+            "Variance of the low-pass of projected Gaussians in px^2 (0.3; 0.1\nfor Mip-Splatting's files)");
+  add_value(sub, "--appearance", "ID", o.appearance, whole_number,
+            "Which of the appearances that a Scaffold-GS model was trained with\n(0)");
   add_seed_option(sub, o);
   add_count_option(sub, o, "Gaussians of demo:city, 10000 to 100000000 (1000000)");
   add_repeat_options(sub, o);
 }
 
 CLI::Option* add_lod_option(CLI::App& sub, SceneOptions& o, const char* help) {
-  return sub.add_option("--lod", o.lod, help)->type_name("N")->check(range(0, 100));
+  return add_value(sub, "--lod", "N", o.lod, range(0, 100), help);
 }
 
 CLI::Option* add_axes_option(CLI::App& sub, SceneOptions& o) {
-  return sub
-      .add_option_function<std::string>(
-          "--axes",
-          [&o](const std::string& text) {
-            for (const char c : text)
-              o.axes += static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
-            world_from_axes(o.axes);
-          },
-          "Where the model's x, y and z point in the cameras' world, by Right\nor Left, Up or Down, Forward "
-          "or Back, as in rdf, rub (the format's;\nof an spz that does not say: by its cameras)")
-      ->type_name("XYZ");
+  const auto parse = [](std::string axes) {
+    for (char& c : axes) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+    world_from_axes(axes);
+    return axes;
+  };
+  return add_parsed(
+      sub, "--axes", "XYZ", o.axes, parse,
+      "Where the model's x, y and z point in the cameras' world, by Right\nor Left, Up or Down, "
+      "Forward or Back, as in rdf, rub (the format's;\nof an spz that does not say: by its "
+      "cameras)");
 }
 
 void add_repeat_options(CLI::App& sub, SceneOptions& o) {
-  sub.add_option_function<std::string>(
-         "--repeat",
-         [&o](const std::string& text) {
-           o.repeat = parse_two("--repeat", text, "copies along x and z as NXxNZ, for one 4x4");
-         },
-         "Copies of the scene along x and z; needs --spacing")
-      ->type_name("NXxNZ");
-  sub.add_option("--spacing", o.spacing, "From one copy to the next, in world units")
-      ->type_name("S")
-      ->check(positive);
+  const auto parse = [](const std::string& text) {
+    return parse_two("--repeat", text, "copies along x and z as NXxNZ, for one 4x4");
+  };
+  add_parsed(sub, "--repeat", "NXxNZ", o.repeat, parse, "Copies of the scene along x and z; needs --spacing");
+  add_value(sub, "--spacing", "S", o.spacing, positive, "From one copy to the next, in world units");
 }
 
 CLI::Option* add_seed_option(CLI::App& sub, SceneOptions& o) {
-  return sub.add_option("--seed", o.seed, "Which demo:city (1)")->type_name("N")->check(whole_number);
+  return add_value(sub, "--seed", "N", o.seed, whole_number, "Which demo:city (1)");
 }
 
 CLI::Option* add_count_option(CLI::App& sub, SceneOptions& o, const char* help) {
-  return sub.add_option("--count", o.count, help)->type_name("N")->check(whole_number);
+  return add_value(sub, "--count", "N", o.count, whole_number, help);
 }
 
 void check(const SceneOptions& o) {
   if (o.name != demo_city_name && (o.seed || o.count))
     fail("{} is for {}, and {} is none", o.seed ? "--seed" : "--count", demo_city_name, o.name);
-  if (o.lod && (o.gpu_memory || o.detail)) {
-    fail("--lod and {} both choose the levels of detail: leave one of them out",
-         o.gpu_memory ? "--gpu-memory" : "--detail");
-  }
-  if (o.detail && o.repeat) fail("--detail and --repeat: copies have one level of detail for all");
   const char* const of_files = o.lod             ? "--lod"
                                : o.gpu_memory    ? "--gpu-memory"
                                : o.detail        ? "--detail"

@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "app/option_checks.h"
 #include "base/error.h"
 #include "base/numbers.h"
 
@@ -18,10 +19,7 @@ Shard parse_shard(const std::string& text) {
 }  // namespace
 
 CLI::Option* add_shard_option(CLI::App& sub, Shard& shard, const std::string& help) {
-  return sub
-      .add_option_function<std::string>(
-          "--shard", [&shard](const std::string& text) { shard = parse_shard(text); }, help)
-      ->type_name("I/N");
+  return add_parsed(sub, "--shard", "I/N", shard, parse_shard, help);
 }
 
 }  // namespace binosplat::app

@@ -25,15 +25,22 @@ struct Eye {
   shared::View view;
 };
 
-/// What one frame draws.
+/// A file of a shot: the picture of one of its eyes, or of both in one.
+struct PictureFile {
+  std::string name;
+  std::optional<std::size_t> eye;
+};
+
+/// What one frame draws, and where it goes.
 struct Shot {
   std::string name;   // the view's, as the user knows it
   std::string stem;   // of its files: stem_of() the name, unique among the shots
   std::string model;  // its file, where each shot has another one (app/sequence.h)
   std::vector<Eye> eyes;
-  std::optional<double> ipd;     // m, where there is a rig
-  double units_per_metre = 1.0;  // world units
-  bool given_eyes = false;       // as a pair by the cameras
+  std::vector<PictureFile> files;  // of `render`: by place_files() (app/outputs.h)
+  std::optional<double> ipd;       // m, where there is a rig
+  double units_per_metre = 1.0;    // world units
+  bool given_eyes = false;         // as a pair by the cameras
 };
 
 /// What goes for a rig and for cameras that are made up where no option says it.

@@ -17,7 +17,7 @@ void add_split_options(CLI::App& sub, MeasuredOptions& measured, SplitOptions& s
                        const char* views_help) {
   sub.add_option("--cameras", measured.camera.file, "Cameras, where they are not beside the model")
       ->type_name("FILE");
-  sub.add_option("--views", split.held_back, views_help)->type_name("N")->check(range(1, 10000));
+  add_value(sub, "--views", "N", split.held_back, range(1, 10000), views_help);
   add_names_option(sub, "--held-back", split.judges,
                    "Views by name to hold back instead, as A,B: photos that the model was\nnot trained on "
                    "judge best")

@@ -119,10 +119,8 @@ void add_studied_options(CLI::App& sub, StudyOptions& o) {
                    "default: 8, evenly spread");
   add_names_option(sub, "--test", o.analyses.test, "Views to test on; default: those held out, at most 24");
   add_hold_out_option(sub, o.analyses.hold_out);
-  sub.add_option("--far", o.analyses.far,
-                 "Where the table by depth of AdaGScale's own protocol ends, world units (100)")
-      ->type_name("DEPTH")
-      ->check(positive);
+  add_value(sub, "--far", "DEPTH", o.analyses.far, positive,
+            "Where the table by depth of AdaGScale's own protocol ends, world units (100)");
   add_photos_options(
       sub, o,
       "DIR/NAME.jpg or .png of the views: tolerances for 0.1 to 0.5 dB;\nwith --turn what each "
@@ -137,9 +135,8 @@ void add_studied_options(CLI::App& sub, StudyOptions& o) {
   sub.add_flag("--mono", o.rig.mono, "With --motion, --turn and --levels: the cameras themselves, no rig");
   add_measured_options(sub, o);
   add_ipd_option(sub, o.rig);
-  sub.add_option("--units-per-metre", o.rig.units_per_metre, "World units that make a metre (1)")
-      ->type_name("U")
-      ->check(positive);
+  add_value(sub, "--units-per-metre", "U", o.rig.units_per_metre, positive,
+            "World units that make a metre (1)");
   sub.add_option("--json", o.json, "Write everything as JSON")->type_name("FILE");
 }
 
@@ -190,11 +187,9 @@ void add_study(CLI::App& program, Command& command) {
   add_rule_option(*sub, o.rules);
   add_motion_options(*sub, o.motion);
   add_levels_options(*sub, o);
-  sub->add_option(
-         "--frames", o.frames,
-         "Timed of each setting in each of three rounds (24);\nwith --motion: that move, of a segment (60)")
-      ->type_name("N")
-      ->check(range(1, 10000));
+  add_value(
+      *sub, "--frames", "N", o.frames, range(1, 10000),
+      "Timed of each setting in each of three rounds (24);\nwith --motion: that move, of a segment (60)");
   sub->add_option("--path", o.camera.path,
                   "With --motion: along the cameras of this file, through keys 90 frames a second")
       ->type_name("FILE");
@@ -202,9 +197,8 @@ void add_study(CLI::App& program, Command& command) {
       ->excludes(sub->get_option("--no-equal"))
       ->type_name("DB")
       ->check(quality_range);
-  sub->add_option("--quality", o.quality, "With --motion: dB that every rule is asked for (40)")
-      ->type_name("DB")
-      ->check(quality_range);
+  add_value(*sub, "--quality", "DB", o.quality, quality_range,
+            "With --motion: dB that every rule is asked for (40)");
   add_studied_options(*sub, o);
   sub->footer(
       "By itself it makes AdaGScale's figures and tables on the scene, by the paper's protocol\n"

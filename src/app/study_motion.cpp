@@ -184,19 +184,15 @@ void add_motion_options(CLI::App& sub, MotionOptions& options) {
       ->type_name("NAME,...")
       ->check(CLI::IsMember(names).description(""));
   const auto count = [&](const char* name, std::size_t& into, const char* help) {
-    sub.add_option(name, into, fmt::format("{} ({})", help, into))->type_name("N")->check(range(0, 10000));
+    add_value(sub, name, "N", into, range(0, 10000), fmt::format("{} ({})", help, into));
   };
-  sub.add_option("--segments", options.segments,
-                 fmt::format("With --motion: stretches, spread evenly along a tour through the cameras ({})",
-                             segments_default))
-      ->type_name("N")
-      ->check(range(1, 1000));
+  add_value(sub, "--segments", "N", options.segments, range(1, 1000),
+            fmt::format("With --motion: stretches, spread evenly along a tour through the cameras ({})",
+                        segments_default));
   count("--lead", options.lengths.lead, "With --motion: frames of a segment before those that count");
   count("--stop", options.lengths.stop, "With --motion: frames at the last pose of a segment that moves");
-  sub.add_option("--rounds", options.rounds,
-                 fmt::format("With --motion: in which frames are timed ({})", options.rounds))
-      ->type_name("N")
-      ->check(range(1, 100));
+  add_value(sub, "--rounds", "N", options.rounds, range(1, 100),
+            fmt::format("With --motion: in which frames are timed ({})", options.rounds));
   sub.add_flag("--no-equal", options.no_equal,
                "With --motion: without the comparison at one true quality, which takes longest");
 }

@@ -6,7 +6,7 @@
 #include <sstream>
 
 #include "app/option_checks.h"
-#include "app/render_outputs.h"
+#include "app/outputs.h"
 #include "base/error.h"
 #include "base/log.h"
 #include "scene/key_path.h"
@@ -46,18 +46,14 @@ std::string motions_help() {
 
 void add_tour_options(CLI::App& sub, CameraOptions& o) {
   sub.option_defaults()->group("Cameras");
-  sub.add_option_function<std::string>(
-         "--tour", [&o](const std::string& text) { o.tour = parse_motion(text); },
-         "Go through all of the cameras as a head does, --fps frames a second\n(90; videos: 30), in metres "
-         "of --units-per-metre; M,DEG: at other speeds" +
-             motions_help())
-      ->type_name("calm|walk|fast|M,DEG");
+  add_parsed(sub, "--tour", "calm|walk|fast|M,DEG", o.tour, parse_motion,
+             "Go through all of the cameras as a head does, --fps frames a second\n(90; videos: 30), in "
+             "metres of --units-per-metre; M,DEG: at other speeds" +
+                 motions_help());
   sub.add_flag("--keys", o.keys, "Draw the keys of --path alone, and not the way through them");
-  sub.add_option("--seconds", o.seconds,
-                 "The first S seconds of the tour (all); or go through the keys of\n--path in S seconds, at "
-                 "an even pace (by their times)")
-      ->type_name("S")
-      ->check(seconds_range);
+  add_value(sub, "--seconds", "S", o.seconds, seconds_range,
+            "The first S seconds of the tour (all); or go through the keys of\n--path in S seconds, at an "
+            "even pace (by their times)");
 }
 
 double tour_fps(const std::optional<double>& fps, bool video) {

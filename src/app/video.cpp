@@ -145,14 +145,14 @@ void Video::fail_with_what_it_said() {
   fail("cannot write {}: ffmpeg ended{}{}", target_.string(), text.empty() ? "" : ": ", text);
 }
 
-std::vector<std::uint8_t> Video::bytes_of(const Image& image) {
-  std::vector<std::uint8_t> bytes(image.data.size());
+std::string Video::bytes_of(const Image& image) {
+  std::string bytes(image.data.size(), 0);
   std::transform(image.data.begin(), image.data.end(), bytes.begin(),
-                 [](float v) { return static_cast<std::uint8_t>(step_of(v, 255.0f)); });
+                 [](float v) { return static_cast<char>(static_cast<std::uint8_t>(step_of(v, 255.0f))); });
   return bytes;
 }
 
-void Video::add(std::span<const std::uint8_t> bytes) {
+void Video::add(std::string_view bytes) {
   for (std::size_t at = 0; at < bytes.size();) {
     const ssize_t sent = send(pictures_, &bytes[at], bytes.size() - at, MSG_NOSIGNAL);
     if (sent < 0 && errno == EINTR) continue;

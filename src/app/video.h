@@ -8,8 +8,8 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
-#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "base/image.h"
@@ -38,10 +38,10 @@ class Video {
   Video& operator=(const Video&) = delete;
 
   /// The bytes of a frame, from RGB.
-  static std::vector<std::uint8_t> bytes_of(const Image& image);
+  static std::string bytes_of(const Image& image);
 
   /// The next frame. Throws Error with what ffmpeg said if it has ended.
-  void add(std::span<const std::uint8_t> bytes);
+  void add(std::string_view bytes);
 
   /// Waits for ffmpeg, then gives the file its name: it appears whole or not at all.
   void finish();

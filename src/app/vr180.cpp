@@ -10,14 +10,6 @@ namespace binosplat::app {
 
 namespace {
 
-// What has no meaning where all rays are drawn exactly, each along its own way.
-constexpr const char* refused[] = {"--fov",        "--convergence",     "--cant",        "--order",
-                                   "--projection", "--tiles",           "--th",          "--tolerance",
-                                   "--quality",    "--transmittance",   "--calibration", "--show",
-                                   "--detail",     "--reference-until", "--photos",      "--precision",
-                                   "--decode",     "--exr-depth",       "--tile",        "--only",
-                                   "--foveate"};
-
 std::vector<Camera> eyes_in_axes(const Shot& shot, const ModelAxes& axes) {
   std::vector<Camera> eyes;
   for (const Eye& eye : shot.eyes) eyes.push_back(into_axes(eye.camera, axes));
@@ -32,18 +24,11 @@ void add_vr180_option(CLI::App& sub, Lens& lens) {
          "All that lies ahead of each eye, 180 degrees wide and high\n"
          "(equirectangular, 2048 x 2048 px an eye, or --size), level, for players of\n"
          "VR180: .png, or .vr.jpg, .mp4 and .mov that say so")
-      ->group("Cameras")
-      ->excludes("--preset");
+      ->group("Cameras");
 }
 
 void check_vr180(const RenderOptions& o) {
   if (!o.camera.lens.vr180()) return;
-  for (const std::string& given : o.given) {
-    for (const char* const name : refused) {
-      if (given.substr(0, given.find(' ')) == name)
-        fail("--vr180 draws both eyes, or --mono, exactly and along rays of its own: leave {} out", name);
-    }
-  }
   if (const auto& size = o.camera.lens.size; size && (size->x != size->y || size->x % 2 != 0)) {
     fail("--size {0}x{1} with --vr180: expected an even number of pixels twice, for one 2880x2880", size->x,
          size->y);
@@ -56,21 +41,6 @@ void check_vr180(const RenderOptions& o) {
   const std::string ending = lowered_ending(o.output.output);
   if (ending == ".mkv" || ending == ".webm")
     fail("-o {}: only .mp4 and .mov can be told to be VR180 here", o.output.output);
-}
-
-void plan_vr180(const RenderOptions& o, OutputPlan& plan) {
-  if (plan.vr_photo &&
-      (o.rig.one_picture() || o.output.layout || !o.output.background || plan.exr || o.output.bits)) {
-    fail(
-        "-o {}: a VR photo holds both eyes, each by itself, opaque and of 8 bits: leave --mono, "
-        "--layout, --exr, --bits and --background none out",
-        o.output.output);
-  }
-  if (!o.output.layout && !o.rig.one_picture() && !plan.exr) plan.layout = LAYOUT_PARALLEL;
-  if (plan.folder.empty()) return;
-  plan.suffix = plan.layout == LAYOUT_PARALLEL     ? "_180_LR"
-                : plan.layout == LAYOUT_OVER_UNDER ? "_180_TB"
-                                                   : "_180";
 }
 
 void level(Shot& shot, const glm::dvec3& up) {

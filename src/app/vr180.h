@@ -3,7 +3,6 @@
 
 #include "app/cli.h"
 #include "app/render_options.h"
-#include "app/render_outputs.h"
 #include "app/shots.h"
 #include "render/memory.h"
 #include "stereo/panorama.h"
@@ -14,9 +13,6 @@ void add_vr180_option(CLI::App& sub, Lens& lens);
 
 /// Throws Error for options that do not go with --vr180, where it is given.
 void check_vr180(const RenderOptions& options);
-
-/// Pictures as players look for them: both eyes in one, and names in a folder that say what they are.
-void plan_vr180(const RenderOptions& options, OutputPlan& plan);
 
 /// Holds the head of a shot level, as one who wears a headset does: it looks where it did (a pair of eyes
 /// between them), seen from above, and the eyes lie level about their middle.

@@ -1,5 +1,5 @@
 // --gpu-memory for models whose parts come later.
-#include "app/detail.h"
+#include "app/followed.h"
 
 #include <gtest/gtest.h>
 

@@ -103,11 +103,11 @@ TEST_F(ProfileCommand, WhatMakesNoSenseIsNamedAndLeavesNothing) {
   test::write_text(folder / "old.csv", "frame,wall_ms\n0,x\n");
   test::write_text(folder / "other.csv", "frame,name\n0,\"x\"\n");
   const std::vector<std::pair<std::vector<std::string>, std::string>> wrong = {
-      {{"--tour", "calm", "--view", "view1"}, "ways of their own: choose one of them"},
+      {{"--tour", "calm", "--view", "view1"}, "--tour with --view"},
       {{"--view", "all"}, "--view stands at one camera: name one"},
       {{"--view", "nobody"}, "nobody"},
       {{"--tour", "crawl"}, "--tour crawl"},
-      {{"--frames", "3"}, "--frames is for `binosplat render`"},
+      {{"--frames", "3"}, "--frames: binosplat profile has no such option"},
       {{"--fps", "-1"}, "frames a second from 0 to 1000"},
       {{"--fps", "1e-9"}, "--fps 1e-09: expected 0, or 0.01 to 1000"},
       {{"--seconds", "1e18"}, "--seconds: 1e18: expected seconds above zero (0.000001 to 1000000)"},
@@ -116,7 +116,7 @@ TEST_F(ProfileCommand, WhatMakesNoSenseIsNamedAndLeavesNothing) {
       {{"--compare", folder / "old.csv"}, "old.csv:2: expected a number or a text in quotes in column 2"},
       {{"--compare", folder / "other.csv"}, "no column wall_ms: expected the frames.csv of a profile"},
       {{"-o", model}, "model.ply"},
-      {{"--eye", "0,0,0"}, "--eye and --at go together"}};
+      {{"--eye", "0,0,0"}, "--eye needs --at"}};
   std::filesystem::remove(folder / "old.csv");
   for (const auto& [options, message] : wrong) {
     if (message.starts_with("old.csv")) test::write_text(folder / "old.csv", "frame,wall_ms\n0,x\n");

@@ -18,10 +18,11 @@ struct Refusals : test::SceneTest {
 
 TEST_F(Refusals, Cameras) {
   expect_refused({
-      {{"--eye", "0,0,0"}, "--eye and --at go together"},
+      {{"--eye", "0,0,0"}, "--eye needs --at"},
       {{"--eye", "0,0,0", "--at", "0,0,0"}, "must look at another point"},
-      {{"--eye", "0,0,0", "--at", "0,0,1", "--view", "front"}, "leave --cameras and --view out"},
-      {{"--orbit", "3", "--eye", "0,0,0", "--at", "0,0,1"}, "choose one"},
+      {{"--eye", "0,0,0", "--at", "0,0,1", "--view", "front"},
+       "--eye with --view: it makes a camera of its own"},
+      {{"--orbit", "3", "--eye", "0,0,0", "--at", "0,0,1"}, "--eye with --orbit"},
       {{"--up", "0,0,1"}, "--up and --fov are for cameras that are made up"},
       {{"--cameras", cameras, "--fov", "50"}, "--up and --fov are for cameras"},
       {{"--eye", "1,2", "--at", "0,0,0"}, "three numbers"},
@@ -47,8 +48,8 @@ TEST_F(Refusals, Cameras) {
 
 TEST_F(Refusals, Eyes) {
   expect_refused({
-      {{"--mono", "--only", "left"}, "choose one"},
-      {{"--mono", "--cant", "1"}, "--mono has no rig"},
+      {{"--mono", "--only", "left"}, "--mono with --only"},
+      {{"--mono", "--cant", "1"}, "--mono with --cant: it has no rig"},
       {{"--cant", "1", "--convergence", "2"}, "--convergence 2 with --cant 1"},
       {{"--ipd", "-1"}, "--ipd -1"},
       {{"--ipd", "63"}, "--ipd 63: that is 63 metres"},
@@ -119,7 +120,7 @@ TEST_F(Refusals, Drawing) {
       {{"--tolerance", "-1"}, "--tolerance"},
       {{"--transmittance", "last"}, "--transmittance has no effect with --th tau"},
       {{"--tolerance", "1", "--transmittance", "last", "--reference-until", "project"}, "--reference-until"},
-      {{"--path", "x.json", "--frames", "3"}, "--path names its own cameras"},
+      {{"--path", "x.json", "--frames", "3"}, "--path with --frames: it names its own cameras"},
       {{"--tiles", "round"}, "see: binosplat render --help"},
       {{"--tile", "12"}, "see: binosplat render --help"},
       {{"--frames", "0"}, "see: binosplat render --help"},
@@ -148,7 +149,7 @@ TEST_F(Refusals, Foveation) {
       {{"--foveate", "gaze=60,0", "--size", "216x144"}, "the inset lies outside the picture of 216 x 144"},
       {{"--foveate", "inset=20,0.4"}, "'0.4' is no WORD=NUMBER"},
       {{"--foveate", "gaze=1,1,2,2", "--mono"}, "two are for both eyes"},
-      {{"--foveate", "inset=20", "--vr180"}, "leave --foveate out"},
+      {{"--foveate", "inset=20", "--vr180"}, "--vr180 with --foveate"},
       {{"--foveate", "inset=20", "--quality", "40"}, "--foveate with --quality"},
       {{"--foveate", "inset=20", "--reference-until", "blend"}, "the reference draws whole pictures"},
       {{"--foveate", "inset=20", "--show", "alphas"}, "--foveate with --show alphas"},
@@ -157,9 +158,9 @@ TEST_F(Refusals, Foveation) {
 }
 
 TEST_F(Refusals, Panoramas) {
-  expect_refused({{{"--quality", "40"}, "leave --quality out"},
-                  {{"--order", "depth"}, "leave --order out"},
-                  {{"--only", "left"}, "leave --only out"},
+  expect_refused({{{"--quality", "40"}, "--vr180 with --quality"},
+                  {{"--order", "depth"}, "--vr180 with --order"},
+                  {{"--only", "left"}, "--vr180 with --only"},
                   {{"--size", "9000x9000"}, "at most 8192"},
                   {{"--size", "32x30"}, "an even number of pixels twice"},
                   {{"-o", folder / "a.vr.jpg", "--exr", "half"}, "--exr"},
@@ -182,20 +183,20 @@ TEST_F(Refusals, ToursAndPaths) {
       {{"--tour", "walk", "--fps", "-1"}, "above zero"},
       {{"--seconds", "1"}, "--seconds is for --tour, how much of it is drawn, and for --path"},
       {{"--fps", "30"}, "--fps is for videos, --tour, --path"},
-      {{"--tour", "walk", "--view", "front"}, "--tour goes through all cameras"},
-      {{"--tour", "walk", "--path", "p.json"}, "leave --view, --path"},
-      {{"--tour", "walk", "--orbit", "3"}, "--orbit"},
-      {{"--tour", "walk", "--eye", "0,0,0", "--at", "0,0,1"}, "--tour goes through all cameras"},
-      {{"--tour", "walk", "--frames", "2"}, "--frames out"},
-      {{"--tour", "walk", "--mono", "--photos", folder.path()}, "--photos with --tour"},
+      {{"--tour", "walk", "--view", "front"}, "--tour with --view: it goes through all cameras"},
+      {{"--tour", "walk", "--path", "p.json"}, "--tour with --path"},
+      {{"--tour", "walk", "--orbit", "3"}, "--tour with --orbit"},
+      {{"--tour", "walk", "--eye", "0,0,0", "--at", "0,0,1"}, "--tour with --eye"},
+      {{"--tour", "walk", "--frames", "2"}, "--tour with --frames"},
+      {{"--tour", "walk", "--mono", "--photos", folder.path()}, "--tour with --photos"},
       {{"--tour", "walk", "--up", "0,0,1"}, "--up and --fov are for cameras that are made up"},
       {{"--tour", "1e-9,1e-9"}, "go faster"},
       {{"--tour", "walk", "--units-per-metre", "1e6"}, "another scale with --units"},
       {{"--tour", "walk", "-o", png}, "name a folder"},
       {{"--path", cameras, "--fps", "30"}, "has frames, each drawn as it is"},
       {{"--path", cameras, "--keys", "--fps", "10"}, "leave one of them out"},
-      {{"--path", cameras, "--keys", "--seconds", "2"}, "leave --seconds out"},
-      {{"--keys"}, "name that"},
+      {{"--path", cameras, "--keys", "--seconds", "2"}, "--keys with --seconds"},
+      {{"--keys"}, "--keys needs --path"},
   });
   test::write_text(cameras, nlohmann::json({test::camera_json("lonely", 0.0)}).dump());
   expect_refused({{{"--tour", "walk"}, "there is 1: name a file of more with --cameras"}});
@@ -212,8 +213,8 @@ TEST_F(Refusals, Shards) {
       {{"--shard", "1/2", "--path", cameras, "--tolerance", "1", "--transmittance", "last"},
        "--shard with --transmittance last along a path"},
       {{"--shard", "1/2", "--path", cameras, "--detail", "1"}, "--shard with --detail"},
-      {{"--resume", "--json", folder / "r.json"}, "--json and --photos tell of all views"},
-      {{"--resume", "--mono", "--photos", folder.path()}, "--json and --photos tell of all views"},
+      {{"--resume", "--json", folder / "r.json"}, "--resume with --json"},
+      {{"--resume", "--mono", "--photos", folder.path()}, "--resume with --photos"},
       {{"--shard", "1/2", "-o", png}, "a.png is one file: name a folder"},
       {{"--resume", "-o", folder / "a.mp4"}, "a.mp4 is one file: name a folder"},
   });

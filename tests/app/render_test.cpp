@@ -198,7 +198,7 @@ TEST_F(Render, JsonHasWhatWasPrinted) {
   EXPECT_EQ(view["units_per_metre"], 2.0);
   EXPECT_EQ(view["depth_orders"], 1);
   EXPECT_GT(view["pairs"].get<int>(), 100);
-  EXPECT_TRUE(has(outcome.out, view["pairs"].dump() + " pairs"));
+  EXPECT_TRUE(has(outcome.out, "  " + view["pairs"].dump() + "  "));
   const json &left = view["eyes"][0], &right = view["eyes"][1];
   EXPECT_EQ(left["eye"], "left");
   EXPECT_DOUBLE_EQ(right["position"][0].get<double>() - left["position"][0].get<double>(), 0.14);

@@ -33,7 +33,7 @@ TEST_F(RenderShow, EveryChoiceIsAnotherPictureAndSaysItsRange) {
     const auto view = test::load_json(folder / "r.json")["views"][0];
     const bool has_range = name != "picture" && name != "split";
     EXPECT_EQ(view.contains("show") && view["show"]["most"].get<double>() > 0.0, has_range) << name;
-    EXPECT_EQ(outcome.out.find("colours: " + name) != std::string::npos, has_range) << outcome.out;
+    EXPECT_EQ(outcome.out.find("most " + name) != std::string::npos, has_range) << outcome.out;
     EXPECT_EQ(read_text(png).find("binosplatShow") != std::string::npos, has_range) << name;
   }
 }

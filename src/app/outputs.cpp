@@ -1,4 +1,4 @@
-#include "app/render_outputs.h"
+#include "app/outputs.h"
 
 #include <fmt/ranges.h>
 
@@ -11,7 +11,6 @@
 #include "app/command.h"
 #include "app/sequence.h"
 #include "app/tour.h"
-#include "app/vr180.h"
 #include "base/inputs.h"
 #include "base/output_file.h"
 #include "base/text.h"
@@ -26,27 +25,38 @@ namespace fs = std::filesystem;
 
 namespace {
 
+bool has(const Outputs& outputs, const char* ending) {
+  return std::ranges::count(outputs.endings, ending) > 0;
+}
+
 // What a picture's file says of how it was drawn: a stereo picture is right only at its scale.
-Notes notes_of(const std::string& scene, const OutputOptions& options, const Shot& shot,
-               const std::string& side, const std::optional<double>& most_shown) {
+Notes notes_of(const PictureFile& file, const RenderOptions& render, const Outputs& outputs, const Shot& shot,
+               const std::optional<double>& most_shown) {
   Notes notes = {{"Software", "binosplat " BINOSPLAT_VERSION},
-                 {"binosplatScene", scene},
+                 {"binosplatScene", shot.model.empty() ? render.scene.name : shot.model},
                  {"binosplatView", shot.name},
                  {"binosplatUnitsPerMetre", fmt::format("{}", shot.units_per_metre)}};
+  const std::string side = file.eye ? shot.eyes[*file.eye].side : "left, right";
   if (!side.empty()) notes["binosplatEye"] = side;
+  if (!file.eye) notes["binosplatLayout"] = layout_choices[outputs.layout].name;
   if (most_shown)
-    notes["binosplatShow"] = fmt::format("{}, 0 to {}", show_choices[options.show].name, *most_shown);
-  if (options.exr_depth == Depth::median) notes["binosplatDepth"] = "median";
+    notes["binosplatShow"] = fmt::format("{}, 0 to {}", show_choices[render.output.show].name, *most_shown);
+  if (render.output.exr_depth == Depth::median) notes["binosplatDepth"] = "median";
   if (shot.ipd) notes["binosplatIpdMetres"] = fmt::format("{}", *shot.ipd);
   return notes;
 }
 
-// `picture_file`: one PNG or a video. The layout that is asked for or that fits the output, and what it does
-// not go with.
-int plan_layout(const OutputOptions& options, bool one_picture, bool picture_file, bool exr_file) {
+// The layout that is asked for or that fits -o FILE, whose ending is `ending`, or a folder.
+int layout_of(const RenderOptions& render, bool video, const std::string& ending) {
+  const OutputOptions& options = render.output;
+  const bool one_picture = render.rig.one_picture(), exr_file = ending == ".exr",
+             picture_file = video || ending == ".png";
   if (!options.layout) {
-    if (one_picture) return LAYOUT_SEPARATE;
-    return picture_file ? LAYOUT_PARALLEL : exr_file ? LAYOUT_MULTI_VIEW : LAYOUT_SEPARATE;
+    const bool vr180 = render.camera.lens.vr180() && !exr_file && !options.exr_half;
+    return one_picture             ? LAYOUT_SEPARATE
+           : vr180 || picture_file ? LAYOUT_PARALLEL
+           : exr_file              ? LAYOUT_MULTI_VIEW
+                                   : LAYOUT_SEPARATE;
   }
   const int layout = *options.layout;
   const char* const name = layout_choices[layout].name;
@@ -65,44 +75,6 @@ int plan_layout(const OutputOptions& options, bool one_picture, bool picture_fil
     fail("--layout {} mixes both eyes' colours and leaves no alpha: --background none is not for it", name);
   }
   return layout;
-}
-
-ExrOptions exr_options(const OutputOptions& options, const Notes& notes) {
-  return {options.exr_half.value_or(true), options.exr_display.value_or(false), options.background, notes,
-          options.exr_compression};
-}
-
-void encode_picture(const OutputOptions& options, const OutputPlan& plan, const std::string& base,
-                    const Picture& picture, const Notes& notes, std::vector<EncodedFile>& files) {
-  if (plan.png)
-    files.push_back({base + ".png", png_bytes(composite(picture, options.background),
-                                              {options.bits.value_or(8), options.png_level, notes})});
-  if (plan.exr)
-    files.push_back({base + ".exr", exr_bytes(base + ".exr", picture, exr_options(options, notes))});
-}
-
-// The files of a shot without their endings: one for each eye, or one for both.
-std::vector<std::string> bases_of(const OutputPlan& plan, const Shot& shot) {
-  const std::string base = plan.folder.empty() ? plan.file : plan.folder / (shot.stem + plan.suffix);
-  if (plan.layout != LAYOUT_SEPARATE) return {base};
-  std::vector<std::string> bases;
-  for (const Eye& eye : shot.eyes)
-    bases.push_back(plan.folder.empty() || eye.side.empty() ? base : base + "_" + eye.side);
-  return bases;
-}
-
-OutputPlan plan_video(const OutputOptions& options, bool one_picture, const fs::path& output) {
-  check_output(output);
-  find_ffmpeg();
-  if (options.bits || options.exr_half || options.exr_display || options.exr_depth == Depth::median)
-    fail("--bits, --exr, --exr-depth and --exr-encoding are for pictures: -o {} is a video", output.string());
-  if (!options.background) fail("--background none: a video has no alpha");
-  if (!options.json.empty()) check_output(options.json);
-  OutputPlan plan;
-  plan.video = output;
-  plan.png = false;
-  plan.layout = plan_layout(options, one_picture, true, false);
-  return plan;
 }
 
 // From the times of a path's cameras, where they are evenly spaced; the usual where they say nothing.
@@ -174,6 +146,52 @@ std::string free_name(std::string name, const fs::path& model) {
   return name;
 }
 
+// As players of VR180 tell its pictures from others by their names.
+std::string stem_in_folder(const Outputs& outputs, const Shot& shot) {
+  if (!outputs.vr180) return shot.stem;
+  return shot.stem + (outputs.layout == LAYOUT_PARALLEL     ? "_180_LR"
+                      : outputs.layout == LAYOUT_OVER_UNDER ? "_180_TB"
+                                                            : "_180");
+}
+
+std::vector<PictureFile> files_of(const Outputs& outputs, const Shot& shot) {
+  const bool apart = outputs.layout == LAYOUT_SEPARATE;
+  std::vector<PictureFile> files;
+  for (std::size_t k = 0; k < (apart ? shot.eyes.size() : 1); ++k) {
+    const std::optional<std::size_t> eye = apart ? std::optional(k) : std::nullopt;
+    if (outputs.video) return {{outputs.file, eye}};
+    std::string base = outputs.folder.empty() ? outputs.file.parent_path() / outputs.file.stem()
+                                              : outputs.folder / stem_in_folder(outputs, shot);
+    if (apart && !outputs.folder.empty() && !shot.eyes[k].side.empty()) base += "_" + shot.eyes[k].side;
+    for (const std::string& ending : outputs.endings) files.push_back({base + ending, eye});
+  }
+  return files;
+}
+
+// Options that the files do not go with.
+void check_formats(const RenderOptions& render, const Outputs& outputs) {
+  const OutputOptions& o = render.output;
+  const bool exr = has(outputs, ".exr"), vr_photo = has(outputs, ".jpg");
+  if (outputs.video && (o.bits || o.exr_half || o.exr_display || o.exr_depth == Depth::median))
+    fail("--bits, --exr, --exr-depth and --exr-encoding are for pictures: -o {} is a video", o.output);
+  if (outputs.video && !o.background) fail("--background none: a video has no alpha");
+  if (vr_photo && (render.rig.one_picture() || o.layout || !o.background || o.exr_half || o.bits)) {
+    fail(
+        "-o {}: a VR photo holds both eyes, each by itself, opaque and of 8 bits: leave --mono, "
+        "--layout, --exr, --bits and --background none out",
+        o.output);
+  }
+  if (o.bits && !has(outputs, ".png"))
+    fail("--bits is for PNG: this writes OpenEXR to {}, whose depth --exr sets",
+         (outputs.folder.empty() ? outputs.file : outputs.folder).string());
+  if (exr && o.show != SHOW_PICTURE) {
+    fail("--show {} is for PNG and videos: it has no light and no depth for OpenEXR",
+         show_choices[o.show].name);
+  }
+  if (o.exr_display && !exr) fail("--exr-encoding is for OpenEXR: add --exr half or --exr float");
+  if (o.exr_depth == Depth::median && !exr) fail("--exr-depth is for OpenEXR: add --exr half or --exr float");
+}
+
 }  // namespace
 
 fs::path default_folder(const std::string& scene) {
@@ -203,75 +221,56 @@ void claim_folder(const fs::path& folder, const std::string& scene) {
          folder.string());
 }
 
-OutputPlan plan_outputs(const RenderOptions& render) {
+Outputs outputs_of(const RenderOptions& render) {
   const OutputOptions& options = render.output;
-  const bool one_picture = render.rig.one_picture(), tour = render.camera.tour.has_value(),
-             along_path = render.camera.along_path();
-  const fs::path output =
-      options.output.empty() ? default_folder(render.scene.name) : fs::path(options.output);
   const bool named = !options.output.empty();  // else it is a folder, however its model is called
-  const bool video = named && is_video(output);
-  const std::string extension = lowered_ending(output);
-  const bool vr_photo = named && render.camera.lens.vr180() && extension == ".jpg";
-  const bool file = named && (extension == ".png" || extension == ".exr" || vr_photo);
-  if ((video || file) && (!render.shard.all() || render.resume))
+  const fs::path output = named ? fs::path(options.output) : default_folder(render.scene.name);
+  const std::string ending = named ? lowered_ending(output) : "";
+  Outputs outputs;
+  outputs.video = named && is_video(output);
+  outputs.vr180 = render.camera.lens.vr180();
+  const bool vr_photo = outputs.vr180 && ending == ".jpg";
+  const bool is_file = outputs.video || ending == ".png" || ending == ".exr" || vr_photo;
+  if (is_file && (!render.shard.all() || render.resume))
     fail("--shard and --resume are for a folder of pictures, and -o {} is one file: name a folder",
          output.string());
-  OutputPlan plan;
-  if (video) plan = plan_video(options, one_picture, output);
-  plan.fps = tour ? tour_fps(options.fps, video) : options.fps;
-  plan.vr180 = render.camera.lens.vr180();
-  if (video) return plan;
-  plan.exr = options.exr_half.has_value();
-  if (options.fps && !along_path && sequence_of(render).empty())
+  if (options.fps && !outputs.video && !render.camera.along_path() && sequence_of(render).empty())
     fail("--fps is for videos, --tour, --path and folders of models: -o FILE.mp4, .mov, .mkv or .webm");
   if (options.output == "-") fail("-o -: pictures are files: name one, or a folder");
-  if (named && !file && names_a_file(output)) {
+  if (named && !is_file && names_a_file(output)) {
     fail(
         "-o {}: pictures are written as .png or .exr, videos as .mp4, .mov, .mkv or .webm; for a folder "
         "of that name, make it first",
         output.string());
   }
-  if (file) {
-    check_output(output);
-    plan.file = output.parent_path() / output.stem();
-    plan.png = extension == ".png";
-    plan.vr_photo = vr_photo;
-    plan.exr = plan.exr || extension == ".exr";
-  } else {
-    // A name in the folder stands for all of them.
-    check_output(output / "picture");
-    plan.folder = output;
-  }
-  plan.layout = plan_layout(options, one_picture, file && extension == ".png", file && extension == ".exr");
-  if (plan.layout == LAYOUT_MULTI_VIEW) {
-    plan.png = false;
-    plan.exr = true;
-  }
-  if (options.bits && !plan.png && !plan.vr_photo)
-    fail("--bits is for PNG: this writes OpenEXR to {}, whose depth --exr sets", output.string());
-  if (plan.exr && options.show != SHOW_PICTURE) {
-    fail("--show {} is for PNG and videos: it has no light and no depth for OpenEXR",
-         show_choices[options.show].name);
-  }
-  if (options.exr_display && !plan.exr) fail("--exr-encoding is for OpenEXR: add --exr half or --exr float");
-  if (options.exr_depth == Depth::median && !plan.exr)
-    fail("--exr-depth is for OpenEXR: add --exr half or --exr float");
+  check_output(is_file ? output : output / "picture");  // a name in the folder stands for all of them
+  if (outputs.video) find_ffmpeg();
   if (!options.json.empty()) check_output(options.json);
-  if (plan.vr180) plan_vr180(render, plan);
-  return plan;
+  (is_file ? outputs.file : outputs.folder) = output;
+  outputs.fps = render.camera.tour ? tour_fps(options.fps, outputs.video) : options.fps;
+  outputs.layout = layout_of(render, outputs.video, ending);
+  const bool only_exr = ending == ".exr" || outputs.layout == LAYOUT_MULTI_VIEW;
+  if (vr_photo) {
+    outputs.endings = {".jpg"};
+  } else if (!outputs.video) {
+    if (!only_exr) outputs.endings.emplace_back(".png");
+    if (only_exr || options.exr_half) outputs.endings.emplace_back(".exr");
+  }
+  check_formats(render, outputs);
+  return outputs;
 }
 
-void check_shots(const OutputPlan& plan, const std::vector<Shot>& shots, const std::string& json) {
+void place_files(const Outputs& outputs, const std::string& json, std::vector<Shot>& shots) {
   const fs::path place = json.empty() ? fs::path() : place_of(json);
-  for (const Shot& shot : shots) {
-    for (const std::string& file : files_of(plan, shot)) {
-      check_no_input(file);
-      if (!json.empty() && place_of(file) == place)
+  for (Shot& shot : shots) {
+    shot.files = files_of(outputs, shot);
+    for (const PictureFile& file : shot.files) {
+      check_no_input(file.name);
+      if (!json.empty() && place_of(file.name) == place)
         fail("--json {}: it is the picture of {}; name another file", json, shot.name);
     }
   }
-  if (!plan.file.empty() && shots.size() > 1) {
+  if (!outputs.video && !outputs.file.empty() && shots.size() > 1) {
     std::vector<std::string> names;
     for (const Shot& shot : shots) names.push_back(shot.name);
     constexpr std::size_t few = 4;
@@ -279,20 +278,20 @@ void check_shots(const OutputPlan& plan, const std::vector<Shot>& shots, const s
       names.resize(few);
       names.emplace_back("...");
     }
-    const char* ending = plan.vr_photo ? ".jpg" : plan.png ? ".png" : ".exr";
     fail(
-        "-o {}{} is one file, and {} views are to be drawn ({}): name a folder, as -o {}, and each view's "
+        "-o {} is one file, and {} views are to be drawn ({}): name a folder, as -o {}, and each view's "
         "pictures are called after it there; or draw one of them, as --view {}",
-        plan.file.string(), ending, shots.size(), fmt::join(names, ", "), plan.file.string(), names[0]);
+        outputs.file.string(), shots.size(), fmt::join(names, ", "),
+        (outputs.file.parent_path() / outputs.file.stem()).string(), names[0]);
   }
   for (const Shot& shot : shots) {
     const Camera &a = shots[0].eyes[0].camera, &b = shot.eyes[0].camera;
-    if (!plan.video.empty() && (a.width != b.width || a.height != b.height)) {
+    if (outputs.video && (a.width != b.width || a.height != b.height)) {
       fail("-o {}: the views differ in size, {} x {} and {} x {} px: give them one with --size",
-           plan.video.string(), a.width, a.height, b.width, b.height);
+           outputs.file.string(), a.width, a.height, b.width, b.height);
     }
   }
-  if (plan.layout == LAYOUT_SEPARATE) return;
+  if (outputs.layout == LAYOUT_SEPARATE) return;
   for (const Shot& shot : shots) {
     const Camera &left = shot.eyes[0].camera, &right = shot.eyes[1].camera;
     if (left.width != right.width || left.height != right.height) {
@@ -300,63 +299,38 @@ void check_shots(const OutputPlan& plan, const std::vector<Shot>& shots, const s
           "--layout {}: the eyes of {} differ in size, {} x {} and {} x {} px: give them one with --size, or "
           "use "
           "--layout separate and a folder",
-          layout_choices[plan.layout].name, shot.name, left.width, left.height, right.width, right.height);
+          layout_choices[outputs.layout].name, shot.name, left.width, left.height, right.width, right.height);
     }
-    stereo::layout_size(plan.layout, {left.width, left.height});
+    stereo::layout_size(outputs.layout, {left.width, left.height});
   }
 }
 
-std::unique_ptr<Video> open_video(const OutputPlan& plan, const std::vector<Shot>& shots) {
-  if (plan.video.empty()) return nullptr;
+std::unique_ptr<Video> open_video(const Outputs& outputs, const std::vector<Shot>& shots) {
+  if (!outputs.video) return nullptr;
   const Camera& eye = shots[0].eyes[0].camera;
-  const glm::ivec2 size = stereo::layout_size(plan.layout, {eye.width, eye.height});
-  return std::make_unique<Video>(plan.video, size.x, size.y, plan.fps ? *plan.fps : frames_a_second(shots),
-                                 plan.layout, plan.vr180);
+  const glm::ivec2 size = stereo::layout_size(outputs.layout, {eye.width, eye.height});
+  return std::make_unique<Video>(outputs.file, size.x, size.y,
+                                 outputs.fps ? *outputs.fps : frames_a_second(shots), outputs.layout,
+                                 outputs.vr180);
 }
 
-Image frame_of(const OutputPlan& plan, const Background& background, const std::vector<Picture>& pictures) {
-  if (plan.layout == LAYOUT_SEPARATE) return composite(pictures[0], background);
-  return composite(stereo::lay_out(plan.layout, pictures[0], pictures[1], background), background);
-}
-
-std::vector<std::string> files_of(const OutputPlan& plan, const Shot& shot) {
-  std::vector<std::string> files;
-  for (const std::string& base : bases_of(plan, shot)) {
-    if (plan.png) files.push_back(base + ".png");
-    if (plan.exr) files.push_back(base + ".exr");
-    if (plan.vr_photo) files.push_back(base + ".jpg");
-  }
-  return files;
-}
-
-std::vector<EncodedFile> encode_outputs(const std::string& scene, const OutputOptions& options,
-                                        const OutputPlan& plan, const Shot& shot,
-                                        const stereo::DebugPictures& shown) {
+std::string encoded(const PictureFile& file, const RenderOptions& render, const Outputs& outputs,
+                    const Shot& shot, const stereo::DebugPictures& shown) {
+  const OutputOptions& o = render.output;
   const std::vector<Picture>& pictures = shown.pictures;
-  const std::vector<std::string> bases = bases_of(plan, shot);
-  std::vector<EncodedFile> files;
-  if (plan.vr_photo) {
-    const std::string name = bases[0] + ".jpg";
-    files.push_back({name, vr_photo_bytes(name, composite(pictures[0], options.background),
-                                          composite(pictures[1], options.background))});
-    return files;
-  }
-  if (plan.layout == LAYOUT_SEPARATE) {
-    for (std::size_t k = 0; k < bases.size(); ++k)
-      encode_picture(options, plan, bases[k], pictures[k],
-                     notes_of(scene, options, shot, shot.eyes[k].side, shown.most), files);
-    return files;
-  }
-  Notes notes = notes_of(scene, options, shot, "left, right", shown.most);
-  notes["binosplatLayout"] = layout_choices[plan.layout].name;
-  if (plan.layout == LAYOUT_MULTI_VIEW) {
-    const std::string name = bases[0] + ".exr";
-    files.push_back({name, exr_bytes(name, pictures[0], pictures[1], exr_options(options, notes))});
-  } else {
-    encode_picture(options, plan, bases[0],
-                   stereo::lay_out(plan.layout, pictures[0], pictures[1], options.background), notes, files);
-  }
-  return files;
+  if (has(outputs, ".jpg"))
+    return vr_photo_bytes(file.name, composite(pictures[0], o.background),
+                          composite(pictures[1], o.background));
+  const Notes notes = notes_of(file, render, outputs, shot, shown.most);
+  const ExrOptions exr{o.exr_half.value_or(true), o.exr_display.value_or(false), o.background, notes,
+                       o.exr_compression};
+  if (outputs.layout == LAYOUT_MULTI_VIEW) return exr_bytes(file.name, pictures[0], pictures[1], exr);
+  const Picture both =
+      file.eye ? Picture() : stereo::lay_out(outputs.layout, pictures[0], pictures[1], o.background);
+  const Picture& picture = file.eye ? pictures[*file.eye] : both;
+  if (file.name.ends_with(".exr")) return exr_bytes(file.name, picture, exr);
+  const Image image = composite(picture, o.background);
+  return outputs.video ? Video::bytes_of(image) : png_bytes(image, {o.bits.value_or(8), o.png_level, notes});
 }
 
 }  // namespace binosplat::app

@@ -1,0 +1,429 @@
+#include "app/render_table.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <functional>
+
+#include "app/command.h"
+#include "app/load_scene.h"
+#include "base/log.h"
+#include "base/statistics.h"
+#include "lab/fields.h"
+#include "scene/scaffold.h"
+#include "shared/axes.h"
+
+namespace binosplat::app {
+
+namespace {
+
+using lab::FieldWriter;
+using lab::object;
+using nlohmann::ordered_json;
+
+/// What is left out of the JSON otherwise, and of the table.
+template <typename T>
+std::optional<T> given(bool is, const T& value) {
+  return is ? std::optional(value) : std::nullopt;
+}
+
+// dB that a frame reports: with what its levels lose, where they share --quality.
+double reported_psnr(const Drawn& drawn) {
+  const bool shares = drawn.levels && drawn.levels->predicted_psnr;
+  const double frame = drawn.report.quality;
+  return shares ? psnr_of_both(frame, *drawn.levels->predicted_psnr) : frame;
+}
+
+// Whether that was not measured on all of the frame.
+bool is_estimate(const Drawn& drawn) {
+  return drawn.report.quality_is_estimate || (drawn.levels && drawn.levels->predicted_psnr);
+}
+
+// GPU time of a frame, in ms; none where the reference drew it.
+std::optional<double> ms_of(const render::FrameReport& report) {
+  return given(!report.stages.empty(), report.total_ms);
+}
+
+/// A number of each view that has it.
+struct Column {
+  std::string title;
+  int digits;
+  bool low_is_worst;
+  std::function<std::optional<double>(const Drawn&)> of;
+};
+
+std::vector<Column> columns_of(const RenderOptions& o) {
+  const auto levels = [](std::optional<double> (*of)(const ShotLevels&)) {
+    return [of](const Drawn& d) { return d.levels ? of(*d.levels) : std::nullopt; };
+  };
+  const auto comfort = [](std::optional<double> (*of)(const Comfort&)) {
+    return [of](const Drawn& d) { return d.comfort ? of(*d.comfort) : std::nullopt; };
+  };
+  const bool quality = o.drawing.quality.has_value();
+  return {
+      {"pairs", 0, false, [](const Drawn& d) { return std::optional<double>(d.report.pairs); }},
+      {"GPU ms", 3, false, [](const Drawn& d) { return ms_of(d.report); }},
+      {"tolerance", 4, false, [=](const Drawn& d) { return given<double>(quality, d.report.tolerance); }},
+      {"dB", 1, true, [=](const Drawn& d) { return given(quality && !is_estimate(d), reported_psnr(d)); }},
+      {"estimated dB", 1, true,
+       [=](const Drawn& d) { return given(quality && is_estimate(d), reported_psnr(d)); }},
+      {"photo dB", 4, true, [](const Drawn& d) { return d.photo_psnr; }},
+      {fmt::format("most {}", show_choices[o.output.show].name), 3, false,
+       [](const Drawn& d) { return d.most_shown; }},
+      {"Gaussians", 0, false, levels([](const ShotLevels& l) { return std::optional<double>(l.gaussians); })},
+      {"predicted dB", 2, true, levels([](const ShotLevels& l) { return l.predicted_psnr; })},
+      {"finest dB", 2, true, levels([](const ShotLevels& l) { return l.finest_psnr; })},
+      {"switch dB", 2, true, levels([](const ShotLevels& l) { return l.switch_psnr; })},
+      {"read ms", 0, false, levels([](const ShotLevels& l) { return given(l.switched, l.read_ms); })},
+      {"upload ms", 1, false, levels([](const ShotLevels& l) { return given(l.switched, l.upload_ms); })},
+      {"disparity far", 2, true,  // degrees
+       comfort([](const Comfort& c) { return std::optional(c.range.far_degrees); })},
+      {"disparity near", 2, false,
+       comfort([](const Comfort& c) { return std::optional(c.range.near_degrees); })},
+      {"vertical px", 1, false,
+       comfort([](const Comfort& c) { return given(c.range.vertical_px > 0.5, c.range.vertical_px); })},
+      {"screen m", 2, false, comfort([](const Comfort& c) { return c.focus; })},
+  };
+}
+
+// A row for each view with its files, and below several views what their numbers come to. Of the many frames
+// of a way or a video only that: rows would bury it.
+void print_views(const RenderReport& report) {
+  constexpr std::size_t few = 8;
+  const std::vector<Drawn>& all = report.drawn;
+  const bool each = all.size() <= few || !(report.outputs.video || report.options.camera.along_path());
+  std::vector<std::vector<std::string>> rows = {{"view"}};
+  for (const Drawn& drawn : all) {
+    if (each) rows.push_back({drawn.shot.name});
+  }
+  if (all.size() > 1) rows.insert(rows.end(), {{"median"}, {"mean"}, {"worst"}});
+  for (const Column& column : columns_of(report.options)) {
+    std::vector<std::optional<double>> numbers;
+    std::vector<double> found;
+    for (const Drawn& drawn : all) {
+      numbers.push_back(column.of(drawn));
+      if (numbers.back()) found.push_back(*numbers.back());
+    }
+    if (found.empty()) continue;
+    if (!each) numbers.clear();
+    if (all.size() > 1)
+      numbers.insert(numbers.end(),
+                     {quantile(found, 0.5), mean(found), quantile(found, column.low_is_worst ? 0.0 : 1.0)});
+    rows[0].push_back(column.title);
+    for (std::size_t k = 0; k < numbers.size(); ++k)
+      rows[k + 1].push_back(numbers[k] ? fmt::format("{:.{}f}", *numbers[k], column.digits) : "-");
+  }
+  if (!each) {
+    const std::string &first = all.front().shot.files.front().name, &last = all.back().shot.files.back().name;
+    fmt::print("{} frames: {}{}{}\n", all.size(), first, first == last ? "" : " to " + last,
+               report.options.output.json.empty() ? " (each by itself: --json FILE)" : "");
+  }
+  std::vector<std::size_t> widths(rows[0].size());
+  for (const auto& row : rows) {
+    for (std::size_t k = 0; k < row.size(); ++k) widths[k] = std::max(widths[k], row[k].size());
+  }
+  for (std::size_t n = 0; n < rows.size(); ++n) {
+    fmt::print("{:<{}}", rows[n][0], widths[0]);
+    for (std::size_t k = 1; k < rows[n].size(); ++k) fmt::print("  {:>{}}", rows[n][k], widths[k]);
+    std::vector<std::string> files;
+    if (each && n == 0) files.emplace_back("files");
+    if (each && n > 0 && n <= all.size()) {
+      for (const PictureFile& file : all[n - 1].shot.files) files.push_back(file.name);
+    }
+    fmt::print("{}{}\n", files.empty() ? "" : "  ", fmt::join(files, ", "));
+  }
+}
+
+struct StageRow {
+  std::string stage;  // the last one is "frame", the sum
+  double median_ms = 0.0, p99_ms = 0.0;
+};
+
+// The first frame of all makes the driver compile shaders: it counts only while it is alone.
+std::size_t timed_frames(const RenderReport& report) {
+  return std::max<std::size_t>(report.frames.size(), 2) - 1;
+}
+
+// GPU times of frames, by stage; none where the reference drew them.
+std::vector<StageRow> stage_rows(const RenderReport& report) {
+  const std::span frames = std::span(report.frames).last(timed_frames(report));
+  if (frames.front().stages.empty()) return {};
+  const auto row = [&](const std::string& name, const auto& time_of) {
+    std::vector<double> times;
+    for (const render::FrameReport& frame : frames) times.push_back(time_of(frame));
+    return StageRow{name, quantile(times, 0.5), quantile(times, 0.99)};
+  };
+  std::vector<StageRow> rows;
+  for (std::size_t i = 0; i < frames.front().stages.size(); ++i)
+    rows.push_back(row(frames.front().stages[i].name,
+                       [i](const render::FrameReport& frame) { return frame.stages.at(i).ms; }));
+  rows.push_back(row("frame", [](const render::FrameReport& frame) { return frame.total_ms; }));
+  return rows;
+}
+
+// Where most of the time is waited for files.
+std::string what_bounds(const RenderReport& report) {
+  const RunTimes& run = report.run;
+  const OutputOptions& o = report.options.output;
+  const std::string cores = fmt::format("on {} core{}", run.threads, run.threads == 1 ? "" : "s");
+  if (report.outputs.video) {
+    const bool is_ffmpeg = run.writing > run.encoding / run.threads;
+    return is_ffmpeg ? "ffmpeg, which encodes the video, bounds this run"
+                     : fmt::format("converting frames {} bounds this run: more cores would help", cores);
+  }
+  if (run.writing > run.encoding)
+    return fmt::format("writing files {} bounds this run: a faster disk would help", cores);
+  return fmt::format("encoding files {} bounds this run: {}", cores,
+                     o.exr_half && o.exr_compression == ExrCompression::zip
+                         ? "--exr-compression rle is faster"
+                     : o.png_level > 0 ? "--png-level 0 is faster"
+                                       : "more cores would help");
+}
+
+void tell_whether_quality_pays(const RenderReport& report) {
+  const RenderOptions& o = report.options;
+  if (!o.drawing.quality) return;
+  double ms = 0.0;
+  int attempts = 0;
+  for (const Drawn& drawn : report.drawn) {
+    ms += drawn.report.total_ms / static_cast<double>(report.drawn.size());
+    attempts = std::max(attempts, drawn.report.attempts);
+  }
+  if (report.exact_ms && ms > *report.exact_ms) {
+    log_warning(
+        "--quality {:g} does not pay here: a frame took {:.3g} ms in the mean, the first one's search "
+        "included, and an exact one takes {:.3g} ms: leave it out",
+        *o.drawing.quality, ms, *report.exact_ms);
+  } else if (!o.camera.along_path() && o.drawing.frames == 1) {
+    log_info(
+        "--quality {:g} draws a single picture exactly as well, and up to {} times until it holds: by itself "
+        "an exact one is faster",
+        *o.drawing.quality, attempts);
+  }
+}
+
+void print_run(const RenderReport& report) {
+  const RunTimes& run = report.run;
+  const std::size_t shots = report.drawn.size();
+  if (run.all < 1000.0 || shots < 2) return;
+  const auto percent = [&](double ms) { return static_cast<int>(std::lround(100.0 * ms / run.all)); };
+  const int drawing = percent(run.all - run.reading - run.waiting), files = percent(run.waiting);
+  fmt::print(
+      "{} views in {:.1f} s, {:.3g} a second; of the time: drawing {} %, reading back {} %, waiting for "
+      "files {} %\n",
+      shots, 1e-3 * run.all, 1e3 * static_cast<double>(shots) / run.all, drawing, percent(run.reading),
+      files);
+  if (files > 50) fmt::print("{}\n", what_bounds(report));
+  if (!report.context.software() && run.gpu < 0.5 * run.all)
+    fmt::print(
+        "The GPU had nothing to do for {} % of the time and may have run at a low clock: `binosplat bench` "
+        "times a busy one\n",
+        100 - percent(run.gpu));
+}
+
+double discomfort(const Drawn& drawn) {
+  const stereo::DisparityRange& r = drawn.comfort->range;
+  return std::max(r.near_degrees, -r.far_degrees);
+}
+
+// Warns of the pair that asks most of the eyes, and how many others do, of those that options can change.
+void warn_of_discomfort(const std::vector<Drawn>& all) {
+  const Drawn* worst = nullptr;
+  int others = -1;
+  for (const Drawn& drawn : all) {
+    if (!drawn.comfort || !drawn.comfort->better) continue;
+    ++others;
+    if (worst == nullptr || discomfort(drawn) > discomfort(*worst)) worst = &drawn;
+  }
+  if (worst == nullptr) return;
+  const stereo::ComfortableRig& better = *worst->comfort->better;
+  log_warning(
+      "{}{}: disparities beyond {:.0f} degree either way tire most eyes; --convergence {:.3g}{} is within",
+      worst->shot.name, others > 0 ? fmt::format(" and {} other view{}", others, others == 1 ? "" : "s") : "",
+      stereo::comfortable_degrees, better.convergence,
+      better.ipd ? fmt::format(" --ipd {:.3g}", *better.ipd) : "");
+}
+
+std::optional<double> mean_photo_psnr(const RenderReport& report) {
+  std::vector<double> found;
+  for (const Drawn& drawn : report.drawn) {
+    if (drawn.photo_psnr) found.push_back(*drawn.photo_psnr);
+  }
+  return found.size() < 2 ? std::nullopt : std::optional(mean(found));
+}
+
+ordered_json list(const glm::dvec3& v) { return {v.x, v.y, v.z}; }
+
+ordered_json eye_json(const Eye& eye) {
+  const Camera& c = eye.camera;
+  const auto& axes = c.rotation;
+  return object("eye", given(!eye.side.empty(), eye.side), "width", c.width, "height", c.height, "fx", c.fx,
+                "fy", c.fy, "cx", c.cx, "cy", c.cy, "position", list(c.position), "axes",
+                object("x_right", list(axes[0]), "y_down", list(axes[1]), "z_forward", list(axes[2])));
+}
+
+// At which the optics of headsets put their screens.
+constexpr double headset_focus_metres = 2.0;
+
+ordered_json comfort_json(const Comfort& comfort) {
+  const stereo::DisparityRange& r = comfort.range;
+  return object("focus_metres", comfort.focus ? ordered_json(*comfort.focus) : ordered_json(), "near_px",
+                r.near_px, "far_px", r.far_px, "near_degrees", r.near_degrees, "far_degrees", r.far_degrees,
+                "vertical_px", r.vertical_px, "comfortable", stereo::comfortable(r));
+}
+
+ordered_json levels_json(const ShotLevels& l) {
+  return object("gaussians", l.gaussians, "switched", l.switched, "read_ms", l.read_ms, "upload_ms",
+                l.upload_ms, "switch_psnr_db", l.switch_psnr, "finest_psnr_db", l.finest_psnr,
+                "predicted_psnr_db", l.predicted_psnr);
+}
+
+ordered_json foveated_json(const stereo::FoveatedEye& eye) {
+  const auto two = [](const glm::uvec2& v) { return ordered_json::array({v.x, v.y}); };
+  return object("inset_begin", two(eye.inset_begin), "inset_end", two(eye.inset_end), "seam_px", eye.seam,
+                "window", two(eye.window.size), "context", two({eye.context.width, eye.context.height}));
+}
+
+ordered_json view_json(const Drawn& drawn, const RenderOptions& options,
+                       const std::optional<double>& convergence) {
+  const render::FrameReport& r = drawn.report;
+  const DrawingOptions& drawing = options.drawing;
+  ordered_json json =
+      object("name", drawn.shot.name, "units_per_metre", drawn.shot.units_per_metre, "ipd_metres",
+             drawn.shot.ipd, "convergence_metres", drawn.shot.given_eyes ? std::nullopt : convergence,
+             "cant_degrees", options.rig.cant, "eyes", ordered_json::array());
+  for (const Eye& eye : drawn.shot.eyes) json["eyes"].push_back(eye_json(eye));
+  FieldWriter{json}("visible", r.visible, "pairs", r.pairs, "gpu_ms", ms_of(r).value_or(NAN), "tile",
+                    r.tile_size, "depth_orders", r.order_groups, "drawn_again", r.redrawn, "tolerance",
+                    given(drawing.quality || !drawing.calibration.empty(), r.tolerance), "probed_psnr_db",
+                    given(drawing.quality.has_value(), r.quality), "told_psnr_db",
+                    given(drawing.quality.has_value(), reported_psnr(drawn)), "told_is_estimate",
+                    given(drawing.quality.has_value(), is_estimate(drawn)), "photo_psnr_db",
+                    drawn.photo_psnr);
+  if (drawn.levels) json["levels_of_detail"] = levels_json(*drawn.levels);
+  for (const stereo::FoveatedEye& eye : drawn.foveated) json["foveated"].push_back(foveated_json(eye));
+  if (drawn.comfort) json["disparity"] = comfort_json(*drawn.comfort);
+  if (drawn.most_shown)
+    json["show"] = object("what", show_choices[options.output.show].name, "most", *drawn.most_shown);
+  json["outputs"] = ordered_json::array();
+  for (const PictureFile& file : drawn.shot.files) json["outputs"].push_back(file.name);
+  return json;
+}
+
+ordered_json settings_json(const RenderReport& report) {
+  const DrawingOptions& o = report.options.drawing;
+  const Background& background = report.options.output.background;
+  const Model& model = report.model;
+  const std::optional<DetailRequest>& detail = report.options.scene.detail;
+  const bool vr180 = report.options.camera.lens.vr180();
+  const int order = vr180 ? ORDER_DISTANCE : o.order.value_or(model.perspective.order);
+  const int projection = vr180 ? PROJECTION_TANGENT : o.projection.value_or(model.perspective.projection);
+  return object("vr180", given(vr180, true), "tiles", tiles_choices[o.tiles].name, "tile",
+                o.tile ? ordered_json(*o.tile) : ordered_json("auto"), "precision",
+                precision_choices[o.precision].name, "near", report.near_plane, "antialiased",
+                model.antialiased, "order", order_choices[order].name, "projection",
+                projection_choices[projection].name, "kernel_px2", model.kernel_px2, "th",
+                th_choices[threshold_of(o)].name, "tolerance", o.tolerance, "transmittance",
+                transmittance_choices[o.transmittance].name, "decode",
+                given(model.scaffold != nullptr, decode_choices[o.decode.value_or(DECODE_EYES)].name),
+                "detail_px", given(detail && !detail->db, detail ? detail->apart_px : 0.0), "detail_db",
+                detail ? detail->db : std::nullopt, "quality_db", o.quality, "calibration",
+                given(!o.calibration.empty(), o.calibration), "background",
+                background ? list(glm::dvec3(*background)) : ordered_json(), "reference_until",
+                o.reference_until ? std::optional(render::name_of(*o.reference_until)) : std::nullopt);
+}
+
+ordered_json scene_json(const RenderReport& report) {
+  const SceneOptions& o = report.options.scene;
+  const Model& model = report.model;
+  const bool city = o.name == demo_city_name;
+  ordered_json json = object("name", o.name, "seed", given(city, city_settings(o).seed), "count",
+                             given(city, city_settings(o).count));
+  if (o.repeat) json["repeat"] = object("x", o.repeat->x, "z", o.repeat->y, "spacing", *o.spacing);
+  const bool follows = report.drawn.back().levels.has_value();
+  FieldWriter{json}("gaussians", follows ? report.drawn.back().levels->gaussians : model.count(), "left_out",
+                    model.left_out, "degree", model.degree);
+  if (const Scaffold* s = model.scaffold.get())
+    json["scaffold"] = object("anchors", s->anchor_count(), "gaussians_per_anchor", s->offset_count,
+                              "features", s->feature_count, "appearances", s->appearance_count(),
+                              "appearance", given(s->appearance_count() > 0, s->appearance));
+  return json;
+}
+
+}  // namespace
+
+std::optional<Comfort> comfort_of(const Shot& shot, bool headset, const Picture& left) {
+  if (shot.eyes.size() != 2) return std::nullopt;
+  const std::array<Camera, 2> eyes = {shot.eyes[0].camera, shot.eyes[1].camera};
+  // No screen stands in the plane of zero disparity of a headset, and canted eyes have no such plane.
+  const bool canted = glm::dot(eyes[0].rotation[2], eyes[1].rotation[2]) < 1.0 - 1e-9;
+  const auto focus = canted || headset ? std::optional(headset_focus_metres * shot.units_per_metre)
+                                       : stereo::screen_distance(eyes);
+  const auto range = stereo::disparity_range(eyes, left, focus);
+  if (!range) return std::nullopt;
+  Comfort comfort{*range, focus ? std::optional(*focus / shot.units_per_metre) : std::nullopt, {}};
+  const bool own_rig = !shot.given_eyes && !canted && !headset;
+  if (own_rig && !stereo::comfortable(*range)) {
+    comfort.better = stereo::comfortable_rig(*range, eyes);
+    comfort.better->convergence /= shot.units_per_metre;
+    if (comfort.better->ipd) *comfort.better->ipd /= shot.units_per_metre;
+  }
+  return comfort;
+}
+
+std::string megabytes(std::int64_t bytes) {
+  const double whole = std::round(static_cast<double>(bytes) / 1e6);
+  if (whole < 10.0) return fmt::format("{:.1f} MB", static_cast<double>(bytes) / 1e6);
+  std::string digits = fmt::format("{:.0f}", whole);
+  for (int place = static_cast<int>(digits.size()) - 3; place > 0; place -= 3)
+    digits.insert(static_cast<std::size_t>(place), ",");
+  return digits + " MB";
+}
+
+void print(const RenderReport& report) {
+  print_views(report);
+  warn_of_discomfort(report.drawn);
+  tell_whether_quality_pays(report);
+  const std::vector<StageRow> rows = stage_rows(report);
+  if (rows.empty()) fmt::print("(by the float64 reference, on the CPU)\n");
+  if (rows.empty() || is_quiet()) return;
+  const std::size_t frames = timed_frames(report);
+  fmt::print("\n{:<12}{:>12}{:>12}\n", "stage", "median ms", "p99 ms");
+  for (const StageRow& row : rows) {
+    fmt::print("{:<12}{:>12.3f}{:>12.3f}\n", row.stage, row.median_ms, row.p99_ms);
+  }
+  fmt::print(
+      "GPU time of {} frame{} on {}{}; {:.1f} MB in buffers; making the shaders' programs took {:.2f} s\n",
+      frames, frames == 1 ? "" : "s", report.context.renderer(), frames == 1 ? " (--frames N for more)" : "",
+      static_cast<double>(report.context.peak_bytes()) / 1e6, 1e-3 * report.context.making_ms());
+  print_run(report);
+}
+
+void save(const std::filesystem::path& path, const RenderReport& report) {
+  const gl::Context& context = report.context;
+  ordered_json json = object(
+      "version", BINOSPLAT_VERSION, "scene", scene_json(report), "device",
+      object("backend", context.backend(), "renderer", context.renderer(), "opengl", context.version()),
+      "settings", settings_json(report));
+  if (report.exact_ms) json["exact_frame_ms"] = *report.exact_ms;
+  json["views"] = ordered_json::array();
+  for (const Drawn& drawn : report.drawn)
+    json["views"].push_back(view_json(drawn, report.options, report.convergence));
+  FieldWriter{json}("mean_photo_psnr_db", mean_photo_psnr(report), "frames", timed_frames(report), "stages",
+                    ordered_json::array());
+  for (const StageRow& row : stage_rows(report))
+    json["stages"].push_back(object("stage", row.stage, "median_ms", row.median_ms, "p99_ms", row.p99_ms));
+  const RunTimes& run = report.run;
+  json["run"] = object("seconds", 1e-3 * run.all, "reading_back_seconds", 1e-3 * run.reading,
+                       "waiting_for_files_seconds", 1e-3 * run.waiting, "encoding_thread_seconds",
+                       run.encoding, "writing_thread_seconds", run.writing, "threads", run.threads);
+  json["memory"] = object("model_bytes", report.needs.model, "frame_bytes_at_least", report.needs.frame,
+                          "gpu_bytes", context.allocated_bytes(), "gpu_peak_bytes", context.peak_bytes());
+  save_json(path, json);
+}
+
+}  // namespace binosplat::app
