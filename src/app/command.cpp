@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <cmath>
 #include <csignal>
 #include <cstdio>
 #include <cstring>
@@ -128,6 +129,15 @@ bool save_json_as_first(const fs::path& path, const nlohmann::ordered_json& valu
   OutputFile file(path);
   file.write(json_text(value));
   return file.commit_as_first();
+}
+
+std::string megabytes(std::int64_t bytes) {
+  const double whole = std::round(static_cast<double>(bytes) / 1e6);
+  if (whole < 10.0) return fmt::format("{:.1f} MB", static_cast<double>(bytes) / 1e6);
+  std::string digits = fmt::format("{:.0f}", whole);
+  for (int place = static_cast<int>(digits.size()) - 3; place > 0; place -= 3)
+    digits.insert(static_cast<std::size_t>(place), ",");
+  return digits + " MB";
 }
 
 }  // namespace binosplat::app

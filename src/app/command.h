@@ -1,6 +1,7 @@
 #pragma once
 // What the sub-commands share: how main learns of them, and how they end and write.
 
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <nlohmann/json_fwd.hpp>
@@ -62,5 +63,8 @@ void save_json(const std::filesystem::path& path, const nlohmann::ordered_json& 
 
 /// The same where nothing stands there; else false (OutputFile::commit_as_first).
 bool save_json_as_first(const std::filesystem::path& path, const nlohmann::ordered_json& value);
+
+/// Bytes as "1,210 MB", or "3.4 MB" where whole ones would say little.
+std::string megabytes(std::int64_t bytes);
 
 }  // namespace binosplat::app

@@ -88,6 +88,30 @@ bool is_empty(const Picture& picture) {
                      [](const glm::vec4& c) { return c.a == 1.0f; });
 }
 
+// At which the optics of headsets put their screens.
+constexpr double headset_focus_metres = 2.0;
+
+// Of a shot with both eyes and something that has a depth, from the left eye's picture; `headset`: seen in
+// one.
+std::optional<Comfort> comfort_of(const Shot& shot, bool headset, const Picture& left) {
+  if (shot.eyes.size() != 2) return std::nullopt;
+  const std::array<Camera, 2> eyes = {shot.eyes[0].camera, shot.eyes[1].camera};
+  // No screen stands in the plane of zero disparity of a headset, and canted eyes have no such plane.
+  const bool canted = glm::dot(eyes[0].rotation[2], eyes[1].rotation[2]) < 1.0 - 1e-9;
+  const auto focus = canted || headset ? std::optional(headset_focus_metres * shot.units_per_metre)
+                                       : stereo::screen_distance(eyes);
+  const auto range = stereo::disparity_range(eyes, left, focus);
+  if (!range) return std::nullopt;
+  Comfort comfort{*range, focus ? std::optional(*focus / shot.units_per_metre) : std::nullopt, {}};
+  const bool own_rig = !shot.given_eyes && !canted && !headset;
+  if (own_rig && !stereo::comfortable(*range)) {
+    comfort.better = stereo::comfortable_rig(*range, eyes);
+    comfort.better->convergence /= shot.units_per_metre;
+    if (comfort.better->ipd) *comfort.better->ipd /= shot.units_per_metre;
+  }
+  return comfort;
+}
+
 // PSNR of the picture as 8 bits would keep it against the photo, where there is a folder of them.
 std::optional<double> photo_psnr(const PhotoSource& photos, const glm::vec3& background, const Shot& shot,
                                  const Picture& picture) {
@@ -116,16 +140,16 @@ class ShotFiles {
   /// For the shots to come. Pictures that are drawn and not written yet take a quarter of the machine's
   /// memory at most, or what --max-memory allows if that is less; those of three shots in any case. There are
   /// as many threads as cores where memory allows that.
-  ShotFiles(const RenderReport& report, const Work& work)
-      : report_(report), work_(work), video_(open_video(work.outputs, work.shots)) {
+  ShotFiles(gl::Context& context, RenderReport& report, const Work& work)
+      : report_(report), work_(work), read_back_(context), video_(open_video(work.outputs, work.shots)) {
     double most = 1.0;
     for (const Shot& shot : work.shots) most = std::max(most, bytes_of(shot));
     const double budget = std::min(0.25 * memory_bytes(), picture_memory_allowed.load());
     // Besides one that waits and one that is on its way from the GPU.
     const double fit = budget / most - 2.0;
     const double useful = std::min<double>(core_count(), static_cast<double>(work.shots.size()));
-    threads_ = static_cast<int>(std::clamp(fit, 1.0, std::max(1.0, useful)));
-    queue_ = std::make_unique<JobQueue>(threads_, 1);
+    report.run.threads = static_cast<int>(std::clamp(fit, 1.0, std::max(1.0, useful)));
+    queue_ = std::make_unique<JobQueue>(report.run.threads, 1);
   }
 
   /// Takes a shot, whose pictures `take` hands out on another thread; until finish() its comfort and PSNR of
@@ -144,17 +168,39 @@ class ShotFiles {
         if (!video_) write([&] { write_file(file.name, *frame); });
       }
     };
-    if (!video_) return queue_->add(encode_all);
-    queue_->add(encode_all, [this, frame] { write([&] { video_->add(*frame); }); });
+    const auto begin = Clock::now();
+    if (video_) {
+      queue_->add(encode_all, [this, frame] { write([&] { video_->add(*frame); }); });
+    } else {
+      queue_->add(encode_all);
+    }
+    report_.run.waiting += ms_since(begin);
+  }
+
+  /// Asks for the pictures that the frame has of a shot; hand_over() takes them.
+  void read_back(Drawn& drawn, const render::Frame& frame) {
+    on_way_ = read_back_.start(frame);
+    of_ = &drawn;
+  }
+
+  /// Adds the shot whose pictures were asked for, if any were, once the GPU has copied them.
+  void hand_over() {
+    if (!on_way_) return;
+    const auto begin = Clock::now();
+    on_way_->wait();
+    report_.run.reading += ms_since(begin);
+    add(*of_, [taken = std::exchange(on_way_, nullptr)] { return ShotPictures{taken->take(), {}}; });
   }
 
   /// Waits until all is written. Throws as add() does.
-  void finish(RunTimes& times) {
+  void finish() {
+    hand_over();
+    const auto begin = Clock::now();
     queue_->finish();
     if (video_) video_->finish();
-    times.encoding = 1e-3 * encoding_ms_;
-    times.writing = 1e-3 * writing_ms_;
-    times.threads = threads_;
+    report_.run.waiting += ms_since(begin);
+    report_.run.encoding = 1e-3 * encoding_ms_;
+    report_.run.writing = 1e-3 * writing_ms_;
   }
 
   /// Whether no picture shows anything.
@@ -174,12 +220,14 @@ class ShotFiles {
     writing_ms_ += ms_since(begin);
   }
 
-  const RenderReport& report_;
+  RenderReport& report_;
   const Work& work_;
+  render::ReadBack read_back_;
+  std::shared_ptr<render::ReadBack::Pictures> on_way_;  // from the GPU
+  Drawn* of_ = nullptr;                                 // whose they are
   std::unique_ptr<Video> video_;
   std::atomic<bool> all_empty_ = true;
   std::atomic<double> encoding_ms_ = 0.0, writing_ms_ = 0.0;
-  int threads_ = 1;
   std::unique_ptr<JobQueue> queue_;  // last: its jobs end first
 };
 
@@ -263,31 +311,13 @@ void draw_all(gl::Context& context, const Work& work, RenderReport& report) {
   if (!work.shots[0].model.empty()) in_turn.emplace(o.scene, report.model, work.shots);
 
   const auto begin = Clock::now();
-  RunTimes& times = report.run;
-  const auto adding = [&](double& ms, const auto& wait) {
-    const auto since = Clock::now();
-    wait();
-    ms += ms_since(since);
-  };
-  render::ReadBack read_back(context);
-  ShotFiles files(report, work);
-  // A shot's pictures on their way from the GPU; before the files, so that they go first.
-  std::shared_ptr<render::ReadBack::Pictures> on_way;
-  Drawn* of = nullptr;
-  const auto add = [&](Drawn& drawn, std::function<ShotPictures()> take) {
-    adding(times.waiting, [&] { files.add(drawn, std::move(take)); });
-  };
-  const auto hand_over = [&] {
-    if (!on_way) return;
-    adding(times.reading, [&] { on_way->wait(); });
-    add(*of, [taken = std::exchange(on_way, nullptr)] { return ShotPictures{taken->take(), {}}; });
-  };
+  ShotFiles files(context, report, work);
   Progress progress("drawing", work.shots.size() * static_cast<std::size_t>(o.drawing.frames),
                     o.drawing.frames == 1 ? "views" : "frames");
   report.drawn.reserve(work.shots.size());  // threads refer to them
   for (const Shot& shot : work.shots) {
     if (in_turn && !report.drawn.empty()) {
-      hand_over();
+      files.hand_over();
       drawer.reset();
       shown = in_turn->take();
       drawer = drawer_of(std::make_shared<render::GpuModel>(context, *shown, settings.precision));
@@ -305,23 +335,21 @@ void draw_all(gl::Context& context, const Work& work, RenderReport& report) {
       of_shot.quality = static_cast<float>(drawn.levels->left);
     }
     for (int n = 0; n < o.drawing.frames; ++n) {
-      drawn.report = drawer->draw(drawn.shot, views, of_shot, hand_over);
+      drawn.report = drawer->draw(drawn.shot, views, of_shot, [&] { files.hand_over(); });
       report.frames.push_back(drawn.report);
-      times.gpu += drawn.report.total_ms;
+      report.run.gpu += drawn.report.total_ms;
       progress.update(report.frames.size());
     }
     if (drawer->foveated) drawn.foveated = drawer->foveated->parts();
     if (drawer->reads_behind()) {
-      on_way = read_back.start(drawer->frame);
-      of = &drawn;
+      files.read_back(drawn, drawer->frame);
     } else {
       const auto pictures = std::make_shared<ShotPictures>(drawer->read(drawn, views, of_shot));
-      add(drawn, [pictures] { return std::move(*pictures); });
+      files.add(drawn, [pictures] { return std::move(*pictures); });
     }
   }
-  hand_over();
-  adding(times.waiting, [&] { files.finish(times); });
-  times.all = ms_since(begin);
+  files.finish();
+  report.run.all = ms_since(begin);
   report.exact_ms = exact_frame_ms(drawer->frame, work, report);
   if (files.all_empty() && !o.drawing.reference_until)
     log_warning("the pictures are empty: {}",

@@ -14,7 +14,6 @@
 #include "app/command.h"
 #include "app/context_options.h"
 #include "app/load_scene.h"
-#include "app/render_table.h"
 #include "app/shots.h"
 #include "base/text.h"
 #include "formats/cameras_file.h"

@@ -4,7 +4,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdio>
 #include <functional>
@@ -266,9 +265,6 @@ ordered_json eye_json(const Eye& eye) {
                 object("x_right", list(axes[0]), "y_down", list(axes[1]), "z_forward", list(axes[2])));
 }
 
-// At which the optics of headsets put their screens.
-constexpr double headset_focus_metres = 2.0;
-
 ordered_json comfort_json(const Comfort& comfort) {
   const stereo::DisparityRange& r = comfort.range;
   return object("focus_metres", comfort.focus ? ordered_json(*comfort.focus) : ordered_json(), "near_px",
@@ -355,34 +351,6 @@ ordered_json scene_json(const RenderReport& report) {
 }
 
 }  // namespace
-
-std::optional<Comfort> comfort_of(const Shot& shot, bool headset, const Picture& left) {
-  if (shot.eyes.size() != 2) return std::nullopt;
-  const std::array<Camera, 2> eyes = {shot.eyes[0].camera, shot.eyes[1].camera};
-  // No screen stands in the plane of zero disparity of a headset, and canted eyes have no such plane.
-  const bool canted = glm::dot(eyes[0].rotation[2], eyes[1].rotation[2]) < 1.0 - 1e-9;
-  const auto focus = canted || headset ? std::optional(headset_focus_metres * shot.units_per_metre)
-                                       : stereo::screen_distance(eyes);
-  const auto range = stereo::disparity_range(eyes, left, focus);
-  if (!range) return std::nullopt;
-  Comfort comfort{*range, focus ? std::optional(*focus / shot.units_per_metre) : std::nullopt, {}};
-  const bool own_rig = !shot.given_eyes && !canted && !headset;
-  if (own_rig && !stereo::comfortable(*range)) {
-    comfort.better = stereo::comfortable_rig(*range, eyes);
-    comfort.better->convergence /= shot.units_per_metre;
-    if (comfort.better->ipd) *comfort.better->ipd /= shot.units_per_metre;
-  }
-  return comfort;
-}
-
-std::string megabytes(std::int64_t bytes) {
-  const double whole = std::round(static_cast<double>(bytes) / 1e6);
-  if (whole < 10.0) return fmt::format("{:.1f} MB", static_cast<double>(bytes) / 1e6);
-  std::string digits = fmt::format("{:.0f}", whole);
-  for (int place = static_cast<int>(digits.size()) - 3; place > 0; place -= 3)
-    digits.insert(static_cast<std::size_t>(place), ",");
-  return digits + " MB";
-}
 
 void print(const RenderReport& report) {
   print_views(report);

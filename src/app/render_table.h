@@ -1,7 +1,6 @@
 #pragma once
 // What `binosplat render` says of what it drew: a table for people, and JSON.
 
-#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -19,16 +18,12 @@
 
 namespace binosplat::app {
 
-/// How a pair's disparities lie, and what to change where they are beyond comfort.
+/// How the disparities of a shot with both eyes lie, and what to change where they are beyond comfort.
 struct Comfort {
   stereo::DisparityRange range;
   std::optional<double> focus;                   // m, that the range is against; none: infinitely far
   std::optional<stereo::ComfortableRig> better;  // m; where the range is not comfortable and the rig ours
 };
-
-/// Of a shot with both eyes and something that has a depth, from the left eye's picture; `headset`: seen in
-/// one.
-std::optional<Comfort> comfort_of(const Shot& shot, bool headset, const Picture& left);
 
 /// A shot once it is drawn.
 struct Drawn {
@@ -63,9 +58,6 @@ struct RenderReport {
   RunTimes run = {};
   std::optional<double> exact_ms = {};  // GPU time of an exact frame, where --quality draws many
 };
-
-/// Bytes as "1,210 MB", or "3.4 MB" where whole ones would say little.
-std::string megabytes(std::int64_t bytes);
 
 void print(const RenderReport& report);
 /// As JSON.
