@@ -128,15 +128,7 @@ std::vector<lab::BenchPoint> load_points(const fs::path& path) {
 
 BenchFolder::BenchFolder(fs::path folder, std::shared_ptr<const ordered_json> plan)
     : folder_(std::move(folder)), plan_(std::move(plan)) {
-  const fs::path file = folder_ / "plan.json";
-  // Of runs that begin at the same time one writes it.
-  if (!fs::exists(file) && save_json_as_first(file, *plan_)) return;
-  if (load_json(file) != *plan_) {
-    fail(
-        "{} holds the points of another run: other scenes, cameras or photos (by content), axes or another "
-        "version (see plan.json). Name another folder with -o, or remove it",
-        folder_.string());
-  }
+  claim_run(folder_ / "plan.json", *plan_, "points");
 }
 
 BenchFolder::BenchFolder(fs::path folder) : folder_(std::move(folder)) {

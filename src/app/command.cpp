@@ -1,5 +1,6 @@
 #include "app/command.h"
 
+#include <fmt/ranges.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -125,10 +126,25 @@ void save_json(const fs::path& path, const nlohmann::ordered_json& value) {
   write_file(path, json_text(value));
 }
 
-bool save_json_as_first(const fs::path& path, const nlohmann::ordered_json& value) {
-  OutputFile file(path);
-  file.write(json_text(value));
-  return file.commit_as_first();
+void claim_run(const fs::path& file, const nlohmann::ordered_json& run, const char* results) {
+  std::error_code ignored;
+  if (fs::exists(file, ignored)) return check_same_run(file, run, results);
+  OutputFile first(file);
+  first.write(json_text(run));
+  if (!first.commit_as_first()) check_same_run(file, run, results);
+}
+
+void check_same_run(const fs::path& file, const nlohmann::ordered_json& run, const char* results) {
+  const nlohmann::ordered_json saved = load_json(file);
+  std::vector<std::string> others;
+  for (const auto& [name, value] : run.items()) {
+    if (!saved.is_object() || !saved.contains(name) || saved[name] != value) others.push_back(name);
+  }
+  if (others.empty() && saved.size() == run.size()) return;
+  fail(
+      "{} holds {} of another run: {} says other {}. Name another folder with -o, or remove the {} and that "
+      "file",
+      file.parent_path().string(), results, file.string(), fmt::join(others, ", "), results);
 }
 
 std::string megabytes(std::int64_t bytes) {

@@ -61,8 +61,15 @@ std::string json_text(const nlohmann::ordered_json& value);
 /// Writes `value` for people and programs to read. Numbers that are not finite become null, as JSON has none.
 void save_json(const std::filesystem::path& path, const nlohmann::ordered_json& value);
 
-/// The same where nothing stands there; else false (OutputFile::commit_as_first).
-bool save_json_as_first(const std::filesystem::path& path, const nlohmann::ordered_json& value);
+/// In a folder of results, `file` says which run they are of, so that another goes on from them. Writes it if
+/// there is none: of runs that begin at the same time, whether alike or not, one does. Throws Error as
+/// check_same_run() does where it tells of another run.
+void claim_run(const std::filesystem::path& file, const nlohmann::ordered_json& run, const char* results);
+
+/// Throws Error, naming what differs, if `file` tells of another run than `run`. `results` is what they are,
+/// in the form "pictures".
+void check_same_run(const std::filesystem::path& file, const nlohmann::ordered_json& run,
+                    const char* results);
 
 /// Bytes as "1,210 MB", or "3.4 MB" where whole ones would say little.
 std::string megabytes(std::int64_t bytes);

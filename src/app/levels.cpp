@@ -15,7 +15,6 @@
 #include "app/load_scene.h"
 #include "app/model_files.h"
 #include "app/option_checks.h"
-#include "app/run_file.h"
 #include "app/shots.h"
 #include "base/error.h"
 #include "base/log.h"

@@ -1,5 +1,6 @@
 // The command line: finds the sub-command, runs it, and turns what went wrong into a line and an exit code.
 
+#include <fmt/format.h>
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cerrno>
@@ -12,7 +13,7 @@
 
 #include "app/command.h"
 #include "app/command_line.h"
-#include "app/manual.h"
+#include "app/render_options.h"
 #include "base/log.h"
 #include "base/mapped_file.h"
 #include "base/memory.h"
@@ -27,6 +28,32 @@ constexpr const char* epilogue =
     "(Jo et al.): docs/adagscale.md.\nExit codes: 0 done; 1 a comparison fell short; 2 input, output or "
     "usage is "
     "wrong; 3 no usable OpenGL, display or headset; 4 out of memory.";
+
+// As lines that roff does not fill. Its own commands begin with a dot or a quote; help has none in front.
+std::string section(const std::string& title, std::string text) {
+  text = CLI::detail::find_and_replace(text, "\\", "\\e");
+  text = CLI::detail::find_and_replace(text, "-", "\\-");
+  return fmt::format(".SH {}\n.nf\n{}\n.fi\n", title, text);
+}
+
+std::string manual_page(const CLI::App& program) {
+  // The options of `view` are those of the preview, a program of its own.
+  binosplat::app::RenderOptions values;
+  CLI::App view("", "binosplat view");
+  binosplat::app::add_view_options(view, values);
+  binosplat::app::add_max_memory(view);
+  binosplat::app::add_quiet(view);
+  std::string page = fmt::format(
+      ".TH BINOSPLAT 1 \"\" \"binosplat {}\" \"User Commands\"\n.SH NAME\nbinosplat \\- both eyes of a 3D "
+      "Gaussian Splatting model\n",
+      BINOSPLAT_VERSION);
+  page += section("binosplat", program.help());
+  for (const CLI::App* sub : program.get_subcommands({})) {
+    const std::string name = "binosplat " + sub->get_name();
+    page += section(name, (sub->get_name() == "view" ? view : *sub).help(name));
+  }
+  return page;
+}
 
 // Options that cannot be understood end in CLI::ParseError, everything else that is wrong in Error.
 int run(int argc, char** argv) {
@@ -56,7 +83,10 @@ int run(int argc, char** argv) {
     if (name != "compare" && name != "devices" && name != "view") binosplat::app::add_max_memory(*sub);
     if (name != "view") binosplat::app::add_quiet(*sub);
   }
-  binosplat::app::add_manual(program);
+  // For packages, so help does not show it. As --version it ends well, and needs no sub-command.
+  program
+      .add_flag_callback("--print-manual", [&program] { throw CLI::CallForVersion(manual_page(program), 0); })
+      ->group("");
   try {
     binosplat::app::check_arguments(argc, argv);
     std::vector<std::string> words = binosplat::app::with_command(program, argc, argv);

@@ -23,11 +23,11 @@ lab::Rule rule_of(const std::string& text) {
 }  // namespace
 
 void add_rule_option(CLI::App& sub, std::vector<std::string>& rules) {
-  sub.add_option("--rule", rules,
-                 "Only this rule, TH,SOURCE as `render --th` and `--transmittance` name them;\nmay be given "
-                 "again (all); those with `last` take longest")
-      ->type_name("RULE")
-      ->allow_extra_args(false);
+  add_names_option(
+      sub, "--rule", rules,
+      "Only this rule, TH,SOURCE as `render --th` and `--transmittance` name them;\nmay be given "
+      "again (all); those with `last` take longest",
+      "RULE");
 }
 
 std::vector<lab::Rule> rules_of(const std::vector<std::string>& texts) {

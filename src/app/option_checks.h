@@ -111,7 +111,11 @@ CLI::Option* add_parsed(CLI::App& sub, const char* option, const char* type, Int
 /// A new option of names: one a word. It may be given again, or have several with commas (separated()).
 inline CLI::Option* add_names_option(CLI::App& sub, const char* option, std::vector<std::string>& into,
                                      const std::string& help, const char* type = "NAME") {
-  return sub.add_option(option, into, help)->type_name(type)->allow_extra_args(false);
+  return sub.add_option(option, into, help)
+      ->type_name(type)
+      ->expected(1)
+      ->allow_extra_args(false)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
 }
 
 /// Each text by itself where it `is_one` name, since names may have commas; else its parts between commas.

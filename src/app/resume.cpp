@@ -9,7 +9,6 @@
 #include "app/bench_plan.h"
 #include "app/command.h"
 #include "app/content_key.h"
-#include "app/run_file.h"
 #include "base/log.h"
 #include "base/output_file.h"
 #include "formats/whole.h"

@@ -187,7 +187,7 @@ TEST_F(BenchTest, GoesOnWithTheSameContentOnly) {
   std::string other = bytes;
   ++other[other.size() - 100];  // of as many bytes
   write_text(model, other);
-  EXPECT_TRUE(ended(measure(out, {"--shard", "6/8"}), 2, "holds the points of another run"));
+  EXPECT_TRUE(ended(measure(out, {"--shard", "6/8"}), 2, "holds points of another run"));
   write_text(model, bytes);
   std::string moved = cameras;
   const std::size_t position = moved.find("position");
@@ -195,7 +195,7 @@ TEST_F(BenchTest, GoesOnWithTheSameContentOnly) {
   const std::size_t digit = moved.find_first_of("0123456789", position);
   moved[digit] = moved[digit] == '9' ? '8' : static_cast<char>(moved[digit] + 1);
   write_text(folder / "cameras.json", moved);  // the same names
-  EXPECT_TRUE(ended(measure(out, {"--shard", "6/8"}), 2, "holds the points of another run"));
+  EXPECT_TRUE(ended(measure(out, {"--shard", "6/8"}), 2, "holds points of another run"));
   write_text(folder / "cameras.json", cameras);
   EXPECT_TRUE(good(measure(out, {"--shard", "6/8"})));
 }
@@ -210,7 +210,7 @@ TEST_F(BenchTest, ErrorsSayWhatToDo) {
     std::vector<std::string> arguments;
     const char* said;
   } cases[] = {
-      {{model, "--axes", folder / "other.json", "-o", out}, "holds the points of another run"},
+      {{model, "--axes", folder / "other.json", "-o", out}, "holds points of another run"},
       {{model, "--axes", folder / "none.json", "-o", folder / "new"}, "none.json"},
       {{model, "--axes", folder / "list.json", "-o", folder / "new"}, "list.json: expected an object"},
       {{model, "--axes", axes, "--shard", "3/2", "-o", folder / "new"}, "--shard 3/2: expected I/N"},

@@ -91,7 +91,7 @@ TEST_F(Runs, PointsOfTwoScenesDoNotMix) {
   const auto bench = [&](const std::string& of) {
     return Words{"bench", of, "--axes", folder / "axes.json", "-o", out};
   };
-  expect_one_is_told(bench(model), bench(other), "holds the points of another run");
+  expect_one_is_told(bench(model), bench(other), "holds points of another run");
 }
 
 // Work is done twice, and no harm.
