@@ -18,6 +18,8 @@
 
 namespace binosplat {
 
+class Stream;  // the library's own
+
 /// What is asked of levels of detail.
 struct StreamOptions {
   /// dB, from 10 to 100: the PSNR that each view should have against the finest levels. A frame's own quality
@@ -35,6 +37,10 @@ class SplatStream {
  public:
   /// Opens the files and reads the coarsest levels. Throws Error(bad_input) for what is no such model.
   explicit SplatStream(const std::filesystem::path& path, const StreamOptions& options = {});
+
+  /// For the library's own code, which has streams open. Not null.
+  explicit SplatStream(std::shared_ptr<Stream> stream);
+
   ~SplatStream();
   SplatStream(SplatStream&&) noexcept;
   SplatStream& operator=(SplatStream&&) noexcept;

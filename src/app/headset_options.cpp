@@ -15,6 +15,8 @@ namespace {
 // What a headset has of its own, and what only windows have.
 constexpr const char* of_windows[] = {"--size", "--layout", "--ipd", "--convergence", "--cant",
                                       "--show", "--split",  "--fov", "--output"};
+// What only studies choose; a headset's pictures are drawn by the library.
+constexpr const char* of_studies[] = {"--tiles", "--tile", "--shader-dir"};
 constexpr const char* of_headsets[] = {"--scale", "--frame-budget", "--no-mirror", "--record", "--foveate"};
 
 bool is_given(const CLI::App& sub, const char* name) {
@@ -61,6 +63,10 @@ void check(const HeadsetOptions& o, const CLI::App& sub) {
   }
   for (const char* name : of_windows) {
     if (is_given(sub, name)) fail("{} with --xr: leave it out, a headset decides that itself", name);
+  }
+  for (const char* name : of_studies) {
+    if (is_given(sub, name))
+      fail("{} with --xr: leave it out, a headset's pictures have exact tiles of 16 px", name);
   }
   const std::pair<const char*, const char*> beside_a_budget[] = {
       {"--foveate", "a quality is one for whole pictures: choose one of them"},

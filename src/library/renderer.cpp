@@ -40,7 +40,7 @@ struct Renderer::Impl {
     if (stream->context != nullptr) fail("a stream has one renderer at a time: destroy the other one first");
     context = gl::Context::adopt(get_proc_address);
     const gl::KeptState kept(*context);
-    draw_with(stream->stream.gpu_model(*context, precision));
+    draw_with(stream->stream->gpu_model(*context, precision));
     stream->context = context.get();
     stream->precision = precision;
   }
@@ -52,7 +52,7 @@ struct Renderer::Impl {
   ~Impl() {
     if (!stream || stream->context != context.get()) return;
     frame.reset();
-    stream->stream.release_gpu_model();
+    stream->stream->release_gpu_model();
     stream->context = nullptr;
     stream->is_drawn = false;
   }

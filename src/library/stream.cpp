@@ -27,13 +27,14 @@ StreamSettings settings_of(const StreamOptions& options) {
 template <typename Impl>
 Stream& stream_in(const std::shared_ptr<Impl>& impl) {
   if (impl == nullptr) fail("this SplatStream was moved from: expected one that holds a model");
-  return impl->stream;
+  return *impl->stream;
 }
 
 }  // namespace
 
 SplatStream::SplatStream(const std::filesystem::path& path, const StreamOptions& options)
-    : impl_(std::make_shared<Impl>(path, settings_of(options))) {}
+    : SplatStream(std::make_shared<Stream>(path, settings_of(options))) {}
+SplatStream::SplatStream(std::shared_ptr<Stream> stream) : impl_(std::make_shared<Impl>(std::move(stream))) {}
 SplatStream::~SplatStream() = default;
 SplatStream::SplatStream(SplatStream&&) noexcept = default;
 SplatStream& SplatStream::operator=(SplatStream&&) noexcept = default;

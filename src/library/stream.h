@@ -8,10 +8,9 @@
 namespace binosplat {
 
 struct SplatStream::Impl {
-  explicit Impl(const std::filesystem::path& path, StreamSettings settings)
-      : stream(path, std::move(settings)) {}
+  explicit Impl(std::shared_ptr<Stream> opened) : stream(std::move(opened)) {}
 
-  Stream stream;
+  std::shared_ptr<Stream> stream;  // not null
   gl::Context* context = nullptr;  // of its renderer; null: there is none
   int precision = 0;               // its renderer's, PRECISION_
   bool is_drawn = false;           // by a frame that was submitted and is not finished

@@ -1,46 +1,37 @@
 #pragma once
 // Controllers and eyes as OpenXR's actions have them. Without any, all is at rest.
 
-#include <array>
-#include <optional>
-
 #include "xr/session.h"
 #include "xr/walk.h"
 
 namespace binosplat::xr {
 
-/// What the hands do at a moment.
-struct InputActions {
+/// What the user does at a moment.
+struct Input {
   std::array<Hand, 2> hands;
-  bool resets = false;  // the menu button was pushed
+  bool resets = false;          // the menu button was pushed
+  std::optional<XrPosef> gaze;  // in the session's space; none where no eye tracker tells
 };
 
 class Hands {
  public:
-  explicit Hands(Session& session);
-  ~Hands();
-  Hands(const Hands&) = delete;
-  Hands& operator=(const Hands&) = delete;
+  explicit Hands(const Session& session);
 
-  /// Where hands will be at that time, and what they do now.
-  InputActions read(XrTime display);
-  /// Where the eyes look from and to, in the session's space; nothing where no eye tracker tells.
-  std::optional<XrPosef> gaze(XrTime display);
+  /// Where hands and gaze will be at that time, and what hands do now.
+  Input read(XrTime display);
 
  private:
-  void make_actions();
+  Owned<XrAction> make_action(const char* name, const char* shown, XrActionType type, bool of_hands = true);
+  Owned<XrSpace> make_space(const Owned<XrAction>& action, XrPath hand) const;
   void suggest_bindings();
-  void release();
-  XrAction make_action(const char* name, const char* shown, XrActionType type);
 
-  Session& session_;
-  const Api& api_;
+  const Session& session_;
   std::array<XrPath, 2> paths_;  // the hands' paths
-  XrActionSet set_ = XR_NULL_HANDLE;
-  XrAction pose_ = XR_NULL_HANDLE, stick_ = XR_NULL_HANDLE, grab_ = XR_NULL_HANDLE, menu_ = XR_NULL_HANDLE;
-  XrAction gaze_ = XR_NULL_HANDLE;  // where the runtime has eye tracking
-  std::array<XrSpace, 2> spaces_{};
-  XrSpace gaze_space_ = XR_NULL_HANDLE;
+  Owned<XrActionSet> set_;
+  Owned<XrAction> pose_, stick_, grab_, menu_;
+  Owned<XrAction> gaze_;  // null where the runtime has no eye tracking, and so is its space
+  std::array<Owned<XrSpace>, 2> spaces_;
+  Owned<XrSpace> gaze_space_;
 };
 
 }  // namespace binosplat::xr

@@ -1,19 +1,14 @@
 #include "xr/headset.h"
 
-#include <binosplat/report.h>
-
 #include <algorithm>
-#include <chrono>
 #include <cmath>
-#include <glm/gtc/quaternion.hpp>
 #include <thread>
-#include <utility>
 
-#include "base/error.h"
 #include "base/log.h"
 #include "base/spans.h"
 #include "base/statistics.h"
 #include "xr/hands.h"
+#include "xr/projection.h"
 
 namespace binosplat::xr {
 
@@ -21,33 +16,47 @@ namespace {
 
 using std::chrono::milliseconds;
 
-constexpr double own_share = 0.8;         // of a frame's time: the runtime draws, too
-constexpr double eyes_above_floor = 1.6;  // m, of somebody who stands
-constexpr int sessions_most = 10;         // one after the other, where they are lost
+constexpr double own_share = 0.8;  // of a frame's time: the runtime draws, too
+// What levels of detail take of a frame: what drawing leaves but for a rest, within these bounds.
+constexpr double levels_ms_least = 2.5, levels_ms_most = 6.0, rest_ms = 1.2;
+constexpr int sessions_most = 10;  // one after the other, where they are lost
 constexpr milliseconds between_sessions{500}, wait_most{10000};
-constexpr XrDuration between_looks = 1'000'000'000;  // ns
-constexpr milliseconds between_polls{10};            // while no frames are wanted
+constexpr milliseconds between_polls{10};  // while no frames are wanted
+
+double ms_of(XrDuration ns) { return 1e-6 * static_cast<double>(ns); }
+
+// Between both eyes, which may be canted.
+Eye head_of(const std::vector<XrView>& views) {
+  const Eye left = eye_of(views[0].pose), right = eye_of(views[1].pose);
+  const double same_way = glm::sign(glm::dot(left.orientation, right.orientation));
+  return {0.5 * (left.position + right.position), left.orientation + same_way * right.orientation};
+}
 
 class Viewer {
  public:
-  Viewer(const Instance& instance, std::shared_ptr<render::GpuModel> model, const HeadsetSettings& settings,
+  Viewer(const Instance& instance, Renderer& renderer, SplatStream* stream, const HeadsetSettings& settings,
          const Beside& beside)
-      : instance_(instance),
-        context_(model->context()),
-        settings_(settings),
-        beside_(beside),
-        frame_(std::move(model)) {}
+      : instance_(instance), renderer_(renderer), stream_(stream), settings_(settings), beside_(beside) {}
 
   /// False where the session was lost.
-  bool run_session() {
-    try {
-      return play_session();
-    } catch (const Lost& lost) {
-      if (lost.instance)
-        throw Error(ExitCode::no_gl,
-                    fmt::format("{} has ended: start it, and then this again", instance_.runtime()));
-      return leaving_;
+  bool run_session() try {
+    Session session(instance_);
+    Hands hands(session);
+    Projection projection(session, settings_.scale, settings_.drawing.foveation && !instance_.has_insets());
+    log_info("{}: {}", instance_.headset, projection.description());
+    last_.reset();
+    while (session.poll()) {
+      if (session.running()) draw(session, hands, projection);
+      if (!beside_.step() && !leaving_) {
+        leaving_ = true;
+        session.request_exit();
+      }
+      if (!session.running()) std::this_thread::sleep_for(between_polls);
     }
+    return true;
+  } catch (const Lost& lost) {
+    if (lost.instance) refuse("{} has ended: start it, and then this again", instance_.runtime);
+    return leaving_;
   }
 
   std::size_t frames() const { return times_.size(); }
@@ -59,28 +68,10 @@ class Viewer {
   }
 
  private:
-  /// Until it is over. Throws Lost.
-  bool play_session() {
-    Session session(instance_);
-    Hands hands(session);
-    std::unique_ptr<Projection> projection = make_projection(session);
-    frame_.frame().start_over();
-    last_.reset();
-    while (session.poll()) {
-      if (session.running()) draw(session, hands, projection);
-      if (!beside_.step() && !leaving_) {
-        leaving_ = true;
-        session.request_exit();
-      }
-      if (!session.running()) std::this_thread::sleep_for(between_polls);
-    }
-    return true;
-  }
-
   /// A frame of the runtime's.
-  void draw(Session& session, Hands& hands, std::unique_ptr<Projection>& projection) {
+  void draw(Session& session, Hands& hands, Projection& projection) {
     const FrameTime time = session.begin_frame();
-    const auto began = Clock::now();
+    Drawn frame{.begin = Clock::now(), .period_ms = ms_of(time.period)};
     const std::vector<XrView> views = time.is_shown ? session.locate(time.display) : std::vector<XrView>();
     if (time.is_shown && views.empty() && tracked_) log_info("the head is not tracked: nothing is shown");
     if (time.is_shown) tracked_ = !views.empty();
@@ -89,89 +80,64 @@ class Viewer {
       if (shown_) shown_->last = time.display;  // which was not missed: nothing was to be drawn
       return session.end_frame(time, nullptr);
     }
-    if (session.take_recentred(time.display)) frame_.frame().forget();
-    if (time.display - looked_ >= between_looks) {
-      looked_ = time.display;
-      if (projection->outdated()) {
-        projection.reset();  // its memory first
-        projection = make_projection(session);
-      }
+    if (session.take_masks_changed()) projection.take_masks();
+    const Input input = hands.read(time.display);
+    walk(session, input, head_of(views), time.display);
+    if (settings_.budget_ms && !budget_)
+      budget_.emplace(*settings_.budget_ms > 0.0 ? *settings_.budget_ms : own_share * frame.period_ms);
+    const Effort effort = budget_ ? budget_->effort() : Effort{settings_.drawing.quality};
+    Settings drawing = settings_.drawing;
+    drawing.quality = effort.quality;
+    drawing.depth = DepthKind::median;
+    if (instance_.has_insets()) drawing.foveation.reset();
+    if (drawing.foveation && input.gaze) drawing.foveation->gaze = gaze_of(*input.gaze, views);
+    // Hands that enlarge the world do not push the near plane away.
+    const Placement& placement = walk_->placement();
+    drawing.near_plane *= std::min(1.0, placement.units_per_metre / settings_.start.units_per_metre);
+    frame.views = projection.begin(views, placement, effort.scale, drawing);
+    if (stream_ != nullptr) {
+      const TimedSpan span("levels", &frame.levels_ms);
+      const double left_ms = frame.period_ms - (times_.empty() ? 0.0 : times_.back()) - rest_ms;
+      Settings asked = drawing;  // levels do not go by a budget
+      asked.quality = settings_.drawing.quality;
+      stream_->begin_frame(frame.views, placement, asked,
+                           std::clamp(left_ms, levels_ms_least, levels_ms_most));
+      if (asked.quality) drawing.quality = beside_.quality(*asked.quality);
     }
-    if (session.take_masks_changed()) projection->take_masks();
-    follow(session, hands, views, time);
-    const double period_ms = 1e-6 * static_cast<double>(time.period);
-    render::FrameRecord record{.due = began, .begin = began};
-    float left = 0.0f;
-    {
-      const TimedSpan span("levels", &record.levels.ms);
-      left = follow_levels(period_ms);
-    }
-    if (settings_.budget_ms && !budget_) {
-      budget_.emplace(*settings_.budget_ms > 0.0 ? *settings_.budget_ms : own_share * period_ms);
-    }
-    const Effort effort = budget_ ? budget_->effort() : Effort{left, 1.0};
-    render::FrameSettings settings = settings_.frame;
-    settings.quality = effort.quality.value_or(0.0f);
-    if (budget_ && effort.quality) settings.th = TH_SQUARED;
-    const std::optional<XrPosef> gaze =
-        settings_.projection.foveation ? hands.gaze(time.display) : std::nullopt;
-    record.report = projection->draw(frame_, views, walk_->placement(), settings,
-                                     {.scale = effort.scale, .gaze = gaze, .drawn_left = beside_.show});
-    times_.push_back(record.report.total_ms);
-    if (budget_) budget_->took(record.report.total_ms, period_ms);
-    session.end_frame(time, projection->layer());
-    tell_drawn(std::move(record), time);
+    frame.report = renderer_.draw(frame.views, placement, drawing);
+    times_.push_back(frame.report.gpu_ms);
+    if (budget_) budget_->took(frame.report.gpu_ms, frame.period_ms);
+    const View& left = frame.views[instance_.has_insets() ? 1 : 0];
+    if (beside_.show) beside_.show(left.target, left.size);
+    session.end_frame(time, projection.end(views, frame.views, placement));
+    tell_drawn(std::move(frame), time);
   }
 
   /// Tells of a frame that the runtime has, and of the times at which it shows frames.
-  void tell_drawn(render::FrameRecord record, const FrameTime& time) {
-    record.end = Clock::now();
-    record.views.assign(frame_.frame().views().begin(),
-                        frame_.frame().views().begin() + frame_.frame().plan().asked);
-    record.gaussians = frame_.frame().model()->size().gaussians;
+  void tell_drawn(Drawn frame, const FrameTime& time) {
+    frame.end = Clock::now();
     if (!shown_) shown_ = {time.display, time.display};
-    const auto periods = std::llround(static_cast<double>(time.display - shown_->last) /
-                                      static_cast<double>(std::max<XrDuration>(time.period, 1)));
-    record.display = {1e-6 * static_cast<double>(time.display - shown_->first),
-                      static_cast<int>(std::max(periods - 1, 0LL))};
+    const auto periods = std::llround(ms_of(time.display - shown_->last) / std::max(frame.period_ms, 1e-6));
+    frame.display_ms = ms_of(time.display - shown_->first);
+    frame.missed = static_cast<int>(std::max(periods - 1, 0LL));
     shown_->last = time.display;
-    if (beside_.drawn) beside_.drawn(std::move(record), 1e-6 * static_cast<double>(time.period));
-  }
-
-  std::unique_ptr<Projection> make_projection(const Session& session) const {
-    auto projection = std::make_unique<Projection>(session, context_, settings_.projection);
-    projection->take_masks();
-    log_info("{}: {}", instance_.headset(), projection->description());
-    return projection;
+    beside_.drawn(std::move(frame));
   }
 
   /// To where hands take the head.
-  void follow(const Session& session, Hands& hands, const std::vector<XrView>& views, const FrameTime& time) {
-    const InputActions actions = hands.read(time.display);
-    const Eye left = eye_of(views[0].pose), right = eye_of(views[1].pose);
-    Eye head = left;  // between both eyes, which may be canted
-    head.position = 0.5 * (left.position + right.position);
-    head.orientation =
-        left.orientation + glm::sign(glm::dot(left.orientation, right.orientation)) * right.orientation;
-    if (!walk_) walk_.emplace(start_of(settings_, session.on_floor(), session.on_stage() ? &head : nullptr));
-    if (actions.resets) walk_->reset();
-    if (last_) walk_->step(head, actions.hands, 1e-9 * static_cast<double>(time.display - *last_));
-    last_ = time.display;
-  }
-
-  /// By what the last frame's views need. Returns what is left of the quality that a frame is to have.
-  float follow_levels(double period_ms) {
-    const render::Frame& frame = frame_.frame();
-    if (!beside_.levels || frame.views().empty()) return settings_.frame.quality;
-    const auto views = std::span(frame.views()).first(frame.plan().asked);
-    return beside_.levels(views, period_ms, times_.back());
+  void walk(const Session& session, const Input& input, const Eye& head, XrTime display) {
+    if (!walk_)
+      walk_.emplace(start_of(settings_.start, session.on_floor(), session.on_stage() ? &head : nullptr));
+    if (input.resets) walk_->reset();
+    if (last_) walk_->step(head, input.hands, 1e-3 * ms_of(display - *last_));
+    last_ = display;
   }
 
   const Instance& instance_;
-  gl::Context& context_;
+  Renderer& renderer_;
+  SplatStream* const stream_;
   const HeadsetSettings& settings_;
   const Beside& beside_;
-  stereo::FoveatedFrame frame_;
   std::optional<Walk> walk_;  // goes on where a session is lost
   std::optional<FrameBudget> budget_;
   std::optional<XrTime> last_;  // when the last frame was seen
@@ -180,53 +146,28 @@ class Viewer {
     XrTime first = 0, last = 0;
   };
   std::optional<Shown> shown_;
-  XrTime looked_ = 0;          // when it was asked which sizes the runtime recommends
   std::vector<double> times_;  // ms
   bool tracked_ = true, leaving_ = false;
 };
 
 }  // namespace
 
-Placement start_of(const HeadsetSettings& settings, bool on_floor, const Eye* head) {
-  const glm::dvec3 up = glm::normalize(settings.up);
-  const Camera& start = settings.start;
-  glm::dvec3 forward = start.rotation[2] - glm::dot(start.rotation[2], up) * up;
-  // Straight up or down: where its upper edge points.
-  if (glm::length(forward) < 1e-3) forward = -start.rotation[1] + glm::dot(start.rotation[1], up) * up;
-  forward = glm::normalize(forward);
-  Placement placement;
-  placement.axes = glm::dmat3(glm::cross(forward, up), up, -forward);
-  placement.units_per_metre = settings.units_per_metre;
-  placement.origin = start.position;
-  if (on_floor) placement.origin -= eyes_above_floor * settings.units_per_metre * up;
-  if (head == nullptr) return placement;
-  const glm::dvec3 ahead = heading_of(*head);
-  const double turned = std::atan2(-ahead.x, -ahead.z);  // to the left
-  placement.axes *= glm::mat3_cast(glm::angleAxis(-turned, glm::dvec3(0.0, 1.0, 0.0)));
-  placement.origin -=
-      settings.units_per_metre * (placement.axes * glm::dvec3(head->position.x, 0.0, head->position.z));
-  return placement;
-}
-
-void run(Instance& instance, std::shared_ptr<render::GpuModel> model, const HeadsetSettings& settings,
+void run(Instance& instance, Renderer& renderer, SplatStream* stream, const HeadsetSettings& settings,
          const Beside& beside) {
-  Viewer viewer(instance, std::move(model), settings, beside);
+  Viewer viewer(instance, renderer, stream, settings, beside);
   std::size_t drawn = 0;
   for (int in_vain = 0; !viewer.run_session();) {
     in_vain = viewer.frames() > drawn ? 0 : in_vain + 1;
     drawn = viewer.frames();
-    if (in_vain == sessions_most)
-      throw Error(ExitCode::no_gl, fmt::format("{} loses every session", instance.runtime()));
-    log_warning("{} lost the session: it is begun again", instance.runtime());
-    std::this_thread::sleep_for(between_sessions);
-    if (!beside.step()) break;
-    for (auto waited = between_sessions; !instance.find_again(); waited += between_sessions) {
-      if (!beside.step()) return viewer.tell();
-      if (waited > wait_most)
-        throw Error(ExitCode::no_gl,
-                    fmt::format("{} lost the headset: connect it and switch it on", instance.runtime()));
+    if (in_vain == sessions_most) refuse("{} loses every session", instance.runtime);
+    log_warning("{} lost the session: it is begun again", instance.runtime);
+    auto waited = milliseconds(0);
+    do {
       std::this_thread::sleep_for(between_sessions);
-    }
+      if (!beside.step()) return viewer.tell();
+      waited += between_sessions;
+      if (waited > wait_most) refuse("{} lost the headset: connect it and switch it on", instance.runtime);
+    } while (XR_FAILED(instance.find_headset()));
   }
   viewer.tell();
 }

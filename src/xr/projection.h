@@ -1,91 +1,80 @@
 #pragma once
-// What a headset shows: a frame's pictures and depths in the runtime's textures, with exactly the poses and
-// angles that they were drawn from.
+// What a headset shows: the runtime's textures that a frame's pictures and depths are drawn into, with
+// exactly the poses and angles that they were drawn from.
 
-#include <functional>
-#include <memory>
-#include <optional>
-#include <span>
-#include <vector>
+#include <binosplat/renderer.h>
 
-#include "stereo/eyes.h"
-#include "stereo/foveate.h"
-#include "stereo/present.h"
-#include "xr/swapchain.h"
-#include "xr/visibility.h"
+#include "xr/session.h"
 
 namespace binosplat::xr {
 
-/// How the views of a headset are drawn.
-struct ProjectionSettings {
-  double scale = 1.0;                // sides of the textures over those that the runtime recommends
-  double near_plane = near_default;  // world units, while a metre has units_per_metre of them
-  double units_per_metre = 1.0;
-  glm::vec3 background{0.0f};
-  /// For a headset with two views; one with four has insets of its own. No depths go with composed pictures.
-  std::optional<stereo::Foveation> foveation;
+/// A ring of the runtime's textures, of which one is drawn into at a time.
+struct Swapchain {
+  /// 2D textures of one sample, of a format that the runtime offers. Throws Error(no_gl) where it makes none.
+  Swapchain(const Session& session, std::int64_t format, const glm::ivec2& size, XrSwapchainUsageFlags usage);
+
+  /// Waits until the runtime has read a texture, and returns its name. Call release() before the frame ends.
+  std::uint32_t acquire() const;
+  void release() const { XR(ReleaseSwapchainImage, handle.get(), nullptr); }
+
+  Owned<XrSwapchain> handle;
+  glm::ivec2 size;  // px
+  std::vector<std::uint32_t> textures;
 };
+
+/// What a lens shows of a view (XR_KHR_visibility_mask): triangles at a distance of 1 ahead, x right and y
+/// up, that hold all that can be seen. Empty: all of the view.
+struct Mask {
+  std::vector<XrVector2f> vertices;
+  std::vector<std::uint32_t> indices;  // three a triangle
+};
+
+/// For each row of tiles of a picture the columns that a lens shows, as ViewRegion has them, with a margin of
+/// a pixel. Empty: all.
+std::vector<glm::uvec2> visible_columns(const Mask& mask, const Fov& fov, const glm::ivec2& size);
 
 class Projection {
  public:
   /// Makes textures of the recommended sizes times the scale, at most the largest that the runtime allows.
-  Projection(const Session& session, gl::Context& context, const ProjectionSettings& settings);
+  /// `composed`: of pictures with insets of their own, which have neither depths nor regions.
+  Projection(const Session& session, double scale, bool composed);
 
-  /// How a frame is drawn, besides its settings.
-  struct Draw {
-    double scale = 1.0;                // sides of the pictures over those of the textures
-    std::optional<XrPosef> gaze = {};  // where the foveated eyes look, if it is known
-    /// Called while the left eye's texture may still be read: its picture, of `size` px, lies there in the
-    /// lower left corner.
-    std::function<void(const Target& left, const glm::ivec2& size)> drawn_left = {};
-  };
-  /// Draws the located views at a place of the model's world.
-  render::FrameReport draw(stereo::FoveatedFrame& frame, std::span<const XrView> located,
-                           const Placement& placement, render::FrameSettings settings, const Draw& draw);
+  /// Takes textures from the runtime for the located views, and returns what is to be drawn of them: pictures
+  /// of `scale` times the sides of the textures. An eye's views lie side by side. Of four, the wide ones have
+  /// holes where the insets are, which are exact unless the settings have a quality.
+  std::vector<View> begin(std::span<const XrView> located, const Placement& placement, double scale,
+                          const Settings& settings);
 
-  /// Whether the runtime recommends other sizes now: a new Projection would have them.
-  bool outdated() const { return sizes_ != sizes_now(); }
+  /// Gives the textures back, drawn. Returns what Session::end_frame takes.
+  const XrCompositionLayerBaseHeader* end(std::span<const XrView> located, std::span<const View> drawn,
+                                          const Placement& placement);
 
-  /// Asks the runtime anew what its lenses show.
+  /// Asks the runtime what its lenses show.
   void take_masks();
-
-  /// The frame that was drawn last, for Session::end_frame.
-  const XrCompositionLayerBaseHeader* layer() const;
 
   /// The sizes, "GL_SRGB8_ALPHA8", and whether depths go with it: for people.
   std::string description() const;
 
  private:
-  struct Eye {
-    std::unique_ptr<Swapchain> colours, depths;
-    Visible visible;
-  };
-  std::vector<glm::ivec2> sizes_now() const;
-  bool foveates() const { return settings_.foveation && eyes_.size() == 2; }
-  /// Depths go from the nearest to the farthest, m.
-  void submit(std::span<const XrView> located, std::span<const glm::ivec2> sizes, double nearest,
-              double farthest);
-  /// Make the textures, of formats that the runtime offers.
-  void make_colours(std::span<const std::int64_t> offered);
-  void make_depths(std::span<const std::int64_t> offered);
-  std::vector<render::ViewRegion> parts_of(const render::FrameSettings& settings,
-                                           std::span<const XrView> located,
-                                           std::span<const glm::ivec2> sizes) const;
+  void make_colours(double scale);
+  void make_depths();
 
   const Session& session_;
-  ProjectionSettings settings_;
-  stereo::Presenter presenter_;
-  std::int64_t format_ = 0;
-  bool linear_ = false;   // numbers of the format mean light
-  bool in_place_ = true;  // shaders may write into the textures
-  std::vector<glm::ivec2> sizes_;
-  std::vector<Eye> eyes_;
+  const bool composed_;
+  std::vector<std::int64_t> formats_;  // that the runtime offers
+  bool in_place_ = true;               // shaders may write into the textures
+  std::vector<Swapchain> colours_;     // by view
+  std::vector<Swapchain> depths_;      // the same, or empty
+  std::vector<Mask> masks_;
   std::vector<XrCompositionLayerDepthInfoKHR> depth_infos_;
   std::vector<XrCompositionLayerProjectionView> views_;
-  XrCompositionLayerProjection layer_;
+  XrCompositionLayerProjection layer_{XR_TYPE_COMPOSITION_LAYER_PROJECTION};
 };
 
 /// The eye as the library takes it.
 Eye eye_of(const XrPosef& pose, const XrFovf& fov = {});
+
+/// Where each eye looks, as Foveation::gaze has it, a little within its picture.
+std::vector<glm::dvec2> gaze_of(const XrPosef& gaze, std::span<const XrView> located);
 
 }  // namespace binosplat::xr

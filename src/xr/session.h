@@ -1,10 +1,9 @@
 #pragma once
 // An OpenXR session: its states, the space that heads are located in, and frames.
 
-#include <optional>
-#include <vector>
+#include <binosplat/renderer.h>
 
-#include "xr/instance.h"
+#include "xr/openxr.h"
 
 namespace binosplat::xr {
 
@@ -17,19 +16,20 @@ struct FrameTime {
   bool is_shown = false;  // false: nobody looks, nothing need be drawn
 };
 
+/// How the functions of the OpenGL context that is current are found. Throws Error(no_gl) where none of EGL
+/// or GLX is.
+GetProcAddress get_proc_address();
+
 class Session {
  public:
-  /// Begins a session with the OpenGL context that is current, which must stay so. Throws Error(no_gl) for a
-  /// runtime that does not take it.
+  /// Begins a session with the OpenGL context that is current, which must stay so: of EGL where the runtime
+  /// has XR_MNDX_egl_enable, or of GLX. Throws Error(no_gl) for a runtime that does not take it.
   explicit Session(const Instance& instance);
-  ~Session();
-  Session(const Session&) = delete;
-  Session& operator=(const Session&) = delete;
 
   const Instance& instance() const { return instance_; }
-  XrSession handle() const { return session_; }
+  XrSession handle() const { return session_.get(); }
   /// x right, y up, z backward, metres. Its origin lies on the floor, or where the head was.
-  XrSpace space() const { return space_; }
+  XrSpace space() const { return space_.get(); }
   bool on_floor() const { return on_floor_; }
   /// Whether the space is the room's, whose middle is not where a head is at first.
   bool on_stage() const { return on_stage_; }
@@ -39,36 +39,26 @@ class Session {
   bool poll();
   /// Whether frames are to be waited for.
   bool running() const { return running_; }
-  /// Whether the program gets what hands do.
-  bool focused() const { return state_ == XR_SESSION_STATE_FOCUSED; }
-  /// Whether the space was moved or replaced since the frame for which this was asked last: the frame shown
-  /// at `display` then continues none.
-  bool take_recentred(XrTime display);
   /// Whether the visibility masks were changed since the last call.
-  bool take_masks_changed();
+  bool take_masks_changed() { return std::exchange(masks_changed_, false); }
   /// The user wants to leave: the runtime ends the session in its own time.
   void request_exit();
 
   FrameTime begin_frame();
   /// Where the eyes will be; nothing while the head is not tracked.
-  std::vector<XrView> locate(XrTime display);
+  std::vector<XrView> locate(XrTime display) const;
   /// Where another space's origin will be; nothing while that is not known.
-  std::optional<XrPosef> locate(XrSpace other, XrTime display);
+  std::optional<XrPosef> locate(XrSpace other, XrTime display) const;
   /// Shows a layer, or nothing.
   void end_frame(const FrameTime& frame, const XrCompositionLayerBaseHeader* layer);
 
  private:
   void make_space();
   void follow(const XrEventDataSessionStateChanged& event);
-  void begin();
 
   const Instance& instance_;
-  const Api& api_;
-  XrSession session_ = XR_NULL_HANDLE;
-  XrSpace space_ = XR_NULL_HANDLE;
-  XrEnvironmentBlendMode blend_mode_ = XR_ENVIRONMENT_BLEND_MODE_OPAQUE;
-  XrSessionState state_ = XR_SESSION_STATE_UNKNOWN;
-  std::optional<XrTime> changes_at_;  // the space
+  Owned<XrSession> session_;
+  Owned<XrSpace> space_;
   bool on_floor_ = false, on_stage_ = false, running_ = false, over_ = false, masks_changed_ = false;
 };
 

@@ -8,6 +8,7 @@ namespace binosplat::xr {
 
 namespace {
 
+constexpr double eyes_above_floor = 1.6;  // m, of somebody who stands
 constexpr double metres_a_second = 1.5;
 constexpr double degrees_a_push = 30.0;
 constexpr double pushed = 0.7, let_go = 0.4;  // of a stick
@@ -18,13 +19,35 @@ double beyond_slack(double push) {
   return std::copysign(std::max(0.0, std::abs(push) - slack) / (1.0 - slack), push);
 }
 
-}  // namespace
-
+// Where a head looks, level; forwards where it looks straight up or down.
 glm::dvec3 heading_of(const Eye& head) {
   const glm::dvec4 q = glm::normalize(head.orientation);
   const glm::dvec3 ahead = glm::dquat(q.w, q.x, q.y, q.z) * glm::dvec3(0.0, 0.0, -1.0);
   const glm::dvec3 level(ahead.x, 0.0, ahead.z);
   return glm::length(level) > 1e-3 ? glm::normalize(level) : glm::dvec3(0.0, 0.0, -1.0);
+}
+
+}  // namespace
+
+Placement upright_at(const glm::dvec3& position, const glm::dmat3& rotation, const glm::dvec3& up,
+                     double units_per_metre) {
+  const glm::dvec3 above = glm::normalize(up);
+  const auto level = [&](const glm::dvec3& v) { return v - glm::dot(v, above) * above; };
+  glm::dvec3 forward = level(rotation[2]);
+  // Straight up or down: where its upper edge points.
+  if (glm::length(forward) < 1e-3) forward = -level(rotation[1]);
+  forward = glm::normalize(forward);
+  return {position, {glm::cross(forward, above), above, -forward}, units_per_metre};
+}
+
+Placement start_of(Placement eyes, bool on_floor, const Eye* head) {
+  if (on_floor) eyes.origin -= eyes_above_floor * eyes.units_per_metre * eyes.axes[1];
+  if (head == nullptr) return eyes;
+  const glm::dvec3 ahead = heading_of(*head);
+  const double turned = std::atan2(-ahead.x, -ahead.z);  // to the left
+  eyes.axes *= glm::mat3_cast(glm::angleAxis(-turned, glm::dvec3(0.0, 1.0, 0.0)));
+  eyes.origin -= eyes.units_per_metre * (eyes.axes * glm::dvec3(head->position.x, 0.0, head->position.z));
+  return eyes;
 }
 
 void Walk::turn(double radians, const glm::dvec3& about) {

@@ -2,11 +2,10 @@
 // How hands move a head through a model: where the space that heads are located in lies in the model's world.
 // Pure maths; the space is OpenXR's, x right, y up, z backward, metres.
 
-#include <array>
-#include <glm/glm.hpp>
-#include <optional>
+#include <binosplat/eyes.h>
 
-#include "stereo/eyes.h"
+#include <array>
+#include <optional>
 
 namespace binosplat::xr {
 
@@ -17,8 +16,15 @@ struct Hand {
   bool grabs = false;
 };
 
-/// Where a head looks, level; forwards where it looks straight up or down.
-glm::dvec3 heading_of(const Eye& head);
+/// A space whose origin lies at a camera, upright and with the camera's heading. `rotation` is that of the
+/// camera: its axes right, down and forward in the world, as columns. `up` in the world, of any length.
+Placement upright_at(const glm::dvec3& position, const glm::dmat3& rotation, const glm::dvec3& up,
+                     double units_per_metre);
+
+/// Where OpenXR's space lies at first, for a viewer who stands, with eyes where upright_at() says: 1.6 m
+/// lower where its origin lies on the floor. Where its origin is not where a head is at first, as in the
+/// middle of a room, this head is there, and looks that way.
+Placement start_of(Placement eyes, bool on_floor, const Eye* head = nullptr);
 
 class Walk {
  public:

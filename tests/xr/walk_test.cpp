@@ -7,8 +7,7 @@
 #include <cmath>
 #include <glm/gtc/quaternion.hpp>
 
-#include "xr/headset.h"
-#include "xr/visibility.h"
+#include "xr/projection.h"
 
 namespace binosplat::xr {
 namespace {
@@ -94,26 +93,23 @@ TEST(Walk, TwoHandsTurnAndScale) {
       << "hands that are swapped would go unnoticed";
 }
 
-TEST(Headset, BeginsWhereTheCameraStands) {
-  HeadsetSettings settings;
-  settings.start.position = {1, 2, 3};
-  settings.start.rotation =
-      glm::dmat3(glm::mat3_cast(glm::angleAxis(0.7, glm::dvec3(1, 0, 0))));  // looks down
-  settings.units_per_metre = upm;
-  const Placement standing = start_of(settings, false), floor = start_of(settings, true);
-  EXPECT_EQ(standing.origin, settings.start.position);
-  EXPECT_NEAR(glm::length(in_world(floor, {0, 1.6, 0}) - settings.start.position), 0.0, 1e-12);
-  EXPECT_NEAR(glm::length(standing.axes[1] - settings.up), 0.0, 1e-12) << "upright";
+TEST(Walk, BeginsWhereTheCameraStands) {
+  const glm::dvec3 position(1, 2, 3), up(0, -1, 0);
+  const glm::dmat3 down(glm::mat3_cast(glm::angleAxis(0.7, glm::dvec3(1, 0, 0))));
+  const Placement standing = upright_at(position, down, up, upm), floor = start_of(standing, true);
+  EXPECT_EQ(start_of(standing, false).origin, position);
+  EXPECT_NEAR(glm::length(in_world(floor, {0, 1.6, 0}) - position), 0.0, 1e-12);
+  EXPECT_NEAR(glm::length(standing.axes[1] - up), 0.0, 1e-12) << "upright";
   EXPECT_NEAR(glm::length(standing.axes[2] - glm::dvec3(0, 0, -1)), 0.0, 1e-12) << "heading";
   EXPECT_NEAR(glm::determinant(standing.axes), 1.0, 1e-12);
 }
 
 TEST(Visible, ColumnsHoldWhatTheTrianglesHold) {
-  const XrFovf fov = {-0.8f, 0.6f, 0.7f, -0.5f};
+  const Fov fov = {-0.8, 0.6, 0.7, -0.5};
   const glm::ivec2 size(320, 256);
-  constexpr int tile = 16;
+  constexpr int tile = ViewRegion::tile;
   // A disk, as lenses show.
-  Visible disk;
+  Mask disk;
   disk.vertices.push_back({0.0f, 0.05f});
   constexpr std::uint32_t around = 40;
   for (std::uint32_t k = 0; k < around; ++k) {
@@ -122,10 +118,10 @@ TEST(Visible, ColumnsHoldWhatTheTrianglesHold) {
         {static_cast<float>(0.55 * std::cos(angle)), static_cast<float>(0.05 + 0.45 * std::sin(angle))});
     disk.indices.insert(disk.indices.end(), {0, k + 1, (k + 1) % around + 1});
   }
-  const auto columns = visible_columns(disk, fov, size, tile);
+  const auto columns = visible_columns(disk, fov, size);
   ASSERT_EQ(columns.size(), 16u);
-  const double left = std::tan(fov.angleLeft), right = std::tan(fov.angleRight);
-  const double up = std::tan(fov.angleUp), down = std::tan(fov.angleDown);
+  const double left = std::tan(fov.left), right = std::tan(fov.right);
+  const double up = std::tan(fov.up), down = std::tan(fov.down);
   std::size_t missed = 0, needless = 0, upside_down = 0;
   for (std::size_t row = 0; row < columns.size(); ++row) {
     for (unsigned column = 0; column < 20; ++column) {
@@ -146,9 +142,9 @@ TEST(Visible, ColumnsHoldWhatTheTrianglesHold) {
   EXPECT_EQ(missed, 0u);
   EXPECT_EQ(needless, 0u);
   EXPECT_GT(upside_down, 5u) << "the wrong way up goes unnoticed";
-  EXPECT_TRUE(visible_columns({}, fov, size, tile).empty()) << "no mask: all";
+  EXPECT_TRUE(visible_columns({}, fov, size).empty()) << "no mask: all";
   disk.vertices[3] = {NAN, 0.0f};
-  EXPECT_EQ(visible_columns(disk, fov, size, tile).size(), 16u) << "numbers that are none";
+  EXPECT_EQ(visible_columns(disk, fov, size).size(), 16u) << "numbers that are none";
 }
 
 }  // namespace

@@ -3,7 +3,6 @@
 #include <cerrno>
 #include <csignal>
 #include <filesystem>
-#include <optional>
 #include <utility>
 
 #include "app/command_line.h"
@@ -17,7 +16,6 @@
 #include "preview/mirror.h"
 #include "render/recorder.h"
 #include "scene/axes.h"
-#include "xr/binding.h"
 #include "xr/headset.h"
 
 namespace binosplat::app {
@@ -42,6 +40,50 @@ void tell_first_signal() {
     if (sigaction(signal, nullptr, &before) == 0 && before.sa_handler != SIG_IGN)
       sigaction(signal, &once, nullptr);
   }
+}
+
+Settings drawing_of(const RenderOptions& o, const preview::Choices& choices, const Model& model) {
+  Settings settings{.background = choices.background,
+                    .quality = o.drawing.quality,
+                    .tolerance = o.drawing.tolerance,
+                    .foveation = o.foveate,
+                    .near_plane = choices.rig.near_plane,
+                    .cyclopean = model.scaffold && o.drawing.decode == DECODE_CYCLOPEAN};
+  if (o.drawing.th == TH_PERIPHERAL) settings.threshold = Threshold::peripheral;
+  if (o.drawing.transmittance == TRANSMITTANCE_LAST) settings.transmittance = Transmittance::measured;
+  if (o.drawing.order) settings.order = static_cast<Order>(*o.drawing.order);
+  if (o.drawing.projection) settings.projection = static_cast<Projection>(*o.drawing.projection);
+  return settings;
+}
+
+/// A frame as recordings keep it.
+render::FrameRecord record_of(xr::Drawn drawn, std::size_t gaussians, std::size_t uploaded) {
+  Report& from = drawn.report;
+  render::FrameRecord record{.due = drawn.begin, .begin = drawn.begin, .end = drawn.end};
+  render::FrameReport& to = record.report;
+  for (const StageTime& stage : from.stages) to.stages.push_back({stage.name, stage.ms});
+  for (const StageSpan& span : from.spans) to.spans.push_back({span.name, span.begin_ns, span.end_ns});
+  to.total_ms = from.gpu_ms;
+  to.cpu = {from.plan_ms, from.upload_ms, from.submit_ms, from.wait_ms, from.read_ms};
+  to.visible = from.visible;
+  to.pairs = from.pairs;
+  to.attempts = from.attempts;
+  to.redrawn = from.redrawn;
+  to.programs_made = from.programs_made;
+  to.gpu_bytes = from.gpu_bytes;
+  to.tolerance = from.tolerance;
+  to.sampled_error = from.sampled_error;
+  to.is_cut = from.is_cut;
+  to.quality = from.quality;
+  for (const View& view : drawn.views) {
+    shared::View& picture = record.views.emplace_back();
+    picture.width = static_cast<std::uint32_t>(view.size.x);
+    picture.height = static_cast<std::uint32_t>(view.size.y);
+  }
+  record.gaussians = gaussians;
+  record.levels = {drawn.levels_ms, uploaded};
+  record.display = {drawn.display_ms, drawn.missed};
+  return record;
 }
 
 /// Frames of a headset that are recorded when somebody asks, and written once that is over.
@@ -103,22 +145,12 @@ void view_in_headset(const RenderOptions& o, const preview::Opened& scene, previ
   std::error_code ignored;
   if (!is_built_in(scene.name) && !std::filesystem::exists(scene.name, ignored))
     fail_to_read(scene.name, ENOENT);
-  // A headset that is not there is said before a model is read.
-  const std::unique_ptr<xr::Instance> opened = [] {
-    try {
-      return std::make_unique<xr::Instance>();
-    } catch (const xr::Lost&) {
-      throw Error(ExitCode::no_gl,
-                  "the OpenXR runtime ended while it was asked: start it, and then this again");
-    }
-  }();
-  xr::Instance& instance = *opened;
-  log_info("{} on {}", instance.headset(), instance.runtime());
+  xr::Instance instance;  // a headset that is not there is said before a model is read
+  log_info("{} on {}", instance.headset, instance.runtime);
+  if (o.foveate && instance.has_insets())
+    log_warning("--foveate: {} has insets of its own, and takes these", instance.headset);
   std::unique_ptr<preview::Mirror> mirror;
   std::unique_ptr<gl::Context> own;
-  const bool four = instance.view_configuration() != XR_VIEW_CONFIGURATION_TYPE_PRIMARY_STEREO;
-  if (o.foveate && four)
-    log_warning("--foveate: {} has insets of its own, and takes these", instance.headset());
   if (o.headset.mirror && has_display()) {
     if (o.context.device >= 0 || o.context.backend != gl::Backend::automatic)
       fail("--device and --backend with a window, which its display draws: add --no-mirror");
@@ -129,48 +161,44 @@ void view_in_headset(const RenderOptions& o, const preview::Opened& scene, previ
     }
   }
   if (!mirror) own = open_context(o.context);
-  gl::Context& context = mirror ? mirror->context() : *own;
-  if (!o.context.shader_dir.empty()) context.set_shader_folder(o.context.shader_dir);
+  const gl::Context& context = mirror ? mirror->context() : *own;
 
   preview::Loaded loaded = scene.load();
-  const Model& model = loaded.shown();
-  const preview::Start start = scene.start(model, choices);
-  log_info("{}: {} Gaussians", scene.name, loaded.gaussians());
-  xr::HeadsetSettings settings;
-  settings.projection = {o.headset.scale, choices.rig.near_plane, choices.rig.units_per_metre,
-                         choices.background, o.foveate};
-  settings.frame = choices.settings;
-  settings.budget_ms = o.headset.budget_ms;
-  settings.start = into_axes(start.cameras.front(), model.axes);
-  settings.up = glm::transpose(world_from_axes(model.axes.letters)) * start.up;
-  settings.units_per_metre = choices.rig.units_per_metre;
+  const std::shared_ptr<Stream> levels = std::move(loaded.stream);
+  const auto model = std::make_shared<const Model>(std::move(loaded.model));
+  const Model& shown = levels ? levels->model() : *model;
+  const preview::Start start = scene.start(shown, choices);
+  const auto gaussians = [&] { return levels ? levels->gaussians() : model->count(); };
+  log_info("{}: {} Gaussians", scene.name, gaussians());
+  const Camera eyes = into_axes(start.cameras.front(), {shown.axes.letters, glm::dvec3(0.0)});
+  const xr::HeadsetSettings settings{
+      .scale = o.headset.scale,
+      .drawing = drawing_of(o, choices, shown),
+      .budget_ms = o.headset.budget_ms,
+      .start = xr::upright_at(eyes.position, eyes.rotation,
+                              glm::transpose(world_from_axes(shown.axes.letters)) * start.up,
+                              choices.rig.units_per_metre)};
   tell_first_signal();
-  HeadsetRecording recording(context, scene, instance.headset());
+  HeadsetRecording recording(context, scene, instance.headset);
   if (o.headset.record_s) recording.begin(*o.headset.record_s);
-  std::size_t uploaded = 0;
-  xr::Beside beside = {.step =
-                           [&] {
-                             if (mirror && mirror->take_record_key()) recording.begin(seconds_by_key);
-                             return (!mirror || mirror->step()) && signalled == 0;
-                           },
-                       .show = {},
-                       .levels = {}};
-  beside.drawn = [&](render::FrameRecord frame, double period_ms) {
-    frame.levels.uploaded = std::exchange(uploaded, 0);
-    recording.add(std::move(frame), period_ms);
+  xr::Beside beside;
+  beside.step = [&] {
+    if (mirror && mirror->take_record_key()) recording.begin(seconds_by_key);
+    return (!mirror || mirror->step()) && signalled == 0;
   };
-  const int precision = settings.frame.precision;
-  const auto gpu_model = loaded.stream ? loaded.stream->gpu_model(context, precision)
-                                       : std::make_shared<render::GpuModel>(context, model, precision);
-  if (loaded.stream) {
-    beside.levels = [&](std::span<const shared::View> views, double frame_ms, double drawn_ms) {
-      loaded.stream->begin_frame(views, settings.frame, time_for_levels(frame_ms, drawn_ms));
-      uploaded += loaded.stream->take_times().put;
-      return static_cast<float>(loaded.stream->quality_left(settings.frame.quality));
-    };
-  }
+  beside.drawn = [&](xr::Drawn frame) {
+    const double period_ms = frame.period_ms;
+    const std::size_t uploaded = levels ? levels->take_times().put : 0;
+    recording.add(record_of(std::move(frame), gaussians(), uploaded), period_ms);
+  };
+  beside.quality = [&](float quality) { return static_cast<float>(levels->quality_left(quality)); };
   if (mirror) beside.show = [&](const Target& left, const glm::ivec2& size) { mirror->show(left, size); };
-  xr::run(instance, gpu_model, settings, beside);
+  const auto precision = static_cast<Precision>(o.drawing.precision);
+  std::optional<SplatStream> stream;
+  if (levels) stream.emplace(levels);
+  Renderer renderer = stream ? Renderer(xr::get_proc_address(), *stream, precision)
+                             : Renderer(xr::get_proc_address(), SplatModel(model), precision);
+  xr::run(instance, renderer, stream ? &*stream : nullptr, settings, beside);
 }
 
 }  // namespace binosplat::app
