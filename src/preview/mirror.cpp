@@ -6,9 +6,8 @@
 
 namespace binosplat::preview {
 
-Mirror::Mirror(bool by_egl) {
-  if (by_egl) glfwWindowHint(GLFW_CONTEXT_CREATION_API, GLFW_EGL_CONTEXT_API);
-  glfwWindowHint(GLFW_SRGB_CAPABLE, GLFW_TRUE);  // for pictures whose numbers mean light
+Mirror::Mirror() {
+  glfwWindowHint(GLFW_CONTEXT_CREATION_API, GLFW_EGL_CONTEXT_API);
   window_ = open_window(glm::ivec2(960, 960), false);
   glfwMakeContextCurrent(window_);
   glfwSetInputMode(window_, GLFW_STICKY_KEYS, GLFW_TRUE);  // frames are long beside a tap
@@ -47,10 +46,8 @@ void Mirror::show(const Target& picture, const glm::ivec2& size) {
   gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
   gl.ClearColor(0.0f, 0.0f, 0.0f, 1.0f);
   gl.Clear(GL_COLOR_BUFFER_BIT);
-  if (picture.linear) gl.Enable(GL_FRAMEBUFFER_SRGB);
   gl.BlitNamedFramebuffer(framebuffer_, 0, 0, 0, size.x, size.y, corner.x, corner.y, corner.x + shown.x,
                           corner.y + shown.y, GL_COLOR_BUFFER_BIT, GL_LINEAR);
-  gl.Disable(GL_FRAMEBUFFER_SRGB);
   gl.NamedFramebufferTexture(framebuffer_, GL_COLOR_ATTACHMENT0, 0, 0);  // it is the runtime's
   drawn_ = true;
 }

@@ -12,9 +12,9 @@ namespace binosplat::preview {
 
 class Mirror {
  public:
-  /// Opens the window and makes its context current. `by_egl`: a context of EGL, which OpenXR's runtimes may
-  /// take where they take none of the window system's own. Throws Error(no_gl) as open_window() does.
-  explicit Mirror(bool by_egl);
+  /// Opens the window and makes its context current: one of EGL, which OpenXR's runtimes take. Throws
+  /// Error(no_gl) as open_window() does.
+  Mirror();
   ~Mirror();
   Mirror(const Mirror&) = delete;
   Mirror& operator=(const Mirror&) = delete;

@@ -12,16 +12,14 @@ namespace binosplat::xr {
 namespace {
 
 constexpr const char* what_to_do =
-    "Install one for the headset, such as SteamVR or Monado, start it, and make it the active one "
+    "Install one for the headset, such as Monado, start it, and make it the active one "
     "(~/.config/openxr/1/active_runtime.json, or the variable XR_RUNTIME_JSON)";
 
+constexpr std::array needed_extensions = {"XR_KHR_opengl_enable", "XR_MNDX_egl_enable"};
 // Enabled where the runtime has them. Floors came to OpenXR as an extension, later than Debian 12's headers.
-constexpr std::array optional_extensions = {egl_extension,
-                                            XR_KHR_COMPOSITION_LAYER_DEPTH_EXTENSION_NAME,
-                                            XR_KHR_VISIBILITY_MASK_EXTENSION_NAME,
-                                            XR_VARJO_QUAD_VIEWS_EXTENSION_NAME,
-                                            XR_EXT_EYE_GAZE_INTERACTION_EXTENSION_NAME,
-                                            "XR_EXT_local_floor"};
+constexpr std::array optional_extensions = {
+    XR_KHR_COMPOSITION_LAYER_DEPTH_EXTENSION_NAME, XR_KHR_VISIBILITY_MASK_EXTENSION_NAME,
+    XR_VARJO_QUAD_VIEWS_EXTENSION_NAME, XR_EXT_EYE_GAZE_INTERACTION_EXTENSION_NAME, "XR_EXT_local_floor"};
 
 void* open_loader() {
   setenv("XR_LOADER_DEBUG", "none", 0);  // what it would say is said here, in one line
@@ -29,7 +27,7 @@ void* open_loader() {
   if (library == nullptr) {
     refuse(
         "no OpenXR loader ({}). On Debian: apt install libopenxr-loader1, and a runtime for the headset, "
-        "such as SteamVR or Monado",
+        "such as Monado",
         dlerror());
   }
   return library;
@@ -79,9 +77,12 @@ XrResult check(XrResult result, const char* call) {
 
 Instance::Instance() {
   const std::set<std::string> offered = offered_extensions();
-  if (!offered.contains(opengl_extension))
-    refuse("this OpenXR runtime takes no OpenGL ({} is missing): choose another runtime", opengl_extension);
-  extensions.insert(opengl_extension);
+  for (const char* name : needed_extensions) {
+    if (!offered.contains(name))
+      refuse("this OpenXR runtime takes no OpenGL of EGL ({} is missing): choose another, such as Monado",
+             name);
+    extensions.insert(name);
+  }
   for (const char* name : optional_extensions) {
     if (offered.contains(name)) extensions.insert(name);
   }

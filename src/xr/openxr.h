@@ -2,10 +2,13 @@
 // OpenXR's functions, and the runtime that has them. The loader is opened when one is called: nothing links
 // to it, and without it all else works.
 
-#ifndef XR_NO_PROTOTYPES
 #define XR_NO_PROTOTYPES
-#endif
+#define XR_USE_GRAPHICS_API_OPENGL
+#define XR_USE_PLATFORM_EGL
+#define EGL_NO_X11  // whose macros have names of ours
+#include <EGL/egl.h>
 #include <openxr/openxr.h>
+#include <openxr/openxr_platform.h>
 
 #include <memory>
 #include <set>
@@ -16,9 +19,6 @@
 #include "base/error.h"
 
 namespace binosplat::xr {
-
-constexpr const char* opengl_extension = "XR_KHR_opengl_enable";
-constexpr const char* egl_extension = "XR_MNDX_egl_enable";
 
 /// A function of the loader's. Throws Error(no_gl) without a loader.
 PFN_xrVoidFunction find(const char* name);
@@ -72,7 +72,7 @@ using Owned = std::unique_ptr<std::remove_pointer_t<Handle>, Destroy>;
 /// A runtime and its headset.
 struct Instance {
   /// Connects to the runtime and finds the headset. Throws Error(no_gl), in one line, for no loader, no
-  /// runtime, a runtime that takes no OpenGL, and no headset.
+  /// runtime, a runtime that takes no OpenGL or no EGL, and no headset.
   Instance();
 
   bool has(const char* extension) const { return extensions.contains(extension); }
@@ -80,6 +80,13 @@ struct Instance {
   bool has_insets() const { return views != XR_VIEW_CONFIGURATION_TYPE_PRIMARY_STEREO; }
   XrResult find_headset();  // whether one is there now
   XrPath path(const std::string& text) const;
+  /// A function of an extension that it has.
+  template <typename Function>
+  Function function(const char* name) const {
+    PFN_xrVoidFunction found = nullptr;
+    XR(GetInstanceProcAddr, handle.get(), name, &found);
+    return reinterpret_cast<Function>(found);
+  }
 
   std::set<std::string> extensions;  // that are enabled
   Owned<XrInstance> handle;

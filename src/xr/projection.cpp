@@ -1,5 +1,7 @@
 #include "xr/projection.h"
 
+#include <GL/glcorearb.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -7,7 +9,6 @@
 #include <limits>
 
 #include "base/log.h"
-#include "xr/platform.h"
 
 namespace binosplat::xr {
 
@@ -196,9 +197,7 @@ void Projection::make_depths() {
 void Projection::take_masks() {
   const Instance& instance = session_.instance();
   if (composed_ || !instance.has(XR_KHR_VISIBILITY_MASK_EXTENSION_NAME)) return;
-  PFN_xrGetVisibilityMaskKHR get = nullptr;
-  XR(GetInstanceProcAddr, instance.handle.get(), "xrGetVisibilityMaskKHR",
-     reinterpret_cast<PFN_xrVoidFunction*>(&get));
+  const auto get = instance.function<PFN_xrGetVisibilityMaskKHR>("xrGetVisibilityMaskKHR");
   for (std::size_t k = 0; k < masks_.size(); ++k) {
     XrVisibilityMaskKHR mask{XR_TYPE_VISIBILITY_MASK_KHR};
     const auto ask = [&] {

@@ -5,7 +5,6 @@
 #include <algorithm>
 
 #include "base/log.h"
-#include "xr/platform.h"
 
 namespace binosplat::xr {
 
@@ -17,95 +16,49 @@ constexpr auto local_floor = static_cast<XrReferenceSpaceType>(1000426000);
 constexpr const char* state_names[] = {"UNKNOWN", "IDLE",     "READY",        "SYNCHRONIZED", "VISIBLE",
                                        "FOCUSED", "STOPPING", "LOSS_PENDING", "EXITING"};
 
-// Of a library that whoever made the context has opened; null if nobody has.
+// A function of EGL's, which whoever made the context has opened; null if nobody has.
 template <typename Function>
-Function opened(const char* library, const char* name) {
-  void* const handle = dlopen(library, RTLD_NOW | RTLD_LOCAL | RTLD_NOLOAD);
-  if (handle == nullptr) return nullptr;
-  const auto function = reinterpret_cast<Function>(dlsym(handle, name));
-  dlclose(handle);  // whoever opened it keeps it
+Function opened(const char* name) {
+  void* const library = dlopen("libEGL.so.1", RTLD_NOW | RTLD_LOCAL | RTLD_NOLOAD);
+  if (library == nullptr) return nullptr;
+  const auto function = reinterpret_cast<Function>(dlsym(library, name));
+  dlclose(library);  // whoever opened it keeps it
   return function;
 }
-#define OPENED(library, name) opened<decltype(&(name))>(library, #name)
+#define OPENED(name) opened<decltype(&(name))>(#name)
 
-// The context that is current, if it is one of EGL.
-std::optional<XrGraphicsBindingEGLMNDX> egl_binding() {
-  const char* const library = "libEGL.so.1";
-  const auto current = OPENED(library, eglGetCurrentContext);
-  if (current == nullptr || current() == EGL_NO_CONTEXT) return std::nullopt;
+XrGraphicsBindingEGLMNDX binding_of_current_context() {
+  const auto current = OPENED(eglGetCurrentContext);
   XrGraphicsBindingEGLMNDX binding{XR_TYPE_GRAPHICS_BINDING_EGL_MNDX};
-  binding.getProcAddress = opened<PFNEGLGETPROCADDRESSPROC>(library, "eglGetProcAddress");
-  binding.display = OPENED(library, eglGetCurrentDisplay)();
-  binding.context = current();
+  binding.context = current == nullptr ? EGL_NO_CONTEXT : current();
+  if (binding.context == EGL_NO_CONTEXT) refuse("OpenXR takes contexts of EGL only, and none is current");
+  binding.getProcAddress = opened<PFNEGLGETPROCADDRESSPROC>("eglGetProcAddress");
+  binding.display = OPENED(eglGetCurrentDisplay)();
   EGLint id = 0, count = 0;  // of the config: 0 for a context that was made without one
-  OPENED(library, eglQueryContext)(binding.display, binding.context, EGL_CONFIG_ID, &id);
+  OPENED(eglQueryContext)(binding.display, binding.context, EGL_CONFIG_ID, &id);
   const EGLint wanted[] = {EGL_CONFIG_ID, id, EGL_NONE};
-  if (id != 0) OPENED(library, eglChooseConfig)(binding.display, wanted, &binding.config, 1, &count);
+  if (id != 0) OPENED(eglChooseConfig)(binding.display, wanted, &binding.config, 1, &count);
   return binding;
-}
-
-// The same of GLX.
-std::optional<XrGraphicsBindingOpenGLXlibKHR> glx_binding() {
-  const char* const library = "libGLX.so.0";
-  const auto current = OPENED(library, glXGetCurrentContext);
-  if (current == nullptr || current() == nullptr) return std::nullopt;
-  XrGraphicsBindingOpenGLXlibKHR binding{XR_TYPE_GRAPHICS_BINDING_OPENGL_XLIB_KHR};
-  binding.xDisplay = OPENED(library, glXGetCurrentDisplay)();
-  binding.glxContext = current();
-  binding.glxDrawable = OPENED(library, glXGetCurrentDrawable)();
-  const auto query = OPENED(library, glXQueryContext);
-  int id = 0, screen = 0, count = 0;
-  query(binding.xDisplay, binding.glxContext, GLX_FBCONFIG_ID, &id);
-  query(binding.xDisplay, binding.glxContext, GLX_SCREEN, &screen);
-  const int wanted[] = {GLX_FBCONFIG_ID, id, 0};
-  GLXFBConfig* const configs = OPENED(library, glXChooseFBConfig)(binding.xDisplay, screen, wanted, &count);
-  if (configs == nullptr) return binding;
-  binding.glxFBConfig = configs[0];
-  const auto release = OPENED("libX11.so.6", XFree);
-  XVisualInfo* const visual = OPENED(library, glXGetVisualFromFBConfig)(binding.xDisplay, configs[0]);
-  if (visual != nullptr) {
-    binding.visualid = static_cast<std::uint32_t>(visual->visualid);
-    release(visual);
-  }
-  release(configs);
-  return binding;
-}
-
-// A session needs this call before it, whatever it says: newer contexts are what drivers give anyway.
-void ask_for_requirements(const Instance& instance) {
-  PFN_xrGetOpenGLGraphicsRequirementsKHR get = nullptr;
-  XR(GetInstanceProcAddr, instance.handle.get(), "xrGetOpenGLGraphicsRequirementsKHR",
-     reinterpret_cast<PFN_xrVoidFunction*>(&get));
-  XrGraphicsRequirementsOpenGLKHR range{XR_TYPE_GRAPHICS_REQUIREMENTS_OPENGL_KHR};
-  check(get(instance.handle.get(), instance.system, &range), "xrGetOpenGLGraphicsRequirementsKHR");
 }
 
 }  // namespace
 
-GetProcAddress get_proc_address() {
-  if (const auto egl = egl_binding()) return egl->getProcAddress;
-  if (!glx_binding()) refuse("OpenXR takes contexts of EGL and of GLX only, and none is current");
-  return reinterpret_cast<GetProcAddress>(OPENED("libGLX.so.0", glXGetProcAddressARB));
-}
+GetProcAddress get_proc_address() { return binding_of_current_context().getProcAddress; }
 
 Session::Session(const Instance& instance) : instance_(instance) {
-  ask_for_requirements(instance);
-  const auto egl = egl_binding();
-  if (egl && !instance.has(egl_extension)) {
-    refuse(
-        "{} takes no EGL contexts ({} is missing): run this where there is an X display, without "
-        "--no-mirror: then the window's own context of GLX draws",
-        instance.runtime, egl_extension);
-  }
-  const auto glx = egl ? std::nullopt : glx_binding();
-  const void* const binding = egl ? static_cast<const void*>(&*egl) : &*glx;
-  const XrSessionCreateInfo info{XR_TYPE_SESSION_CREATE_INFO, binding, 0, instance.system};
+  // A session needs this call before it, whatever it says: newer contexts are what drivers give anyway.
+  const auto ask =
+      instance.function<PFN_xrGetOpenGLGraphicsRequirementsKHR>("xrGetOpenGLGraphicsRequirementsKHR");
+  XrGraphicsRequirementsOpenGLKHR range{XR_TYPE_GRAPHICS_REQUIREMENTS_OPENGL_KHR};
+  check(ask(instance.handle.get(), instance.system, &range), "xrGetOpenGLGraphicsRequirementsKHR");
+  const XrGraphicsBindingEGLMNDX binding = binding_of_current_context();
+  const XrSessionCreateInfo info{XR_TYPE_SESSION_CREATE_INFO, &binding, 0, instance.system};
   XrSession made = XR_NULL_HANDLE;
   const XrResult result = XR_CALL(CreateSession, instance.handle.get(), &info, &made);
   if (result == XR_ERROR_GRAPHICS_DEVICE_INVALID) {
     refuse(
         "{} does not take this OpenGL context ({}): some runtimes want the GPU that the headset is connected "
-        "to (--device), SteamVR on Linux may take none at all",
+        "to (--device)",
         instance.runtime, name_of(result));
   }
   check(result, "xrCreateSession");

@@ -16,14 +16,14 @@ struct FrameTime {
   bool is_shown = false;  // false: nobody looks, nothing need be drawn
 };
 
-/// How the functions of the OpenGL context that is current are found. Throws Error(no_gl) where none of EGL
-/// or GLX is.
+/// How the functions of the OpenGL context that is current are found. Throws Error(no_gl) where it is not one
+/// of EGL.
 GetProcAddress get_proc_address();
 
 class Session {
  public:
-  /// Begins a session with the OpenGL context that is current, which must stay so: of EGL where the runtime
-  /// has XR_MNDX_egl_enable, or of GLX. Throws Error(no_gl) for a runtime that does not take it.
+  /// Begins a session with the OpenGL context that is current, which must stay so. Throws Error(no_gl) for a
+  /// runtime that does not take it.
   explicit Session(const Instance& instance);
 
   const Instance& instance() const { return instance_; }

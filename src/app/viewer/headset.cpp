@@ -155,7 +155,7 @@ void view_in_headset(const RenderOptions& o, const preview::Opened& scene, previ
     if (o.context.device >= 0 || o.context.backend != gl::Backend::automatic)
       fail("--device and --backend with a window, which its display draws: add --no-mirror");
     try {
-      mirror = std::make_unique<preview::Mirror>(instance.has(xr::egl_extension));
+      mirror = std::make_unique<preview::Mirror>();
     } catch (const Error&) {
       log_warning("no window can be opened on this display: only the headset shows the model");
     }
