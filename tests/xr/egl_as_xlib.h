@@ -1,12 +1,24 @@
 #pragma once
 // How the EGL binding gets past Khronos' validation (xr/egl_layer.cpp).
 
+#include <EGL/egl.h>
+
 #include <cstdint>
 #include <cstring>
-
-#include "xr/runtime/openxr.h"
+#define XR_USE_GRAPHICS_API_OPENGL
+#define XR_USE_PLATFORM_EGL
+#include <openxr/openxr.h>
+#include <openxr/openxr_platform.h>
 
 namespace binosplat::xr_test {
+
+/// What the loader says of itself, as its specification has it; no package has its header.
+struct LoaderInfo {
+  std::uint32_t type, version;
+  std::size_t size;
+  std::uint32_t min_interface, max_interface;
+  XrVersion min_api, max_api;
+};
 
 // XrGraphicsBindingOpenGLXlibKHR, without the headers of X, whose macros collide with half of everything.
 struct XlibBinding {

@@ -1,6 +1,6 @@
 // A layer of OpenXR's loader between a program and Khronos' validation, whose builds do not know EGL's
 // binding and refuse it: it hands on an Xlib binding in its place, which the test runtime knows
-// (xr/runtime/gl.cpp).
+// (xr/runtime.cpp).
 
 #include "xr/egl_as_xlib.h"
 

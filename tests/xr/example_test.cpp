@@ -58,7 +58,7 @@ struct Expected : Caller {
   std::array<std::string, 2> draw(const Json& frame) {
     std::array<View, 2> views;
     for (std::size_t k = 0; k < 2; ++k) {
-      const Json& located = frame["located"][0]["views"][k];
+      const Json& located = frame["located"][k];
       const Json& at = located["pose"]["position"];
       const glm::dvec4 fov = four(located["fov"]);
       views[k].eye = {
@@ -171,7 +171,8 @@ TEST(XrExample, FollowsTheSession) {
   XrStage stage;
   stage.script = moving_script();
   stage.script["frames"] = 8;
-  stage.script["invisible_frames"] = 1;
+  stage.add_event({{"state", "synchronized"}});
+  stage.add_event({{"frame", 1}, {"state", "focused"}});
   stage.script["not_rendered"] = {2};
   stage.add_event({{"frame", 3}, {"flags", {"orientation_valid"}}});
   stage.add_event({{"frame", 4}, {"flags", {"orientation_valid", "position_valid"}}});
@@ -206,7 +207,7 @@ TEST(XrExample, SaysWhatIsMissing) {
   const std::vector<std::pair<Json, std::string>> cases = {
       {{{"system", "XR_ERROR_FORM_FACTOR_UNAVAILABLE"}},
        "xrGetSystem failed: XR_ERROR_FORM_FACTOR_UNAVAILABLE (-35)"},
-      {{{"gl_min", {4, 7}}, {"gl_max", {4, 9}}},
+      {{{"events", {{{"fail", "xrCreateSession"}, {"result", "XR_ERROR_GRAPHICS_DEVICE_INVALID"}}}}},
        "xrCreateSession failed: XR_ERROR_GRAPHICS_DEVICE_INVALID (-38)"},
       {{{"events", {{{"frame", 1}, {"fail", "xrWaitFrame"}, {"result", "XR_ERROR_SESSION_LOST"}}}}},
        "xrWaitFrame failed: XR_ERROR_SESSION_LOST (-17)"},

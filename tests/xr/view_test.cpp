@@ -66,7 +66,7 @@ struct XrView : testing::Test {
 
   /// The views of a frame's line as they were located, and their pictures' sizes.
   static std::pair<std::vector<Eye>, std::vector<glm::ivec2>> views_of(const Json& frame) {
-    const Json& located = frame["located"][0]["views"];
+    const Json& located = frame["located"];
     std::vector<Eye> eyes;
     std::vector<glm::ivec2> sizes;
     for (std::size_t k = 0; k < located.size(); ++k) {
@@ -248,6 +248,32 @@ TEST_F(XrView, WritesIntoEveryTexture) {
   EXPECT_NE(none.err.find("offers no textures"), std::string::npos) << none.err;
 }
 
+// What the runtime finds wrong in frames, it finds where it pretends that the program made the fault.
+TEST_F(XrView, PlantedFaultsAreSeen) {
+  const std::pair<const char*, const char*> faults[] = {
+      {"pose", "view 0 has another pose"},
+      {"fov", "view 1 has another fov"},
+      {"eyes", "view 1 has another pose"},
+      {"depths", "has the depths of another one"},
+      {"planes", "planes that bound nothing"},
+      {"rectangle", "a rectangle beyond its swapchain"},
+      {"stale", "an image of another frame"},
+      {"written", "written to after its release"},
+      {"wait", "was not waited for"},
+      {"release", "an image was not released"},
+      {"begin", "xrBeginFrame is expected"},
+      {"time", "another display time"},
+      {"binding", "has no /user/hand/left/input/grip/poses"},
+  };
+  for (const auto& [plant, text] : faults) {
+    stage.script = {{"frames", 3}, {"plant", plant}};
+    view();
+    const Strings found = stage.log().faults();
+    const auto has_text = [&](const std::string& one) { return one.find(text) != std::string::npos; };
+    EXPECT_TRUE(std::any_of(found.begin(), found.end(), has_text)) << plant << stage.log().text();
+  }
+}
+
 TEST_F(XrView, DrawsNothingThatNobodySees) {
   stage.script = {{"frames", 5}, {"not_rendered", {1}}};
   stage.add_event({{"frame", 3}, {"flags", {"position_valid"}}});
@@ -426,13 +452,14 @@ TEST_F(XrView, FoveatesWhereTheEyesLook) {
 }
 
 TEST_F(XrView, LeavesOutWhatNoLensShows) {
-  // A triangle that hides the upper right corner's tiles, of the left eye only.
+  // A triangle that hides the upper right corner's tiles, of the left eye only, and from the second frame on.
   const Json triangle = {{"vertices", {{-2.0, -2.0}, {-2.0, 2.0}, {1.6, -2.0}}}, {"indices", {0, 1, 2}}};
-  stage.script["masks"]["stereo"] = {{{"visible", triangle}}};
+  stage.add_event({{"frame", 1}, {"masks", {triangle}}});
   ASSERT_EQ(view().code, 0);
   const XrLog log = stage.log();
   EXPECT_EQ(log.faults(), Strings()) << log.text();
-  const Json frame = log.frames().at(0);
+  EXPECT_TRUE(log.colours(log.frames().at(0), 0) == bytes_of(expected(log.frames()[0], start())[0]));
+  const Json frame = log.frames().at(1);
   const std::vector<Picture> pictures = expected(frame, start());
   const std::string shown = log.colours(frame, 0), whole = bytes_of(pictures[0]);
   EXPECT_TRUE(log.colours(frame, 1) == bytes_of(pictures[1]));
