@@ -11,7 +11,8 @@ namespace binosplat::xr {
 /// A ring of the runtime's textures, of which one is drawn into at a time.
 struct Swapchain {
   /// 2D textures of one sample, of a format that the runtime offers. Throws Error(no_gl) where it makes none.
-  Swapchain(const Session& session, std::int64_t format, const glm::ivec2& size, XrSwapchainUsageFlags usage);
+  Swapchain(const Session& session, std::int64_t format, const glm::ivec2& wanted,
+            XrSwapchainUsageFlags usage);
 
   /// Waits until the runtime has read a texture, and returns its name. Call release() before the frame ends.
   std::uint32_t acquire() const;
