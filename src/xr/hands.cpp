@@ -30,9 +30,7 @@ Hands::Hands(const Session& session) : session_(session) {
   const Instance& instance = session.instance();
   paths_ = {instance.path("/user/hand/left"), instance.path("/user/hand/right")};
   const XrActionSetCreateInfo info{XR_TYPE_ACTION_SET_CREATE_INFO, nullptr, "walk", "Walk", 0};
-  XrActionSet set = XR_NULL_HANDLE;
-  XR(CreateActionSet, instance.handle.get(), &info, &set);
-  set_ = Owned<XrActionSet>(set, {"xrDestroyActionSet"});
+  set_ = XR_OWNED(ActionSet, CreateActionSet, instance.handle.get(), &info);
   pose_ = make_action("hand", "Hand", XR_ACTION_TYPE_POSE_INPUT);
   stick_ = make_action("stick", "Walk (left), turn and rise (right)", XR_ACTION_TYPE_VECTOR2F_INPUT);
   grab_ = make_action("grab", "Hold the world", XR_ACTION_TYPE_BOOLEAN_INPUT);
@@ -40,6 +38,7 @@ Hands::Hands(const Session& session) : session_(session) {
   if (instance.has(XR_EXT_EYE_GAZE_INTERACTION_EXTENSION_NAME))
     gaze_ = make_action("gaze", "Gaze", XR_ACTION_TYPE_POSE_INPUT, false);
   suggest_bindings();
+  const XrActionSet set = set_.get();
   const XrSessionActionSetsAttachInfo attach{XR_TYPE_SESSION_ACTION_SETS_ATTACH_INFO, nullptr, 1, &set};
   XR(AttachSessionActionSets, session.handle(), &attach);
   for (std::size_t k = 0; k < 2; ++k) spaces_[k] = make_space(pose_, paths_[k]);
@@ -53,16 +52,12 @@ Owned<XrAction> Hands::make_action(const char* name, const char* shown, XrAction
   info.actionType = type;
   info.countSubactionPaths = of_hands ? 2 : 0;
   info.subactionPaths = of_hands ? paths_.data() : nullptr;
-  XrAction action = XR_NULL_HANDLE;
-  XR(CreateAction, set_.get(), &info, &action);
-  return Owned<XrAction>(action, {"xrDestroyAction"});
+  return XR_OWNED(Action, CreateAction, set_.get(), &info);
 }
 
 Owned<XrSpace> Hands::make_space(const Owned<XrAction>& action, XrPath hand) const {
   const XrActionSpaceCreateInfo info{XR_TYPE_ACTION_SPACE_CREATE_INFO, nullptr, action.get(), hand, no_move};
-  XrSpace space = XR_NULL_HANDLE;
-  XR(CreateActionSpace, session_.handle(), &info, &space);
-  return Owned<XrSpace>(space, {"xrDestroySpace"});
+  return XR_OWNED(Space, CreateActionSpace, session_.handle(), &info);
 }
 
 void Hands::suggest_bindings() {

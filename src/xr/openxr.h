@@ -57,7 +57,7 @@ std::vector<T> all_of(const T& empty, const Enumerate& enumerate) {
   return all;
 }
 
-/// An object of OpenXR's, which ends with it: Owned<XrSpace> space(handle, {"xrDestroySpace"}).
+/// An object of OpenXR's, which ends with it.
 struct Destroy {
   const char* call = nullptr;
 
@@ -68,6 +68,14 @@ struct Destroy {
 };
 template <typename Handle>
 using Owned = std::unique_ptr<std::remove_pointer_t<Handle>, Destroy>;
+
+/// What xrCREATE makes: XR_OWNED(Space, CreateReferenceSpace, session, &info) is an Owned<XrSpace>.
+#define XR_OWNED(Kind, create, ...)                    \
+  [&] {                                                \
+    Xr##Kind made = XR_NULL_HANDLE;                    \
+    XR(create, __VA_ARGS__, &made);                    \
+    return Owned<Xr##Kind>(made, {"xrDestroy" #Kind}); \
+  }()
 
 /// A runtime and its headset.
 struct Instance {

@@ -123,12 +123,11 @@ Swapchain::Swapchain(const Session& session, std::int64_t format, const glm::ive
   info.sampleCount = info.faceCount = info.arraySize = info.mipCount = 1;
   info.width = static_cast<std::uint32_t>(size.x);
   info.height = static_cast<std::uint32_t>(size.y);
-  XrSwapchain made = XR_NULL_HANDLE;
-  XR(CreateSwapchain, session.handle(), &info, &made);
-  handle = Owned<XrSwapchain>(made, {"xrDestroySwapchain"});
+  handle = XR_OWNED(Swapchain, CreateSwapchain, session.handle(), &info);
   const XrSwapchainImageOpenGLKHR empty{XR_TYPE_SWAPCHAIN_IMAGE_OPENGL_KHR};
   for (const auto& image : all_of(empty, [&](auto room, auto*count, auto*all) {
-         XR(EnumerateSwapchainImages, made, room, count, reinterpret_cast<XrSwapchainImageBaseHeader*>(all));
+         XR(EnumerateSwapchainImages, handle.get(), room, count,
+            reinterpret_cast<XrSwapchainImageBaseHeader*>(all));
        }))
     textures.push_back(image.image);
 }

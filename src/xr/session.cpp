@@ -79,9 +79,7 @@ void Session::make_space() {
     on_stage_ = type == XR_REFERENCE_SPACE_TYPE_STAGE;
     break;
   }
-  XrSpace made = XR_NULL_HANDLE;
-  XR(CreateReferenceSpace, handle(), &info, &made);
-  space_ = Owned<XrSpace>(made, {"xrDestroySpace"});
+  space_ = XR_OWNED(Space, CreateReferenceSpace, handle(), &info);
 }
 
 bool Session::poll() {

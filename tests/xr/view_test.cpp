@@ -486,6 +486,25 @@ TEST_F(XrView, LeavesOutWhatNoLensShows) {
   EXPECT_TRUE(shown != whole);
 }
 
+TEST_F(XrView, LevelsOfDetailComeWhileOneLooks) {
+  const std::string levels = (folder / "levels").string();
+  ASSERT_EQ(run_program({"levels", file, "-o", levels, "--leaf", "64", "--levels", "3"}).code, 0);
+  stage.script = {{"frames", 60}, {"sleep", true}, {"pixels", {0, 59}}};
+  plain_words[1] = levels;
+  for (const Strings& more : {Strings{}, {"--quality", "45"}}) {
+    const Outcome outcome = view(more);
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    const XrLog log = stage.log();
+    EXPECT_EQ(log.faults(), Strings()) << log.text();
+    const Image finest = image_of(bytes_of(expected(log.frames().at(59), start())[0]));
+    const auto psnr = [&](std::size_t frame) {
+      return measure::psnr(image_of(log.colours(log.frames()[frame], 0)), finest);
+    };
+    EXPECT_GT(psnr(59), 38.0);
+    EXPECT_LT(psnr(0), psnr(59) - 3.0) << "the coarsest levels come first";
+  }
+}
+
 TEST_F(XrView, SizesAndBudget) {
   stage.script["frames"] = 3;
   ASSERT_EQ(view({"--scale", "0.5", "--frame-budget", "0.001"}).code, 0);
