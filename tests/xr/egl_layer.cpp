@@ -39,7 +39,7 @@ struct LayerInfo {
 PFN_xrGetInstanceProcAddr next_get = nullptr;
 PFN_xrCreateSession next_create_session = nullptr;
 
-XrResult create_session(XrInstance instance, const XrSessionCreateInfo* info, XrSession* session) {
+XrResult create_session_as_xlib(XrInstance instance, const XrSessionCreateInfo* info, XrSession* session) {
   const auto* egl = static_cast<const XrGraphicsBindingEGLMNDX*>(info->next);
   if (egl == nullptr || egl->type != XR_TYPE_GRAPHICS_BINDING_EGL_MNDX) {
     return next_create_session(instance, info, session);
@@ -50,16 +50,17 @@ XrResult create_session(XrInstance instance, const XrSessionCreateInfo* info, Xr
   return next_create_session(instance, &other, session);
 }
 
-XrResult get(XrInstance instance, const char* name, PFN_xrVoidFunction* function) {
+XrResult find_above(XrInstance instance, const char* name, PFN_xrVoidFunction* function) {
   const XrResult result = next_get(instance, name, function);
   if (std::strcmp(name, "xrCreateSession") == 0 && result == XR_SUCCESS) {
     next_create_session = reinterpret_cast<PFN_xrCreateSession>(*function);
-    *function = reinterpret_cast<PFN_xrVoidFunction>(create_session);
+    *function = reinterpret_cast<PFN_xrVoidFunction>(create_session_as_xlib);
   }
   return result;
 }
 
-XrResult create_instance(const XrInstanceCreateInfo* info, const LayerInfo* layer, XrInstance* instance) {
+XrResult create_instance_below(const XrInstanceCreateInfo* info, const LayerInfo* layer,
+                               XrInstance* instance) {
   next_get = layer->next->get;
   LayerInfo below = *layer;
   below.next = layer->next->next;
@@ -73,7 +74,7 @@ xrNegotiateLoaderApiLayerInterface(  // NOLINT(readability-identifier-naming): t
     const LoaderInfo*, const char*, LayerRequest* request) {
   request->interface_version = 1;
   request->api_version = XR_MAKE_VERSION(1, 0, 0);
-  request->get = get;
-  request->create = create_instance;
+  request->get = find_above;
+  request->create = create_instance_below;
   return XR_SUCCESS;
 }

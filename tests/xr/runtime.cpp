@@ -317,7 +317,7 @@ std::vector<ViewSpec> views_of(XrViewConfigurationType type) {
   return specs;
 }
 
-Pose head_at(XrTime time) {
+Pose head_in_script(XrTime time) {
   const Json heads = runtime().script.value("heads", Json{{{"position", {0, 1.6, 0}}}});
   const auto frame =
       static_cast<std::size_t>((time - first_time + runtime().period() / 2) / runtime().period());
@@ -339,11 +339,11 @@ std::optional<Pose> pose_of(const Object& space, XrTime time) {
     if (action == runtime().objects.end()) return std::nullopt;
     const std::string user = space.user.empty() ? gaze_user : space.user;
     if (!action->second.active.contains(user)) return std::nullopt;
-    if (user == gaze_user) return head_at(time) * pose_from(script["gaze"]) * space.offset;
+    if (user == gaze_user) return head_in_script(time) * pose_from(script["gaze"]) * space.offset;
     const Json& value = action->second.values.at(user).first;
     return value.is_object() ? std::optional(pose_from(value) * space.offset) : std::nullopt;
   }
-  if (*space.reference == XR_REFERENCE_SPACE_TYPE_VIEW) return head_at(time) * space.offset;
+  if (*space.reference == XR_REFERENCE_SPACE_TYPE_VIEW) return head_in_script(time) * space.offset;
   if (*space.reference == XR_REFERENCE_SPACE_TYPE_STAGE) return space.offset;
   Pose local = pose_from(script.value("recentre", Json{{"position", {0, 1.6, 0}}}));
   if (*space.reference == local_floor) local.position.y = 0.0;
@@ -850,7 +850,7 @@ XrResult locate_views(XrSession handle, const XrViewLocateInfo* info, XrViewStat
   std::vector<XrView> located;
   for (const ViewSpec& spec : views_of(r.views)) {
     XrView& view = located.emplace_back(XrView{XR_TYPE_VIEW, nullptr, {}, spec.fov});
-    view.pose = to_xr(inverse(*base) * head_at(info->displayTime) * spec.pose);
+    view.pose = to_xr(inverse(*base) * head_in_script(info->displayTime) * spec.pose);
     // What is not valid is not to be used: it would be seen at once.
     if ((state->viewStateFlags & XR_VIEW_STATE_ORIENTATION_VALID_BIT) == 0) view.pose.orientation = {};
     if ((state->viewStateFlags & XR_VIEW_STATE_POSITION_VALID_BIT) == 0) view.pose.position.x = NAN;
@@ -1138,7 +1138,7 @@ struct Entry<name, function> {
 };
 
 #define ENTRY(name, function) \
-  { "xr" #name, reinterpret_cast<PFN_xrVoidFunction>(&Entry<Name("xr" #name), &function>::call) }
+  { "xr" #name, reinterpret_cast<PFN_xrVoidFunction>(&Entry<Name("xr" #name), &(function)>::call) }
 const std::map<std::string, PFN_xrVoidFunction> entries = {
     ENTRY(EnumerateInstanceExtensionProperties, enumerate_extensions),
     ENTRY(CreateInstance, create_instance),
