@@ -62,9 +62,8 @@ void set_as_asked(const SceneOptions& o, Model& model) {
 
 std::vector<Camera> built_in_cameras(const SceneOptions& o) {
   if (o.name == demo_city_name) {
-    const CitySettings settings = city_settings(o);
-    check(settings);
-    return city_cameras(settings.seed);
+    check(city_settings(o));
+    return city_cameras();
   }
   if (o.name == demo_room_name) return room_cameras();
   if (is_built_in(o.name)) fail_unknown(o.name);

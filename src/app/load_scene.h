@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "app/scene_options.h"
-#include "demo/city.h"
+#include "demo/demo.h"
 #include "scene/camera.h"
 #include "scene/model.h"
 #include "stream/load_within.h"

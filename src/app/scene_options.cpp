@@ -6,7 +6,7 @@
 #include "app/option_checks.h"
 #include "base/error.h"
 #include "base/numbers.h"
-#include "demo/city.h"
+#include "demo/demo.h"
 #include "scene/axes.h"
 
 namespace binosplat::app {

@@ -1,43 +1,25 @@
 #pragma once
-// What demo:room is put together from. Every function adds one thing to the stage, at its place in the room.
+// What demo:room is put together from.
 
-#include "demo/shapes.h"
+#include "demo/scenery.h"
 
-namespace binosplat::demo::room {
+namespace binosplat::demo {
 
 using Shape = Solid::Shape;
 
-// The room, in metres, y downwards; the window is in the wall at high z.
-constexpr dvec3 room_low{-2.5, -2.8, -2.0};
-constexpr dvec3 room_high{2.5, 0.0, 2.0};
-constexpr dvec2 window_low{-1.75, -2.4};
-constexpr dvec2 window_high{0.35, -0.7};
+// The room, in metres; the window is in the wall at high z.
+constexpr dvec3 room_low{-2.5, -2.8, -2.0}, room_high{2.5, 0.0, 2.0};
+constexpr dvec2 window_low{-1.75, -2.4}, window_high{0.35, -0.7};
 constexpr dvec3 lamp_bulb{0.95, -1.72, 0.5};
 
-// room_shell.cpp
-void add_floor(Stage& stage);
-void add_rug(Stage& stage);
-void add_walls(Stage& stage);
-void add_ceiling(Stage& stage);
-void add_window(Stage& stage);
-void add_curtains(Stage& stage);
+constexpr dvec3 walnut{0.42, 0.26, 0.16}, oak{0.66, 0.47, 0.29}, cream{0.90, 0.86, 0.76},
+    white{0.90, 0.88, 0.83};
+const Material brass{.colour = {0.74, 0.56, 0.27}, .gloss = 3.0};
 
-// room_outside.cpp
-void add_outside(Stage& stage, const dvec3& to_sun);
+/// Wood with its grain along u.
+Texture wooden(const dvec3& colour, double seed, double gloss = 1.5);
 
-// room_furniture.cpp
-void add_table(Stage& stage);
-void add_chair(Stage& stage, const Frame& frame);
-void add_armchair(Stage& stage);
-void add_bookshelf(Stage& stage);
-void add_lamp(Stage& stage);
-void add_pictures(Stage& stage);
+/// Furniture, and what stands, hangs and lies about.
+void add_things(Stage& stage);
 
-// room_things.cpp
-void add_table_setting(Stage& stage);
-void add_bird_cage(Stage& stage);
-void add_fairy_lights(Stage& stage);
-void add_toys(Stage& stage);
-void add_near_plant(Stage& stage);
-
-}  // namespace binosplat::demo::room
+}  // namespace binosplat::demo

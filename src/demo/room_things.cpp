@@ -1,301 +1,324 @@
-// demo:room: what stands, hangs and lies about.
+// demo:room: furniture, and what stands, hangs and lies about.
 #include <algorithm>
 #include <cmath>
 
 #include "demo/room_parts.h"
 
-namespace binosplat::demo::room {
+namespace binosplat::demo {
 
 namespace {
 
+/// Turned or bent wood: its grain along v, the way along a tube or a profile; u is an angle.
+Texture round_wood(const dvec3& colour) {
+  return [flat = wooden(colour, 3)](double a, double v) { return flat(v, 0.02 * circle(a / (2.0 * pi)).y); };
+}
+
+void add_table(Stage& stage) {
+  stage.frame = {{0.95, 0, 0.5}};
+  constexpr double radius = 0.55, top = -0.74;
+  const auto plate = [=, wood = wooden(walnut, 8, 4.0)](double angle, double v) {
+    // The boards of the top run across it, whatever the ring.
+    const dvec2 p = std::min(v, radius) * circle(angle / (2.0 * pi));
+    Material board = wood(p.x + 7.0 * std::floor(p.y / 0.11), p.y);
+    if (std::abs(std::remainder(p.y, 0.11)) < 0.006 && v < radius) board.colour *= 0.7;
+    return board;
+  };
+  stage.lathe({}, {{0.0, top}, {radius, top}, {radius, top + 0.035}, {0.5, top + 0.035}}, 0.021, plate);
+  stage.solid(Shape::ellipsoid, {-radius, top, -radius}, {radius, top + 0.035, radius});
+  stage.lathe({}, {{0.055, -0.7}, {0.08, -0.5}, {0.05, -0.35}, {0.07, -0.1}, {0.22, -0.03}, {0.24, 0.0}},
+              0.02, round_wood(walnut));
+  stage.solid(Shape::ellipsoid, {-0.055, top, -0.055}, {0.055, -0.05, 0.055});
+  stage.solid(Shape::ellipsoid, {-0.2, -0.05, -0.2}, {0.2, 0.0, 0.2});
+}
+
+void add_chair(Stage& stage, const dvec3& foot, double degrees) {  // the sitter looks to low z
+  stage.frame = turned(foot, degrees);
+  constexpr double seat = -0.45;
+  stage.solid_box({-0.21, seat, -0.20}, {0.21, seat + 0.03, 0.20}, {0.05, 0.025}, wooden(oak, 11));
+  stage.ellipsoid({0, seat - 0.012, 0}, {0.19, 0.03, 0.18}, 0.018, [](double a, double) {
+    return Material{std::abs(std::remainder(a, pi / 6.0)) < 0.08 ? cream : dvec3(0.28, 0.42, 0.52)};
+  });
+  for (const dvec2 at : {dvec2(-1, -1), dvec2(1, -1), dvec2(-1, 1), dvec2(1, 1)}) {
+    const double x = 0.19 * at.x, z = 0.18 * at.y;
+    stage.tube({{0.9 * x, seat + 0.03, 0.9 * z}, {1.1 * x, 0, 1.1 * z}}, 0.016, 0.03, round_wood(oak));
+  }
+  // A back of thin spindles under a bent rail.
+  for (int k = 0; k < 7; ++k) {
+    const double x = -0.17 + 0.34 * k / 6.0, bend = 0.04 * (1.0 - x * x / 0.04);
+    stage.wire({{x, seat, 0.17}, {1.08 * x, -0.88, 0.25 + bend}}, 0.007, 0.03, {.colour = oak, .gloss = 0.6});
+  }
+  stage.tube({{-0.21, -0.86, 0.22}, {0, -0.90, 0.285}, {0.21, -0.86, 0.22}}, 0.020, 0.02, round_wood(oak));
+}
+
+void add_armchair(Stage& stage) {  // the sitter looks to low z
+  stage.frame = turned({-1.72, 0, 0.95}, 35.0);
+  const auto cloth = [](double u, double v) {
+    return Material{.colour = dvec3(0.80, 0.56, 0.18) * (0.90 + 0.2 * noise(90.0 * u, 90.0 * v))};
+  };
+  const auto part = [&](const dvec3& low, const dvec3& high) {
+    stage.solid_box(low, high, Grain(0.036), cloth);
+  };
+  const auto roll = [&](const dvec3& from, const dvec3& to, double radius) {  // a rounded edge
+    stage.tube({from, to}, radius, 0.028, cloth);
+    for (const dvec3& end : {from, to}) stage.ellipsoid(end, dvec3(radius), 0.028, cloth);
+  };
+  part({-0.32, -0.36, -0.36}, {0.32, -0.10, 0.30});
+  stage.ellipsoid({0, -0.38, -0.04}, {0.31, 0.09, 0.33}, 0.028, cloth);
+  part({-0.40, -0.88, 0.26}, {0.40, -0.08, 0.40});
+  roll({-0.39, -0.90, 0.33}, {0.39, -0.90, 0.33}, 0.08);
+  for (const double x : {-0.36, 0.36}) {
+    part({x - 0.06, -0.52, -0.38}, {x + 0.06, -0.08, 0.34});
+    roll({1.03 * x, -0.54, -0.34}, {1.03 * x, -0.54, 0.32}, 0.085);
+    for (const double z : {-0.32, 0.34})
+      stage.tube({{x, -0.10, z}, {x, 0, z}}, 0.022, 0.03, round_wood(walnut));
+  }
+  stage.ellipsoid({0.08, -0.58, 0.16}, {0.20, 0.19, 0.08}, 0.018, [](double a, double) {
+    return Material{std::abs(std::remainder(a, pi / 4.0)) < 0.2 ? dvec3(0.20, 0.40, 0.44) : cream};
+  });
+}
+
+/// The spines of books on a shelf of this height, by metres along it and from below.
+Material books_at(int shelf, double height, double u, double v) {
+  const double warped = u / 0.036 + 0.7 * noise(11.0 * u, shelf), book = std::floor(warped) + 100.0 * shelf;
+  const auto lot = [&](double which) { return hash_at(book, which); };
+  const double tall = height * (0.62 + 0.28 * lot(2)), edge = std::abs(part_of(warped, 1.0) - 0.5);
+  if (v > tall || edge > 0.46 || lot(1) < 0.06) return {.colour = {0.13, 0.09, 0.06}};
+  const dvec3 dye = 0.38 + 0.16 * dvec3(circle(lot(4)).x, circle(lot(4) + 0.37).x, circle(lot(4) + 0.7).x);
+  const bool band = std::abs(v / tall - 0.15 - 0.5 * lot(3)) < 0.07 || std::abs(v / tall - 0.9) < 0.03;
+  const dvec3 cover = dye * ((0.65 + 0.65 * lot(5)) * (1.0 - 0.6 * edge * edge));
+  return {.colour = band ? mix(cover, {0.92, 0.82, 0.55}, 0.7) : cover, .gloss = 0.5};
+}
+
+void add_bookshelf(Stage& stage) {
+  constexpr double x0 = 2.18, x1 = 2.48, z0 = 0.55, z1 = 1.75, top = -2.05, board = 0.025, shelves = 5.0;
+  const Texture plank = wooden({0.46, 0.30, 0.19}, 31);
+  const auto part = [&](const dvec3& low, const dvec3& high) {
+    stage.solid_box(low, high, {0.07, 0.03}, plank);
+  };
+  part({x0, top, z0 - board}, {x1, 0, z0});
+  part({x0, top, z1}, {x1, 0, z1 + board});
+  for (int shelf = 0; shelf <= 5; ++shelf) {
+    const double room = -(top + 0.06) / shelves, y = -0.06 - room * shelf;
+    part({x0, y, z0}, {x1, y + board, z1});
+    if (shelf == 5) break;
+    const auto spines = [=](double u, double v) { return books_at(shelf, room - board, u, v); };
+    stage.sheet({x0 + 0.05, y, z1}, (z0 - z1) * away, (room - board) * up, spines, {0.014, 0.03});
+    stage.solid(Shape::box, {x0 + 0.06, y - room, z0}, {x1, y, z1});
+  }
+}
+
+void add_lamp(Stage& stage) {
+  stage.frame = {lamp_bulb};
+  const double ceiling = room_low.y - lamp_bulb.y;
+  stage.wire({{0, ceiling, 0}, {0, -0.22, 0}}, 0.004, 0.02, {.colour = {0.12, 0.11, 0.10}});
+  // The shade glows from within.
+  const auto shade = [](double angle, double) {
+    const double rib = 0.9 + 0.1 * circle(16.0 * angle / (2.0 * pi)).x;
+    return Material{
+        .colour = rib * dvec3(0.96, 0.80, 0.52), .opacity = 0.93, .glow = 0.16, .two_sided = true};
+  };
+  stage.lathe({}, {{0.05, -0.20}, {0.09, -0.17}, {0.19, -0.04}, {0.25, 0.08}}, 0.017, shade);
+  stage.lathe({}, {{0.02, -0.23}, {0.035, -0.22}, {0.05, -0.195}}, 0.012, brass);
+  stage.ellipsoid({}, {0.045, 0.055, 0.045}, 0.012, Material{.colour = {1.0, 0.95, 0.82}, .glow = 6.0});
+}
+
+/// What is painted: x and y from 0 to 1, y upwards.
+dvec3 evening_by_the_sea(double x, double y) {
+  if (y < 0.34) {
+    const double glitter = 0.7 / (1.0 + 60.0 * (x - 0.62) * (x - 0.62)) + 0.25 * noise(9.0 * x, 50.0 * y);
+    return mix({0.16, 0.26, 0.40}, {0.86, 0.58, 0.36}, glitter);
+  }
+  if (glm::length(dvec2(1.5 * (x - 0.62), y - 0.45)) < 0.11) return {1.0, 0.90, 0.62};
+  return mix({0.95, 0.62, 0.36}, {0.30, 0.36, 0.56}, ramp(0.34, 1.0, y + 0.15 * fractal(3.0 * x, 7.0 * y)));
+}
+
+/// Hangs a picture behind glass, by its lower left corner.
+void hang(Stage& stage, const dvec3& corner, const dvec3& u, const dvec2& size) {
+  stage.frame = {corner, dmat3(u, down, glm::cross(u, down))};  // z into the wall
+  stage.solid(Shape::box, {0, -size.y, -0.01}, {size.x, 0, 0.02});
+  const auto painting = [=](double a, double b) {
+    const double edge = std::min({a, size.x - a, b, size.y - b}), x = a / size.x, y = b / size.y;
+    const dvec3 colour = edge < 0.03 ? walnut : edge < 0.08 ? cream : evening_by_the_sea(x, y);
+    return Material{.colour = colour, .gloss = 2.0, .sharpness = 14};
+  };
+  stage.sheet({0, 0, -0.02}, size.x * right, size.y * up, painting, Grain(0.015), all_borders);
+}
+
 constexpr double table_top = -0.74;
 
-struct Leaf {
-  double length, width, grain;
-  dvec3 colour;
-};
-
 /// A leaf that starts at `from`, leads `along` and bends down; its upper side faces up.
-void add_leaf(Stage& stage, const dvec3& from, const dvec3& along, const Leaf& leaf) {
-  const double length = leaf.length, grain = leaf.grain;
-  const dvec3 tip = from + length * (along + dvec3(0, 0.45, 0));
-  const std::vector<dvec3> rib = curve({from, from + 0.5 * length * along, tip}, grain);
-  for (std::size_t i = 0; i + 1 < rib.size(); ++i) {
-    const double t = (static_cast<double>(i) + 0.5) / static_cast<double>(rib.size() - 1);
-    const dvec3 forward = glm::normalize(rib[i + 1] - rib[i]);
-    const dvec3 side = glm::normalize(glm::cross(forward, dvec3(0, 1, 0)));
-    const double half = 0.5 * leaf.width * std::sqrt(std::sin(pi * std::pow(t, 0.75)));
-    const int across = std::max(1, static_cast<int>(std::lround(half / grain)));
+void add_leaf(Stage& stage, const dvec3& from, const dvec3& along, const dvec2& size, const dvec3& colour) {
+  constexpr double spacing = 0.006;
+  const int pieces = static_cast<int>(size.x / spacing);
+  const dvec3 side = glm::normalize(glm::cross(along, down));
+  for (int i = 0; i < pieces; ++i) {
+    const double t = (i + 0.5) / pieces, half = size.y * std::sqrt(t * (1.0 - t) * (1.2 - 0.4 * t));
+    const dvec3 rib = from + size.x * (t * along + 0.45 * t * t * down);
+    const dvec3 forward = glm::normalize(along + 0.9 * t * down);
+    const int across = std::max(1, static_cast<int>(std::lround(half / spacing)));
     for (int k = -across; k <= across; ++k) {
-      const double s = static_cast<double>(k) / (across + 0.5);
-      const dvec3 p = 0.5 * (rib[i] + rib[i + 1]) + s * half * (side - dvec3(0, 0.35 * std::abs(s), 0));
-      const dvec3 normal = glm::normalize(glm::cross(side, forward) + 0.45 * glm::sign(-s) * side);
-      const dvec3 up = normal.y < 0 ? normal : -normal;
-      const dvec3 shade = k == 0 ? mix(leaf.colour, {0.80, 0.86, 0.52}, 0.45)
-                                 : leaf.colour * (0.9 + 0.2 * noise(60.0 * t, 5.0 * s));
-      const double sigma = 0.7 * half / (across + 0.5);
-      stage.disc(p, axes_from_normal(up, forward), {0.75 * grain, std::max(0.0012, sigma), 0.0006},
+      const double s = k / (across + 0.5);
+      const dvec3 normal = glm::normalize(glm::cross(forward, side) + 0.45 * glm::sign(s) * side);
+      const dvec3 shade =
+          k == 0 ? mix(colour, {0.80, 0.86, 0.52}, 0.45) : colour * (0.9 + 0.2 * noise(60.0 * t, 5.0 * s));
+      stage.disc(rib + s * half * (side + 0.35 * std::abs(s) * up), axes_from_normal(normal, forward),
+                 {0.75 * size.x / pieces, std::max(0.0012, 0.7 * half / (across + 0.5)), 0.0006},
                  {.colour = shade, .gloss = 1.0, .sharpness = 10, .two_sided = true});
     }
   }
 }
 
-void add_teapot(Stage& stage) {
-  const Frame frame = turned({0.82, table_top, 0.30}, 30.0);
-  const auto china = [](double a, double v) {
-    const bool band =
-        std::abs(v - 0.115)<0.010, flower = std::cos(6.0 * a)> 0.55 && std::abs(v - 0.15) < 0.014;
-    return Material{.colour = band || flower ? dvec3(0.16, 0.28, 0.56) : dvec3(0.93, 0.93, 0.92),
-                    .gloss = 2.5,
-                    .sharpness = 16};
-  };
-  const auto white = Material{.colour = {0.93, 0.93, 0.92}, .gloss = 2.5, .sharpness = 16};
-  stage.group();
-  stage.lathe(frame,
-              {dvec2(0.0, -0.165), dvec2(0.012, -0.165), dvec2(0.016, -0.152), dvec2(0.010, -0.145),
-               dvec2(0.045, -0.138), dvec2(0.052, -0.130), dvec2(0.085, -0.10), dvec2(0.098, -0.065),
-               dvec2(0.085, -0.025), dvec2(0.055, -0.004), dvec2(0.0, 0.0)},
-              0.009, china);
-  stage.block(Shape::ellipsoid, frame, {-0.095, -0.14, -0.095}, {0.095, 0.005, 0.095});
-  stage.tube(curve({frame.at(0.075, -0.045, 0), frame.at(0.115, -0.065, 0), frame.at(0.135, -0.11, 0),
-                    frame.at(0.16, -0.13, 0)},
-                   0.009),
-             0.013, 0.008, white);
-  stage.tube(curve({frame.at(-0.075, -0.11, 0), frame.at(-0.125, -0.125, 0), frame.at(-0.15, -0.085, 0),
-                    frame.at(-0.125, -0.045, 0), frame.at(-0.08, -0.035, 0)},
-                   0.009),
-             0.008, 0.008, white);
-  const Frame cup{{1.02, table_top, 0.12}};
-  stage.lathe(cup,
-              {dvec2(0.040, -0.060), dvec2(0.043, -0.062), dvec2(0.040, -0.030), dvec2(0.022, -0.006),
-               dvec2(0.028, -0.004), dvec2(0.060, -0.010), dvec2(0.072, -0.014)},
-              0.008, china);
-  stage.lathe(cup, {{0.0, -0.048}, {0.036, -0.048}}, 0.010,
-              Material{.colour = {0.42, 0.20, 0.07}, .gloss = 2.0});
-  stage.block(Shape::cylinder, cup, {-0.04, -0.06, -0.04}, {0.04, 0, 0.04});
+void add_tea(Stage& stage) {
+  const Material china{.colour = {0.93, 0.93, 0.92}, .gloss = 2.5, .sharpness = 16};
+  stage.frame = turned({0.82, table_top, 0.30}, 30.0);
+  stage.lathe({},
+              {{0, -0.165},
+               {0.016, -0.152},
+               {0.01, -0.145},
+               {0.06, -0.135},
+               {0.098, -0.075},
+               {0.085, -0.025},
+               {0.05, 0}},
+              0.009, [=](double a, double v) {
+                const bool flower = std::abs(v - 0.15) < 0.014 && circle(6.0 * a / (2.0 * pi)).x > 0.55;
+                Material look = china;
+                if (std::abs(v - 0.115) < 0.010 || flower) look.colour = {0.16, 0.28, 0.56};
+                return look;
+              });
+  stage.solid(Shape::ellipsoid, {-0.095, -0.14, -0.095}, {0.095, 0.005, 0.095});
+  stage.tube({{0.075, -0.045, 0}, {0.115, -0.065, 0}, {0.16, -0.13, 0}}, 0.013, 0.008, china);
+  stage.tube({{-0.08, -0.11, 0}, {-0.14, -0.12, 0}, {-0.14, -0.06, 0}, {-0.08, -0.035, 0}}, 0.008, 0.008,
+             china);
+  stage.frame = {{1.02, table_top, 0.12}};
+  stage.lathe({}, {{0.043, -0.062}, {0.040, -0.030}, {0.022, -0.006}, {0.072, -0.014}}, 0.008, china);
+  stage.lathe({}, {{0.0, -0.048}, {0.040, -0.048}}, 0.010,
+              Material{.colour = {0.2, 0.1, 0.03}, .gloss = 2.0});
 }
 
-void add_glass_vase(Stage& stage) {
-  const Frame frame{{1.16, table_top, 0.58}};
+void add_flowers(Stage& stage) {
+  stage.frame = {{1.16, table_top, 0.58}};
   const Material glass{.colour = {0.72, 0.86, 0.86}, .opacity = 0.11, .gloss = 5.0, .sharpness = 20};
-  stage.lathe(frame,
-              {dvec2(0.055, -0.26), dvec2(0.040, -0.22), dvec2(0.050, -0.16), dvec2(0.072, -0.09),
-               dvec2(0.068, -0.03), dvec2(0.050, -0.005), dvec2(0.0, 0.0)},
-              0.011, glass);
-  stage.lathe(frame, {{0.0, -0.13}, {0.058, -0.13}}, 0.012,
-              Material{.colour = {0.70, 0.84, 0.82}, .opacity = 0.22, .gloss = 4.0});
-  const dvec3 colours[] = {
-      {0.93, 0.55, 0.60}, {0.98, 0.86, 0.55}, {0.88, 0.36, 0.40}, {0.96, 0.93, 0.90}, {0.72, 0.52, 0.78}};
+  const Material water{.colour = {0.70, 0.84, 0.82}, .opacity = 0.22, .gloss = 4.0};
+  const dvec3 green(0.30, 0.46, 0.20),
+      colours[] = {{0.93, 0.55, 0.60}, {0.98, 0.86, 0.55}, {0.88, 0.36, 0.4}};
+  stage.lathe({}, {{0.055, -0.26}, {0.040, -0.22}, {0.072, -0.09}, {0.068, -0.03}, {0.0, 0.0}}, 0.011, glass);
+  stage.lathe({}, {{0.0, -0.13}, {0.058, -0.13}}, 0.012, water);
   for (int k = 0; k < 9; ++k) {
-    const double angle = 2.4 * k, lean = 0.05 + 0.09 * hash(k, 2), tall = 0.36 + 0.14 * hash(k, 3);
-    const dvec3 foot = frame.at(-0.025 * std::cos(angle), -0.02, -0.025 * std::sin(angle));
-    const dvec3 head = frame.at(lean * std::cos(angle) * 1.3, -tall, lean * std::sin(angle) * 1.3);
-    const dvec3 neck = frame.at(0.02 * std::cos(angle), -0.24, 0.02 * std::sin(angle));
-    stage.wire(curve({foot, neck, head}, 0.02), 0.0022, 0.016, {.colour = {0.30, 0.46, 0.20}});
-    if (k % 2 == 0)
-      add_leaf(stage, mix(neck, head, 0.4),
-               glm::normalize(dvec3(std::cos(angle + 1.0), -0.5, std::sin(angle + 1.0))),
-               {0.09, 0.03, 0.010, {0.30, 0.46, 0.20}});
-    const dvec3 colour = colours[k % 5];
-    for (int petal = 0; petal < 24; ++petal) {  // two crowns of petals around a yellow middle
-      const double turn = 2.0 * pi * petal / 12.0 + (petal >= 12 ? 0.26 : 0.0),
-                   rise = petal >= 12 ? 0.9 : 0.35;
-      const dvec3 outwards = glm::normalize(dvec3(std::cos(turn), -rise, std::sin(turn)));
-      const dvec3 normal = glm::normalize(dvec3(-rise * std::cos(turn), -1.0, -rise * std::sin(turn)));
-      stage.disc(head + 0.018 * outwards, axes_from_normal(normal, outwards), {0.011, 0.0055, 0.001},
-                 {.colour = colour * (0.86 + 0.2 * hash(petal, k)), .two_sided = true});
+    const dvec3 out(circle(0.382 * k).x, 0.0, circle(0.382 * k).y), neck = 0.02 * out + 0.24 * up;
+    const dvec3 head = (0.065 + 0.12 * hash(k, 2)) * out + (0.36 + 0.14 * hash(k, 3)) * up;
+    stage.wire({-0.025 * out + 0.02 * up, neck, head}, 0.0022, 0.016, {.colour = green});
+    if (k % 2 == 0) add_leaf(stage, mix(neck, head, 0.4), {-out.z, -0.5, out.x}, {0.09, 0.03}, green);
+    for (int petal = 0; petal < 16; ++petal) {  // two crowns around a yellow middle
+      const dvec2 c = circle(petal / 8.0 + (petal < 8 ? 0.0 : 0.06));
+      const dvec3 outwards = glm::normalize(dvec3(c.x, petal < 8 ? -0.35 : -0.9, c.y));
+      stage.disc(head + 0.018 * outwards,
+                 axes_from_normal(glm::cross(outwards, dvec3(-c.y, 0, c.x)), outwards), {0.011, 0.007, 0.001},
+                 {.colour = colours[k % 3] * (0.86 + 0.2 * hash(petal, k)), .two_sided = true});
     }
-    stage.ellipsoid({head - dvec3(0, 0.006, 0)}, dvec3(0.008), 0.007, Material{.colour = {0.93, 0.74, 0.22}});
+    stage.ellipsoid(head + 0.006 * up, dvec3(0.008), 0.007, Material{.colour = {0.93, 0.74, 0.22}});
   }
 }
 
-void add_chessboard(Stage& stage) {
-  const Frame frame = turned({1.22, table_top, 0.22}, -24.0);
-  constexpr double field = 0.034;
-  stage.box(frame, {-0.15, -0.018, -0.15}, {0.15, 0, 0.15}, Grain(field / 3.0), [](double u, double v) {
-    const double x = u - 0.15, z = v - 0.15;
-    if (std::max(std::abs(x), std::abs(z)) > 4.0 * field)
-      return Material{.colour = {0.36, 0.20, 0.11}, .gloss = 1.5};
-    const bool dark =
-        ((static_cast<int>(std::floor(x / field)) + static_cast<int>(std::floor(z / field))) & 1) != 0;
-    return Material{.colour = dark ? dvec3(0.30, 0.17, 0.10) : dvec3(0.90, 0.78, 0.56), .gloss = 1.5};
-  });
-  for (int k = 0; k < 14; ++k) {
-    const bool white = k < 7;
-    const double x = (std::floor(8.0 * hash(k, 61)) - 3.5) * field;
-    const double z = ((white ? 0.0 : 5.0) + std::floor(3.0 * hash(k, 62)) - 3.5) * field;
-    const double tall = 0.035 + 0.03 * hash(k, 63);
-    const Frame foot{frame.at(x, -0.018, z)};
-    stage.lathe(foot,
-                {dvec2(0.0, -tall), dvec2(0.006, -tall + 0.002), dvec2(0.008, -tall + 0.008),
-                 dvec2(0.005, -tall + 0.014), dvec2(0.005, -0.012), dvec2(0.012, -0.004), dvec2(0.012, 0.0)},
-                0.006,
-                Material{.colour = white ? dvec3(0.90, 0.82, 0.66) : dvec3(0.18, 0.11, 0.08), .gloss = 2.0});
-  }
-}
-
-void add_fruit_bowl(Stage& stage) {
-  stage.group();
-  const Frame frame{{0.74, table_top, 0.70}};
-  stage.lathe(frame, {{0.145, -0.075}, {0.150, -0.078}, {0.130, -0.035}, {0.080, -0.010}, {0.050, 0.0}},
-              0.012, Material{.colour = {0.24, 0.46, 0.48}, .gloss = 2.5, .sharpness = 16});
-  stage.lathe(frame, {{0.0, -0.022}, {0.075, -0.022}, {0.125, -0.045}, {0.143, -0.072}}, 0.015,
-              Material{.colour = {0.80, 0.86, 0.82}});
-  stage.block(Shape::cylinder, frame, {-0.13, -0.05, -0.13}, {0.13, 0, 0.13});
-  const dvec3 colours[] = {{0.94, 0.55, 0.14}, {0.78, 0.18, 0.14}, {0.94, 0.60, 0.16},
-                           {0.60, 0.68, 0.22}, {0.92, 0.52, 0.12}, {0.80, 0.22, 0.16}};
-  for (int k = 0; k < 6; ++k) {
-    const double angle = 2.0 * pi * k / 5.0, ring = k == 5 ? 0.0 : 0.072;
-    const Frame fruit{frame.at(ring * std::cos(angle), k == 5 ? -0.120 : -0.068, ring * std::sin(angle))};
-    stage.ellipsoid(fruit, {0.040, 0.037, 0.040}, 0.010, [&](double a, double b) {
-      return Material{
-          .colour = colours[k] * (0.92 + 0.16 * noise(9.0 * a, 9.0 * b)), .gloss = 1.5, .sharpness = 12};
-    });
-    stage.block(Shape::ellipsoid, fruit, dvec3(-0.036), dvec3(0.036));
-  }
-}
-
-void add_bird(Stage& stage, const dvec3& perch) {
-  const Frame body = rolled(turned(perch - dvec3(0, 0.045, 0), 11.0), -29.0);  // x leads from tail to breast
-  const auto feathers = [](double a, double b) {
-    return Material{.colour = dvec3(0.96, 0.80, 0.20) * (0.9 + 0.15 * noise(9.0 * a, 9.0 * b))};
+void add_bird_cage(Stage& stage) {
+  constexpr double radius = 0.17;
+  stage.frame = {{0.02, -1.52, 1.30}};  // the middle of its floor
+  const auto at = [&](double turn, const dvec2& place) {
+    return dvec3(radius * place.x * circle(turn).x, place.y, radius * place.x * circle(turn).y);
   };
-  stage.ellipsoid(body, {0.050, 0.032, 0.030}, 0.009, feathers);
-  const dvec3 head = body.origin + dvec3(0.042, -0.045, 0.008);
-  stage.ellipsoid({head}, dvec3(0.022), 0.007, feathers);
-  stage.wire({head + dvec3(0.018, 0, 0.004), head + dvec3(0.036, 0.004, 0.008)}, 0.005, 0.009,
-             {.colour = {0.90, 0.45, 0.15}});
-  for (int k = -1; k <= 1; ++k) {
-    const dvec3 tail = body.at(-0.10, 0.01, 0.012 * k);
-    stage.wire({body.at(-0.03, 0, 0), tail}, 0.007, 0.02, {.colour = {0.88, 0.70, 0.16}});
+  stage.lathe({}, {{0.0, -0.03}, {radius, -0.03}, {radius + 0.005, 0.0}, {0.0, 0.0}}, 0.018, brass);
+  for (int k = 0; k < 24; ++k) {
+    std::vector<dvec3> bar{at(k / 24.0, {1.0, 0.0})};
+    for (int j = 0; j <= 6; ++j)
+      bar.push_back(at(k / 24.0, circle(j / 24.5) * dvec2(1.0, -0.17) - dvec2(0, 0.26)));
+    stage.wire(bar, 0.0018, 0.018, brass);
   }
-  for (const double side : {-1.0, 1.0}) {
-    stage.ellipsoid({head + dvec3(0.012, -0.006, 0.018 * side)}, dvec3(0.004), 0.004,
-                    Material{.colour = {0.05, 0.05, 0.05}});
-    const dvec3 foot = perch + dvec3(0, 0, 0.012 * side);
-    stage.wire({foot - dvec3(0, 0.025, 0), foot}, 0.002, 0.012, {.colour = {0.80, 0.45, 0.25}});
+  for (const dvec2 ring : {dvec2(1.0, -0.13), dvec2(1.0, -0.26), dvec2(0.80, -0.36)}) {
+    std::vector<dvec3> path;
+    for (int k = 0; k <= 48; ++k) path.push_back(at(k / 48.0, ring));
+    stage.wire(path, 0.0025, 0.02, brass);
+  }
+  stage.wire({{0, -0.43, 0}, {0, room_low.y + 1.52, 0}}, 0.003, 0.02, {.colour = {0.30, 0.26, 0.20}});
+  stage.wire({{-radius, -0.12, 0}, {radius, -0.12, 0}}, 0.005, 0.02, {.colour = {0.50, 0.34, 0.20}});
+  stage.ellipsoid({0.02, -0.16, 0}, {0.05, 0.03, 0.03}, 0.009, Material{{0.96, 0.80, 0.20}});  // a bird
+  stage.ellipsoid({0.06, -0.195, 0}, dvec3(0.022), 0.007, Material{{0.96, 0.80, 0.20}});
+}
+
+void add_fairy_lights(Stage& stage) {
+  const dvec3 colours[] = {{1.0, 0.72, 0.36}, {0.95, 0.36, 0.30}, {0.45, 0.75, 0.55}, {0.45, 0.62, 0.92}};
+  std::vector<dvec3> cable;
+  for (int k = 0; k <= 68; ++k) {
+    const double wave = circle(1.5 * k / 68.0).y;
+    cable.push_back(mix({room_low.x, -2.50, -0.55}, {room_high.x, -2.45, 1.2}, k / 68.0) +
+                    0.07 * wave * wave * down);
+    if (k % 4 != 2) continue;
+    const dvec3 at = cable.back() + 0.028 * down, colour = colours[k / 4 % 4];
+    stage.ellipsoid(at, {0.016, 0.024, 0.016}, 0.009,
+                    Material{.colour = colour, .opacity = 0.92, .glow = 2.5});
+  }
+  stage.wire(cable, 0.003, 0.04, {.colour = {0.16, 0.18, 0.14}});
+}
+
+void add_toys(Stage& stage) {
+  const dvec3 colours[] = {{0.90, 0.24, 0.20}, {0.20, 0.44, 0.76}, {0.96, 0.76, 0.20}, {0.36, 0.58, 0.34}};
+  stage.frame = turned({-0.62, -0.12, 0.62}, 25.0, 20.0);
+  stage.ellipsoid({}, dvec3(0.12), 0.012, [&](double a, double b) {
+    const int slice = static_cast<int>(3.0 * part_of(a / pi + 0.9, 2.0));
+    const bool coloured = std::abs(b) < 1.35 && slice % 2 == 0;
+    return Material{.colour = coloured ? colours[slice / 2] : white, .gloss = 2.0, .sharpness = 16};
+  });
+  stage.solid(Shape::ellipsoid, dvec3(-0.118), dvec3(0.118));
+  for (int k = 0; k < 4; ++k) {  // wooden blocks
+    stage.frame = turned({0.11 * k - 0.66, -0.012, 0.12 + 0.02 * (k % 2)}, 17.0 * k);
+    stage.solid_box({-0.04, -0.08, -0.04}, {0.04, -0.001, 0.04}, Grain(0.013), Material{colours[k]});
+  }
+}
+
+void add_near_plant(Stage& stage) {
+  stage.frame = {{-1.46, -0.95, -1.16}};
+  const Material earth{{0.24, 0.17, 0.12}}, clay{.colour = {0.76, 0.42, 0.28}, .gloss = 0.4};
+  stage.lathe({}, {{0.0, -0.17}, {0.11, -0.17}, {0.115, -0.15}, {0.10, -0.145}, {0.075, 0.0}}, 0.014,
+              [=](double, double v) { return v < 0.10 ? earth : clay; });
+  // A tall stand.
+  stage.lathe({}, {{0.0, 0.0}, {0.14, 0.0}, {0.14, 0.02}, {0.03, 0.04}, {0.02, 0.90}, {0.14, 0.95}}, 0.02,
+              round_wood(walnut));
+  stage.solid(Shape::ellipsoid, {-0.12, -0.17, -0.12}, {0.12, 0.02, 0.12});
+  // Leaves on thin stems; the nearest one reaches the viewer's arm.
+  for (int k = 0; k < 22; ++k) {
+    const dvec3 outwards(circle(0.382 * k).x, 0, circle(0.382 * k).y), root = 0.17 * up + 0.02 * outwards;
+    const dvec3 joint = (0.29 + 0.30 * hash(k, 91)) * up + (0.10 + 0.16 * hash(k, 92)) * outwards;
+    const dvec3 green = mix({0.16, 0.36, 0.15}, {0.40, 0.56, 0.22}, hash(k, 93));
+    stage.wire({root, mix(root, joint, 0.5) + 0.05 * up, joint}, 0.0025, 0.012,
+               {.colour = {0.36, 0.50, 0.22}});
+    add_leaf(stage, joint, glm::normalize(outwards + 0.15 * up), {0.13 + 0.06 * hash(k, 94), 0.055}, green);
   }
 }
 
 }  // namespace
 
-void add_table_setting(Stage& stage) {
-  add_teapot(stage);
-  add_glass_vase(stage);
-  add_chessboard(stage);
-  add_fruit_bowl(stage);
-}
-
-void add_bird_cage(Stage& stage) {
-  const dvec3 base(0.02, -1.52, 1.30);  // the middle of its floor
-  constexpr double radius = 0.17, wall = 0.26;
-  const Material gold{.colour = {0.66, 0.50, 0.24}, .gloss = 2.5};
-  const Frame frame{base};
-  stage.lathe(frame, {{0.0, -0.03}, {radius, -0.03}, {radius + 0.005, 0.0}, {0.0, 0.0}}, 0.018, gold);
-  constexpr int bars = 24;
-  for (int k = 0; k < bars; ++k) {
-    const double angle = 2.0 * pi * k / bars, c = std::cos(angle), s = std::sin(angle);
-    std::vector<dvec3> path;
-    for (const dvec2 at :
-         {dvec2(1.0, 0.0), dvec2(1.0, -wall), dvec2(0.92, -wall - 0.07), dvec2(0.70, -wall - 0.12),
-          dvec2(0.38, -wall - 0.155), dvec2(0.03, -wall - 0.17)}) {
-      path.push_back(frame.at(radius * at.x * c, at.y, radius * at.x * s));
-    }
-    stage.wire(curve(path, 0.02), 0.0018, 0.018, gold);
-  }
-  for (const dvec2 ring : {dvec2(1.0, -0.13), dvec2(1.0, -wall), dvec2(0.80, -wall - 0.10)}) {
-    std::vector<dvec3> path;
-    for (int k = 0; k <= 48; ++k)
-      path.push_back(frame.at(radius * ring.x * std::cos(2.0 * pi * k / 48), ring.y,
-                              radius * ring.x * std::sin(2.0 * pi * k / 48)));
-    stage.wire(path, 0.0025, 0.02, gold);
-  }
-  const dvec3 top = base - dvec3(0, wall + 0.17, 0);
-  stage.ellipsoid({top}, dvec3(0.016), 0.009, gold);
-  stage.wire({top, {top.x, room_low.y, top.z}}, 0.003, 0.02, {.colour = {0.30, 0.26, 0.20}});
-  stage.wire({frame.at(-radius, -0.12, 0), frame.at(radius, -0.12, 0)}, 0.005, 0.02,
-             {.colour = {0.50, 0.34, 0.20}});
-  add_bird(stage, frame.at(0.02, -0.125, 0));
-}
-
-void add_fairy_lights(Stage& stage) {
-  const dvec3 from(room_low.x + 0.02, -2.50, -0.55), to(room_high.x - 0.02, -2.45, 1.2);
-  const dvec3 colours[] = {
-      {1.0, 0.72, 0.36}, {0.95, 0.36, 0.30}, {0.98, 0.86, 0.46}, {0.45, 0.75, 0.55}, {0.45, 0.62, 0.92}};
-  constexpr int lights = 17;
-  const auto sag = [&](double t) {
-    return mix(from, to, t) + dvec3(0, 0.07 * std::sin(3.0 * pi * t) * std::sin(3.0 * pi * t), 0);
+Texture wooden(const dvec3& colour, double seed, double gloss) {
+  return [=](double u, double v) {
+    const double grain = fractal(2.0 * u + 13.0 * seed, 50.0 * v + 31.0 * seed);
+    return Material{.colour = colour * (0.78 + 0.44 * grain), .gloss = gloss, .sharpness = 13};
   };
-  std::vector<dvec3> cable;
-  for (int k = 0; k <= 120; ++k) cable.push_back(sag(k / 120.0));
-  stage.wire(cable, 0.003, 0.035, {.colour = {0.16, 0.18, 0.14}});
-  for (int k = 0; k < lights; ++k) {
-    const dvec3 at = sag((k + 0.5) / lights) + dvec3(0, 0.028, 0);
-    stage.ellipsoid({at}, {0.016, 0.024, 0.016}, 0.009,
-                    Material{.colour = colours[k % 5], .opacity = 0.92, .glow = 2.5});
-    const dmat3 axes(1.0);  // a faint halo
-    stage.disc(at, axes, dvec3(0.035), {.colour = colours[k % 5], .opacity = 0.10, .lit = false});
-  }
 }
 
-void add_toys(Stage& stage) {
-  stage.group();
-  const Frame beach = rolled(turned({-0.62, -0.12, 0.62}, 25.0), 20.0);
-  stage.ellipsoid(beach, dvec3(0.12), 0.012, [](double a, double b) {
-    const dvec3 colours[] = {{0.90, 0.24, 0.20}, {0.95, 0.93, 0.88}, {0.20, 0.44, 0.76},
-                             {0.95, 0.93, 0.88}, {0.96, 0.76, 0.20}, {0.95, 0.93, 0.88}};
-    const int slice = std::clamp(static_cast<int>((a + pi) / (2.0 * pi) * 6.0), 0, 5);
-    return Material{.colour = std::abs(b) > 1.35 ? dvec3(0.95, 0.93, 0.88) : colours[slice],
-                    .gloss = 2.0,
-                    .sharpness = 16};
-  });
-  stage.block(Shape::ellipsoid, beach, dvec3(-0.118), dvec3(0.118));
-  // A tower of wooden blocks.
-  const dvec3 colours[] = {{0.80, 0.25, 0.22}, {0.22, 0.45, 0.66}, {0.92, 0.72, 0.25}, {0.36, 0.58, 0.34}};
-  for (int k = 0; k < 6; ++k) {  // three, two, one
-    const int layer = k < 3 ? 0 : k < 5 ? 1 : 2, place = k - (layer == 0 ? 0 : layer == 1 ? 3 : 5);
-    const dvec3 foot(-0.66 + 0.11 * place + 0.055 * layer, -0.012 - 0.08 * layer, 0.12 + 0.02 * (k % 2));
-    const Frame block = turned(foot, 17.0 * k);
-    stage.box(block, {-0.04, -0.08, -0.04}, {0.04, -0.001, 0.04}, Grain(0.013),
-              Material{.colour = colours[k % 4], .gloss = 0.8});
-    stage.block(Shape::box, block, {-0.04, -0.08, -0.04}, {0.04, 0, 0.04});
-  }
+void add_things(Stage& stage) {
+  add_bookshelf(stage);
+  add_fairy_lights(stage);
+  add_table(stage);
+  add_chair(stage, {0.42, 0, 0.98}, 50.0);
+  add_chair(stage, {1.62, 0, 0.05}, -130.0);
+  add_armchair(stage);
+  add_lamp(stage);
+  hang(stage, {0.92, -1.25, room_high.z}, right, {0.48, 0.62});
+  hang(stage, {1.50, -1.34, room_high.z}, right, {0.46, 0.46});
+  hang(stage, {room_low.x, -1.12, -0.75}, away, {1.3, 0.85});
+  add_tea(stage);
+  add_flowers(stage);
+  add_bird_cage(stage);
+  add_toys(stage);
+  add_near_plant(stage);
+  stage.frame = {};
 }
 
-void add_near_plant(Stage& stage) {
-  const Frame pot{{-1.46, -0.95, -1.16}};
-  stage.group();
-  stage.lathe(pot,
-              {{0.0, -0.17}, {0.10, -0.17}, {0.115, -0.18}, {0.115, -0.15}, {0.10, -0.145}, {0.075, 0.0}},
-              0.014, [](double, double v) {
-                if (v < 0.10) return Material{.colour = {0.24, 0.17, 0.12}};
-                return Material{.colour = dvec3(0.76, 0.42, 0.28) * (0.95 + 0.1 * noise(60.0 * v, 1.0)),
-                                .gloss = 0.4};
-              });
-  stage.block(Shape::cylinder, pot, {-0.105, -0.17, -0.105}, {0.105, 0, 0.105});
-  // A tall stand of three legs.
-  stage.lathe(pot, {{0.0, 0.0}, {0.14, 0.0}, {0.14, 0.02}, {0.0, 0.02}}, 0.02,
-              Material{.colour = {0.42, 0.26, 0.16}, .gloss = 1.0});
-  stage.block(Shape::cylinder, pot, {-0.14, 0, -0.14}, {0.14, 0.02, 0.14});
-  for (int k = 0; k < 3; ++k) {
-    const double a = 2.0 * pi * k / 3.0 + 0.5;
-    stage.tube(curve({pot.at(0.09 * std::cos(a), 0.02, 0.09 * std::sin(a)),
-                      pot.at(0.16 * std::cos(a), 0.95, 0.16 * std::sin(a))},
-                     0.05),
-               0.013, 0.02, Material{.colour = {0.42, 0.26, 0.16}});
-  }
-  // Leaves on thin stems; the nearest one reaches the viewer's arm.
-  for (int k = 0; k < 22; ++k) {
-    const double a = 2.4 * k, rise = 0.12 + 0.30 * hash(k, 91), reach = 0.10 + 0.16 * hash(k, 92);
-    const dvec3 outwards(std::cos(a), 0, std::sin(a));
-    const dvec3 root = pot.at(0.02 * outwards.x, -0.17, 0.02 * outwards.z);
-    const dvec3 joint = pot.at(reach * outwards.x, -0.17 - rise, reach * outwards.z);
-    stage.wire(curve({root, mix(root, joint, 0.5) - dvec3(0, 0.05, 0), joint}, 0.02), 0.0025, 0.012,
-               {.colour = {0.36, 0.50, 0.22}});
-    const dvec3 colour = mix(dvec3(0.16, 0.36, 0.15), dvec3(0.40, 0.56, 0.22), hash(k, 93));
-    add_leaf(stage, joint, glm::normalize(outwards + dvec3(0, -0.15, 0)),
-             {0.13 + 0.06 * hash(k, 94), 0.055, 0.006, colour});
-  }
-}
-
-}  // namespace binosplat::demo::room
+}  // namespace binosplat::demo

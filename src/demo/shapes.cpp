@@ -1,32 +1,61 @@
 #include "demo/shapes.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <glm/gtc/quaternion.hpp>
+
+#include "base/random.h"
 
 namespace binosplat::demo {
 
 namespace {
 
-/// Discs a cell apart overlap enough to close the surface when their standard deviation is this share of the
-/// cell: at an opacity of 0.97 the corner between four of them is covered by 99 %.
-constexpr double room_overlap = 0.74;
-/// A sheet's outermost discs lie this many cells inside its border: half transparent just there.
-constexpr double margin_at_border = 1.1 * room_overlap;
-/// Thickness of a disc as a share of its smaller side.
-constexpr double room_flatness = 0.08;
+/// Gaussians a cell apart overlap enough to close a surface when their standard deviation is this share of
+/// the cell: at an opacity of 0.97 the corner between four of them is covered by 99 %.
+constexpr double overlap = 0.76;
+/// A sheet's outermost Gaussians lie this many cells inside its border: half transparent just there.
+constexpr double margin_at_border = 0.83;
+/// Thickness of a Gaussian as a share of its smaller side, and at most: kilometres of ground must not become
+/// fog.
+constexpr double flatness = 0.08, thickest = 0.25;
+/// A sheet is split until its grain varies less than this, or until it has this many Gaussians in a row.
+constexpr double grain_varies = 1.5, piece_grains = 4.0;
+/// Of leaves in a crown of radius 1.
+constexpr double crown_area = 22.0;
 
-/// A row of discs of about this grain.
-struct Row : Cells {
-  int count;
-  Row(double length, double grain, double margin)
-      : Row(length, margin, std::max(1, static_cast<int>(std::lround(length / grain - 2.0 * margin + 1.0)))) {
+/// How a length is divided into `count` Gaussians: the first lies `first` from its start, the others a cell
+/// apart. Where the surface goes on beyond its border, the outermost Gaussian lies half a cell inside.
+struct Cells {
+  double first, size;
+  Cells(double length, std::uint64_t count, bool low_ends, bool high_ends) {
+    const double low = low_ends ? margin_at_border : 0.5, high = high_ends ? margin_at_border : 0.5;
+    size = length / (static_cast<double>(count) - 1.0 + low + high);
+    first = low * size;
   }
-
- private:
-  Row(double length, double margin, int discs)
-      : Cells(length, static_cast<std::uint32_t>(discs), margin, margin), count(discs) {}
 };
+
+dvec3 flat(double along_u, double along_v) {
+  const double u = overlap * along_u, v = overlap * along_v;
+  return {u, v, std::min(thickest, flatness * std::min(u, v))};
+}
+
+/// Points of a smooth curve (Catmull-Rom) through `points`, about `step` apart.
+std::vector<dvec3> curve(const std::vector<dvec3>& points, double step) {
+  std::vector<dvec3> out;
+  const std::size_t n = points.size();
+  for (std::size_t i = 0; i + 1 < n; ++i) {
+    const dvec3 b = points[i], c = points[i + 1];
+    const dvec3 a = i == 0 ? 2.0 * b - c : points[i - 1], d = i + 2 == n ? 2.0 * c - b : points[i + 2];
+    const int pieces = std::max(1, static_cast<int>(std::lround(glm::length(c - b) / step)));
+    for (int k = 0; k < pieces; ++k) {
+      const double t = static_cast<double>(k) / pieces;
+      out.push_back(0.5 * (2.0 * b + t * (c - a) + t * t * (2.0 * a - 5.0 * b + 4.0 * c - d) +
+                           t * t * t * (3.0 * b - a - 3.0 * c + d)));
+    }
+  }
+  out.push_back(points.back());
+  return out;
+}
 
 /// Lengths of a polyline from its start to each point.
 template <typename Point>
@@ -37,6 +66,76 @@ std::vector<double> lengths(const std::vector<Point>& points) {
   return sums;
 }
 
+/// The material of a cell, and its mean colour: of more points, the larger the cell is.
+Material mean_material(const Surface& surface, const dvec2& middle, const dvec2& extent) {
+  const double size = std::max(extent.x, extent.y);
+  const int n = size < 0.05 ? 1 : size < 1.0 ? 2 : 3;
+  Material mean = surface.texture(middle.x, middle.y);
+  if (n == 1) return mean;
+  mean.colour = dvec3(0.0);
+  for (int k = 0; k < n * n; ++k) {
+    const dvec2 p =
+        middle + dvec2((k % n + 0.5) / n - 0.5, (std::floor(double(k) / n) + 0.5) / n - 0.5) * extent;
+    mean.colour += surface.texture(p.x, p.y).colour / double(n * n);
+  }
+  return mean;
+}
+
+void make_sheet(const Surface& s, const std::function<void(const Disc&)>& add) {
+  const double length_u = glm::length(s.u), length_v = glm::length(s.v);
+  const dvec3 u = s.u / length_u, v = s.v / length_v;
+  const dmat3 axes = axes_from_normal(glm::normalize(glm::cross(u, v)), u);
+  const std::uint64_t n = s.count;
+  const double even = std::sqrt(static_cast<double>(n) * length_v * s.grain.u / (length_u * s.grain.v));
+  const auto rows = std::clamp<std::uint64_t>(static_cast<std::uint64_t>(std::llround(even)), 1, n);
+  const Cells high(length_v, rows, (s.borders & border_low) != 0, (s.borders & border_high) != 0);
+  for (std::uint64_t j = 0; j < rows; ++j) {
+    const std::uint64_t in_row = (j + 1) * n / rows - j * n / rows;
+    const Cells wide(length_u, in_row, (s.borders & border_left) != 0, (s.borders & border_right) != 0);
+    const dvec3 scale = flat(wide.size, high.size);
+    const double b = high.first + static_cast<double>(j) * high.size;
+    for (std::uint64_t i = 0; i < in_row; ++i) {
+      const double a = wide.first + static_cast<double>(i) * wide.size;
+      add({s.corner + a * u + b * v, axes, scale,
+           mean_material(s, s.at + dvec2(a, b), {wide.size, high.size})});
+    }
+  }
+}
+
+/// A point within the unit ball.
+dvec3 in_ball(Random& random) {
+  while (true) {
+    dvec3 p;
+    for (int k = 0; k < 3; ++k) p[k] = random.uniform(-1.0, 1.0);
+    const double square = glm::dot(p, p);
+    if (square > 0.01 && square <= 1.0) return p;
+  }
+}
+
+void make_crown(const Surface& s, const std::function<void(const Disc&)>& add) {
+  constexpr std::uint32_t lumps = 11;
+  constexpr double lump_radius = 0.50;  // of the crown's
+  std::array<dvec3, lumps> middles;
+  Random of_crown(std::uint64_t{s.seed} * 77 + 5);
+  for (std::uint32_t k = 0; k < lumps; ++k)
+    middles[k] = glm::normalize(in_ball(of_crown)) * (k == 0 ? 0.0 : 1.0 - lump_radius);
+  const double size = std::min(0.5 * s.u.x, 0.62 * s.u.x * std::sqrt(crown_area / s.count));
+  for (std::uint32_t i = 0; i < s.count; ++i) {
+    Random random((std::uint64_t{s.seed} << 32) + i);
+    const dvec3 out = glm::normalize(in_ball(random));
+    const double deep = std::max(random.uniform(), random.uniform()) * 0.35 + 0.65;
+    // A few Gaussians alone are the whole crown.
+    const double shell = lump_radius * deep * (1.0 - 0.5 * size / s.u.x);
+    const dvec3 place = s.count < lumps ? dvec3(0.0) : middles[i % lumps] + shell * out;
+    const dvec3 normal = glm::normalize(0.5 * in_ball(random) + out + place);
+    const dvec3 along = in_ball(random);
+    Material leaf = s.texture(glm::length(place), glm::dot(place, out));
+    leaf.colour *= 0.90 + 0.2 * random.uniform();
+    leaf.two_sided = true;
+    add({s.corner + place * s.u, axes_from_normal(normal, along), dvec3(1.15, 0.85, 0.45) * size, leaf});
+  }
+}
+
 }  // namespace
 
 double hash(std::int64_t a, std::int64_t b) {
@@ -44,13 +143,16 @@ double hash(std::int64_t a, std::int64_t b) {
   return static_cast<double>(scramble(mixed ^ static_cast<std::uint64_t>(b)) >> 11) * 0x1p-53;
 }
 
+double hash_at(double x, double y) {
+  return hash(static_cast<std::int64_t>(std::floor(x)), static_cast<std::int64_t>(std::floor(y)));
+}
+
 double noise(double x, double y) {
-  const double fx = std::floor(x), fy = std::floor(y);
+  const double fx = std::floor(x), fy = std::floor(y), a = x - fx, b = y - fy;
   const auto i = static_cast<std::int64_t>(fx), j = static_cast<std::int64_t>(fy);
-  const double u = ramp(0.0, 1.0, x - fx), v = ramp(0.0, 1.0, y - fy);
-  const double above = hash(i, j) * (1.0 - u) + hash(i + 1, j) * u;
-  const double below = hash(i, j + 1) * (1.0 - u) + hash(i + 1, j + 1) * u;
-  return above * (1.0 - v) + below * v;
+  const double u = a * a * (3.0 - 2.0 * a), v = b * b * (3.0 - 2.0 * b);
+  const auto between = [&](std::int64_t k) { return hash(i, k) * (1.0 - u) + hash(i + 1, k) * u; };
+  return between(j) * (1.0 - v) + between(j + 1) * v;
 }
 
 double fractal(double x, double y) {
@@ -71,14 +173,21 @@ double ramp(double low, double high, double x) {
   return t * t * (3.0 - 2.0 * t);
 }
 
-Frame turned(const dvec3& origin, double degrees) {
-  const double c = std::cos(glm::radians(degrees)), s = std::sin(glm::radians(degrees));
-  return {origin, dmat3(dvec3(c, 0, s), dvec3(0, 1, 0), dvec3(-s, 0, c))};
+dvec2 circle(double turn) {
+  // The series of cosine and sine at a quarter of the angle, which is then doubled twice.
+  const double x = 0.5 * pi * (turn - std::floor(turn + 0.5)), s = x * x;
+  dvec2 p(1.0 - s / 2.0 * (1.0 - s / 12.0 * (1.0 - s / 30.0 * (1.0 - s / 56.0 * (1.0 - s / 90.0)))),
+          x * (1.0 - s / 6.0 * (1.0 - s / 20.0 * (1.0 - s / 42.0 * (1.0 - s / 72.0 * (1.0 - s / 110.0))))));
+  for (int k = 0; k < 2; ++k) p = {p.x * p.x - p.y * p.y, 2.0 * p.x * p.y};
+  return glm::normalize(p);
 }
 
-Frame rolled(const Frame& frame, double degrees) {
-  const double c = std::cos(glm::radians(degrees)), s = std::sin(glm::radians(degrees));
-  return {frame.origin, frame.axes * dmat3(dvec3(c, s, 0), dvec3(-s, c, 0), dvec3(0, 0, 1))};
+double part_of(double value, double period) { return value - period * std::floor(value / period); }
+
+Frame turned(const dvec3& origin, double degrees, double roll) {
+  const dvec2 t = circle(degrees / 360.0), r = circle(roll / 360.0);
+  return {origin, dmat3(dvec3(t.x, 0, t.y), down, dvec3(-t.y, 0, t.x)) *
+                      dmat3(dvec3(r.x, r.y, 0), dvec3(-r.y, r.x, 0), away)};
 }
 
 dmat3 axes_from_normal(const dvec3& normal, const dvec3& along) {
@@ -86,50 +195,60 @@ dmat3 axes_from_normal(const dvec3& normal, const dvec3& along) {
   return dmat3(tangent, glm::cross(normal, tangent), normal);
 }
 
-glm::vec4 quaternion(const dmat3& axes) {
-  const glm::dquat q = glm::normalize(glm::quat_cast(axes));
-  return {q.w, q.x, q.y, q.z};
-}
-
-std::vector<dvec3> curve(const std::vector<dvec3>& points, double step) {
-  std::vector<dvec3> out;
-  const std::size_t n = points.size();
-  for (std::size_t i = 0; i + 1 < n; ++i) {
-    const dvec3 a = points[i == 0 ? 0 : i - 1], b = points[i], c = points[i + 1],
-                d = points[std::min(i + 2, n - 1)];
-    const int pieces = std::max(1, static_cast<int>(std::lround(glm::length(c - b) / step)));
-    for (int k = 0; k < pieces; ++k) {
-      const double t = static_cast<double>(k) / pieces;
-      out.push_back(0.5 * (2.0 * b + t * (c - a) + t * t * (2.0 * a - 5.0 * b + 4.0 * c - d) +
-                           t * t * t * (3.0 * b - a - 3.0 * c + d)));
-    }
-  }
-  out.push_back(points.back());
-  return out;
+void make_discs(const Surface& surface, const std::function<void(const Disc&)>& add) {
+  surface.crown ? make_crown(surface, add) : make_sheet(surface, add);
 }
 
 void Stage::disc(const dvec3& position, const dmat3& axes, const dvec3& scale, const Material& material) {
-  if (material.opacity > 0.0) discs.push_back({position, axes, scale, material});
+  discs.push_back({frame.at(position), frame.axes * axes, scale, material});
 }
 
-void Stage::sheet(const dvec3& corner, const dvec3& edge_u, const dvec3& edge_v, Grain grain,
-                  const Texture& texture) {
-  const double length_u = glm::length(edge_u), length_v = glm::length(edge_v);
-  const dvec3 u = edge_u / length_u, v = edge_v / length_v;
-  const dmat3 axes = axes_from_normal(glm::normalize(glm::cross(u, v)), u);
-  const double margin = grain.border == Border::ends ? margin_at_border : 0.5;
-  const Row row_u(length_u, grain.u, margin), row_v(length_v, grain.v, margin);
-  const double su = room_overlap * row_u.size, sv = room_overlap * row_v.size;
-  for (int j = 0; j < row_v.count; ++j) {
-    for (int i = 0; i < row_u.count; ++i) {
-      const double a = row_u.first + i * row_u.size, b = row_v.first + j * row_v.size;
-      disc(corner + a * u + b * v, axes, {su, sv, room_flatness * std::min(su, sv)}, texture(a, b));
-    }
+void Stage::sheet(Surface surface) {
+  surface.corner = frame.at(surface.corner);
+  surface.u = frame.axes * surface.u;
+  surface.v = frame.axes * surface.v;
+  add_pieces(surface);
+}
+
+void Stage::add_pieces(const Surface& surface) {
+  const double length_u = glm::length(surface.u), length_v = glm::length(surface.v);
+  const double coarseness = std::min(surface.grain.u, surface.grain.v);
+  const dvec3 middle = surface.corner + 0.5 * (surface.u + surface.v);
+  const double here = grain_(middle, coarseness);
+  double least = here, most = here;
+  for (const dvec2 way : {dvec2(0, 0), dvec2(1, 0), dvec2(0, 1), dvec2(1, 1)}) {
+    const double there = grain_(surface.corner + way.x * surface.u + way.y * surface.v, coarseness);
+    least = std::min(least, there);
+    most = std::max(most, there);
   }
+  Surface low = surface, high = surface;
+  if (most <= grain_varies * least || std::max(length_u, length_v) <= piece_grains * least) {
+    // Strips much narrower than the grain are not to become needles.
+    const double columns = std::max(length_u / (here * surface.grain.u / coarseness), 1.0),
+                 rows = std::max(length_v / (here * surface.grain.v / coarseness), 1.0);
+    low.weight = columns * rows;
+    low.count = static_cast<std::uint32_t>(std::llround(columns) * std::llround(rows));
+    surfaces.push_back(low);
+    return;
+  }
+  if (length_u > length_v) {
+    low.u = high.u = 0.5 * surface.u;
+    high.corner += low.u;
+    high.at.x += 0.5 * length_u;
+    low.borders &= ~border_right;
+    high.borders &= ~border_left;
+  } else {
+    low.v = high.v = 0.5 * surface.v;
+    high.corner += low.v;
+    high.at.y += 0.5 * length_v;
+    low.borders &= ~border_high;
+    high.borders &= ~border_low;
+  }
+  add_pieces(low);
+  add_pieces(high);
 }
 
-void Stage::box(const Frame& frame, const dvec3& low, const dvec3& high, Grain grain,
-                const Texture& texture) {
+void Stage::box(const dvec3& low, const dvec3& high, Grain grain_of_box, const Texture& texture) {
   for (int axis = 0; axis < 3; ++axis) {
     for (const bool far_side : {false, true}) {
       const double place = far_side ? high[axis] : low[axis];
@@ -144,165 +263,98 @@ void Stage::box(const Frame& frame, const dvec3& low, const dvec3& high, Grain g
         corner += edge_v;
         edge_v = -edge_v;
       }
-      sheet(frame.at(corner.x, corner.y, corner.z), frame.axes * edge_u, frame.axes * edge_v, grain, texture);
+      sheet(corner, edge_u, edge_v, texture, grain_of_box, all_borders);
     }
   }
 }
 
-void Stage::solid_box(const Frame& frame, const dvec3& low, const dvec3& high, Grain grain,
-                      const Texture& texture) {
-  box(frame, low, high, grain, texture);
-  block(Solid::Shape::box, frame, low, high);
+void Stage::solid_box(const dvec3& low, const dvec3& high, Grain grain_of_box, const Texture& texture) {
+  box(low, high, grain_of_box, texture);
+  solid(Solid::Shape::box, low, high);
 }
 
-void Stage::ellipsoid(const Frame& frame, const dvec3& radii, double grain, const Texture& texture) {
-  const double mean = std::cbrt(radii.x * radii.y * radii.z);
-  const int count = std::max(12, static_cast<int>(std::lround(4.0 * pi * mean * mean / (grain * grain))));
-  const double sigma = room_overlap * std::sqrt(4.0 * pi / count);  // on the unit sphere
-  const double golden = pi * (3.0 - std::sqrt(5.0));
-  for (int i = 0; i < count; ++i) {  // a Fibonacci spiral from pole to pole
-    const double y = 1.0 - 2.0 * (i + 0.5) / count, ring = std::sqrt(1.0 - y * y);
-    const double longitude = golden * i;
-    const dvec3 p(ring * std::cos(longitude), y, ring * std::sin(longitude));
-    const Material material = texture(std::remainder(longitude, 2.0 * pi), std::asin(y));
-    const dvec3 normal = glm::normalize(frame.axes * (p / radii));
-    const dmat3 axes = axes_from_normal(normal, frame.axes * dvec3(-p.z, 0.0, p.x));
-    dvec3 scale(0.0);
-    for (int k = 0; k < 2; ++k) {  // a tangent step on the sphere becomes this long on the ellipsoid
-      const dvec3 local = glm::transpose(frame.axes) * axes[k];
-      scale[k] = sigma / glm::length(local / radii);
-    }
-    scale.z = room_flatness * std::min(scale.x, scale.y);
-    // Half the disc's sagitta inwards, so that the silhouette keeps the radius.
-    disc(frame.at(p.x * radii.x, p.y * radii.y, p.z * radii.z) - 0.5 * sigma * sigma * mean * normal, axes,
-         scale, material);
-  }
+void Stage::crown(const dvec3& middle, double radius, double coarseness, const Texture& leaves,
+                  std::uint32_t seed) {
+  crowns.add(Solid::Shape::ellipsoid, frame, middle - radius, middle + radius);
+  const double size = radius / grain(middle, coarseness);
+  if (size < 0.6) return;  // too small to be seen
+  Surface ball{
+      .corner = frame.at(middle), .u = dvec3(radius), .texture = leaves, .crown = true, .seed = seed};
+  ball.weight = crown_area * size * size;
+  ball.count = static_cast<std::uint32_t>(ball.weight);
+  surfaces.push_back(ball);
 }
 
-void Stage::lathe(const Frame& frame, const std::vector<dvec2>& profile, double grain,
-                  const Texture& texture) {
-  // Each stretch between sharp corners is a surface of its own, which ends at them.
-  double done = 0.0;
-  std::size_t from = 0;
-  for (std::size_t k = 1; k < profile.size(); ++k) {
-    if (k + 1 < profile.size()) {
-      const dvec2 a = glm::normalize(profile[k] - profile[k - 1]),
-                  b = glm::normalize(profile[k + 1] - profile[k]);
-      if (glm::dot(a, b) > 0.6) continue;
-    }
-    const std::vector<dvec2> stretch(profile.begin() + static_cast<std::ptrdiff_t>(from),
-                                     profile.begin() + static_cast<std::ptrdiff_t>(k + 1));
-    done += smooth_lathe(frame, stretch, grain, texture, done);
-    from = k;
-  }
+void Stage::ellipsoid(const dvec3& middle, const dvec3& radii, double spacing, const Texture& texture) {
+  std::vector<dvec2> half_circle;
+  for (int k = 0; k <= 24; ++k) half_circle.emplace_back(circle(k / 48.0).y, -circle(k / 48.0).x);
+  const auto look = [&](double angle, double way) {
+    return texture(angle > pi ? angle - 2.0 * pi : angle, way - 0.5 * pi);
+  };
+  lathe(middle, half_circle, spacing / std::cbrt(radii.x * radii.y * radii.z), look, radii);
 }
 
-double Stage::smooth_lathe(const Frame& frame, const std::vector<dvec2>& profile, double grain,
-                           const Texture& texture, double done) {
+void Stage::lathe(const dvec3& foot, const std::vector<dvec2>& profile, double spacing,
+                  const Texture& texture, const dvec3& stretch) {
   const std::vector<double> way = lengths(profile);
-  const Row row(way.back(), grain, margin_at_border);
-  for (int j = 0; j < row.count; ++j) {
-    const double v = row.first + j * row.size;
-    std::size_t k = 1;
-    while (k + 1 < profile.size() && way[k] < v) ++k;
-    const double t = (v - way[k - 1]) / std::max(way[k] - way[k - 1], 1e-9);
-    const dvec2 at = profile[k - 1] + t * (profile[k] - profile[k - 1]);
-    const dvec2 along = glm::normalize(profile[k] - profile[k - 1]);
-    const double round = 2.0 * pi * at.x;
-    const int count = std::max(3, static_cast<int>(std::lround(round / grain)));
-    const double su = room_overlap * round / count, sv = room_overlap * row.size;
-    for (int i = 0; i < count; ++i) {
-      const double angle = 2.0 * pi * (i + 0.5 * (j % 2)) / count;
-      const Material material = texture(angle, done + v);
-      const dvec3 outwards(std::cos(angle), 0.0, std::sin(angle));
-      const dvec3 normal = frame.axes * (along.y * outwards - dvec3(0.0, along.x, 0.0));
-      const dvec3 around = frame.axes * dvec3(-outwards.z, 0.0, outwards.x);
-      const dvec3 p = frame.origin + frame.axes * (at.x * outwards + dvec3(0.0, at.y, 0.0));
-      disc(p, axes_from_normal(normal, around), {su, sv, room_flatness * std::min(su, sv)}, material);
+  // Each stretch between sharp corners is a surface of its own, which ends at them.
+  std::size_t from = 0;
+  for (std::size_t to = 1; to < profile.size(); ++to) {
+    const auto along = [&](std::size_t k) { return glm::normalize(profile[k] - profile[k - 1]); };
+    if (to + 1 < profile.size() && glm::dot(along(to), along(to + 1)) > 0.6) continue;
+    const double length = way[to] - way[from];
+    const auto rows = std::max(1ll, std::llround(length / spacing - 2.0 * margin_at_border + 1.0));
+    const Cells cells(length, static_cast<std::uint64_t>(rows), true, true);
+    std::size_t k = from + 1;
+    for (int j = 0; j < rows; ++j) {
+      const double v = way[from] + cells.first + j * cells.size;
+      while (k < to && way[k] < v) ++k;
+      const dvec2 a = along(k), at = profile[k - 1] + (v - way[k - 1]) * a;
+      const int count = std::max(3, static_cast<int>(std::lround(2.0 * pi * at.x / spacing)));
+      for (int i = 0; i < count; ++i) {
+        const double turn = (i + 0.5 * (j % 2)) / count;
+        const dvec2 c = circle(turn);
+        const dvec3 around = stretch * dvec3(-c.y, 0.0, c.x),
+                    ahead = stretch * dvec3(a.x * c.x, a.y, a.x * c.y);
+        disc(foot + stretch * dvec3(at.x * c.x, at.y, at.x * c.y),
+             axes_from_normal(glm::normalize(glm::cross(ahead, around)), around),
+             flat(2.0 * pi * at.x / count * glm::length(around), cells.size * glm::length(ahead)),
+             texture(2.0 * pi * turn, v));
+      }
     }
+    from = to;
   }
-  return way.back();
 }
 
-void Stage::tube(const std::vector<dvec3>& path, double radius, double grain, const Texture& texture) {
+void Stage::tube(const std::vector<dvec3>& points, double radius, double spacing, const Texture& texture) {
+  const std::vector<dvec3> path = curve(points, spacing);
   const std::vector<double> way = lengths(path);
-  const int around = std::max(5, static_cast<int>(std::lround(2.0 * pi * radius / grain)));
+  const int around = std::max(5, static_cast<int>(std::lround(2.0 * pi * radius / spacing)));
   dvec3 side(0.3, 0.2, 1.0);  // carried along the path, so that the rings do not twist
   for (std::size_t i = 0; i + 1 < path.size(); ++i) {
     const double length = way[i + 1] - way[i];
     const dvec3 forward = (path[i + 1] - path[i]) / length;
     side = glm::normalize(side - forward * glm::dot(forward, side));
-    const dvec3 up = glm::cross(forward, side);
     for (int k = 0; k < around; ++k) {
-      const double angle = 2.0 * pi * (k + 0.5 * static_cast<double>(i % 2)) / around;
-      const Material material = texture(angle, way[i] + 0.5 * length);
-      const dvec3 normal = std::cos(angle) * side + std::sin(angle) * up;
-      const double su = room_overlap * length, sv = room_overlap * 2.0 * pi * radius / around;
+      const double turn = (k + 0.5 * static_cast<double>(i % 2)) / around;
+      const dvec3 normal = circle(turn).x * side + circle(turn).y * glm::cross(forward, side);
       disc(0.5 * (path[i] + path[i + 1]) + 0.9 * radius * normal, axes_from_normal(normal, forward),
-           {su, sv, room_flatness * std::min(su, sv)}, material);
+           flat(length, 2.0 * pi * radius / around), texture(2.0 * pi * turn, way[i] + 0.5 * length));
     }
   }
 }
 
-void Stage::wire(const std::vector<dvec3>& path, double radius, double grain, const Material& material) {
-  const double length = lengths(path).back();
-  const int count = std::max(1, static_cast<int>(std::lround(length / grain)));
-  std::size_t k = 1;
-  double start = 0.0;  // the way to point k - 1
-  for (int i = 0; i < count; ++i) {
-    const double at = (i + 0.5) * length / count;
-    while (k + 1 < path.size() && start + glm::length(path[k] - path[k - 1]) < at) {
-      start += glm::length(path[k] - path[k - 1]);
-      ++k;
-    }
-    const dvec3 forward = glm::normalize(path[k] - path[k - 1]);
+void Stage::wire(const std::vector<dvec3>& points, double radius, double spacing, const Material& material) {
+  const std::vector<dvec3> path = curve(points, spacing);
+  for (std::size_t i = 0; i + 1 < path.size(); ++i) {
+    const dvec3 along = path[i + 1] - path[i], forward = glm::normalize(along);
     // A wire has no front: its normal is as near to upwards as it can be, which is right for light from
     // above.
-    const dvec3 upwards = std::abs(forward.y) < 0.95 ? dvec3(0, -1, 0) : dvec3(0, 0, -1);
+    const dvec3 upwards = std::abs(forward.y) < 0.95 ? up : -away;
     const dvec3 normal = glm::normalize(upwards - forward * glm::dot(forward, upwards));
-    const double thin = 0.6 * radius;
-    disc(path[k - 1] + (at - start) * forward, axes_from_normal(normal, forward),
-         {room_overlap * length / count, thin, thin}, material);
+    disc(0.5 * (path[i] + path[i + 1]), axes_from_normal(normal, forward),
+         {overlap * glm::length(along), 0.6 * radius, 0.6 * radius}, material);
   }
-}
-
-void Stage::block(Solid::Shape shape, const Frame& frame, const dvec3& low, const dvec3& high) {
-  if (solids.empty()) group();
-  SolidGroup& last = solids.back();
-  const dvec3 middle = 0.5 * (low + high);
-  const dvec3 centre = frame.at(middle.x, middle.y, middle.z);
-  const double radius = 0.5 * glm::length(high - low);
-  if (last.solids.empty()) {
-    last.centre = centre;
-    last.radius = radius;
-  } else {
-    last.radius = std::max(last.radius, glm::length(centre - last.centre) + radius);
-  }
-  const dmat3 to_unit = dmat3(dvec3(2.0 / (high.x - low.x), 0, 0), dvec3(0, 2.0 / (high.y - low.y), 0),
-                              dvec3(0, 0, 2.0 / (high.z - low.z))) *
-                        glm::transpose(frame.axes);
-  last.solids.push_back({shape, to_unit, -(to_unit * centre), centre, radius});
-}
-
-void Stage::remove_hidden() {
-  constexpr double skin = 0.003;  // a box's own faces stay
-  const auto hidden = [&](const Disc& disc) {
-    for (const SolidGroup& group : solids) {
-      if (glm::length(disc.position - group.centre) > group.radius) continue;
-      for (const Solid& solid : group.solids) {
-        if (solid.shape != Solid::Shape::box) continue;
-        const dvec3 p = glm::abs(solid.to_unit * disc.position + solid.unit_origin);
-        bool inside = true;
-        for (int i = 0; i < 3; ++i) {
-          const dvec3 row(solid.to_unit[0][i], solid.to_unit[1][i], solid.to_unit[2][i]);
-          inside = inside && p[i] < 1.0 - skin * glm::length(row);
-        }
-        if (inside) return true;
-      }
-    }
-    return false;
-  };
-  std::erase_if(discs, hidden);
 }
 
 }  // namespace binosplat::demo

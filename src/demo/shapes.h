@@ -1,21 +1,21 @@
 #pragma once
 // The shapes that demo:room and demo:city are made of: what a surface is made of (Material), where it lies
-// (Frame), how it is divided into Gaussians (Cells), and the sheets, boxes, balls, lathed and bent surfaces
-// of the room, whose grain is given (Stage). The city's sheets, boxes, balls and wires, whose grain grows
-// with the distance, are in demo/city_parts.h.
+// (Frame), what casts shadows (Solids), and the surfaces that become Gaussians (Stage).
 //
 // Deterministic: no library's random distributions, and no two random numbers in one expression, whose order
 // compilers choose freely. World axes are COLMAP's: y points down, so heights above the floor are negative y.
 // Lengths are metres.
+//
+// Shapes and lights take only +, -, *, / and square roots, which IEEE 754 rounds alike everywhere. Sines and
+// powers may differ in their last bit from library to library, and the city must not.
 
 #include <concepts>
 #include <cstdint>
 #include <functional>
 #include <glm/glm.hpp>
+#include <memory>
 #include <utility>
 #include <vector>
-
-#include "base/random.h"
 
 namespace binosplat::demo {
 
@@ -24,49 +24,50 @@ using glm::dvec2;
 using glm::dvec3;
 
 constexpr double pi = 3.14159265358979323846;
+constexpr dvec3 right{1, 0, 0}, down{0, 1, 0}, up{0, -1, 0}, away{0, 0, 1};
 
-/// A random number in [0, 1) that belongs to a pair of integers.
-double hash(std::int64_t a, std::int64_t b);
-
-/// Smooth noise in [0, 1] with features of about one unit.
-double noise(double x, double y);
-
-/// Noise in [0, 1] of four octaves, for clouds, stone and hills.
-double fractal(double x, double y);
-
+double hash(std::int64_t a, std::int64_t b);  // a random number in [0, 1) that belongs to two integers
+double hash_at(double x, double y);           // the same of the square of a lattice in which (x, y) lies
+double noise(double x, double y);             // smooth, in [0, 1], with features of about one unit
+double fractal(double x, double y);           // noise of four octaves, in [0, 1]: clouds, stone and hills
 dvec3 mix(const dvec3& a, const dvec3& b, double t);
-
-/// 0 below `low`, 1 above `high`, smooth between them.
-double ramp(double low, double high, double x);
+double ramp(double low, double high, double x);  // 0 below `low`, 1 above `high`, smooth between them
+dvec2 circle(double turn);                    // a point of the unit circle: 0 at x, 0.25 at y, 1 at x again
+double part_of(double value, double period);  // what is left when whole periods are taken away
 
 /// What a point of a surface is made of. Colours are display-referred, as people choose them.
 struct Material {
   dvec3 colour{0.5};
   double opacity = 0.97;   // 0: a hole
-  double gloss = 0.0;      // how strongly lights are mirrored; in the city 0 dull to 1 glass
+  double gloss = 0.0;      // how strongly lights are mirrored
   double sharpness = 8.0;  // exponent of the mirrored lobe
   double glow = 0.0;       // light of its own, in units of the colour
-  bool two_sided = false;  // leaves and cloth: lit from both sides
-  bool lit = true;         // false: the colour is what is seen (the world outside)
+  bool two_sided = false;  // leaves and cloth: light shines through
+  bool lit = true;         // false: the colour is what is seen (the sky)
 };
 
-/// What a surface shows at (u, v), in metres from its corner, or one material throughout.
+/// What a surface shows at (u, v), in metres from its corner, or one material throughout. Copies share it.
 class Texture {
  public:
-  Texture(const Material& material = {}) : at_([material](double, double) { return material; }) {}
-  template <std::invocable<double, double> Function>
-  Texture(Function at) : at_(std::move(at)) {}
-  Material operator()(double u, double v) const { return at_(u, v); }
+  using Function = std::function<Material(double u, double v)>;
+  Texture(const Material& material = {}) : Texture([material](double, double) { return material; }) {}
+  template <std::invocable<double, double> Look>
+  Texture(Look look) : at_(std::make_shared<const Function>(std::move(look))) {}
+  Material operator()(double u, double v) const { return (*at_)(u, v); }
 
  private:
-  std::function<Material(double u, double v)> at_;
+  std::shared_ptr<const Function> at_;
 };
 
-/// The texture that a function of (subject, u, v) is for one subject, which must outlive it.
-template <auto at, typename Subject>
-Texture texture_of(const Subject& subject) {
-  return [&subject](double u, double v) { return at(subject, u, v); };
-}
+/// A place and its axes (columns x right, y down, z away). Things are described in a frame of their own.
+struct Frame {
+  dvec3 origin{0.0};
+  dmat3 axes{1.0};
+  dvec3 at(const dvec3& p) const { return origin + axes * p; }
+};
+
+/// A frame turned about the vertical, and then rolled about its own z axis.
+Frame turned(const dvec3& origin, double degrees, double roll = 0.0);
 
 /// One Gaussian-to-be. Its axes are tangent, bitangent (their cross product points away from the surface) and
 /// normal.
@@ -77,121 +78,141 @@ struct Disc {
   Material material;
 };
 
-/// A place and its axes (columns x right, y down, z away). Furniture is described in a frame of its own.
-struct Frame {
-  dvec3 origin{0.0};
-  dmat3 axes{1.0};
-  dvec3 at(double x, double y, double z) const { return origin + axes * dvec3(x, y, z); }
-};
-
-/// A frame turned about the vertical.
-Frame turned(const dvec3& origin, double degrees);
-
-/// A frame rolled about its own z axis.
-Frame rolled(const Frame& frame, double degrees);
-
-/// Something that light does not pass: a box, ellipsoid or upright cylinder. `to_unit` and `unit_origin`
-/// bring a world point p to to_unit * p + unit_origin, where the solid fills -1 to 1.
-struct Solid {
-  enum class Shape { box, ellipsoid, cylinder };
-  Shape shape;
-  dmat3 to_unit;
-  dvec3 unit_origin;
-  dvec3 centre;
-  double radius;  // of a ball around it
-};
-
-/// Solids close together, with a ball around them all that most rays miss.
-struct SolidGroup {
-  dvec3 centre{0.0};
-  double radius = 0.0;
-  std::vector<Solid> solids;
-};
-
-/// How a length is divided into `count` Gaussians: the first lies `first` from its start, the others a cell
-/// apart. Where the surface ends at its border (a silhouette), the outermost Gaussian lies `low` or `high`
-/// cells inside of it, so that it is half transparent just there; where it goes on, half a cell.
-struct Cells {
-  double first, size;
-  Cells(double length, std::uint32_t count, double low, double high)
-      : size(length / (count - 1 + low + high)) {
-    first = low * size;
-  }
-};
-
-/// Whether a sheet ends at its border (silhouettes) or reaches over it (walls that must close at their
-/// corners).
-enum class Border { ends, overlaps };
-
-/// How far apart the discs of a surface lie, and where its outermost ones do.
+/// How far apart the Gaussians of a sheet lie along u and v, in units of the stage's grain.
 struct Grain {
   double u, v;
-  Border border = Border::ends;
-  explicit Grain(double both) : u(both), v(both) {}
-  Grain(double along_u, double along_v, Border where = Border::ends)
-      : u(along_u), v(along_v), border(where) {}
+  Grain(double both = 1.0) : u(both), v(both) {}
+  Grain(double along_u, double along_v) : u(along_u), v(along_v) {}
 };
 
-/// Where the discs and solids of a scene are collected.
+// Borders at which a sheet ends in a silhouette, so that its Gaussians must not reach over them. At others it
+// meets other sheets, and must close.
+enum Borders : unsigned { border_left = 1, border_right = 2, border_low = 4, border_high = 8 };
+constexpr unsigned all_borders = 15;
+
+/// A parallelogram, seen from where cross(u, v) points, or a crown of leaves. It is only described here: how
+/// many Gaussians show it is decided when all surfaces are known.
+struct Surface {
+  dvec3 corner{0.0}, u{0.0}, v{0.0};  // of a crown: its middle, and u its radii
+  Texture texture;                    // of a crown: by how far from its middle, and how far outside its lump
+  Grain grain;
+  unsigned borders = 0;
+  dvec2 at{0.0};  // of the corner, in the texture's metres
+  bool crown = false;
+  std::uint32_t seed = 0;   // of a crown's leaves
+  double weight = 0.0;      // how many Gaussians its grain asks for
+  std::uint32_t count = 0;  // how many it has
+};
+
+/// Adds the Gaussians of a surface, as many as it has.
+void make_discs(const Surface& surface, const std::function<void(const Disc&)>& add);
+
+/// Something that light does not pass, in a box of its own frame: it fills the box, or lies in it as an
+/// ellipsoid, or as a roof with its ridge along x.
+struct Solid {
+  enum class Shape { box, ellipsoid, roof };
+  Shape shape;
+  dmat3 to_unit;  // to_unit * p + unit_origin brings the box to -1 to 1
+  dvec3 unit_origin, half;
+  dvec3 low, high;  // bounds in the world
+};
+
+/// Solids in a tree of bounding boxes.
+class Solids {
+ public:
+  /// Adds a solid that fills `low` to `high` of a frame.
+  void add(Solid::Shape shape, const Frame& frame, const dvec3& low, const dvec3& high);
+
+  /// Makes the tree. Rays need it.
+  void build();
+
+  /// How many times `direction` a ray goes until it enters a solid; `reach` if it enters none before. With
+  /// `any` it is enough to know that there is one: the nearest is not searched for.
+  double way(const dvec3& from, const dvec3& direction, double reach, bool any = false) const;
+  bool is_free(const dvec3& from, const dvec3& direction, double reach) const {
+    return way(from, direction, reach, true) >= reach;
+  }
+
+  /// Whether a point lies inside of a box, and not at its faces.
+  bool hide(const dvec3& p) const;
+
+ private:
+  struct Node {
+    dvec3 low, high;
+    std::uint32_t begin, end;  // of its solids
+    std::uint32_t second;      // its second child; the first one follows it; 0: a leaf
+  };
+  void add_node(std::uint32_t begin, std::uint32_t end);
+
+  std::vector<Solid> solids_;
+  std::vector<Node> nodes_;
+};
+
+/// Where the surfaces, Gaussians and solids of a scene are collected.
 class Stage {
  public:
-  explicit Stage(std::uint64_t seed) : random(seed) {}
+  /// The grain of surfaces of a coarseness at a place of the world, in metres.
+  using GrainAt = std::function<double(const dvec3& place, double coarseness)>;
+  explicit Stage(GrainAt grain_at = [](const dvec3&, double coarseness) { return coarseness; })
+      : grain_(std::move(grain_at)) {}
 
-  /// A parallelogram; its front is where cross(edge_u, edge_v) points.
-  void sheet(const dvec3& corner, const dvec3& edge_u, const dvec3& edge_v, Grain grain,
-             const Texture& texture);
+  /// What is added is described in this frame.
+  Frame frame;
+  double grain(const dvec3& place, double coarseness = 1.0) const {
+    return grain_(frame.at(place), coarseness);
+  }
 
-  /// The faces of a box from `low` to `high` in a frame; a texture's u runs along the longer side of each
-  /// face. The face on the floor is left out where `low` or `high` touch y = 0 of the frame.
-  void box(const Frame& frame, const dvec3& low, const dvec3& high, Grain grain, const Texture& texture);
+  /// Adds a sheet, in pieces each of which has an even grain.
+  void sheet(Surface surface);
+  void sheet(const dvec3& corner, const dvec3& u, const dvec3& v, const Texture& texture,
+             Grain grain_of_sheet = {}, unsigned borders = 0) {
+    sheet({corner, u, v, texture, grain_of_sheet, borders});
+  }
+
+  /// The faces of a box; a texture's u runs along the longer side of each face. The face on the floor is left
+  /// out where `low` or `high` touch y = 0.
+  void box(const dvec3& low, const dvec3& high, Grain grain_of_box, const Texture& texture);
   /// A box that casts a shadow.
-  void solid_box(const Frame& frame, const dvec3& low, const dvec3& high, Grain grain,
-                 const Texture& texture);
+  void solid_box(const dvec3& low, const dvec3& high, Grain grain_of_box, const Texture& texture);
+  void solid(Solid::Shape shape, const dvec3& low, const dvec3& high) { solids.add(shape, frame, low, high); }
+
+  /// Leaves on the outside of lumps that overlap, in a ball; they cast a shadow with spots of light in it.
+  void crown(const dvec3& middle, double radius, double coarseness, const Texture& leaves,
+             std::uint32_t seed);
+
+  // What follows consists of Gaussians about `spacing` metres apart, whatever the grain.
 
   /// An ellipsoid; u and v are longitude and latitude in radians.
-  void ellipsoid(const Frame& frame, const dvec3& radii, double grain, const Texture& texture);
+  void ellipsoid(const dvec3& middle, const dvec3& radii, double spacing, const Texture& texture);
 
-  /// A surface of revolution about the frame's y axis: `profile` holds radius and height (y, downwards) from
-  /// one end to the other; listed from the top middle outwards and down, its front is outside. u is the angle
-  /// in radians, v the way along the profile.
-  void lathe(const Frame& frame, const std::vector<dvec2>& profile, double grain, const Texture& texture);
+  /// A surface of revolution about the y axis through `foot`: `profile` holds radius and height (y,
+  /// downwards) from one end to the other; listed from the top middle outwards and down, its front is
+  /// outside. u is the angle in radians, v the way along the profile.
+  void lathe(const dvec3& foot, const std::vector<dvec2>& profile, double spacing, const Texture& texture,
+             const dvec3& stretch = dvec3(1.0));
 
-  /// A bent pipe along points. u is the angle in radians, v the way along it.
-  void tube(const std::vector<dvec3>& path, double radius, double grain, const Texture& texture);
+  /// A pipe bent smoothly through points. u is the angle in radians, v the way along it.
+  void tube(const std::vector<dvec3>& points, double radius, double spacing, const Texture& texture);
 
-  /// A thin wire: one row of long Gaussians.
-  void wire(const std::vector<dvec3>& path, double radius, double grain, const Material& material);
+  /// A thin wire through points: one row of long Gaussians.
+  void wire(const std::vector<dvec3>& points, double radius, double spacing, const Material& material);
 
   /// One Gaussian by itself.
   void disc(const dvec3& position, const dmat3& axes, const dvec3& scale, const Material& material);
 
-  /// Solids added from here on belong to a new group.
-  void group() { solids.emplace_back(); }
-  /// A solid that fills `low` to `high` of a frame.
-  void block(Solid::Shape shape, const Frame& frame, const dvec3& low, const dvec3& high);
-
-  /// Takes away the discs that lie inside boxes: nobody sees them, but a wall's discs would show through what
-  /// stands close before it wherever their centres come first in depth.
-  void remove_hidden();
-
-  Random random;
+  std::vector<Surface> surfaces;
   std::vector<Disc> discs;
-  std::vector<SolidGroup> solids;
+  Solids solids;
+  Solids crowns;  // balls of leaves, which light shines through here and there
 
  private:
-  /// Draws a profile without sharp corners that starts `done` along the whole one; returns its length.
-  double smooth_lathe(const Frame& frame, const std::vector<dvec2>& profile, double grain,
-                      const Texture& texture, double done);
-};
+  void add_pieces(const Surface& surface);
 
-/// Points of a smooth curve (Catmull-Rom) through `points`, about `step` apart.
-std::vector<dvec3> curve(const std::vector<dvec3>& points, double step);
+  GrainAt grain_;
+};
 
 /// Right-handed axes whose third column is `normal` (unit), and whose first lies along `along` as far as it
 /// can.
 dmat3 axes_from_normal(const dvec3& normal, const dvec3& along);
-
-/// A rotation as models have it: w, x, y, z, of unit length.
-glm::vec4 quaternion(const dmat3& axes);
 
 }  // namespace binosplat::demo

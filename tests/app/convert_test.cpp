@@ -134,7 +134,7 @@ TEST(ConvertBuiltIn, TheRoom) {
   const Outcome outcome =
       run_program({"convert", "demo:room", "-o", folder / "room.spz", "--report", "1", "--size", "160x90"});
   ASSERT_TRUE(good(outcome));
-  EXPECT_TRUE(has(outcome.out, "99464 Gaussians"));
+  EXPECT_TRUE(has(outcome.out, "98230 Gaussians"));
 }
 
 TEST(ConvertScenes, FoxCostsWhatItShould) {

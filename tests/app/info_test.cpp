@@ -53,7 +53,7 @@ TEST_F(Info, TreesTakeNoMoreThanTheirNodes) {
 TEST_F(Info, OfABuiltInScene) {
   const test::Outcome outcome = test::run_program({"info", "demo:room"});
   ASSERT_TRUE(good(outcome));
-  EXPECT_TRUE(test::has(outcome.out, "demo:room (built in)\nGaussians      99464\n"));
+  EXPECT_TRUE(test::has(outcome.out, "demo:room (built in)\nGaussians      98230\n"));
 }
 
 TEST(InfoOfFixtures, KnowsTheirFormats) {

@@ -16,7 +16,7 @@
 #include "base/clock.h"
 #include "base/error.h"
 #include "base/statistics.h"
-#include "demo/city.h"
+#include "demo/demo.h"
 #include "formats/cameras_file.h"
 #include "formats/model_file.h"
 #include "render/frame.h"

@@ -9,7 +9,7 @@
 
 #include "base/error.h"
 #include "base/statistics.h"
-#include "demo/room.h"
+#include "demo/demo.h"
 #include "formats/cameras_file.h"
 #include "formats/model_file.h"
 #include "preview/panel.h"

@@ -9,8 +9,7 @@
 #include <glm/gtc/constants.hpp>
 #include <glm/gtc/quaternion.hpp>
 
-#include "demo/city.h"
-#include "demo/room.h"
+#include "demo/demo.h"
 #include "formats/cameras_file.h"
 #include "formats/model_file.h"
 #include "scene/framing.h"

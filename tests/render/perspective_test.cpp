@@ -2,8 +2,7 @@
 
 #include <algorithm>
 
-#include "demo/city.h"
-#include "demo/room.h"
+#include "demo/demo.h"
 #include "formats/cameras_file.h"
 #include "formats/model_file.h"
 #include "measure/depth_table.h"
