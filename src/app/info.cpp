@@ -24,6 +24,7 @@
 #include "lab/fields.h"
 #include "lab/weights.h"
 #include "render/frame_plan.h"
+#include "render/memory.h"
 #include "scene/axes.h"
 #include "scene/framing.h"
 #include "scene/summary.h"
