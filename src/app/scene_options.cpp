@@ -7,6 +7,7 @@
 #include "base/error.h"
 #include "base/numbers.h"
 #include "demo/demo.h"
+#include "formats/registry.h"
 #include "scene/axes.h"
 
 namespace binosplat::app {
