@@ -23,8 +23,11 @@ DetailRequest parse_detail(const std::string& text) {
 }
 
 void add_scene_options(CLI::App& sub, SceneOptions& o) {
+  std::string formats = names_of_formats();
+  constexpr std::size_t columns = 62;  // of help beside the options' names
+  formats[formats.rfind(' ', columns)] = '\n';
   sub.add_option("SCENE", o.name,
-                 "A model's file or folder, of the formats\n" + names_of_formats() +
+                 "A model's file or folder, of the formats\n" + formats +
                      ";\nor one that is built in: demo:room, a room, or demo:city, streets\nof any size")
       ->required();
   sub.option_defaults()->group("Scene");

@@ -32,7 +32,9 @@ std::string lacks(const char* name) {
   for (const std::string& text : texts) {
     if (!has(test::read_text(root + "/" + text), name)) return text;
   }
-  if (!has(test::run_program({"render", "--help"}).out, name)) return "the help of SCENE";
+  std::string help = test::run_program({"render", "--help"}).out;
+  std::erase(help, '\n');
+  if (!has(help, name)) return "the help of SCENE";
   const std::string fuzzer = identifier(name), fuzzers = test::read_text(root + "/tests/fuzz/CMakeLists.txt");
   if (!has(fuzzers, " " + fuzzer + " ")) return "tests/fuzz/CMakeLists.txt";
   return std::filesystem::is_directory(root + "/tests/fuzz/corpus/" + fuzzer) ? "" : "tests/fuzz/corpus";
