@@ -1,6 +1,6 @@
 // binosplat info: what a model is made of, and what drawing it takes.
 
-#include <fmt/core.h>
+#include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
 #include <algorithm>

@@ -4,6 +4,7 @@
 
 #include <functional>
 
+#include "support/errors.h"
 #include "support/ply.h"
 #include "support/round_trip.h"
 

@@ -207,9 +207,9 @@ inline std::string difference(const Model& model, const Model& back, ModelFormat
   const SogEnds ends = sog_ends(model);
   for (std::size_t j = 0; j < order.size(); ++j) {
     const std::size_t i = order[j];
-    const Expected e = format == ModelFormat::ply     ? of_ply(model, i)
-                       : format == ModelFormat::sog   ? of_sog(model, i, ends)
-                                                      : of_spz(model, i, harmonic_bits);
+    const Expected e = format == ModelFormat::ply   ? of_ply(model, i)
+                       : format == ModelFormat::sog ? of_sog(model, i, ends)
+                                                    : of_spz(model, i, harmonic_bits);
     if (std::string found = difference(e, model.rotation[i], back, j); !found.empty()) return found;
   }
   return "";
