@@ -155,7 +155,9 @@ std::string explain(const CLI::App& command, const std::string& name, const CLI:
     const auto option = std::find_if(extras.begin(), extras.end(),
                                      [](const std::string& word) { return word.starts_with("-"); });
     if (option == extras.end()) {
-      text = fmt::format("{}: one word too many", fmt::join(extras, " "));
+      text =
+          fmt::format("{}: one word too many (an option takes several names with commas, as in --view A,B)",
+                      fmt::join(extras, " "));
     } else {
       const std::string word = option->substr(0, option->find('='));
       text = fmt::format("{}: {} has no such option{}", word, name, suggestion(word, option_names(command)));
