@@ -17,8 +17,6 @@ namespace {
 using std::chrono::milliseconds;
 
 constexpr double own_share = 0.8;  // of a frame's time: the runtime draws, too
-// What levels of detail take of a frame: what drawing leaves but for a rest, within these bounds.
-constexpr double levels_ms_least = 2.5, levels_ms_most = 6.0, rest_ms = 1.2;
 constexpr int sessions_most = 10;  // one after the other, where they are lost
 constexpr milliseconds between_sessions{500}, wait_most{10000};
 constexpr milliseconds between_polls{10};  // while no frames are wanted
@@ -97,11 +95,10 @@ class Viewer {
     frame.views = projection.begin(views, placement, effort.scale, drawing);
     if (stream_ != nullptr) {
       const TimedSpan span("levels", &frame.levels_ms);
-      const double left_ms = frame.period_ms - (times_.empty() ? 0.0 : times_.back()) - rest_ms;
+      const double drawn_ms = times_.empty() ? 0.0 : times_.back();
       Settings asked = drawing;  // levels do not go by a budget
       asked.quality = settings_.drawing.quality;
-      stream_->begin_frame(frame.views, placement, asked,
-                           std::clamp(left_ms, levels_ms_least, levels_ms_most));
+      stream_->begin_frame(frame.views, placement, asked, beside_.levels_ms(frame.period_ms, drawn_ms));
       if (asked.quality) drawing.quality = beside_.quality(*asked.quality);
     }
     frame.report = renderer_.draw(frame.views, placement, drawing);

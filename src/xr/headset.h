@@ -37,6 +37,9 @@ struct Beside {
   std::function<bool()> step;
   /// Shows the left eye's picture, which lies in the lower left corner of the target. May be empty.
   std::function<void(const Target& left, const glm::ivec2& size)> show = {};
+  /// For a stream: the ms that its levels may take of a frame of `period_ms`, of which drawing takes
+  /// `drawn_ms`.
+  std::function<double(double period_ms, double drawn_ms)> levels_ms = {};
   /// For a stream: the PSNR in dB that a frame itself must keep, where its levels lose a part of a quality.
   std::function<float(float quality)> quality = {};
   /// Takes each frame once it was handed to the runtime.

@@ -32,8 +32,11 @@ std::string lacks(const char* name) {
   for (const std::string& text : texts) {
     if (!has(test::read_text(root + "/" + text), name)) return text;
   }
-  std::string help = test::run_program({"render", "--help"}).out;
-  std::erase(help, '\n');
+  static const std::string help = [] {
+    std::string text = test::run_program({"render", "--help"}).out;
+    std::erase(text, '\n');
+    return text;
+  }();
   if (!has(help, name)) return "the help of SCENE";
   const std::string fuzzer = identifier(name), fuzzers = test::read_text(root + "/tests/fuzz/CMakeLists.txt");
   if (!has(fuzzers, " " + fuzzer + " ")) return "tests/fuzz/CMakeLists.txt";

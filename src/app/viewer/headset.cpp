@@ -191,6 +191,7 @@ void view_in_headset(const RenderOptions& o, const preview::Opened& scene, previ
     const std::size_t uploaded = levels ? levels->take_times().put : 0;
     recording.add(record_of(std::move(frame), gaussians(), uploaded), period_ms);
   };
+  beside.levels_ms = time_for_levels;
   beside.quality = [&](float quality) { return static_cast<float>(levels->quality_left(quality)); };
   if (mirror) beside.show = [&](const Target& left, const glm::ivec2& size) { mirror->show(left, size); };
   const auto precision = static_cast<Precision>(o.drawing.precision);
