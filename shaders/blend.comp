@@ -1,5 +1,5 @@
 // Stage 6: the picture. One work group a tile, whose splats pass front to back through shared memory. Tiles with long lists
-// are drawn by a launch of their own, which starts first and has more invocations (blend_long_lists.comp).
+// are drawn by a launch of their own, which starts first and has more invocations (tile_ranges.glsl).
 //
 // Programs that measure something of each splat or tell what they come by have no other way through the lists.
 #include "lists.glsl"

@@ -8,7 +8,7 @@
 //   CANVASES    1: pictures of views go into images, and z_sums are depths (blend_pictures.glsl)
 //   MEASURE     what is measured of each splat, MEASURE_ of shared/limits.h (blend_measure.glsl)
 //   DEBUG_VIEW  1: a number of each pixel is shown in the place of its picture (blend_debug.glsl)
-//   PLAIN       1: whole views, no probe, supertiles of 2 x 2 tiles: without those choices a GPU blends 5 % faster
+//   PLAIN       1: whole views, no probe: without those choices a GPU blends 5 % faster
 //   BROAD       1: with the tangent projection, wide splats may lie ahead of some pixels of a tile, and behind others
 //   MESH_DEPTH  1: splats behind the caller's meshes are not seen (blend_mesh.glsl)
 //   ANY         whether something holds in an invocation that goes with this one
@@ -19,12 +19,9 @@
 #include "shared/types.h"
 #include "shared/grid.glsl"
 #include "frame.glsl"
-#if PLAIN
-#define SUPERTILE_SIDE 2
-#else
+#if !PLAIN
 #define PROBED 1
 #define REGIONS 1
-#define SUPERTILE_SIDE frame.supertile_side
 #endif
 #include "projection.glsl"
 #include "supertiles.glsl"

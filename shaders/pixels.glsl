@@ -16,7 +16,7 @@ bool find_tile() {
   if (tile >= frame.tile_count) return false;
 #endif
   while (view_index + 1u < frame.view_count && tile >= views[view_index + 1u].supertile_offset * SUPERTILE_TILES) ++view_index;
-  uint list = frame.list_per_view != 0u ? view_index : tile;
+  uint list = frame.list_per_view != 0u ? views[view_index].supertile_offset * SUPERTILE_TILES : tile;
   begin = ranges[2u * list];
   end = ranges[2u * list + 1u];
   bool is_own = LISTS != LISTS_SHORT || end - begin <= LONG_LIST || frame.list_per_view != 0u;

@@ -1,5 +1,6 @@
 #if WITH_SUBGROUPS
 #extension GL_KHR_shader_subgroup_basic : require
+#extension GL_KHR_shader_subgroup_ballot : require
 #extension GL_KHR_shader_subgroup_shuffle : require
 #endif
 // Stage 1, project, last part: the splats of the Gaussians that project_cull.comp found, side by side in index order. One
@@ -21,21 +22,30 @@ layout(std430, binding = 0) readonly buffer Views { View views[]; };
 #include "splats.glsl"  // binding 12
 layout(std430, binding = 3) readonly buffer Arguments { DispatchArguments arguments[]; };
 layout(std430, binding = 4) readonly buffer Indices { uint indices[]; };          // Gaussian of each slot
-layout(std430, binding = 6) writeonly buffer Coverages { uint coverages[]; };  // (slot, view): supertiles.glsl
+layout(std430, binding = 6) writeonly buffer Coverages { uint coverages[]; };     // by splat: supertiles.glsl
 #if MEASURES
 layout(std430, binding = 8) writeonly buffer Measured { uint measured[]; };  // by splat
 #endif
 layout(std430, binding = 10) buffer FrameCounters { Counters counters; };
-layout(std430, binding = 11) writeonly buffer Tall { uint tall[]; };  // splats for project_count_tall.comp, in any order
+layout(std430, binding = 11) writeonly buffer Large { uint large[]; };  // splats for bin_large.comp, in any order
 uniform uint view_begin;
 uniform uint view_end;
 
-void leave_aside(uint splat) {
-  uint place = atomicAdd(counters.tall, 1u);
-  tall[place] = splat;
-  counters.tall_x = TALL_ROW;
-  if (place % (TALL_EACH * TALL_ROW) == 0u) atomicMax(counters.tall_y, place / (TALL_EACH * TALL_ROW) + 1u);
-  counters.tall_z = 1u;
+// All invocations must call it: they share an atomic where they can, since all wait for one counter.
+void leave_aside(uint splat, bool is_large) {
+#if WITH_SUBGROUPS
+  uint all = subgroupBallot(is_large).x, lane = gl_SubgroupInvocationID, place = 0u;
+  if (all == 0u) return;
+  if (lane == 0u) place = atomicAdd(counters.large, uint(bitCount(all)));
+  place = subgroupShuffle(place, 0u) + uint(bitCount(all & gl_SubgroupLtMask.x));
+#else
+  uint place = is_large ? atomicAdd(counters.large, 1u) : 0u;
+#endif
+  if (!is_large) return;
+  large[place] = splat;
+  counters.large_x = LARGE_ROW;
+  if (place % (LARGE_EACH * LARGE_ROW) == 0u) atomicMax(counters.large_y, place / (LARGE_EACH * LARGE_ROW) + 1u);
+  counters.large_z = 1u;
 }
 
 void main() {
@@ -60,16 +70,12 @@ void main() {
     if (is_here && is_kept(i, v) && project(view, g, axes, splat)) {
       splat.colour.w = tile_level(v, indices[slot], splat);
 #if HALF
-      splat = rounded(splat);  // as `pairs` will find it
+      splat = rounded(splat);  // as `bin` will find it
 #endif
-      Outline outline = outline_of(splat, view);
-      uvec4 box = box_of_tiles(outline, view);
-      uvec2 rows = supertile_rows(box);
-      bool is_tall = rows.y - rows.x > TALL_ROWS || outline.is_wide;
-      coverage = is_tall ? 1u : coverage_of(outline, view, box);  // not known yet
-      if (is_tall) leave_aside(splat_at);
+      coverage = coverage_of(outline_of(splat, view), view);
     }
-    if (is_here) coverages[slot * frame.view_count + v] = coverage;
+    leave_aside(splat_at, coverage == IN_MANY_SUPERTILES);
+    if (is_here) coverages[splat_at] = coverage;
 #if MEASURES
     if (is_here) measured[splat_at] = 0u;
 #endif

@@ -3,30 +3,40 @@
 #extension GL_KHR_shader_subgroup_arithmetic : require
 #extension GL_KHR_shader_subgroup_ballot : require
 #endif
-// Stage 1, project, second part: the Gaussians drawn get slots without gaps, in index order, so that the stable sort of
-// the next stage breaks ties by index.
-//   LOOKS_BACK    1: blocks count and compact in this one dispatch, and the last one leaves the arguments of later ones; 0: blocks
-//                 were counted (project_compact_count.comp) and their counts scanned
+// Stage 1, project, second part: the Gaussians drawn get slots without gaps, in index order, by which lists break ties. The last
+// block leaves the arguments of later dispatches.
+//   LOOKS_BACK    1: blocks count and compact in this one dispatch; 0: blocks were counted (project_compact_count.comp)
 #include "shared/limits.h"
 #include "shared/types.h"
 #include "shared/grid.glsl"
 
 layout(local_size_x = THREADS) in;
 
-layout(std430, binding = 0) buffer Arguments { DispatchArguments arguments[]; };
+layout(std430, binding = 0) writeonly buffer Arguments { DispatchArguments arguments[]; };
 layout(std430, binding = 1) readonly buffer DepthKeys { uint depth_keys[]; };
-layout(std430, binding = 3) writeonly buffer Keys { uint keys[]; };
-layout(std430, binding = 4) writeonly buffer Values { uint values[]; };    // the slots themselves
-layout(std430, binding = 5) writeonly buffer Indices { uint indices[]; };  // Gaussian of each slot
+layout(std430, binding = 3) writeonly buffer Depths { uint depths[]; };    // (order group, slot): slots.glsl
+layout(std430, binding = 4) writeonly buffer Indices { uint indices[]; };  // Gaussian of each slot
+layout(std430, binding = 5) buffer FrameCounters { Counters counters; };
 #include "frame.glsl"
-uniform uint nearest_key;  // less than any key: what is sorted needs fewer bits without it
+#include "count_arguments.glsl"
+uniform uint order_group;
 #if LOOKS_BACK
 #define LOOK_BACK_BINDING 2
-#include "primitives/look_back.glsl"
-layout(std430, binding = 6) buffer FrameCounters { Counters counters; };
-#include "count_arguments.glsl"
+#include "look_back.glsl"
 #else
-layout(std430, binding = 2) readonly buffer BlockCounts { uint block_counts[]; };  // scanned
+layout(std430, binding = 2) readonly buffer BlockCounts { uint block_counts[]; };
+shared uint sum_of_blocks;
+
+// Each block sums up those before its own: for some thousands of them cheaper than a scan of its own.
+uint sum_before(uint block, uint blocks, uint own) {
+  if (gl_LocalInvocationIndex == 0u) sum_of_blocks = 0u;
+  barrier();
+  uint sum = 0u;
+  for (uint b = gl_LocalInvocationIndex; b < block; b += THREADS) sum += block_counts[b];
+  atomicAdd(sum_of_blocks, sum);
+  barrier();
+  return sum_of_blocks;
+}
 #endif
 
 #define EACH (COMPACT_BLOCK / THREADS)
@@ -34,13 +44,11 @@ layout(std430, binding = 2) readonly buffer BlockCounts { uint block_counts[]; }
 shared uint masks[EACH][WORDS];  // of each round: a bit for each Gaussian that is drawn
 
 void main() {
-#if LOOKS_BACK
   uint blocks = max(1u, blocks_of(frame.gaussian_count, COMPACT_BLOCK));
-  if (group_index() >= blocks) return;
-  uint block = take_number();
-#else
   uint block = group_index();
-  if (block * COMPACT_BLOCK >= frame.gaussian_count || arguments[0].count == 0u) return;
+  if (block >= blocks) return;
+#if LOOKS_BACK
+  block = take_number();
 #endif
   uint self = gl_LocalInvocationIndex;
   uint key[EACH];
@@ -63,20 +71,12 @@ void main() {
       seen += of_word;
     }
   }
-#if LOOKS_BACK
   uint before = sum_before(block, blocks, seen);
   if (block + 1u == blocks && self == 0u) set_arguments(before + seen);
-#else
-  uint before = block_counts[block];
-#endif
   for (uint i = 0u; i < EACH; ++i) {
     uint to = before + place[i];
-    if (key[i] == DEPTH_KEY_NONE) continue;
-#if LOOKS_BACK
-    if (to >= capacity) continue;
-#endif
-    keys[to] = key[i] - nearest_key;
-    values[to] = to;
+    if (key[i] == DEPTH_KEY_NONE || to >= capacity) continue;
+    depths[order_group * frame.slots + to] = key[i];
     indices[to] = block * COMPACT_BLOCK + i * THREADS + self;
   }
 }

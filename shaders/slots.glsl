@@ -4,3 +4,5 @@
 uint splat_of(uint slot, uint v) { return v * frame.slots + slot; }
 uint view_of(uint splat) { return splat / frame.slots; }
 uint slot_of(uint splat) { return splat % frame.slots; }
+// What its view's order group sorts it by.
+#define DEPTH_OF(splat, view) depths[(view).order_group * frame.slots + slot_of(splat)]

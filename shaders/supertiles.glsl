@@ -1,27 +1,20 @@
-// Supertiles of SUPERTILE_SIDE x SUPERTILE_SIDE tiles, by which pairs are sorted, so that splats over several tiles make fewer
-// pairs. A pair's value is its splat and, where a supertile has several tiles, above SUPERTILE_SPLAT_BITS a bit for each of them
-// that the splat touches. Tiles are counted supertile by supertile, over all views, those of one row by row; at the right and
-// lower edge some of them lie beyond the picture.
+// Supertiles of SUPERTILE_SIDE x SUPERTILE_SIDE tiles, by which splats are binned and sorted: an entry is a splat in a supertile, its
+// number with, above SUPERTILE_SPLAT_BITS, a bit for each of the tiles that it touches. Tiles are counted supertile by supertile,
+// over all views, those of one row by row; at the right and lower edge some of them lie beyond the picture.
 #include "shared/limits.h"
 #include "shared/types.h"
 
-#ifndef SUPERTILE_SIDE
-#define SUPERTILE_SIDE 1
-#endif
-#define SUPERTILE_TILES (SUPERTILE_SIDE * SUPERTILE_SIDE)
+#define SUPERTILE_TILES uint(SUPERTILE_SIDE * SUPERTILE_SIDE)
+#define SPLAT_OF(entry) ((entry) & (1u << SUPERTILE_SPLAT_BITS) - 1u)
+#define TOUCHES(entry, tile) (((entry) >> SUPERTILE_SPLAT_BITS >> (tile) & 1u) != 0u)
 
-// The tile coverage of a splat in a view, which `project` leaves for `pairs`: how many pairs it makes or, where these are in at
-// most 2 x 2 supertiles of 2 x 2 tiles, IN_FEW_SUPERTILES with the first of these, counted in the view, at FEW_SHIFT, and below a
-// bit for each tile, four for each supertile, row by row; so that of a small splat `pairs` need ask nothing again.
+// The tile coverage of a splat, which `project` leaves for `bin`: 0 of one that touches no tile; IN_FEW_SUPERTILES where it is in at
+// most 2 x 2 supertiles, with the first of these, counted in the view, at FEW_SHIFT, and below a bit for each tile, four for each
+// supertile, row by row; or IN_MANY_SUPERTILES, whose entries bin_large.comp makes.
 #define IN_FEW_SUPERTILES 0x80000000u
 #define FEW_SHIFT 16
-#define FEW_END 0x8000u  // what is in a supertile beyond is only counted
-
-uint count_of(uint coverage) {
-  if ((coverage & IN_FEW_SUPERTILES) == 0u) return coverage;
-  uint any = (coverage | coverage >> 1 | coverage >> 2 | coverage >> 3) & 0x1111u;
-  return uint(bitCount(any));
-}
+#define FEW_END 0x8000u  // what is in a supertile beyond counts as in many
+#define IN_MANY_SUPERTILES 1u
 
 uint supertiles_across(View view) { return (view.tiles_x + uint(SUPERTILE_SIDE - 1)) / uint(SUPERTILE_SIDE); }
 

@@ -104,7 +104,7 @@ class Renderer {
   /// of parallel eyes are as far apart by rounding.
   ///
   /// With a quality, or a transmittance that is measured, a frame uses what earlier ones measured. It begins
-  /// anew where a view has turned by more than 15 degrees, has moved by more than a tenth of the median depth
+  /// anew where a view has turned by more than 15 degrees, has moved by more than a tenth of the middle depth
   /// of what was drawn, or has another size, frustum or set of tiles, and where there are more or fewer
   /// views.
   ///

@@ -9,7 +9,7 @@
 namespace binosplat {
 
 struct StageTime {
-  std::string name = {};  // decode, project, order, pairs, tile_sort, ranges, blend, probe
+  std::string name = {};  // decode, project, bin, sort, blend, probe
   double ms = 0;          // on the GPU
 };
 

@@ -7,22 +7,8 @@ uvec2 split_groups(uint groups, uint groups_max) {
 
 uint blocks_of(uint count, uint block) { return count / block + uint(count % block != 0u); }
 
-DispatchArguments make_arguments(uint first, uint count, uint groups_max) {
+DispatchArguments make_arguments(uint count, uint groups_max) {
   uvec2 threads = split_groups(blocks_of(count, THREADS), groups_max);
-  uvec2 scan = split_groups(max(1u, blocks_of(count, SCAN_BLOCK)), groups_max);  // of nothing, too, there is a total
-  uvec2 sort = split_groups(blocks_of(count, SORT_BLOCK), groups_max);
-  DispatchArguments a;
-  a.count = count;
-  a.first = first;
-  a.threads_x = threads.x;
-  a.threads_y = threads.y;
-  a.threads_z = 1u;
-  a.scan_x = scan.x;
-  a.scan_y = scan.y;
-  a.scan_z = 1u;
-  a.sort_x = sort.x;
-  a.sort_y = sort.y;
-  a.sort_z = 1u;
-  a.unused = 0u;
-  return a;
+  uvec2 bin = split_groups(blocks_of(count, BIN_BLOCK), groups_max);
+  return DispatchArguments(count, threads.x, threads.y, 1u, bin.x, bin.y, 1u, 0u);
 }

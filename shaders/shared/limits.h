@@ -43,12 +43,27 @@
 // use some.
 #define MAX_CANVASES 4
 
-// Bits of a pair's value that are its splat, where supertiles are of several tiles; above them is a bit for
-// each tile.
+// Tiles along a side of a supertile, and the bits of an entry that are its splat (supertiles.glsl).
+#define SUPERTILE_SIDE 2
 #define SUPERTILE_SPLAT_BITS 28
-// Sorted pairs that a work group splits among their tiles.
-#define TILE_BLOCK 1024
-#define SUPERTILE_TILES_MOST 4u
+// Splats whose entries a work group counts in shared memory at a time, and its invocations.
+#define BIN_BLOCK 4096
+#define BIN_THREADS 1024
+// A supertile's list of at most SORT_MOST entries is sorted by one work group, of an invocation for each
+// SORT_EACH: there is a class of groups for lists of each power of two of entries from 32 * SORT_EACH on.
+// Longer lists are parted, into at most SORT_SLABS parts a round. SORT_ROUNDS are more than any list needs: a
+// round leaves at most a 32nd of its entries, or a 2,048th of its range of depths or splats.
+#define SORT_EACH 4
+#define SORT_MOST 4096u
+#define SORT_BIN_MOST 256u
+#define SORT_CLASSES 6u
+#define SORT_SLABS 64u
+#define SORT_ROUNDS 12u
+#define SORT_SLAB_KIND 6u     // of lists: classes, slabs of long ones,
+#define SORT_CROWDED_KIND 7u  // those with more than SORT_BIN_MOST of nearly one depth,
+#define SORT_LONG_KIND 8u     // those that each round parts, and those left then
+#define SORT_KINDS 21
+#define SORT_GROUPS_MOST 65535u
 
 // The transmittance that a frame measures of a Gaussian (docs/method.md 5) never falls below BOUND_FLOOR, or
 // a hidden one would divide by zero. While Th leaves a Gaussian out, each frame that measures multiplies its
@@ -83,13 +98,11 @@
 #define DEPTH_MEDIAN 3
 #define DEPTH_MEDIAN_OF_TWO_ROWS 4
 
-// The tiles of a splat that reaches over more than TALL_ROWS rows of tiles are counted by many invocations
-// together: TALL_EACH splats a work group, TALL_ROW groups along x.
-#ifndef TALL_ROWS
+// Boxes of more than TALL_ROWS rows of tiles are asked about the picture's rectangle first.
 #define TALL_ROWS 4u
-#endif
-#define TALL_EACH 64
-#define TALL_ROW 1024u
+// Splats in many supertiles that a work group bins, LARGE_ROW groups along x.
+#define LARGE_EACH 64
+#define LARGE_ROW 1024u
 
 // Invocations of a work group that handles one thing each.
 #define THREADS 256
@@ -99,22 +112,8 @@
 // Pixels of a work group that composes foveated pictures.
 #define COMPOSE_COLUMNS 32u
 #define COMPOSE_ROWS 32u
-// Elements that one work group scans, compacts or sorts: several rounds of THREADS. A sort of few has smaller
-// blocks, or they would not fill a GPU; its programs define theirs (primitives/radix_sort.h).
-#define SCAN_BLOCK 2048
+// Gaussians that one work group compacts: several rounds of THREADS.
 #define COMPACT_BLOCK 2048
-#define SORT_FEW 524288
-#define SORT_BLOCK_FEW 1024
-#ifndef SORT_BLOCK
-#define SORT_BLOCK 2048
-#endif
-// The most bits of a radix sort's digit; it has more than 8 where that saves a pass
-// (primitives/radix_sort.h).
-#define SORT_BITS_MAX 9
-#define SORT_PASSES_MAX 4u
-// Groups that count the digits of all passes: what an H200 has in work. More would add more counts to the
-// sums than they save.
-#define SORT_DIGITS_GROUPS 528u
 // Statements that the blend unrolls: llvmpipe ends a loop silently after 65,535 rounds (all loops of a group
 // of lanes together), so a tile's list may have some 200,000 entries before it is truncated; and then it is
 // reported.

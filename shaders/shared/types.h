@@ -7,6 +7,11 @@
 #include <cstddef>
 #include <cstdint>
 #include <glm/glm.hpp>
+#endif
+
+#include "shared/limits.h"
+
+#ifdef __cplusplus
 namespace binosplat::shared {
 using uint = std::uint32_t;
 using vec2 = glm::vec2;
@@ -60,7 +65,6 @@ struct FrameParameters {
   uint slots;           // how many each view has room for
   uint tile_count;      // tiles of all supertiles, over all views
   uint list_per_view;   // 1 with --tiles all: a view's tiles share one list
-  uint supertile_side;  // tiles along a side of a supertile
   uint has_regions;     // 1: of some views only regions are drawn
   // For Scaffold-GS:
   uint offset_count;        // K
@@ -68,7 +72,7 @@ struct FrameParameters {
   uint decoding_of_probe;   // number of the decoding that the probe shares with its view
   uint anchor_cull;         // 1: anchors that touch no tile of 3D-GS are not decoded
   float depth_slack;        // how much nearer splats may be than those before them in a list, world units
-  uint unused_1, unused_2;
+  uint unused_1, unused_2, unused_3;
 };
 
 // A Gaussian of the model as the GPU keeps it. Its SH coefficients lie in a buffer of their own.
@@ -124,45 +128,55 @@ struct PlacedRay {
   uint unused;
 };
 
+// Lists of one kind (SORT_KINDS), and the groups of the launch that sorts or parts them.
+struct ListCount {
+  uint count;
+  uint groups_x, groups_y, groups_z;
+};
+
 // What a frame counts on the GPU, read back after it. An overflow bit says that a buffer was too small for
-// the number wanted; the frame is then drawn again with larger ones. Counts stop at COUNT_MAX instead of
-// wrapping.
+// the number wanted; the frame is then drawn again with larger ones.
 struct Counters {
   uint visible;          // Gaussians in depth order, summed over the order groups
   uint order_wanted;     // the most Gaussians that one order group had
-  uint pairs;            // Gaussian-supertile pairs wanted, over all views
+  uint pairs;            // Gaussian-supertile pairs wanted, over all views: entries
+  uint tile_pairs;       // Gaussian-tile pairs wanted, over all views
   uint overflow;         // OVERFLOW_ bits
   uint truncated_lists;  // tiles whose list the driver ended early: the picture must not be used
-  uint median_depth;     // bits of a float: median of what the last order group was sorted by, world units
+  uint depths_low;       // sum of what the Gaussians are sorted by, bits of floats, world units, over
+  uint depths_high;      // THREADS: low and high half
   uint probe_low;   // squared error of the probe, summed over pixels and channels, times PROBE_SCALE: low and
   uint probe_high;  // high half
   uint probe_squares_low;  // squares of such sums of THREADS pixels each, likewise
   uint probe_squares_high;
   uint long_lists;  // tiles with more than LONG_LIST pairs, and the groups of their launch
   uint long_x, long_y, long_z;
-  uint tall;  // splats whose tiles are counted together, and the groups of that launch
-  uint tall_x, tall_y, tall_z;
-  uint tile_pairs;  // Gaussian-tile pairs wanted, over all views, where supertiles are of several tiles
+  uint large;  // splats in many supertiles, and the groups of the launch that bins them
+  uint large_x, large_y, large_z;
+  uint large_entries;  // what that made, and the groups of the launch that places these
+  uint fill_x, fill_y, fill_z;
+  uint slabs;  // parts of lists
+  uint unused_1, unused_2, unused_3;
+  ListCount lists[SORT_KINDS];
 };
 
 #define COUNT_MAX 0xFFFFFFFFu
 #define PROBE_SCALE 4194304.0       // 2^22: a work group's sum of at most 3 * THREADS stays below 2^32
 #define DEPTH_KEY_NONE 0xFFFFFFFFu  // the key of a Gaussian that no view of the order group draws
-#define ARGUMENTS_ORDER 0u          // what a total counts: the Gaussians of one order group
-#define ARGUMENTS_PAIRS 1u          // the pairs of one order group, after those of the groups before it
-#define ARGUMENTS_ALL_PAIRS 2u      // the pairs of all groups
 #define OVERFLOW_ORDER 1u
-#define OVERFLOW_PAIRS 2u
-#define OVERFLOW_TILE_PAIRS 4u
+#define OVERFLOW_LARGE 2u  // entries of large splats
+#define OVERFLOW_PAIRS 4u
+#define OVERFLOW_COUNT 8u      // more entries than can be counted
+#define OVERFLOW_UNSORTED 15u  // any of those above: there is nothing to sort
+#define OVERFLOW_TILE_PAIRS 16u
+#define OVERFLOW_ROUNDS 32u  // a list needs to be parted more often
 
 // How many things there are, known to the GPU only, and the indirect dispatches that go over them. Group
 // counts are split into x and y for drivers that allow few along x.
 struct DispatchArguments {
   uint count;
-  uint first;                            // where they begin in their buffer
   uint threads_x, threads_y, threads_z;  // THREADS things a group
-  uint scan_x, scan_y, scan_z;           // SCAN_BLOCK things a group
-  uint sort_x, sort_y, sort_z;           // SORT_BLOCK things a group
+  uint bin_x, bin_y, bin_z;              // BIN_BLOCK things a group
   uint unused;
 };
 
@@ -175,9 +189,9 @@ static_assert(sizeof(Splat) == 48 && offsetof(Splat, conic) == 16 && offsetof(Sp
 static_assert(sizeof(Canvas) == 32 && offsetof(Canvas, linear) == 16);
 static_assert(sizeof(MeshSource) == 48 && offsetof(MeshSource, scale) == 24);
 static_assert(sizeof(PlacedRay) == 16 && offsetof(PlacedRay, place) == 8);
-static_assert(sizeof(Counters) == 76 && offsetof(Counters, long_x) == 44 && offsetof(Counters, tall_x) == 60);
-static_assert(sizeof(DispatchArguments) == 48 && offsetof(DispatchArguments, threads_x) == 8 &&
-              offsetof(DispatchArguments, sort_x) == 32);
+static_assert(sizeof(ListCount) == 16 && sizeof(Counters) == 112 + SORT_KINDS * 16);
+static_assert(offsetof(Counters, large_x) == 68 && offsetof(Counters, lists) == 112);
+static_assert(sizeof(DispatchArguments) == 32 && offsetof(DispatchArguments, bin_x) == 16);
 }  // namespace binosplat::shared
 #endif
 

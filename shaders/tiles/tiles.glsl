@@ -97,77 +97,50 @@ uvec2 supertile_rows(uvec4 box) {
 }
 
 // A row of supertiles: the columns [x, y) of those that a splat is in, and the columns of tiles that it touches in the first row
-// of tiles [x, y) and in the second, if there is one, [z, w).
+// of tiles [x, y) and in the second [z, w).
 struct SupertileRow {
   uvec2 columns;
   uvec4 tiles;
 };
 
 SupertileRow supertile_row_of(uvec4 tiles) {
-#if SUPERTILE_SIDE == 1
-  return SupertileRow(tiles.xy, tiles);
-#else
   uvec2 upper = tiles.x < tiles.y ? uvec2(tiles.x / 2u, (tiles.y + 1u) / 2u) : uvec2(0xFFFFFFFFu, 0u);
   uvec2 lower = tiles.z < tiles.w ? uvec2(tiles.z / 2u, (tiles.w + 1u) / 2u) : uvec2(0xFFFFFFFFu, 0u);
   uvec2 both = uvec2(min(upper.x, lower.x), max(upper.y, lower.y));
   return SupertileRow(both.y == 0u ? uvec2(0u) : both, tiles);
-#endif
 }
 
 SupertileRow supertile_row(Outline outline, View view, uvec4 box, uint nth) {
   uvec4 tiles = uvec4(0u);
   uint row = nth * uint(SUPERTILE_SIDE);
   if (row >= box.y) tiles.xy = paired_columns(row_of_tiles(outline, view, box, row), view, row);
-#if SUPERTILE_SIDE == 2
   if (row + 1u < box.w) tiles.zw = paired_columns(row_of_tiles(outline, view, box, row + 1u), view, row + 1u);
-#endif
   return supertile_row_of(tiles);
 }
 
-// A pair's value (supertiles.glsl).
-uint value_of(uint splat, SupertileRow row, uint column) {
-#if SUPERTILE_SIDE == 1
-  return splat;
-#else
+// The entry of a splat in a column of such a row (supertiles.glsl).
+uint entry_of(uint splat, SupertileRow row, uint column) {
   uvec2 tiles = uvec2(2u * column, 2u * column + 1u);
   uvec2 upper = uvec2(greaterThanEqual(tiles, row.tiles.xx)) * uvec2(lessThan(tiles, row.tiles.yy));
   uvec2 lower = uvec2(greaterThanEqual(tiles, row.tiles.zz)) * uvec2(lessThan(tiles, row.tiles.ww));
   return splat | (upper.x | upper.y << 1 | lower.x << 2 | lower.y << 3) << SUPERTILE_SPLAT_BITS;
-#endif
 }
 
-// What a splat that is not wide touches (supertiles.glsl). Tile row by tile row, so that neighbours ask at the same time.
-uint coverage_of(Outline outline, View view, uvec4 box) {
-  uint count = 0u;
-#if SUPERTILE_SIDE == 1
-  for (uint row = box.y; row < box.w; ++row) {
-    uvec2 columns = paired_columns(tile_row(outline, view, box, row), view, row);
-    count += columns.y - columns.x;
-  }
-#else
+// A splat's coverage (supertiles.glsl). Tile row by tile row, so that neighbours ask at the same time.
+uint coverage_of(Outline outline, View view) {
+  uvec4 box = box_of_tiles(outline, view);
   uvec2 rows = supertile_rows(box);
   uint supertile = rows.x * supertiles_across(view) + box.x / 2u;
   bool are_few = rows.y - rows.x <= 2u && (box.z + 1u) / 2u - box.x / 2u <= 2u && supertile < FEW_END;
+  if (outline.is_wide || !are_few) return IN_MANY_SUPERTILES;
   uint bits = 0u;
-  uvec4 tiles = uvec4(0u);
   for (uint row = box.y; row < box.w; ++row) {
     uvec2 columns = paired_columns(tile_row(outline, view, box, row), view, row);
-    if (are_few) {
-      uvec2 from = columns - (box.x & ~1u);
-      uint row_bits = columns.x < columns.y ? (1u << from.y) - (1u << from.x) : 0u;
-      bits |= (row_bits & 3u | (row_bits & 12u) << 2) << (8u * (row / 2u - rows.x) + 2u * (row % 2u));
-    } else {
-      if (row % 2u == 0u) tiles = uvec4(columns, 0u, 0u);
-      else tiles.zw = columns;
-      if (row % 2u == 1u || row + 1u == box.w) {
-        columns = supertile_row_of(tiles).columns;
-        count += columns.y - columns.x;
-      }
-    }
+    uvec2 from = columns - (box.x & ~1u);
+    uint row_bits = columns.x < columns.y ? (1u << from.y) - (1u << from.x) : 0u;
+    bits |= (row_bits & 3u | (row_bits & 12u) << 2) << (8u * (row / 2u - rows.x) + 2u * (row % 2u));
   }
-  if (bits != 0u) return IN_FEW_SUPERTILES | supertile << FEW_SHIFT | bits;
-#endif
-  return count;
+  return bits == 0u ? 0u : IN_FEW_SUPERTILES | supertile << FEW_SHIFT | bits;
 }
 
 // Whether it touches any; of wide splats all that can be seen at all do, since asking more of these few is what the others

@@ -12,11 +12,6 @@ Dispatcher::~Dispatcher() {
   if (!queries_.empty()) context_.gl().DeleteQueries(static_cast<int>(queries_.size()), queries_.data());
 }
 
-void Dispatcher::begin_frame() {
-  marks_.clear();
-  beside_.clear();
-}
-
 void Dispatcher::mark(const std::string& stage) {
   if (marks_.size() == queries_.size()) {
     queries_.push_back(0);
@@ -34,7 +29,6 @@ void Dispatcher::begin_stage(const char* name) {
 }
 
 void Dispatcher::end_frame() {
-  finish_beside();
   if (!marks_.empty()) context_.gl().PopDebugGroup();
   mark("");
   frame_end_.set();
@@ -62,23 +56,8 @@ void Dispatcher::bind(const Program& program, std::initializer_list<Binding> bin
 
 void Dispatcher::run(const Program& program, const DispatchSize& work,
                      std::initializer_list<Binding> bindings, std::initializer_list<Uniform> uniforms) {
-  start_beside();
   start(program, work, bindings, uniforms);
   wait_for_writes();
-}
-
-void Dispatcher::start_beside() {
-  if (beside_.empty()) return;
-  const std::function<void()> piece = std::move(beside_.front());
-  beside_.pop_front();
-  piece();
-}
-
-void Dispatcher::finish_beside() {
-  while (!beside_.empty()) {
-    start_beside();
-    wait_for_writes();
-  }
 }
 
 void Dispatcher::draw(const Program& program, int vertices, std::initializer_list<Binding> bindings,

@@ -4,8 +4,6 @@
 // word).
 
 #include <cstdint>
-#include <deque>
-#include <functional>
 #include <initializer_list>
 #include <string>
 #include <vector>
@@ -70,7 +68,7 @@ class Dispatcher {
   Context& context() { return context_; }
 
   /// Starts a frame: forgets the last frame's stages.
-  void begin_frame();
+  void begin_frame() { marks_.clear(); }
   /// What is dispatched from here on belongs to the stage `name`; a name may come again and is summed up.
   void begin_stage(const char* name);
   void end_frame();
@@ -85,14 +83,6 @@ class Dispatcher {
   /// As run(), without the barrier: what comes next may run at the same time.
   void start(const Program& program, const DispatchSize& work, std::initializer_list<Binding> bindings,
              std::initializer_list<Uniform> uniforms = {});
-
-  /// Gives the GPU more to do beside runs that do not fill it: each run() from here on first starts the next
-  /// of these pieces. A piece starts dispatches that may need what earlier runs and pieces wrote, but not
-  /// what the runs beside it write, nor these what it writes.
-  void add_beside(std::function<void()> piece) { beside_.push_back(std::move(piece)); }
-  /// Starts what is left of them, each with a barrier after it. What needs them all comes next. end_frame()
-  /// does so, too.
-  void finish_beside();
 
   /// Draws all of the framebuffer that is bound, by a fragment shader (KeptDrawing of gl/state.h).
   void draw_whole(const Program& program, std::initializer_list<Binding> bindings,
@@ -123,14 +113,12 @@ class Dispatcher {
     std::uint32_t query;
   };
   void mark(const std::string& stage);
-  void start_beside();
   void bind(const Program& program, std::initializer_list<Binding> bindings,
             std::initializer_list<Uniform> uniforms);
 
   Context& context_;
   std::vector<std::uint32_t> queries_;
   std::vector<Mark> marks_;
-  std::deque<std::function<void()>> beside_;
   Fence frame_end_;
 };
 

@@ -23,8 +23,8 @@ struct GroupShape {
   std::uint32_t columns, rows;
 };
 
-/// Of sorts and scans (pairs.comp's first), and of blend_subgroups.comp and ranges_of_tiles.comp.
-constexpr std::array group_shapes = {GroupShape{128, 1}, GroupShape{256, 1}, GroupShape{32, 2},
+/// Of sorts and scans, and of blend_subgroups.comp.
+constexpr std::array group_shapes = {GroupShape{256, 1}, GroupShape{1024, 1}, GroupShape{32, 2},
                                      GroupShape{32, 4}, GroupShape{32, 8}};
 
 struct Fault {
@@ -41,7 +41,7 @@ constexpr std::array subgroup_faults = {
     Fault{"SUBGROUPS_ADD_OTHERS", "add up others than their 32 invocations"}};
 
 std::vector<Number> numbers_of(const GroupShape& shape) {
-  std::vector<Number> numbers = {{"COLUMNS", shape.columns, 1024}, {"ROWS", shape.rows, 1024}};
+  std::vector<Number> numbers = {{"COLUMNS", shape.columns, 1025}, {"ROWS", shape.rows, 1025}};
   for (std::size_t k = 0; k < subgroup_faults.size(); ++k)
     numbers.push_back({subgroup_faults[k].define, 1u << k, 1u << subgroup_faults.size()});
   return numbers;

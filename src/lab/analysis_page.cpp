@@ -57,9 +57,8 @@ std::string networks(const Analysis& a) {
 std::array<double, 4> paper_stages(const Typical& times) {
   std::array<double, 4> ms{};
   for (const gl::StageTime& stage : times.stages) {
-    const bool before = stage.name == "decode" || stage.name == "project",
-               sorts = stage.name == "order" || stage.name == "tile_sort" || stage.name == "ranges";
-    ms[before ? 0 : stage.name == "pairs" ? 1 : sorts ? 2 : 3] += stage.ms;
+    const bool before = stage.name == "decode" || stage.name == "project";
+    ms[before ? 0 : stage.name == "bin" ? 1 : stage.name == "sort" ? 2 : 3] += stage.ms;
   }
   return ms;
 }

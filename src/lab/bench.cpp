@@ -163,8 +163,6 @@ void add_work(const render::Frame& frame, const render::FrameReport& report, std
   work.splats += weight * static_cast<double>(report.visible) * views_of_group;
   work.pairs += weight * static_cast<double>(report.pairs);
   work.supertile_pairs += weight * static_cast<double>(report.supertile_pairs);
-  work.order_passes += weight * report.order_passes;
-  work.tile_sort_passes += weight * report.tile_sort_passes;
   for (const shared::View& view : frame.views()) {
     work.tiles += weight * view.tiles_x * view.tiles_y;
     work.pixels += weight * view.width * view.height;

@@ -97,7 +97,7 @@ constexpr const char* csv_columns =
     "gpu_bytes,alphas,alphas_visible,exact_psnr_db,exact_worst_psnr_db,exact_ssim,exact_flip,exact_signed,"
     "exact_disagreement_db,seen_visible,photos_psnr_db,photos_drop_db,photos_ssim,photos_flip,stages_ms_"
     "project,"
-    "stages_ms_order,stages_ms_pairs,stages_ms_tile_sort,stages_ms_ranges,stages_ms_blend,stages_ms_compose,"
+    "stages_ms_bin,stages_ms_sort,stages_ms_blend,stages_ms_compose,"
     "problem,pareto\n";
 
 std::string csv_line(const BenchPoint& p, bool pareto) {
@@ -112,8 +112,8 @@ std::string csv_line(const BenchPoint& p, bool pareto) {
            p.pairs, p.visible, measured(p.gpu_bytes), p.alphas, p.alphas_visible, exact.psnr_db,
            exact.worst_psnr_db, exact.ssim, exact.flip, exact.signed_mean, exact.disagreement_db,
            p.seen.value_or(SeenNumbers{}).visible, photos.psnr_db, photos.drop_db, photos.ssim, photos.flip,
-           stage_ms(p, "project"), stage_ms(p, "order"), stage_ms(p, "pairs"), stage_ms(p, "tile_sort"),
-           stage_ms(p, "ranges"), stage_ms(p, "blend"), stage_ms(p, "compose"), p.problem))
+           stage_ms(p, "project"), stage_ms(p, "bin"), stage_ms(p, "sort"), stage_ms(p, "blend"),
+           stage_ms(p, "compose"), p.problem))
     line += csv_field(cell) + ",";
   return line + (pareto ? "true\n" : "false\n");
 }

@@ -52,10 +52,6 @@ struct Least {
   double bytes = 0.0, operations = 0.0, seconds = 0.0;
 };
 
-/// Bytes of a pass over so many pairs of key and value: one reading of the keys to count, one of both to
-/// move, one writing.
-double sort_bytes(double pairs, double passes) { return pairs * passes * (4 + 8 + 8); }
-
 }  // namespace
 
 Peaks measure_peaks(gl::Context& context) {
@@ -89,17 +85,14 @@ std::vector<StageFloor> profile(const FrameWork& work, const Peaks& peaks) {
   const double gaussian_bytes = half ? sizeof(render::Halves) : sizeof(shared::Gaussian);
   const double splat_bytes = half ? sizeof(render::Halves) : sizeof(shared::Splat);
   std::map<std::string, Least> least;
-  // Every Gaussian once, and its key.
-  least["project"] = {work.gaussians * (gaussian_bytes + 4), work.gaussians * projection_fmas};
-  // Beside the sort, of what is in view the harmonics, and its splats with their counts.
-  least["order"] = {sort_bytes(work.in_view, work.order_passes) + work.in_view * (half ? 2 : 4) * harmonics +
-                        work.splats * (splat_bytes + 4),
-                    work.splats * (projection_fmas + basis_fmas + harmonics)};
-  for (const char* stage : {"project", "order"}) least[stage].seconds = least[stage].operations / peaks.fmas;
-  // A word of each small splat tells its pairs.
-  least["pairs"] = {work.in_view * 4 + work.splats * 4 + work.supertile_pairs * 8};
-  least["tile_sort"] = {sort_bytes(work.supertile_pairs, work.tile_sort_passes)};
-  least["ranges"] = {work.supertile_pairs * 4 + work.tiles * 8};
+  // Every Gaussian once, and its key; of what is in view the harmonics, and its splats with their coverage.
+  least["project"] = {work.gaussians * (gaussian_bytes + 4) + work.in_view * (half ? 2 : 4) * harmonics +
+                          work.splats * (splat_bytes + 4),
+                      work.gaussians * projection_fmas + work.splats * (basis_fmas + harmonics)};
+  least["project"].seconds = least["project"].operations / peaks.fmas;
+  // Coverages are read twice, to count and to place; depths once.
+  least["bin"] = {work.splats * 12 + work.supertile_pairs * 8};
+  least["sort"] = {work.supertile_pairs * 8 + work.pairs * 4 + work.tiles * 8};
   least["blend"] = {work.pairs * (splat_bytes + 4) + work.pixels * 20, work.alphas};
   least["blend"].seconds = least["blend"].operations / peaks.alphas;
   std::vector<StageFloor> stages;

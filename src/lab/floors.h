@@ -27,13 +27,11 @@ struct FrameWork {
   int precision = PRECISION_FULL;
   double in_view = 0.0;          // Gaussians, summed over the order groups
   double splats = 0.0;           // of those, one a view
-  double supertile_pairs = 0.0;  // that are sorted
+  double supertile_pairs = 0.0;  // that are binned and sorted
   double pairs = 0.0;
   double tiles = 0.0;   // of all views
   double pixels = 0.0;  // likewise
   double alphas = 0.0;  // evaluated by pixels that still took light
-  double order_passes = 0.0;
-  double tile_sort_passes = 0.0;
   std::vector<gl::StageTime> stages;
 };
 

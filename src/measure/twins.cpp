@@ -3,11 +3,10 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <numeric>
+#include <map>
 #include <utility>
 
 #include "base/error.h"
-#include "primitives/arguments.h"
 #include "reference/render.h"
 #include "reference/threshold.h"
 #include "render/buffers.h"
@@ -166,104 +165,128 @@ Slots make_slots(const FramePlan& plan, OrderGroup group, const std::vector<View
   return slots;
 }
 
-using Pair = std::pair<std::uint32_t, std::uint32_t>;  // supertile, splat
+using Entry = glm::uvec2;  // bits of the depth; splat and tiles (supertiles.glsl)
 
-// In depth order over the views of each group, as the stage pairs leaves them.
-std::vector<Pair> pairs_in_depth_order(const FramePlan& plan, const std::vector<Slots>& slots,
-                                       const std::vector<ViewResult>& results, std::uint32_t room) {
-  std::vector<std::pair<std::uint64_t, Pair>> ranked;  // (group, rank in its depth order), pair
+// Entries by supertile; within it in the order in which they are blended.
+using Supertiles = std::vector<std::vector<Entry>>;
+
+Supertiles entries_of(const FramePlan& plan, const std::vector<Slots>& slots,
+                      const std::vector<ViewResult>& results, std::uint32_t room) {
+  Supertiles supertiles(plan.supertile_count);
   for (std::uint32_t v = 0; v < plan.view_count(); ++v) {
-    const std::uint32_t group = plan.views[v].order_group;
-    const std::vector<std::uint32_t> order = reference::depth_order(results[v].splats);
-    std::vector<std::uint64_t> rank(plan.gaussian_count);
-    for (std::size_t r = 0; r < order.size(); ++r) rank[order[r]] = r;
+    const shared::View& view = plan.views[v];
     const reference::TileLists& lists = results[v].lists;
-    const std::uint32_t first = plan.settings.tiles == TILES_ALL ? v : plan.views[v].supertile_offset;
+    const std::vector<std::uint32_t> order = reference::depth_order(results[v].splats);
+    std::vector<std::uint32_t> rank(plan.gaussian_count);
+    for (std::uint32_t r = 0; r < order.size(); ++r) rank[order[r]] = r;
+    const std::uint32_t side = SUPERTILE_SIDE, across = (lists.tiles_x + side - 1) / side;
+    std::vector<std::map<std::uint32_t, Entry>> found(plan.supertiles_of(v));  // by rank
     for (std::uint32_t t = 0; t + 1 < lists.begin.size(); ++t) {
+      const std::uint32_t x = t % lists.tiles_x, y = t / lists.tiles_x;
       for (std::uint32_t k = lists.begin[t]; k < lists.begin[t + 1]; ++k) {
-        const std::uint32_t i = lists.gaussians[k];
-        ranked.push_back({std::uint64_t{group} << 32 | rank[i], {first + t, v * room + slots[group].of[i]}});
+        const std::uint32_t i = lists.gaussians[k], splat = v * room + slots[view.order_group].of[i];
+        Entry& entry = found[y / side * across + x / side][rank[i]];
+        entry.x = std::bit_cast<std::uint32_t>(static_cast<float>(results[v].splats[i].order));
+        entry.y |= splat | 1u << (SUPERTILE_SPLAT_BITS + y % side * side + x % side);
       }
     }
+    for (std::uint32_t n = 0; n < found.size(); ++n)
+      for (const auto& [_, entry] : found[n]) supertiles[view.supertile_offset + n].push_back(entry);
   }
-  std::stable_sort(ranked.begin(), ranked.end(),
-                   [](const auto& a, const auto& b) { return a.first < b.first; });
-  std::vector<Pair> pairs;
-  pairs.reserve(ranked.size());
-  for (const auto& entry : ranked) pairs.push_back(entry.second);
-  return pairs;
+  return supertiles;
 }
 
-void upload_pairs(const std::vector<Pair>& pairs, std::uint32_t supertile_bits, std::uint32_t groups_max,
-                  FrameBuffers& buffers) {
-  std::vector<std::uint32_t> keys;
+// The lists as the stage bin leaves them: the entries, and what is to be sorted.
+void upload_entries(const Supertiles& supertiles, FrameBuffers& buffers) {
+  std::vector<Entry> entries;
+  shared::Counters counters{};
+  std::vector<glm::uvec4> items(std::size_t{SORT_CLASSES} * buffers.lists.item_room);
+  for (std::uint32_t s = 0; s < supertiles.size(); ++s) {
+    const auto length = static_cast<std::uint32_t>(supertiles[s].size());
+    if (length == 0) continue;
+    if (length > SORT_MOST)
+      fail("--reference-until bin: a list of {} Gaussians; it has no more than {}", length, SORT_MOST);
+    const int bits = std::bit_width(length - 1) - std::bit_width(32u * SORT_EACH - 1);
+    const auto kind = static_cast<std::uint32_t>(std::max(bits, 0));
+    shared::ListCount& lists = counters.lists[kind];
+    items[std::size_t{kind} * buffers.lists.item_room + lists.count++] = {
+        s, static_cast<std::uint32_t>(entries.size()), length, 0};
+    lists.groups_x = std::min(lists.count, SORT_GROUPS_MOST);
+    lists.groups_y = lists.groups_z = 1;
+    entries.insert(entries.end(), supertiles[s].begin(), supertiles[s].end());
+  }
+  counters.pairs = static_cast<std::uint32_t>(entries.size());
+  buffers.lists.entries.reserve(static_cast<std::int64_t>(entries.size() * sizeof(Entry)));
+  buffers.lists.entries.upload(entries);
+  buffers.lists.items.upload(items);
+  buffers.lists.tile_ranges.reserve_zeros(buffers.lists.tile_ranges.bytes());
+  buffers.counters.upload(std::vector{counters});
+}
+
+// The tiles' lists as the stage sort leaves them.
+void upload_lists(const FramePlan& plan, const Supertiles& supertiles, FrameBuffers& buffers) {
+  std::vector<glm::uvec2> ranges;
   std::vector<std::uint32_t> values;
-  for (const auto& [supertile, splat] : pairs) {
-    keys.push_back(supertile);
-    values.push_back(splat);
+  for (const std::vector<Entry>& entries : supertiles) {
+    for (std::uint32_t tile = 0; tile < SUPERTILE_SIDE * SUPERTILE_SIDE; ++tile) {
+      const std::size_t begin = values.size();
+      for (const Entry& entry : entries) {
+        if ((entry.y >> (SUPERTILE_SPLAT_BITS + tile) & 1) != 0)
+          values.push_back(entry.y & ((1u << SUPERTILE_SPLAT_BITS) - 1));
+      }
+      ranges.emplace_back(begin, values.size());
+    }
   }
-  const auto count = static_cast<std::uint32_t>(pairs.size());
-  buffers.lists.pairs.reserve(count);
-  buffers.sort.reserve(buffers.lists.pairs, supertile_bits);
-  buffers.lists.pairs.keys().upload(keys);
-  buffers.lists.pairs.values().upload(values);
-  buffers.lists.pair_arguments.upload(std::vector{primitives::make_sort_arguments(
-      count, primitives::RadixSort::digit_bits(supertile_bits), groups_max, buffers.lists.pairs.block())});
+  std::vector<std::uint32_t> long_lists;
+  for (std::uint32_t tile = 0; tile < ranges.size() && plan.settings.tiles != TILES_ALL; ++tile)
+    if (ranges[tile].y - ranges[tile].x > LONG_LIST) long_lists.push_back(tile);
+  const auto count = static_cast<std::uint32_t>(long_lists.size());
+  buffers.counters.upload(
+      std::vector{shared::Counters{.tile_pairs = static_cast<std::uint32_t>(values.size()),
+                                   .long_lists = count,
+                                   .long_x = count,
+                                   .long_y = 1,
+                                   .long_z = 1}});
+  buffers.lists.tile_ranges.upload(ranges);
+  buffers.lists.long_lists.upload(long_lists);
+  buffers.lists.tile_values.upload(values);
 }
 
+// What the stage project leaves. All splats are for bin_large.comp, which asks again what they touch.
 void upload_projection(const FramePlan& plan, const std::vector<Slots>& slots,
                        const std::vector<ViewResult>& results, FrameBuffers& buffers) {
   std::vector<shared::Splat> splats(std::size_t{plan.view_count()} * buffers.slots);
-  std::vector<std::uint32_t> pair_counts(splats.size());
+  std::vector<std::uint32_t> coverages(splats.size()), large;
+  std::vector<float> depths(plan.groups.size() * buffers.slots);
   for (std::uint32_t v = 0; v < plan.view_count(); ++v) {
-    const std::vector<std::uint32_t>& indices = slots[plan.views[v].order_group].indices;
+    const std::uint32_t group = plan.views[v].order_group;
+    const std::vector<std::uint32_t>& indices = slots[group].indices;
     for (std::size_t slot = 0; slot < indices.size(); ++slot) {
-      splats[std::size_t{v} * buffers.slots + slot] = to_shared(results[v].splats[indices[slot]]);
-      pair_counts[slot * plan.view_count() + v] = results[v].pair_counts[indices[slot]];
+      const std::size_t splat = std::size_t{v} * buffers.slots + slot;
+      const reference::Splat& from = results[v].splats[indices[slot]];
+      splats[splat] = to_shared(from);
+      coverages[splat] = results[v].pair_counts[indices[slot]] != 0 ? 1 : 0;  // IN_MANY_SUPERTILES
+      if (coverages[splat] == 0) continue;
+      large.push_back(static_cast<std::uint32_t>(splat));
+      depths[group * buffers.slots + slot] = static_cast<float>(from.order);
     }
   }
   upload_in(plan.settings.precision, splats, buffers.projected.splats);
-  buffers.projected.coverages.upload(pair_counts);
-}
-
-// The slots as the stage project leaves them, or `sorted` as the stage order does.
-void upload_order(const OrderGroup& group, const Slots& slots, const std::vector<ViewResult>& results,
-                  bool sorted, std::uint32_t groups_max, FrameBuffers& buffers) {
-  std::vector<std::uint32_t> values(slots.indices.size());
-  std::iota(values.begin(), values.end(), 0u);
-  // Of the first view that draws it: of Scaffold-GS an eye may lack what the other has.
-  const auto depth = [&](std::uint32_t slot) {
-    const std::uint32_t i = slots.indices[slot];
-    const auto draws = [&](const ViewResult& result) { return result.splats[i].drawn; };
-    return std::find_if(results.begin(), results.end(), draws)->splats[i].order;
-  };
-  if (sorted) {
-    std::stable_sort(values.begin(), values.end(),
-                     [&](std::uint32_t a, std::uint32_t b) { return depth(a) < depth(b); });
+  buffers.projected.coverages.upload(coverages);
+  buffers.projected.depths.upload(depths);
+  for (std::size_t group = 0; group < slots.size(); ++group) {
+    const auto count = static_cast<std::uint32_t>(slots[group].indices.size());
+    buffers.drawn[group]->arguments.upload(std::vector{shared::DispatchArguments{.count = count}});
   }
-  std::vector<std::uint32_t> keys;
-  for (const std::uint32_t slot : values)
-    keys.push_back(std::bit_cast<std::uint32_t>(static_cast<float>(depth(slot))) - group.nearest_key);
-  buffers.ordering.order.keys().upload(keys);
-  buffers.ordering.order.values().upload(values);
-  const auto count = static_cast<std::uint32_t>(values.size());
-  buffers.drawn.front()->arguments.upload(std::vector{primitives::make_sort_arguments(
-      count, primitives::RadixSort::digit_bits(group.key_bits), groups_max, buffers.ordering.order.block())});
-}
-
-void upload_ranges(const FramePlan& plan, const std::vector<Pair>& sorted, FrameBuffers& buffers) {
-  std::vector<std::uint32_t> ranges(2 * std::size_t{std::max(plan.supertile_count, plan.view_count())});
-  for (std::uint32_t k = 0; k < sorted.size(); ++k) {
-    const std::uint32_t supertile = sorted[k].first;
-    if (k == 0 || sorted[k - 1].first != supertile) ranges[2 * supertile] = k;
-    ranges[2 * supertile + 1] = k + 1;
-  }
-  buffers.lists.ranges.upload(ranges);
+  const auto count = static_cast<std::uint32_t>(large.size());
+  const std::uint32_t rows = (count + LARGE_EACH * LARGE_ROW - 1) / (LARGE_EACH * LARGE_ROW);
+  buffers.counters.upload(std::vector{
+      shared::Counters{.large = count, .large_x = LARGE_ROW, .large_y = std::max(rows, 1u), .large_z = 1}});
+  buffers.projected.large.upload(large);
 }
 
 std::vector<Picture> fill_until(Stage until, const Model& model, const FramePlan& plan,
                                 ModelBuffers& model_buffers, FrameBuffers& buffers) {
-  const std::uint32_t groups_max = buffers.context().limits().groups;
   std::vector<Picture> pictures;
   if (until == Stage::decode) {
     upload_decoded(model, plan, model_buffers, buffers);
@@ -274,26 +297,15 @@ std::vector<Picture> fill_until(Stage until, const Model& model, const FramePlan
       pictures.push_back(reference::render(model, plan.views[v], reference_settings(plan, v)));
     return pictures;
   }
-  if (until < Stage::pairs && plan.groups.size() > 1) {
-    fail("--reference-until {}: only for views that share one depth order (no --cant)", name_of(until));
-  }
   std::vector<ViewResult> results;
   for (std::uint32_t v = 0; v < plan.view_count(); ++v) results.push_back(reference_view(model, plan, v));
   std::vector<Slots> slots;
   for (const OrderGroup& group : plan.groups) slots.push_back(make_slots(plan, group, results));
   upload_projection(plan, slots, results, buffers);
-  if (until < Stage::pairs) {
-    upload_order(plan.groups.front(), slots.front(), results, until == Stage::order, groups_max, buffers);
-    return pictures;
-  }
-  std::vector<Pair> pairs = pairs_in_depth_order(plan, slots, results, buffers.slots);
-  if (until >= Stage::tile_sort) {
-    std::stable_sort(pairs.begin(), pairs.end(),
-                     [](const Pair& a, const Pair& b) { return a.first < b.first; });
-  }
-  upload_pairs(pairs, plan.supertile_bits(), groups_max, buffers);
-  if (until == Stage::ranges) upload_ranges(plan, pairs, buffers);
-  buffers.counters.upload(std::vector{shared::Counters{.pairs = static_cast<std::uint32_t>(pairs.size())}});
+  if (until == Stage::project) return pictures;
+  const Supertiles supertiles = entries_of(plan, slots, results, buffers.slots);
+  if (until == Stage::bin) upload_entries(supertiles, buffers);
+  if (until == Stage::sort) upload_lists(plan, supertiles, buffers);
   return pictures;
 }
 

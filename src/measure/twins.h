@@ -7,10 +7,9 @@
 namespace binosplat::measure {
 
 /// Computes the stages up to `until` on the CPU and uploads everything that later stages read; with
-/// Stage::blend the pictures themselves are returned. A shared depth order takes a Gaussian's depth from the
-/// first view that draws it. The frame throws Error for Stage::decode of a model that is not decoded, for a
-/// stage before pairs when the views do not share one depth order (the GPU handles the groups one after the
-/// other), and for settings that use earlier frames.
+/// Stage::blend the pictures themselves are returned. The frame throws Error for Stage::decode of a model
+/// that is not decoded, for Stage::bin where a list is too long to be sorted at once, and for settings that
+/// use earlier frames.
 render::StandIn reference_until(render::Stage until);
 
 }  // namespace binosplat::measure

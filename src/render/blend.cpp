@@ -61,7 +61,7 @@ const gl::Program& program(gl::Context& context, const FramePlan& plan, const Bl
   }
   v.program = program_for(context, plan, v);
   if (!v.is_legal()) v.large_splats = false;
-  v.plain = !plan.probe && !plan.draws_regions() && plan.supertile_side == 2;
+  v.plain = !plan.probe && !plan.draws_regions();
   if (!v.is_legal()) v.plain = false;
   if (!v.is_legal()) throw std::logic_error("a blend that no frame has: render/variants.cpp");
   return context.program(v.shader(), v);
@@ -86,8 +86,8 @@ void run(gl::Dispatcher& dispatcher, const FramePlan& plan, FrameBuffers& buffer
                      {{"Frame", buffers.parameters},
                       {"Views", buffers.views},
                       {"RegionRows", buffers.region_rows},
-                      {"Ranges", buffers.lists.ranges_of_tiles(plan)},
-                      {"Values", buffers.lists.values_of_tiles(plan)},
+                      {"Ranges", buffers.lists.tile_ranges},
+                      {"Values", buffers.lists.tile_values},
                       {"Splats", buffers.projected.splats},
                       {"Colours", buffers.pictures.colours},
                       {"Canvases", buffers.pictures.canvases},
@@ -107,16 +107,6 @@ void run(gl::Dispatcher& dispatcher, const FramePlan& plan, FrameBuffers& buffer
 }
 
 }  // namespace
-
-void find_long_lists(gl::Dispatcher& dispatcher, const FramePlan& plan, FrameBuffers& buffers) {
-  if (plan.settings.tiles == TILES_ALL) return;
-  dispatcher.run(dispatcher.context().program("blend_long_lists.comp"),
-                 gl::DispatchSize::threads(plan.tile_count(), THREADS),
-                 {{"Frame", buffers.parameters},
-                  {"Ranges", buffers.lists.ranges_of_tiles(plan)},
-                  {"LongLists", buffers.lists.long_lists},
-                  {"FrameCounters", buffers.counters}});
-}
 
 void blend(gl::Dispatcher& dispatcher, const FramePlan& plan, bool measures, double tiles_a_splat,
            FrameBuffers& buffers) {
@@ -179,9 +169,9 @@ void keep_measured(gl::Dispatcher& dispatcher, const FramePlan& plan, bool measu
          {"Coverages", buffers.projected.coverages},
          {"Measured", buffers.transmittance.measured},
          {"NextBounds", *buffers.transmittance.next_bounds},
-         {"OrderKeys", buffers.ordering.order.keys()},
+         {"Depths", buffers.projected.depths},
          {"FrameCounters", buffers.counters}},
-        {{"nearest_key", plan.groups[group].nearest_key},
+        {{"order_group", static_cast<std::uint32_t>(group)},
          {"view_begin", plan.groups[group].begin},
          {"view_end", std::min(plan.groups[group].end, plan.asked)}});
   }

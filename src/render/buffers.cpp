@@ -6,7 +6,6 @@
 #include <cstring>
 
 #include "base/error.h"
-#include "primitives/arguments.h"
 #include "render/halves.h"
 
 namespace binosplat::render {
@@ -27,7 +26,6 @@ shared::FrameParameters parameters_of(const FramePlan& plan, std::uint32_t slots
           .slots = slots,
           .tile_count = plan.tile_count(),
           .list_per_view = s.tiles == TILES_ALL,
-          .supertile_side = static_cast<std::uint32_t>(plan.supertile_side),
           .has_regions = plan.draws_regions(),
           .offset_count = plan.offset_count,
           .views_per_decoding = plan.views_per_decoding,
@@ -47,18 +45,16 @@ FrameBuffers::FrameBuffers(gl::Context& context)
                     .bounds = std::make_unique<gl::Buffer>(context, "measured transmittance"),
                     .next_bounds = std::make_unique<gl::Buffer>(context, "transmittance for the next frame"),
                     .measured = {context, "transmittance by splat"}},
-      ordering{.depth_keys = {context, "depth keys"},
-               .block_arguments = {context, "arguments of blocks"},
-               .block_counts = {context, "block counts"},
-               .order = {context, "depth order"},
-               .pair_offsets = {context, "pair offsets"}},
-      projected{.splats = {context, "splats"},
+      culled{.depth_keys = {context, "depth keys"}, .block_counts = {context, "block counts"}},
+      projected{.depths = {context, "depths"},
+                .splats = {context, "splats"},
                 .coverages = {context, "tile coverage"},
-                .tall = {context, "tall splats"}},
-      lists{.pair_arguments = {context, "arguments of pairs"},
-            .pairs = {context, "Gaussian-tile pairs"},
-            .ranges = {context, "ranges of supertiles"},
-            .tile_counts = {context, "tiles' counts"},
+                .large = {context, "large splats"}},
+      lists{.entries = {context, "Gaussian-supertile pairs"},
+            .supertile_counts = {context, "counts of supertiles"},
+            .supertile_ends = {context, "ends of supertiles"},
+            .items = {context, "lists to be sorted"},
+            .slab_tiles = {context, "tiles of parted lists"},
             .tile_ranges = {context, "ranges of tiles"},
             .tile_values = {context, "lists of tiles"},
             .long_lists = {context, "tiles with long lists"}},
@@ -69,8 +65,6 @@ FrameBuffers::FrameBuffers(gl::Context& context)
                .debug_values = {context, "debug view"},
                .debug_transmittance = {context, "transmittance of a debug view"}},
       nearest(context),
-      scan(context),
-      sort(context),
       look_back(context),
       context_(context) {}
 
@@ -97,11 +91,11 @@ void FrameBuffers::reserve(const FramePlan& plan, const ModelBuffers& model, con
   slots = static_cast<std::uint32_t>(capacity.slots);
   const std::int64_t blocks = (gaussians + COMPACT_BLOCK - 1) / COMPACT_BLOCK;
   counters.reserve(sizeof(shared::Counters));
-  ordering.depth_keys.reserve(gaussians * 4);
-  ordering.block_counts.reserve(blocks * 4);
+  culled.depth_keys.reserve(gaussians * 4);
+  culled.block_counts.reserve(blocks * 4);
   while (drawn.size() < plan.groups.size()) drawn.push_back(std::make_unique<DrawnBuffers>(context_));
   for (const auto& group : drawn) {
-    group->arguments.reserve(sizeof(primitives::SortArguments));
+    group->arguments.reserve(sizeof(shared::DispatchArguments));
     group->indices.reserve(capacity.slots * 4);
   }
   if (measures(plan.settings.transmittance)) {
@@ -114,40 +108,37 @@ void FrameBuffers::reserve(const FramePlan& plan, const ModelBuffers& model, con
       kept.push_back(std::make_unique<gl::Buffer>(context_, "Gaussians kept by anchor"));
     kept[page]->reserve(std::int64_t{plan.decoding_count()} * model.pages[page].anchors->count * 4);
   }
-  ordering.order.reserve(capacity.slots);
-  ordering.pair_offsets.reserve(capacity.slots * 4);
-  projected.splats.reserve(capacity.slots * plan.view_count() * splat_bytes(plan.settings.precision));
-  projected.coverages.reserve(capacity.slots * plan.view_count() * 4);
-  projected.tall.reserve(capacity.slots * plan.view_count() * 4);
-  lists.pair_arguments.reserve(4 * sizeof(shared::DispatchArguments));
-  lists.pairs.reserve(capacity.pairs);
-  lists.ranges.reserve(std::max<std::int64_t>(plan.supertile_count, plan.view_count()) * 8);
-  if (plan.supertile_side > 1) {
-    const std::int64_t blocks_of_pairs = (lists.pairs.capacity() + TILE_BLOCK - 1) / TILE_BLOCK;
-    const std::int64_t counts = blocks_of_pairs * plan.tiles_a_supertile();
-    lists.tile_counts.reserve(counts * 4);
-    scan.reserve(counts);
-    lists.tile_ranges.reserve(plan.tile_count() * 8LL);
-    lists.tile_values.reserve(capacity.tile_pairs * 4);
-  }
+  const std::int64_t splats = capacity.slots * plan.view_count();
+  projected.depths.reserve(capacity.slots * static_cast<std::int64_t>(plan.groups.size()) * 4);
+  projected.splats.reserve(splats * splat_bytes(plan.settings.precision));
+  projected.coverages.reserve(splats * 4);
+  projected.large.reserve(splats * 4);
+  lists.first_large = static_cast<std::uint32_t>(capacity.pairs);
+  lists.entries.reserve((capacity.pairs + capacity.large_pairs) * 8);
+  if (const std::int64_t bytes = plan.supertile_count * 4LL; lists.supertile_counts.bytes() < bytes)
+    lists.supertile_counts.reserve_zeros(bytes);
+  lists.supertile_ends.reserve(plan.supertile_count * 4LL);
+  lists.item_room =
+      plan.supertile_count + static_cast<std::uint32_t>(capacity.rounds * capacity.pairs / (SORT_MOST / 4));
+  lists.items.reserve(std::int64_t{SORT_LONG_KIND + capacity.rounds} * lists.item_room * 16);
+  lists.slab_tiles.reserve(
+      std::max<std::int64_t>(1, capacity.rounds * capacity.pairs / SORT_MOST * SORT_SLABS) * 16);
+  lists.tile_ranges.reserve(plan.tile_count() * 8LL);
+  lists.tile_values.reserve(capacity.tile_pairs * 4);
   lists.long_lists.reserve(plan.tile_count() * 4LL);
   if (plan.canvases.empty()) pictures.colours.reserve(plan.pixel_count * 16);
   if (plan.depth() != DEPTH_NONE) pictures.z_sums.reserve(plan.pixel_count * 4);
-  scan.reserve(std::max(blocks, capacity.slots));
-  look_back.reserve(std::max(blocks, capacity.slots / SCAN_BLOCK) + 1);
-  for (const OrderGroup& group : plan.groups) sort.reserve(ordering.order, group.key_bits);
-  sort.reserve(lists.pairs, plan.supertile_bits());
+  look_back.reserve(blocks + 1);
 }
 
 std::vector<DrawnGaussian> FrameBuffers::read_drawn(const FramePlan& plan, std::uint32_t v) const {
   const DrawnBuffers& of_group = *drawn[plan.views.at(v).order_group];
   const std::uint32_t count = of_group.arguments.read<shared::DispatchArguments>(1).front().count;
   const auto indices = of_group.indices.read<std::uint32_t>(count);
-  const std::size_t view_count = plan.view_count();
-  const auto covers = projected.coverages.read<std::uint32_t>(count * view_count);
+  const auto covers = projected.coverages.read<std::uint32_t>(count, std::size_t{v} * slots);
   std::vector<DrawnGaussian> found;
   for (std::uint32_t slot = 0; slot < count; ++slot) {
-    if (covers[slot * view_count + v] != 0) found.push_back({indices[slot], slot});
+    if (covers[slot] != 0) found.push_back({indices[slot], slot});
   }
   return found;
 }

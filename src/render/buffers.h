@@ -7,10 +7,9 @@
 
 #include "gl/buffer.h"
 #include "gl/texture.h"
-#include "primitives/look_back.h"
-#include "primitives/radix_sort.h"
 #include "render/frame_plan.h"
 #include "render/gpu_model.h"
+#include "render/look_back.h"
 #include "render/memory.h"
 #include "shared/types.h"
 
@@ -19,10 +18,10 @@ namespace binosplat::render {
 /// The Gaussians that an order group draws.
 struct DrawnBuffers {
   explicit DrawnBuffers(gl::Context& context)
-      : arguments(context, "arguments of the depth order"),
+      : arguments(context, "arguments of the Gaussians drawn"),
         indices(context, "indices of the Gaussians drawn") {}
 
-  gl::Buffer arguments;  // SortArguments
+  gl::Buffer arguments;  // DispatchArguments
   gl::Buffer indices;    // Gaussian by slot
 };
 
@@ -69,43 +68,34 @@ struct FrameBuffers {
 
   std::vector<std::unique_ptr<DrawnBuffers>> drawn;  // by order group
 
-  /// The depth order, of one order group after another.
-  struct Ordering {
-    gl::Buffer depth_keys;          // uint by Gaussian
-    gl::Buffer block_arguments;     // DispatchArguments of the compaction's blocks
-    gl::Buffer block_counts;        // uint, Gaussians drawn by block of COMPACT_BLOCK, scanned
-    primitives::PairBuffers order;  // depth bits, slot
-    gl::Buffer pair_offsets;        // uint by rank in the depth order, scanned
-  } ordering;
+  /// What is found of all Gaussians of the model, for one order group after another.
+  struct Culled {
+    gl::Buffer depth_keys;    // uint by Gaussian
+    gl::Buffer block_counts;  // uint, Gaussians drawn by block of COMPACT_BLOCK
+  } culled;
 
   /// What `project` makes of the Gaussians that are drawn, for all views.
   struct Projected {
-    gl::Buffer splats;     // Splat, or Halves (view, slot)
-    gl::Buffer coverages;  // uint (slot, view): supertiles.glsl
-    gl::Buffer tall;       // splats over many rows of tiles
-    // The same buffer, once tall splats are counted: uint (rank, view of the group), supertiles.glsl.
-    gl::Buffer& coverage_in_order = tall;
+    gl::Buffer depths;     // uint by (order group, slot): bits of what they are sorted by
+    gl::Buffer splats;     // Splat, or Halves by (view, slot)
+    gl::Buffer coverages;  // uint by (view, slot): supertiles.glsl
+    gl::Buffer large;      // uint, splats in many supertiles
   } projected;
 
-  /// The pairs of all views, and which of them are each tile's list.
+  /// Which splats are in each tile's list.
   struct Lists {
-    gl::Buffer pair_arguments;      // DispatchArguments of the pairs that arguments.comp counted
-    primitives::PairBuffers pairs;  // supertile (view with --tiles all), splat (supertiles.glsl)
-    gl::Buffer ranges;              // begin, end by supertile
-    // Where supertiles are of several tiles, in place of `ranges`.
-    gl::Buffer tile_counts;  // uint, pairs by tile of a supertile, then by block of TILE_BLOCK, scanned
-    gl::Buffer tile_ranges;  // begin, end by tile
-    gl::Buffer tile_values;  // splats, where tile_ranges says
-    gl::Buffer long_lists;   // tiles with more than LONG_LIST pairs
+    std::uint32_t first_large = 0;  // entry of large splats: how many others there is room for
+    gl::Buffer entries;  // uvec2 (depth, entry) by supertile; then (supertile, entry) of large splats
+    gl::Buffer supertile_counts;  // uint; 0 between frames
+    gl::Buffer supertile_ends;    // uint, where the next entry of each goes
+    std::uint32_t item_room = 0;  // of each kind
+    gl::Buffer items;             // uvec4 by kind: sort_items.glsl
+    gl::Buffer slab_tiles;        // uint by slab and tile of a supertile: sort_split.comp
 
-    /// The blend reads these two: the begin and end of each tile's list, and the splats that the lists are
-    /// of.
-    gl::Buffer& ranges_of_tiles(const FramePlan& plan) {
-      return plan.supertile_side == 1 ? ranges : tile_ranges;
-    }
-    gl::Buffer& values_of_tiles(const FramePlan& plan) {
-      return plan.supertile_side == 1 ? pairs.values() : tile_values;
-    }
+    // The blend reads these.
+    gl::Buffer tile_ranges;  // begin and end by tile; with --tiles all by the first tile of a view
+    gl::Buffer tile_values;  // splats
+    gl::Buffer long_lists;   // tiles with more than LONG_LIST pairs
   } lists;
 
   /// What the blend makes of the lists.
@@ -120,9 +110,7 @@ struct FrameBuffers {
   } pictures;
 
   gl::Sampler nearest;  // by which the caller's textures are read
-  primitives::Scan scan;
-  primitives::RadixSort sort;
-  primitives::LookBack look_back;
+  LookBack look_back;
 
  private:
   gl::Context& context_;

@@ -5,23 +5,13 @@
 
 #include "base/error.h"
 #include "base/spans.h"
-#include "primitives/arguments.h"
 #include "render/stages.h"
 
 namespace binosplat::render {
 
 namespace {
 
-constexpr int drawings_max = 8;
-
-// Tiles along a side of a supertile, where that is left to the frame: 2 where a pair's value has room for the
-// tiles.
-int chosen_supertile_side(const FrameSettings& settings, const Workings& workings, std::uint64_t splats) {
-  if (workings.supertile_side != 0) return workings.supertile_side;
-  const bool has_room = splats <= std::uint64_t{1} << SUPERTILE_SPLAT_BITS;
-  const bool usual = settings.tile_size == TILE_SIZE_DEFAULT && settings.tiles != TILES_ALL;
-  return has_room && usual && !workings.stand_in ? 2 : 1;
-}
+constexpr int drawings_max = 8 + SORT_ROUNDS;
 
 void check(const CallersTextures& textures, std::size_t views, const FrameSettings& settings,
            const Workings& workings) {
@@ -132,15 +122,7 @@ void Frame::begin(PlanRequest request) {
     history_.forget_measured();
   }
   model_buffers_ = model_->in(settings.precision);
-  const ModelSize& size = model_->size();
-  const std::int64_t slots =
-      std::max({static_cast<std::int64_t>(size.room), capacity_.slots, workings.slots});
-  const std::uint64_t splats =
-      static_cast<std::uint64_t>(slots) * (views.size() + 1);  // a probe is a view, too
-  Workings of_plan = workings;
-  of_plan.supertile_side = chosen_supertile_side(settings, workings, splats);
-  request.box = model_buffers_->box;
-  plan_ = make_plan(views, settings, model_->model(), size, of_plan, request);
+  plan_ = make_plan(views, settings, model_->model(), model_->size(), workings, request);
   if (std::exchange(uploads_, model_->uploads()) != model_->uploads())
     history_.follow_levels(plan_.gaussian_count);
 }
@@ -164,9 +146,6 @@ void Frame::start_search() {
 void Frame::start_attempt() {
   measuring_ = history_.decide(plan_);
   capacity_.start(plan_, submitted_.workings);
-  const std::uint32_t blocks = (plan_.gaussian_count + COMPACT_BLOCK - 1) / COMPACT_BLOCK;
-  buffers_.ordering.block_arguments.upload(
-      std::vector{primitives::make_arguments(blocks, dispatcher_.context().limits().groups)});
   record();
 }
 
@@ -215,7 +194,6 @@ void Frame::record() {
     buffers_.counters.upload(std::vector{shared::Counters{}});
   }
   pictures_stood_in_.clear();
-  // First, since a sort that is recorded takes its pairs to lie elsewhere then.
   if (!std::exchange(is_prepared_, true)) {
     const TimedSpan span("prepare programs", &cpu_.submit);
     dispatcher_.context().prepare([this] { record_stages(); });
@@ -243,13 +221,10 @@ void Frame::record_stages() {
   for (std::uint32_t group = 0; group < plan_.groups.size(); ++group) {
     run(Stage::project,
         [&] { project(dispatcher_, plan_, group, measuring_.measures, *model_buffers_, buffers_); });
-    run(Stage::order, [&] { order(dispatcher_, plan_, group, buffers_); });
-    run(Stage::pairs, [&] { pairs(dispatcher_, plan_, group, buffers_); });
   }
-  run(Stage::tile_sort, [&] { tile_sort(dispatcher_, plan_, buffers_); });
-  run(Stage::ranges, [&] { ranges(dispatcher_, plan_, buffers_); });
+  run(Stage::bin, [&] { bin(dispatcher_, plan_, capacity_, buffers_); });
+  run(Stage::sort, [&] { sort(dispatcher_, capacity_, buffers_); });
   run(Stage::blend, [&] {
-    find_long_lists(dispatcher_, plan_, buffers_);
     blend(dispatcher_, plan_, measuring_.measures, tiles_a_splat_, buffers_);
     keep_measured(dispatcher_, plan_, measuring_.measures, buffers_);
   });
@@ -264,13 +239,10 @@ void Frame::record_stages() {
 void Frame::fill(FrameReport& report) const {
   report.attempts = 1;
   report.visible = counters_.visible;
-  report.pairs = plan_.supertile_side == 1 ? counters_.pairs : counters_.tile_pairs;
+  report.pairs = counters_.tile_pairs;
   report.supertile_pairs = counters_.pairs;
   report.order_groups = static_cast<std::uint32_t>(plan_.groups.size());
-  report.order_passes = primitives::RadixSort::passes(plan_.groups.front().key_bits);
-  report.tile_sort_passes = primitives::RadixSort::passes(plan_.supertile_bits());
   report.tile_size = plan_.settings.tile_size;
-  report.supertile_side = plan_.supertile_side;
   report.gpu_bytes = model_->context().allocated_bytes();
   for (const gl::StageTime& stage : report.stages) report.total_ms += stage.ms;
   report.tolerance = plan_.tolerance;

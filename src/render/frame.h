@@ -34,10 +34,8 @@ struct CpuTimes {
 struct FrameReport {
   std::uint64_t visible = 0;  // Gaussians in depth order, summed over the order groups (1 for parallel eyes)
   std::uint64_t pairs = 0;    // Gaussian-tile pairs over all views, a probe's included
-  std::uint64_t supertile_pairs = 0;  // those that were sorted: fewer where supertiles are of several tiles
+  std::uint64_t supertile_pairs = 0;  // those that were sorted, of supertiles of 2 x 2 tiles
   std::uint32_t order_groups = 0;
-  std::uint32_t order_passes = 0;      // of the radix sort by depth, for the first order group
-  std::uint32_t tile_sort_passes = 0;  // of that by tile
   int attempts = 0;  // with settings.quality: how often the frame was drawn until it reached that
   int redrawn = 0;   // times that buffers had to grow
   std::vector<gl::StageTime> stages;  // GPU time of the complete drawing, summed over attempts
@@ -47,7 +45,6 @@ struct FrameReport {
   int programs_made = 0;              // that were compiled for it, or loaded from the cache
   std::int64_t gpu_bytes = 0;         // in buffers, the model's included
   int tile_size = 0;                  // px
-  int supertile_side = 0;             // tiles along a side of a supertile
   float tolerance = 0.0f;             // K or kappa that the frame was drawn with
   bool used_measured = false;         // it used the transmittance that an earlier frame measured
   bool measured = false;              // it measured for later ones

@@ -70,53 +70,18 @@ void add_view(FramePlan& plan, shared::View view, const ViewRegion& region,
                             : std::int64_t{view.width} * view.height;
   if (plan.pixel_count > std::int64_t{1} << 31) fail("more than 2^31 pixels in one frame");
   view.is_probe = probe ? 1 : 0;
-  const auto supertiles = [side = static_cast<std::uint32_t>(plan.supertile_side)](std::uint32_t along) {
-    return (along + side - 1) / side;
-  };
+  const auto supertiles = [](std::uint32_t along) { return (along + SUPERTILE_SIDE - 1) / SUPERTILE_SIDE; };
   plan.supertile_count += supertiles(view.tiles_x) * supertiles(view.tiles_y);
   if (v == 0 || !same_order(view, plan.views.back(), plan.perspective.order)) plan.groups.push_back({v, v});
   plan.groups.back().end = v + 1;
   if (draws_some(plan.settings)) {
     check_region(region, v, {view.width, view.height}, tile);
-    const auto rows = region_rows(region, view, tile, static_cast<std::uint32_t>(plan.supertile_side),
-                                  {tiles.column, tiles.row}, tiles.step);
+    const auto rows = region_rows(region, view, tile, {tiles.column, tiles.row}, tiles.step);
     view.first_row = static_cast<std::uint32_t>(plan.region_rows.size());
     plan.region_rows.insert(plan.region_rows.end(), rows.begin(), rows.end());
   }
   view.order_group = static_cast<std::uint32_t>(plan.groups.size() - 1);
   plan.views.push_back(view);
-}
-
-// The least and the largest thing that the Gaussians of a box can be sorted by in a view.
-glm::dvec2 order_span(const shared::View& view, int order, const Bounds& box) {
-  const glm::dvec3 anchor(view.anchor), forward(view.row_z), eye(view.eye), centre(view.centre);
-  const glm::dvec3 low = box.low - anchor, high = box.high - anchor;
-  const double near_plane = view.anchor.w;
-  const glm::dvec3 farthest = glm::max(glm::abs(low), glm::abs(high));
-  const double reach = farthest.x + farthest.y + farthest.z + std::abs(view.row_z.w);
-  const double rounding = 1e-5 * reach;  // fp32's
-  if (order == ORDER_DISTANCE) {
-    return {std::max(0.0, near_plane - glm::length(eye - centre) - rounding),
-            glm::length(glm::max(glm::abs(low - centre), glm::abs(high - centre))) + rounding};
-  }
-  const double deepest = view.row_z.w + glm::dot(glm::max(forward * low, forward * high), glm::dvec3(1.0));
-  return {near_plane, deepest + rounding};
-}
-
-// Keys of only so many bits as depths of Gaussians within `box` (world) need, in each order group.
-void limit_keys(FramePlan& plan, const Bounds& box) {
-  for (OrderGroup& group : plan.groups) {
-    glm::dvec2 span = order_span(plan.views[group.begin], plan.perspective.order, box);
-    for (std::uint32_t v = group.begin + 1; v < group.end; ++v) {
-      const glm::dvec2 other = order_span(plan.views[v], plan.perspective.order, box);
-      span = {std::min(span.x, other.x), std::max(span.y, other.y)};
-    }
-    const auto nearest = static_cast<float>(span.x), farthest = static_cast<float>(span.y);
-    group.nearest_key = std::bit_cast<std::uint32_t>(nearest);
-    group.key_bits = farthest > nearest ? static_cast<std::uint32_t>(std::bit_width(
-                                              std::bit_cast<std::uint32_t>(farthest) - group.nearest_key))
-                                        : 1;
-  }
 }
 
 }  // namespace
@@ -139,11 +104,6 @@ float FramePlan::depth_slack() const {
   return 2.001f * farthest;
 }
 
-std::uint32_t FramePlan::supertile_bits() const {
-  const std::uint32_t keys = settings.tiles == TILES_ALL ? view_count() : supertile_count;
-  return static_cast<std::uint32_t>(std::bit_width(keys - 1));
-}
-
 Perspective perspective_of(const FrameSettings& settings, const Model& model) {
   return {settings.order.value_or(model.perspective.order),
           settings.projection.value_or(model.perspective.projection)};
@@ -161,7 +121,6 @@ FramePlan make_plan(std::span<const shared::View> views, const FrameSettings& se
   plan.tolerance = request.tolerance.value_or(settings.tolerance);
   plan.between_pixels = workings.between_pixels;
   plan.visibility_as_depth = workings.visibility_as_depth;
-  plan.supertile_side = std::max(workings.supertile_side, 1);
   plan.degree = model.degree;
   plan.kernel_px2 = model.kernel_px2;
   plan.antialiased = model.antialiased;
@@ -188,7 +147,6 @@ FramePlan make_plan(std::span<const shared::View> views, const FrameSettings& se
     if (region_of(probe->view).is_window()) fail("a probe of a window: only whole views have them");
     add_view(plan, views[probe->view], region_of(probe->view), probe);
   }
-  if (request.box) limit_keys(plan, *request.box);
   return plan;
 }
 

@@ -20,9 +20,6 @@ namespace binosplat::render {
 struct OrderGroup {
   std::uint32_t begin = 0;
   std::uint32_t end = 0;
-  // Depths are sorted by their bits as an integer less nearest_key, which has at most key_bits bits.
-  std::uint32_t nearest_key = 0;
-  std::uint32_t key_bits = 32;
 };
 
 /// Tiles of one of a frame's views that are drawn exactly, too, to see what the frame's tolerance costs: one
@@ -53,7 +50,6 @@ struct FramePlan {
   float tolerance = 0.0f;            // K or kappa: the settings', or one that was found for a quality
   bool between_pixels = false;       // likewise
   bool visibility_as_depth = false;  // likewise
-  int supertile_side = 1;            // tiles along a side of a supertile
   int degree = 0;                    // the degree of the model's SH
   double kernel_px2 = KERNEL_PX2;    // the model's
   bool antialiased = false;
@@ -86,13 +82,12 @@ struct FramePlan {
   /// Whether splats are blended by blocks, which end once they are dark (docs/method.md 5.2).
   bool is_approximate() const { return settings.th == TH_SQUARED && settings.tiles == TILES_ELLIPSE; }
   std::uint32_t view_count() const { return static_cast<std::uint32_t>(views.size()); }
-  /// Tiles of all supertiles: a few more than the pictures have where supertiles are of several.
-  std::uint32_t tile_count() const { return supertile_count * tiles_a_supertile(); }
-  std::uint32_t tiles_a_supertile() const {
-    return static_cast<std::uint32_t>(supertile_side * supertile_side);
+  /// Tiles of all supertiles: a few more than the pictures have.
+  std::uint32_t tile_count() const { return supertile_count * SUPERTILE_SIDE * SUPERTILE_SIDE; }
+  std::uint32_t supertiles_of(std::uint32_t view) const {
+    return (view + 1 < view_count() ? views[view + 1].supertile_offset : supertile_count) -
+           views[view].supertile_offset;
   }
-  /// Bits that tell supertiles apart, by which pairs are sorted, or views with --tiles all.
-  std::uint32_t supertile_bits() const;
   /// How often each anchor is decoded. A probe shares the Gaussians of its view.
   std::uint32_t decoding_count() const { return (asked + views_per_decoding - 1) / views_per_decoding; }
   std::uint32_t decoding_of_probe() const { return probe ? probe->view / views_per_decoding : 0; }
@@ -112,7 +107,6 @@ struct PlanRequest {
   std::optional<Probe> probe;
   std::optional<float> tolerance;  // in the place of the settings'
   CallersTextures textures;
-  std::optional<Bounds> box;  // world, around all Gaussians: their depths need fewer bits to be sorted by
 };
 
 /// Makes the plan for a model of this size, whatever model.count() says: the model in memory may have changed

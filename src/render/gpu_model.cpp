@@ -98,24 +98,6 @@ void add_places(const ModelBuffers::Page& page, std::span<const Range> ranges,
   }
 }
 
-// The positions in these ranges.
-void add_to(std::optional<Bounds>& box, const Model& model, std::span<const Range> ranges) {
-  std::mutex adding;
-  const auto add = [&](std::size_t begin, std::size_t end) {
-    glm::vec3 low = model.position[ranges[begin].first], high = low;
-    for (const Range& range : ranges.subspan(begin, end - begin)) {
-      for (const glm::vec3& p : std::span(model.position).subspan(range.first, range.count)) {
-        low = glm::min(low, p);
-        high = glm::max(high, p);
-      }
-    }
-    const Bounds some{low, high};
-    const std::lock_guard lock(adding);
-    box = box ? Bounds{glm::min(box->low, some.low), glm::max(box->high, some.high)} : some;
-  };
-  frame_chunks(ranges.size(), 32, add);
-}
-
 }  // namespace
 
 ModelBuffers::ModelBuffers(gl::Context& context, const Model& model, int in_precision,
@@ -136,7 +118,6 @@ std::size_t ModelBuffers::page_step(gl::Context& context, const Model& model) co
 }
 
 void ModelBuffers::upload(gl::Context& context, const Model& model) {
-  box.reset();
   if (model.scaffold) {
     pages.clear();
     upload_pages(context, *model.scaffold, page_step(context, model));
@@ -153,7 +134,6 @@ void ModelBuffers::upload(gl::Context& context, const Model& model) {
     upload_page(packing_of_gaussians(model, precision), page, *page.gaussians);
     upload_page(packing_of_harmonics(model, precision), page, *page.harmonics);
   }
-  if (model.count() > 0) box = all_bounds(model);
 }
 
 void ModelBuffers::upload(gl::Context& context, const Model& model, const ModelChunks::Changes& changes) {
@@ -181,7 +161,6 @@ void ModelBuffers::upload(gl::Context& context, const Model& model, const ModelC
     upload(to_gaussians_, packing_of_gaussians(model, precision), *page.gaussians, places.size());
     upload(to_harmonics_, packing_of_harmonics(model, precision), *page.harmonics, filled);
   }
-  add_to(box, model, changes.filled);
 }
 
 std::int64_t ModelBuffers::room_in(const Page& page, const Model& model) const {

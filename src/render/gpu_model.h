@@ -43,7 +43,6 @@ struct ModelBuffers {
   const int precision;  // PRECISION_ of shared/axes.h
   std::vector<Page> pages;
   NetworkBuffers networks;
-  std::optional<Bounds> box;  // all_bounds; none of a model that is decoded or empty
 
  private:
   std::size_t page_step(gl::Context& context, const Model& model) const;

@@ -36,9 +36,16 @@ std::span<const glm::uvec2> rows_asked(const FramePlan& plan) {
       .first(has_probe ? plan.views[plan.asked].first_row : plan.region_rows.size());
 }
 
+// In the middle of a logarithmic scale, world units: the mean of floats' bits is nearly one of logarithms.
+double middle_depth(const shared::Counters& counters) {
+  if (counters.visible == 0) return 0.0;
+  const double sum = (counters.depths_high * 0x1p32 + counters.depths_low) * THREADS;
+  return std::bit_cast<float>(static_cast<std::uint32_t>(sum / counters.visible));
+}
+
 }  // namespace
 
-bool continues(const FramePlan& before, const FramePlan& now, double median_depth, double share) {
+bool continues(const FramePlan& before, const FramePlan& now, double middle_depth, double share) {
   if (!std::ranges::equal(rows_asked(before), rows_asked(now))) return false;
   if (before.asked != now.asked || before.gaussian_count != now.gaussian_count) return false;
   for (std::size_t v = 0; v < now.asked; ++v) {
@@ -47,7 +54,7 @@ bool continues(const FramePlan& before, const FramePlan& now, double median_dept
     if (a.width != b.width || a.height != b.height || a.lens != b.lens || a.left != b.left || a.top != b.top)
       return false;
     if (turned_degrees(a, b) > share * turn_max_degrees ||
-        moved(a, b) > share * move_max_of_depth * median_depth)
+        moved(a, b) > share * move_max_of_depth * middle_depth)
       return false;
   }
   return true;
@@ -59,7 +66,7 @@ void FrameHistory::follow_levels(std::uint32_t gaussians) {
 }
 
 bool FrameHistory::probed_lately(const FramePlan& now, int probe_every) {
-  return ++since_probed_ < probe_every && continues(probed_, now, median_depth_, probe_share);
+  return ++since_probed_ < probe_every && continues(probed_, now, middle_depth_, probe_share);
 }
 
 Measuring FrameHistory::decide(const FramePlan& now) {
@@ -67,19 +74,18 @@ Measuring FrameHistory::decide(const FramePlan& now) {
   if (!measures(s.transmittance)) return {};
   Measuring measuring;
   measuring.uses_last = measures(measured_.settings.transmittance) && measured_.settings.decode == s.decode &&
-                        measured_.perspective == now.perspective && continues(measured_, now, median_depth_);
+                        measured_.perspective == now.perspective && continues(measured_, now, middle_depth_);
   since_cut_ = measuring.uses_last ? since_cut_ + 1 : 0;
   ++since_measured_;
   measuring.measures = since_cut_ < s.measure_every || since_measured_ >= s.measure_every ||
-                       now.offset_count > 0 || !continues(measured_, now, median_depth_, measure_share);
+                       now.offset_count > 0 || !continues(measured_, now, middle_depth_, measure_share);
   return measuring;
 }
 
 void FrameHistory::keep(const FramePlan& drawn, const Measuring& measuring,
                         const shared::Counters& counters) {
   last_ = drawn;
-  if (measuring.measures || drawn.probe)
-    median_depth_ = counters.visible == 0 ? 0.0 : std::bit_cast<float>(counters.median_depth);
+  if (measuring.measures || drawn.probe) middle_depth_ = middle_depth(counters);
   if (measuring.measures) {
     measured_ = drawn;
     since_measured_ = 0;

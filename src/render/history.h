@@ -9,9 +9,9 @@ namespace binosplat::render {
 
 /// True if the views are the same ones a moment later: as many, of the same pictures and lenses, the same
 /// regions of them drawn, each turned by no more than 15 degrees and moved by no more than a tenth of
-/// `median_depth` (of the Gaussians drawn before, world units). Anything else is a camera cut. `share` scales
+/// `middle_depth` (of the Gaussians drawn before, world units). Anything else is a camera cut. `share` scales
 /// these two limits.
-bool continues(const FramePlan& before, const FramePlan& now, double median_depth, double share = 1.0);
+bool continues(const FramePlan& before, const FramePlan& now, double middle_depth, double share = 1.0);
 
 /// Whether a frame uses measured transmittance, and whether it measures.
 struct Measuring {
@@ -29,7 +29,7 @@ class FrameHistory {
   void follow_levels(std::uint32_t gaussians);
 
   /// Whether `now` follows the last frame without a camera cut.
-  bool goes_on(const FramePlan& now) const { return continues(last_, now, median_depth_); }
+  bool goes_on(const FramePlan& now) const { return continues(last_, now, middle_depth_); }
 
   /// Whether `now` needs no probe: fewer than `probe_every` frames (Workings) ago there was one, of nearly
   /// the same views. Counts the frames that ask.
@@ -45,7 +45,7 @@ class FrameHistory {
   FramePlan last_;
   FramePlan measured_;  // the last one that measured
   FramePlan probed_;    // the last one with a probe
-  double median_depth_ = 0.0;
+  double middle_depth_ = 0.0;
   int since_cut_ = 0;  // frames that used what was measured
   int since_measured_ = 0;
   int since_probed_ = 0;

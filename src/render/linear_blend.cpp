@@ -24,8 +24,7 @@ void LinearBlend::run(const Record& record) {
 
 void LinearBlend::set_view(const shared::View& view, const FrameSettings& settings,
                            const Workings& workings) {
-  frame_.draw_until(Stage::ranges, std::span(&view, 1), exact_of(settings), workings);
-  find_long_lists(dispatcher_, frame_.plan(), frame_.buffers());
+  frame_.draw_until(Stage::sort, std::span(&view, 1), exact_of(settings), workings);
   drawn_ = frame_.buffers().read_drawn(frame_.plan(), 0);
 }
 

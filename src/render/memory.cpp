@@ -1,10 +1,10 @@
 #include "render/memory.h"
 
 #include <algorithm>
+#include <stdexcept>
 
 #include "base/error.h"
 #include "base/log.h"
-#include "primitives/radix_sort.h"
 #include "render/halves.h"
 
 namespace binosplat::render {
@@ -16,13 +16,23 @@ std::uint32_t starting_slots(std::uint32_t gaussians) {
   return std::max(std::min(gaussians / 2, slots_start_most), std::min(gaussians, slots_start));
 }
 
-std::int64_t starting_pairs(const FramePlan& plan) {
-  constexpr std::int64_t pairs_per_splat = 16;
+namespace {
+
+// A first frame has room for some entries a Gaussian, as most models need, and for some tiles each.
+Capacity starting_room(const FramePlan& plan) {
+  constexpr std::int64_t pairs_per_splat = 8;
   // A model that grows is one that somebody moves through: making more room takes 100 ms.
-  const int most_bits = plan.gaussian_room > plan.gaussian_count ? 25 : 24;
-  return std::clamp(starting_slots(plan.gaussian_room) * std::int64_t{plan.view_count()} * pairs_per_splat,
-                    std::int64_t{1} << 16, std::int64_t{1} << most_bits);
+  const int most_bits = plan.gaussian_room > plan.gaussian_count ? 24 : 23;
+  const std::int64_t pairs =
+      std::clamp(starting_slots(plan.gaussian_room) * std::int64_t{plan.view_count()} * pairs_per_splat,
+                 std::int64_t{1} << 15, std::int64_t{1} << most_bits);
+  return {.slots = starting_slots(plan.gaussian_room),
+          .pairs = pairs,
+          .large_pairs = pairs / 2,
+          .tile_pairs = 2 * pairs};
 }
+
+}  // namespace
 
 MemoryNeeds memory_needs(const FramePlan& plan) {
   MemoryNeeds needs;
@@ -33,45 +43,56 @@ MemoryNeeds memory_needs(const FramePlan& plan) {
   const bool measured = measures(plan.settings.transmittance);
   const std::int64_t bytes_a_splat = splat_bytes(precision) + (measured ? 12 : 8);
   const std::int64_t bytes_a_gaussian = 4 + (measured ? plan.asked * 8 : 0);
-  const bool has_supertiles = plan.supertile_side > 1;
-  const std::int64_t pair_bytes =
-      4 * 4 + (has_supertiles ? 4 : 0);  // supertile and splat, twice; the tiles' lists
-  const std::int64_t slot_bytes = plan.view_count() * bytes_a_splat + 6 * 4;  // indices, order twice, offsets
-  needs.frame = plan.gaussian_room * bytes_a_gaussian + starting_slots(plan.gaussian_room) * slot_bytes +
-                plan.pixel_count * 20 + plan.tile_count() * (has_supertiles ? 14LL : 12LL) +
-                starting_pairs(plan) * pair_bytes +
-                4 * primitives::RadixSort::counters_of(starting_pairs(plan), plan.supertile_bits());
+  const Capacity room = starting_room(plan);
+  const std::int64_t slot_bytes = plan.view_count() * bytes_a_splat + 2 * 4;  // index and depth
+  needs.frame = plan.gaussian_room * bytes_a_gaussian + room.slots * slot_bytes + plan.pixel_count * 20 +
+                plan.tile_count() * 12LL + plan.supertile_count * (8LL + 16 * SORT_LONG_KIND) +
+                (room.pairs + room.large_pairs) * 8 + room.tile_pairs * 4;
   return needs;
 }
 
 void Capacity::start(const FramePlan& plan, const Workings& asked) {
+  Capacity first = starting_room(plan);
   // What stands in for stages needs all the room that it takes at once.
-  slots =
-      std::max<std::int64_t>(slots, asked.stand_in ? plan.gaussian_room : starting_slots(plan.gaussian_room));
-  if (asked.slots > 0) slots = asked.slots;
-  for (std::int64_t* of_pairs : {&pairs, &tile_pairs})
-    *of_pairs = asked.pairs > 0 ? asked.pairs : std::max(*of_pairs, starting_pairs(plan));
+  if (asked.stand_in) first.slots = plan.gaussian_room;
+  slots = asked.slots > 0 ? asked.slots : std::max(slots, first.slots);
+  if (asked.pairs > 0) {
+    pairs = large_pairs = tile_pairs = asked.pairs;
+    return;
+  }
+  pairs = std::max(pairs, first.pairs);
+  large_pairs = std::max(large_pairs, first.large_pairs);
+  tile_pairs = std::max(tile_pairs, first.tile_pairs);
 }
 
 void Capacity::grow(const FramePlan& plan, const shared::Counters& counters) {
   const auto larger = [](std::uint32_t wanted) { return std::int64_t{wanted} + wanted / 8; };
-  if (counters.pairs == COUNT_MAX) {
+  const auto lacks = [&](std::uint32_t what) { return (counters.overflow & what) != 0; };
+  if (lacks(OVERFLOW_COUNT)) {
     throw Error(ExitCode::out_of_memory,
-                "more than a billion Gaussian-tile pairs in one frame: use a smaller picture");
+                "more than two billion Gaussian-tile pairs in one frame: use a smaller picture");
   }
-  if ((counters.overflow & OVERFLOW_ORDER) != 0) {
+  if (lacks(OVERFLOW_ORDER)) {
     log_info("drawn again: {} Gaussians in view, room for {}", counters.order_wanted, slots);
     slots = std::min<std::int64_t>(larger(counters.order_wanted), plan.gaussian_room);
   }
-  if ((counters.overflow & OVERFLOW_PAIRS) != 0) {
-    log_info("drawn again: {} Gaussian-{} pairs, room for {}", counters.pairs,
-             plan.supertile_side == 1 ? "tile" : "supertile", pairs);
+  if (lacks(OVERFLOW_LARGE)) {
+    log_info("drawn again: {} pairs of large Gaussians, room for {}", counters.large_entries, large_pairs);
+    large_pairs = larger(counters.large_entries);
+  }
+  if (lacks(OVERFLOW_PAIRS)) {
+    log_info("drawn again: {} Gaussian-supertile pairs, room for {}", counters.pairs, pairs);
     pairs = larger(counters.pairs);
   }
-  if ((counters.overflow & OVERFLOW_TILE_PAIRS) != 0) {
+  if (lacks(OVERFLOW_TILE_PAIRS)) {
     log_info("drawn again: {} Gaussian-tile pairs, room for {}", counters.tile_pairs, tile_pairs);
     tile_pairs = larger(counters.tile_pairs);
   }
+  if (lacks(OVERFLOW_ROUNDS)) {
+    log_info("drawn again: a list of over {} Gaussians is parted once more", SORT_MOST);
+    if (++rounds > SORT_ROUNDS) throw std::logic_error("a list that cannot be parted: sort_split.comp");
+  }
+  if (rounds > 0) large_pairs = std::max(large_pairs, pairs);  // parts of lists lie there, too
 }
 
 }  // namespace binosplat::render

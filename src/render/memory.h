@@ -12,12 +12,7 @@ namespace binosplat::render {
 /// hardly ever all in view. A frame that needs more grows its buffers.
 std::uint32_t starting_slots(std::uint32_t gaussians);
 
-/// How many pairs a first frame has room for: some tiles a Gaussian, as most models need. A frame that needs
-/// more grows its buffers.
-std::int64_t starting_pairs(const FramePlan& plan);
-
-/// The bytes that the model takes on the GPU, and those that a first frame takes besides. Where the plan
-/// leaves the supertiles to the frame, this assumes supertiles of one tile.
+/// The bytes that the model takes on the GPU, and those that a first frame takes besides.
 struct MemoryNeeds {
   std::int64_t model = 0;
   std::int64_t frame = 0;
@@ -26,9 +21,11 @@ MemoryNeeds memory_needs(const FramePlan& plan);
 
 /// What the buffers of frames that follow one another have room for.
 struct Capacity {
-  std::int64_t slots = 0;       // Gaussians that an order group draws
-  std::int64_t pairs = 0;       // Gaussian-supertile pairs
-  std::int64_t tile_pairs = 0;  // Gaussian-tile pairs, where supertiles are of several tiles
+  std::int64_t slots = 0;        // Gaussians that an order group draws
+  std::int64_t pairs = 0;        // Gaussian-supertile pairs
+  std::int64_t large_pairs = 0;  // those of Gaussians in many supertiles
+  std::int64_t tile_pairs = 0;   // Gaussian-tile pairs
+  std::int64_t rounds = 0;       // that part lists which are too long to be sorted at once
 
   /// At least what a frame of this plan starts with, or exactly what `asked` names.
   void start(const FramePlan& plan, const Workings& asked);

@@ -1,4 +1,3 @@
-#include <array>
 #include <cstddef>
 
 #include "render/stages.h"
@@ -34,7 +33,7 @@ void cull(gl::Dispatcher& dispatcher, const FramePlan& plan, OrderGroup views, P
                     {"RegionRows", buffers.region_rows},
                     {"Gaussians", *page.gaussians},
                     {"Kept", kept_of(model, p, buffers)},
-                    {"DepthKeys", buffers.ordering.depth_keys},
+                    {"DepthKeys", buffers.culled.depth_keys},
                     {"Bounds", *buffers.transmittance.bounds},
                     {"DepthTable", buffers.transmittance.depth_table},
                     {"NextBounds", *buffers.transmittance.next_bounds}},
@@ -45,53 +44,30 @@ void cull(gl::Dispatcher& dispatcher, const FramePlan& plan, OrderGroup views, P
   }
 }
 
-void compact(gl::Dispatcher& dispatcher, const FramePlan& plan, OrderGroup group, const DrawnBuffers& drawn,
-             FrameBuffers& buffers) {
+void compact(gl::Dispatcher& dispatcher, const FramePlan& plan, std::uint32_t group,
+             const DrawnBuffers& drawn, FrameBuffers& buffers) {
   gl::Context& context = dispatcher.context();
   const auto blocks = gl::DispatchSize::threads(std::max(1u, plan.gaussian_count), COMPACT_BLOCK);
-  const std::uint32_t digit_bits = primitives::RadixSort::digit_bits(group.key_bits);
-  if (context.limits().subgroups_of_32) {
-    const std::array variant = {buffers.ordering.order.block_number(), gl::Number{"LOOKS_BACK", 1, 2}};
-    return dispatcher.run(context.program("project_compact.comp", variant), blocks,
-                          {{"Frame", buffers.parameters},
-                           {"Arguments", drawn.arguments},
-                           {"DepthKeys", buffers.ordering.depth_keys},
-                           {"LookBack", buffers.look_back.words()},
-                           {"Keys", buffers.ordering.order.keys()},
-                           {"Values", buffers.ordering.order.values()},
-                           {"Indices", drawn.indices},
-                           {"FrameCounters", buffers.counters}},
-                          {{"nearest_key", group.nearest_key},
-                           {"look_back_half", buffers.look_back.next_half()},
-                           {"kind", ARGUMENTS_ORDER},
-                           {"capacity", buffers.slots},
-                           {"groups_max", context.limits().groups},
-                           {"digit_bits", digit_bits}});
+  const bool looks_back = context.limits().subgroups_of_32;
+  if (!looks_back) {
+    dispatcher.run(context.program("project_compact_count.comp"), blocks,
+                   {{"Frame", buffers.parameters},
+                    {"DepthKeys", buffers.culled.depth_keys},
+                    {"BlockCounts", buffers.culled.block_counts}});
   }
-  dispatcher.run(context.program("project_compact_count.comp"), blocks,
-                 {{"Frame", buffers.parameters},
-                  {"DepthKeys", buffers.ordering.depth_keys},
-                  {"BlockCounts", buffers.ordering.block_counts}});
-  buffers.scan.run(dispatcher, buffers.ordering.block_arguments, 0, buffers.ordering.block_counts);
-  dispatcher.run(
-      context.program("arguments.comp", buffers.ordering.order.block_number()),
-      gl::DispatchSize::of_groups(1),
-      {{"Arguments", drawn.arguments}, {"Total", buffers.scan.total()}, {"FrameCounters", buffers.counters}},
-      {{"kind", ARGUMENTS_ORDER},
-       {"capacity", buffers.slots},
-       {"groups_max", context.limits().groups},
-       {"digit_bits", digit_bits}});
-  dispatcher.run(context.program("project_compact.comp", std::array{buffers.ordering.order.block_number(),
-                                                                    gl::Number{"LOOKS_BACK", 0, 2}}),
-                 blocks,
+  dispatcher.run(context.program("project_compact.comp", gl::Number{"LOOKS_BACK", looks_back, 2}), blocks,
                  {{"Frame", buffers.parameters},
                   {"Arguments", drawn.arguments},
-                  {"DepthKeys", buffers.ordering.depth_keys},
-                  {"BlockCounts", buffers.ordering.block_counts},
-                  {"Keys", buffers.ordering.order.keys()},
-                  {"Values", buffers.ordering.order.values()},
-                  {"Indices", drawn.indices}},
-                 {{"nearest_key", group.nearest_key}});
+                  {"DepthKeys", buffers.culled.depth_keys},
+                  {"BlockCounts", buffers.culled.block_counts},
+                  {"LookBack", buffers.look_back.words()},
+                  {"Depths", buffers.projected.depths},
+                  {"Indices", drawn.indices},
+                  {"FrameCounters", buffers.counters}},
+                 {{"order_group", group},
+                  {"look_back_half", looks_back ? buffers.look_back.next_half() : 0},
+                  {"capacity", buffers.slots},
+                  {"groups_max", context.limits().groups}});
 }
 
 }  // namespace
@@ -103,50 +79,35 @@ void project(gl::Dispatcher& dispatcher, const FramePlan& plan, std::uint32_t gr
   variant.measures = measures;
   cull(dispatcher, plan, views, variant, model, buffers);
   const DrawnBuffers& drawn = *buffers.drawn[group];
-  compact(dispatcher, plan, views, drawn, buffers);
+  compact(dispatcher, plan, group, drawn, buffers);
   variant.subgroups = dispatcher.context().limits().subgroups_of_32;
   variant.sh_degree = plan.degree;
   const gl::Program& program = dispatcher.context().program("project.comp", variant);
-  dispatcher.add_beside([&, views] {
-    for (std::size_t p = 0; p < model.pages.size(); ++p) {
-      const ModelBuffers::Page& page = model.pages[p];
-      dispatcher.start(
-          program,
-          gl::DispatchSize::indirect(drawn.arguments, offsetof(shared::DispatchArguments, threads_x)),
-          {{"Frame", buffers.parameters},
-           {"Views", buffers.views},
-           {"RegionRows", buffers.region_rows},
-           {"Gaussians", *page.gaussians},
-           {"Kept", kept_of(model, p, buffers)},
-           {"Harmonics", *page.harmonics},
-           {"Arguments", drawn.arguments},
-           {"Indices", drawn.indices},
-           {"Splats", buffers.projected.splats},
-           {"Coverages", buffers.projected.coverages},
-           {"FrameCounters", buffers.counters},
-           {"Tall", buffers.projected.tall},
-           {"Bounds", *buffers.transmittance.bounds},
-           {"DepthTable", buffers.transmittance.depth_table},
-           {"Measured", buffers.transmittance.measured}},
-          {{"page_first", page.first},
-           {"page_count", page.count},
-           {"view_begin", views.begin},
-           {"view_end", views.end}});
-    }
-  });
-  variant.measures = false;
-  variant.sh_degree = 0;
-  const gl::Program& tall = dispatcher.context().program("project_count_tall.comp", variant);
-  dispatcher.add_beside([&] {
-    dispatcher.start(tall, gl::DispatchSize::indirect(buffers.counters, offsetof(shared::Counters, tall_x)),
-                     {{"Frame", buffers.parameters},
-                      {"Views", buffers.views},
-                      {"RegionRows", buffers.region_rows},
-                      {"FrameCounters", buffers.counters},
-                      {"Tall", buffers.projected.tall},
-                      {"Splats", buffers.projected.splats},
-                      {"Coverages", buffers.projected.coverages}});
-  });
+  for (std::size_t p = 0; p < model.pages.size(); ++p) {
+    const ModelBuffers::Page& page = model.pages[p];
+    dispatcher.start(
+        program, gl::DispatchSize::indirect(drawn.arguments, offsetof(shared::DispatchArguments, threads_x)),
+        {{"Frame", buffers.parameters},
+         {"Views", buffers.views},
+         {"RegionRows", buffers.region_rows},
+         {"Gaussians", *page.gaussians},
+         {"Kept", kept_of(model, p, buffers)},
+         {"Harmonics", *page.harmonics},
+         {"Arguments", drawn.arguments},
+         {"Indices", drawn.indices},
+         {"Splats", buffers.projected.splats},
+         {"Coverages", buffers.projected.coverages},
+         {"FrameCounters", buffers.counters},
+         {"Large", buffers.projected.large},
+         {"Bounds", *buffers.transmittance.bounds},
+         {"DepthTable", buffers.transmittance.depth_table},
+         {"Measured", buffers.transmittance.measured}},
+        {{"page_first", page.first},
+         {"page_count", page.count},
+         {"view_begin", views.begin},
+         {"view_end", views.end}});
+  }
+  dispatcher.wait_for_writes();
 }
 
 }  // namespace binosplat::render

@@ -8,7 +8,7 @@
 namespace binosplat::render {
 
 FrameReport RayBlend::set_views(std::span<const shared::View> views, const FrameSettings& settings) {
-  return frame_.draw_until(Stage::ranges, views, exact_of(settings), {.between_pixels = true});
+  return frame_.draw_until(Stage::sort, views, exact_of(settings), {.between_pixels = true});
 }
 
 double RayBlend::blend(std::uint32_t v, const gl::Buffer& rays, std::uint32_t count, gl::Buffer& colours,
@@ -17,14 +17,13 @@ double RayBlend::blend(std::uint32_t v, const gl::Buffer& rays, std::uint32_t co
   FrameBuffers& buffers = frame_.buffers();
   const std::array variant = {
       gl::Number{"TILE_SIZE", static_cast<std::uint64_t>(plan.settings.tile_size), 33},
-      gl::Number{"SUPERTILE_SIDE", static_cast<std::uint64_t>(plan.supertile_side), 3},
       gl::Number{"HALF", 0, 2}, projection_number(plan.perspective.projection)};
   dispatcher_.begin_frame();
   dispatcher_.begin_stage("blend");
   dispatcher_.run(context().program("blend_rays.comp", variant), gl::DispatchSize::threads(count, THREADS),
                   {{"Views", buffers.views},
-                   {"Ranges", buffers.lists.ranges_of_tiles(plan)},
-                   {"Values", buffers.lists.values_of_tiles(plan)},
+                   {"Ranges", buffers.lists.tile_ranges},
+                   {"Values", buffers.lists.tile_values},
                    {"Splats", buffers.projected.splats},
                    {"Rays", rays},
                    {"Colours", colours},

@@ -11,26 +11,15 @@ void decode(gl::Dispatcher& dispatcher, const FramePlan& plan, const ModelBuffer
             const FrameBuffers& buffers);
 
 /// Finds the Gaussians that an order group draws, in index order, and makes them as each of its views sees
-/// them: splats and tile counts by slot, depths. Of that only the Gaussians and their depths are there when
-/// it returns; the rest runs beside order() (gl::Dispatcher::add_beside), whose sort does not fill a GPU.
+/// them: splats and tile coverage by slot, depths.
 void project(gl::Dispatcher& dispatcher, const FramePlan& plan, std::uint32_t group, bool measures,
              const ModelBuffers& model, FrameBuffers& buffers);
 
-/// Sorts their slots front to back, ties by index.
-void order(gl::Dispatcher& dispatcher, const FramePlan& plan, std::uint32_t group, FrameBuffers& buffers);
+/// Puts (depth, splat) into the list of every supertile that a splat of any view touches, in any order.
+void bin(gl::Dispatcher& dispatcher, const FramePlan& plan, const Capacity& capacity, FrameBuffers& buffers);
 
-/// Appends (supertile, splat) for every supertile that a splat of the group touches, in depth order.
-void pairs(gl::Dispatcher& dispatcher, const FramePlan& plan, std::uint32_t group, FrameBuffers& buffers);
-
-/// Sorts all pairs by supertile; within each they stay in depth order.
-void tile_sort(gl::Dispatcher& dispatcher, const FramePlan& plan, FrameBuffers& buffers);
-
-/// Finds where each tile's list lies among the pairs.
-void ranges(gl::Dispatcher& dispatcher, const FramePlan& plan, FrameBuffers& buffers);
-
-/// Finds the tiles whose lists are long, which are blended by a launch of their own. To be called once a
-/// frame, before its first blend.
-void find_long_lists(gl::Dispatcher& dispatcher, const FramePlan& plan, FrameBuffers& buffers);
+/// Sorts each supertile's list front to back, ties by the Gaussian's index, and makes its tiles' lists of it.
+void sort(gl::Dispatcher& dispatcher, const Capacity& capacity, FrameBuffers& buffers);
 
 /// Blends the pictures; and, where the frame `measures` the transmittance, the largest that each splat met.
 /// `tiles_a_splat` is the last frame's, 0 where it is not known; the pictures do not depend on it.
@@ -65,8 +54,8 @@ void blend_visibility(gl::Dispatcher& dispatcher, const FramePlan& plan, FrameBu
 /// Throws Error(out_of_memory) where the driver ended a list of splats before its end.
 void refuse_truncated(const gl::Context& context, const shared::Counters& counters);
 
-/// Keeps what the frame measured for the next one, and finds the median depth. Does nothing in a frame that
-/// neither measures nor has a probe.
+/// Keeps what the frame measured for the next one, and sums up how far Gaussians are. Does nothing in a frame
+/// that neither measures nor has a probe.
 void keep_measured(gl::Dispatcher& dispatcher, const FramePlan& plan, bool measures, FrameBuffers& buffers);
 
 /// Sums up the squared error in the probe's tiles. Does nothing without a probe.
@@ -74,9 +63,5 @@ void probe(gl::Dispatcher& dispatcher, const FramePlan& plan, FrameBuffers& buff
 
 /// What probe() summed up.
 Probed probed(const FramePlan& plan, const shared::Counters& counters);
-
-/// Fills the arguments of the pairs that are to be made, ARGUMENTS_PAIRS, or sorted, ARGUMENTS_ALL_PAIRS.
-void count_pairs(gl::Dispatcher& dispatcher, const FramePlan& plan, std::uint32_t kind,
-                 FrameBuffers& buffers);
 
 }  // namespace binosplat::render

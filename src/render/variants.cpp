@@ -44,7 +44,6 @@ PairVariant::PairVariant(const FramePlan& plan)
       th(plan.settings.th),
       transmittance(plan.settings.transmittance),
       tile_size(plan.settings.tile_size),
-      supertile_side(plan.supertile_side),
       probed(plan.probe.has_value()),
       regions(plan.draws_regions()),
       antialiased(plan.antialiased),
@@ -55,12 +54,11 @@ PairVariant::PairVariant(const FramePlan& plan)
       between_pixels(plan.between_pixels),
       kernel_px2(plan.kernel_px2 == KERNEL_PX2 ? 0.0f : static_cast<float>(plan.kernel_px2)) {}
 
-std::array<gl::Number, 18> PairVariant::numbers() const {
+std::array<gl::Number, 17> PairVariant::numbers() const {
   return {number("TILES", tiles, std::size(tiles_choices), tiles_choices[tiles].name),
           number("TH", th, std::size(th_choices), th_choices[th].name),
           number("TRANSMITTANCE", transmittance, std::size(transmittance_choices)),
           number("TILE_SIZE", tile_size, 33),
-          number("SUPERTILE_SIDE", supertile_side, 3),
           number("PROBED", probed, flag),
           number("REGIONS", regions, flag),
           number("ANTIALIASED", antialiased, flag),

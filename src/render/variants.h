@@ -20,11 +20,11 @@ gl::Number projection_number(int projection);
 gl::Number subgroups_number(const gl::Context& context);
 
 /// The variant of the programs that decide which pairs there are: project_cull.comp, project.comp,
-/// project_count_tall.comp, pairs.comp.
+/// bin_large.comp.
 struct PairVariant {
   explicit PairVariant(const FramePlan& plan);
 
-  int tiles, th, transmittance, tile_size, supertile_side;
+  int tiles, th, transmittance, tile_size;
   bool probed, regions, antialiased, half;
   std::uint32_t offset_count;
   int order, projection;
@@ -36,7 +36,7 @@ struct PairVariant {
   int sh_degree = 0;
   bool subgroups = false;
 
-  std::array<gl::Number, 18> numbers() const;
+  std::array<gl::Number, 17> numbers() const;
 };
 
 /// The programs of the blend, which draw the same bits: for any GPU, for software renderers, and for
@@ -46,7 +46,7 @@ enum class BlendProgram { general, software, subgroups };
 struct BlendVariant {
   BlendProgram program = BlendProgram::general;
   int tile_size = TILE_SIZE_DEFAULT;
-  bool plain = false;       // whole views, no probe, supertiles of 2 x 2 tiles: as most frames are
+  bool plain = false;       // whole views, no probe: as most frames are
   bool long_lists = false;  // LISTS of lists.glsl
   bool half = false;
   int measure = MEASURE_NONE;  // MEASURE_ of shared/limits.h

@@ -63,8 +63,7 @@ void check_region(const ViewRegion& region, std::uint32_t nth, const glm::uvec2&
 }
 
 std::vector<glm::uvec2> region_rows(const ViewRegion& region, const shared::View& view, std::uint32_t tile,
-                                    std::uint32_t supertile_side, const glm::uvec2& first,
-                                    std::uint32_t step) {
+                                    const glm::uvec2& first, std::uint32_t step) {
   const glm::uvec2 size(view.width, view.height);
   const glm::uvec2 tiles = (size + tile - 1u) / tile;
   // Whole tiles of the hole: the last ones may be clipped by the picture's edge.
@@ -76,7 +75,7 @@ std::vector<glm::uvec2> region_rows(const ViewRegion& region, const shared::View
     const glm::uvec2 there = (glm::max(columns, first.x) - first.x + step - 1u) / step;
     return there.x | there.y << 16;
   };
-  std::vector<glm::uvec2> rows((view.tiles_y + supertile_side - 1) / supertile_side * supertile_side,
+  std::vector<glm::uvec2> rows((view.tiles_y + SUPERTILE_SIDE - 1) / SUPERTILE_SIDE * SUPERTILE_SIDE,
                                glm::uvec2(0));
   for (std::uint32_t n = 0; n < view.tiles_y; ++n) {
     const std::uint32_t row = first.y + n * step;

@@ -55,7 +55,6 @@ void check_region(const ViewRegion& region, std::uint32_t nth, const glm::uvec2&
 /// The rows of a view's tiles as shaders read them (tiles/regions.glsl), filled up to whole supertiles;
 /// `first` and `step` are a probe's column and row, and its step. The region must be right.
 std::vector<glm::uvec2> region_rows(const ViewRegion& region, const shared::View& view, std::uint32_t tile,
-                                    std::uint32_t supertile_side, const glm::uvec2& first = glm::uvec2(0),
-                                    std::uint32_t step = 1);
+                                    const glm::uvec2& first = glm::uvec2(0), std::uint32_t step = 1);
 
 }  // namespace binosplat::render

@@ -28,9 +28,6 @@ struct StandIn {
 };
 
 struct Workings {
-  /// Tiles along each side of a supertile, 1 or 2: with 2 there are fewer pairs to sort. 0: the frame
-  /// chooses.
-  int supertile_side = 0;
   /// Room to start with, in Gaussians in view and in pairs; 0: the frame chooses. A frame that needs more
   /// grows its buffers and is drawn again.
   std::int64_t slots = 0;

@@ -64,7 +64,7 @@ std::vector<std::vector<ChunkVisibility>> Visibility::measure(std::span<const sh
     pixel_areas.push_back(size.x / view.width * size.y / view.height);
     exact.regions.push_back({.low_pass_share = static_cast<float>(1.0 / pixel_areas.back())});
   }
-  frame_.draw_until(render::Stage::ranges, small, exact);
+  frame_.draw_until(render::Stage::sort, small, exact);
   const std::vector<std::int64_t> sums = sum_up(views.size(), exact.precision, chunks);
   std::vector<std::vector<ChunkVisibility>> seen(views.size(), std::vector<ChunkVisibility>(chunks.size()));
   for (std::size_t v = 0; v < views.size(); ++v) {
@@ -93,7 +93,6 @@ std::vector<std::int64_t> Visibility::sum_up(std::size_t views, int precision, c
   owners_.upload(chunks.owners());
   dispatcher_.begin_frame();
   dispatcher_.begin_stage("blend");
-  render::find_long_lists(dispatcher_, plan, buffers);
   render::blend_visibility(dispatcher_, plan, buffers, sums_);
   const auto model_buffers = frame_.model()->in(precision);
   const gl::Program& program =

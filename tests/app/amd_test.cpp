@@ -105,9 +105,7 @@ constexpr AmdRun amd_runs[] = {
 
 // Programs that this driver is never given: those for subgroups of 32 invocations, which AMD's are not as
 // OpenGL has them, and what llvmpipe blends by.
-constexpr const char* amd_never[] = {"blend_blocks.comp", "blend_subgroups.comp",
-                                     "primitives/sort_digits.comp", "primitives/sort_scatter_subgroups.comp",
-                                     "subgroups_check.comp"};
+constexpr const char* amd_never[] = {"blend_blocks.comp", "blend_subgroups.comp", "subgroups_check.comp"};
 
 struct AmdTest : test::SceneTest, testing::WithParamInterface<const char*> {
   void SetUp() override {
@@ -244,7 +242,7 @@ TEST_P(AmdFault, IsFound) {
   const char* const line = "render model.ply --backend device -o out.png --shader-dir shaders";
   ASSERT_EQ(trouble(run(line), 0), "");
   // What is compiled only where there are no subgroups of 32.
-  const char* const name = "primitives/sort_scatter.comp";
+  const char* const name = "project_compact_count.comp";
   write_text(folder / "shaders" / name, read_text(folder / "shaders" / name) + "float planted = missing;\n");
   const std::string found = trouble(run(line), 0);
   EXPECT_TRUE(has(found, std::string("shader ") + name + " does not compile"));

@@ -39,7 +39,7 @@ TEST_F(Render, WithoutCamerasTheModelIsFramed) {
   ASSERT_TRUE(good(outcome));
   EXPECT_EQ(folder.files(), (Names{"model.ply", "out/framed_left.png", "out/framed_right.png"}));
   EXPECT_FALSE(same("out/framed_left.png", "out/framed_right.png"));
-  for (const char* word : {"/framed_left.png", "project", "order", "pairs", "tile_sort", "ranges", "blend"})
+  for (const char* word : {"/framed_left.png", "project", "bin", "sort", "blend"})
     EXPECT_TRUE(has(outcome.out, word));
   const Image left = load_image(out + "/framed_left.png");
   EXPECT_EQ(left.width, 90);
@@ -131,7 +131,7 @@ TEST_F(Render, TheGpuAgreesWithTheReference) {
   add_cameras();
   const Words what = {"--mono", "--exr", "float", "--exr-encoding", "display"};
   draw("gpu.exr", what);
-  for (const char* stage : {"project", "order", "pairs", "tile_sort", "ranges", "blend"}) {
+  for (const char* stage : {"project", "bin", "sort", "blend"}) {
     draw("reference.exr", joined(what, {"--reference-until", stage}));
     EXPECT_GE(psnr("gpu.exr", "reference.exr"), 80) << stage;
   }
@@ -181,7 +181,7 @@ TEST_F(Render, JsonHasWhatWasPrinted) {
   EXPECT_FALSE(report["device"]["renderer"].get<std::string>().empty());
   EXPECT_EQ(report["frames"], 3) << "the first of several compiles shaders and is left out";
   EXPECT_TRUE(has(outcome.out, "3 frames"));
-  ASSERT_EQ(report["stages"].size(), 7u);
+  ASSERT_EQ(report["stages"].size(), 5u);
   for (const json& stage : report["stages"])
     EXPECT_GE(stage["p99_ms"].get<double>(), stage["median_ms"].get<double>());
   // 300 Gaussians of 48 bytes, and 12 SH coefficients of 4.

@@ -1,14 +1,11 @@
-// Speeds of the CPU's side: files in and out, and the sort that the GPU's is compared with. Each is told in
-// bytes a second of the file, of the picture's 8-bit pixels or of the sorted pairs (M and G are 10^6 and
-// 10^9). With BINOSPLAT_SCENES (README.md), real scenes as well.
+// Speeds of the CPU's side: files in and out. Each is told in bytes a second of the file or of the picture's
+// 8-bit pixels (M and G are 10^6 and 10^9). With BINOSPLAT_SCENES (README.md), real scenes as well.
 
 #include <benchmark/benchmark.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <cmath>
 #include <cstdlib>
-#include <numeric>
 
 #include "base/output_file.h"
 #include "formats/cameras_file.h"
@@ -100,20 +97,6 @@ void add_png(const fs::path& folder) {
           [=] { benchmark::DoNotOptimize(load_image(path)); });
 }
 
-/// As tests/primitives/radix_sort_test.cpp sorts to compare: values by their keys, equal keys in order.
-void add_sort() {
-  std::mt19937 engine(11);
-  std::vector<std::uint32_t> keys(1'000'000);
-  for (std::uint32_t& key : keys) key = engine();
-  measure("sort 1M pairs", 8.0 * static_cast<double>(keys.size()), [=] {
-    std::vector<std::uint32_t> values(keys.size());
-    std::iota(values.begin(), values.end(), 0u);
-    std::stable_sort(values.begin(), values.end(),
-                     [&](std::uint32_t a, std::uint32_t b) { return keys[a] < keys[b]; });
-    benchmark::DoNotOptimize(values);
-  });
-}
-
 void add_scenes() {
   const char* scenes = std::getenv("BINOSPLAT_SCENES");
   if (scenes == nullptr) return;
@@ -133,7 +116,6 @@ int main(int argc, char** argv) {
   add_plys(folder);
   add_cameras(folder);
   add_png(folder);
-  add_sort();
   add_scenes();
   benchmark::RunSpecifiedBenchmarks();
   fs::remove_all(folder);

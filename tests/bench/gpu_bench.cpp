@@ -256,7 +256,7 @@ Json time_foveated(stereo::FoveatedFrame& foveated, render::Frame& frame, const 
 
 void print_row(const std::string& scene, const std::string& view, const char* what, const Json& t) {
   fmt::print("| {} | {} | {} |", scene, view, what);
-  for (const char* stage : {"project", "order", "pairs", "tile_sort", "ranges", "blend", "frame"}) {
+  for (const char* stage : {"project", "bin", "sort", "blend", "frame"}) {
     fmt::print(" {:.3f} |", t.at(stage).get<double>());
   }
   fmt::print(" {:.2f} | {:.2f} | {:.0f} |\n", t.at("visible_count").get<double>() * 1e-6,
@@ -303,15 +303,12 @@ Json run(const Case& c, const fs::path& scenes, const fs::path& views, const How
     row["large, halves"] = time_in_textures(frame, std::span(&shot.large, 1), how);
     for (const char* what : {"pair", "left", "right", "large", "pair, halves", "large, halves"})
       print_row(c.name, shot.name, what, row[what]);
-    const auto front = [&](const char* what) {
-      return row[what]["project"].get<double>() + row[what]["order"].get<double>();
-    };
+    const auto front = [&](const char* what) { return row[what]["project"].get<double>(); };
     row["front_pair_over_one_eye"] = front("pair") / std::max(front("left"), front("right"));
     row["pair_over_both_alone"] = row["pair"]["frame"].get<double>() /
                                   (row["left"]["frame"].get<double>() + row["right"]["frame"].get<double>());
-    fmt::print(
-        "  project + order of the pair over one eye's: {:.2f}; the pair over its two mono frames: {:.2f}\n",
-        row["front_pair_over_one_eye"].get<double>(), row["pair_over_both_alone"].get<double>());
+    fmt::print("  project of the pair over one eye's: {:.2f}; the pair over its two mono frames: {:.2f}\n",
+               row["front_pair_over_one_eye"].get<double>(), row["pair_over_both_alone"].get<double>());
     if (foveated) {
       row["foveated"] = time_foveated(*foveated, frame, shot, how);
       print_row(c.name, shot.name, "foveated", row["foveated"]);

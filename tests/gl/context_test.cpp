@@ -27,11 +27,11 @@ TEST(Context, TwoLiveOnesKeepTheirOwnPrograms) {
   a.upload(std::vector<std::uint32_t>{1, 2, 3});
   {
     const auto second = Context::open();
-    EXPECT_NO_THROW(second->program("ranges_clear.comp"));
+    EXPECT_NO_THROW(second->program("recolour.comp"));
   }
   // Opening made the second one current; a program that needs the first opens it again.
   const auto third = Context::open();
-  EXPECT_NO_THROW(third->program("ranges_clear.comp"));
+  EXPECT_NO_THROW(third->program("recolour.comp"));
 }
 
 TEST(Context, ADeviceThatIsNotThereIsNamed) {

@@ -72,31 +72,6 @@ TEST(Dispatcher, GoesBeyondTheRealLimitOfGroups) {
   EXPECT_EQ(items.back(), 65537u);
 }
 
-TEST(Dispatcher, StartsAPieceBesideEachRunAndTheRestAtTheEnd) {
-  Context& context = test::gl_context();
-  const OwnShader shader("count_up.comp", count_up);
-  Buffer items(context, "items"), others(context, "others");
-  for (Buffer* buffer : {&items, &others}) buffer->upload(std::vector<std::uint32_t>(1));
-  Dispatcher dispatcher(context);
-  const Program& program = context.program("count_up.comp");
-  const auto once = DispatchSize::of_groups(1);
-  std::string order;
-  for (const char* piece : {"a", "b", "c", "d"}) {
-    dispatcher.add_beside([&, piece] {
-      order += piece;
-      dispatcher.start(program, once, {{"Items", others}}, {{"count", 1}});
-    });
-  }
-  for (int n = 0; n < 2; ++n) dispatcher.run(program, once, {{"Items", items}}, {{"count", 1}});
-  EXPECT_EQ(order, "ab");  // "abcd", had the first run taken all
-  dispatcher.finish_beside();
-  EXPECT_EQ(order, "abcd");
-  EXPECT_EQ(items.read<std::uint32_t>(1).front(), 2u);
-  EXPECT_EQ(others.read<std::uint32_t>(1).front(), 4u);
-  dispatcher.run(program, once, {{"Items", items}}, {{"count", 1}});
-  EXPECT_EQ(order, "abcd");  // each once
-}
-
 TEST(Dispatcher, RefusesWhatIsForgotten) {
   Context& context = test::gl_context();
   const OwnShader shader("count_up.comp", count_up);

@@ -1,5 +1,6 @@
 // The structs that C++ and GLSL share lie where the driver says they lie.
 
+#include <fmt/core.h>
 #include <gtest/gtest.h>
 
 #include <cstddef>
@@ -47,7 +48,10 @@ std::map<std::string, int> driver_offsets(const std::string& type, Block block =
     int values[2] = {};
     gl.GetProgramResourceiv(program.id(), kind, i, is_uniform ? 1 : 2, wanted, 2, nullptr, values);
     const std::string path = name;
-    offsets[path.substr(path.rfind('.') + 1)] = values[0];
+    const std::string item = is_uniform ? "one." : "items[0].";
+    const std::size_t at = path.find(item);
+    offsets[at == std::string::npos ? path.substr(path.rfind('.') + 1) : path.substr(at + item.size())] =
+        values[0];
     offsets[""] = values[1];
   }
   return offsets;
@@ -101,7 +105,6 @@ TEST(Layout, FrameParametersAreWhereTheDriverPutsThem) {
                             AT(FrameParameters, slots),
                             AT(FrameParameters, tile_count),
                             AT(FrameParameters, list_per_view),
-                            AT(FrameParameters, supertile_side),
                             AT(FrameParameters, has_regions),
                             AT(FrameParameters, offset_count),
                             AT(FrameParameters, views_per_decoding),
@@ -110,6 +113,7 @@ TEST(Layout, FrameParametersAreWhereTheDriverPutsThem) {
                             AT(FrameParameters, depth_slack),
                             AT(FrameParameters, unused_1),
                             AT(FrameParameters, unused_2),
+                            AT(FrameParameters, unused_3),
                             STRIDE(FrameParameters)};
   EXPECT_EQ(driver_offsets("FrameParameters"), expected);
   Offsets in_block = expected;  // of a frame there is one
@@ -146,36 +150,49 @@ TEST(Layout, AnchorIsWhereTheDriverPutsIt) {
 }
 
 TEST(Layout, CountersAndDispatchArgumentsAreWhereTheDriverPutsThem) {
-  const Offsets counters = {AT(Counters, visible),
-                            AT(Counters, order_wanted),
-                            AT(Counters, pairs),
-                            AT(Counters, overflow),
-                            AT(Counters, truncated_lists),
-                            AT(Counters, median_depth),
-                            AT(Counters, probe_low),
-                            AT(Counters, probe_high),
-                            AT(Counters, probe_squares_low),
-                            AT(Counters, probe_squares_high),
-                            AT(Counters, long_lists),
-                            AT(Counters, long_x),
-                            AT(Counters, long_y),
-                            AT(Counters, long_z),
-                            AT(Counters, tile_pairs),
-                            AT(Counters, tall),
-                            AT(Counters, tall_x),
-                            AT(Counters, tall_y),
-                            AT(Counters, tall_z),
-                            STRIDE(Counters)};
+  Offsets counters = {AT(Counters, visible),
+                      AT(Counters, order_wanted),
+                      AT(Counters, pairs),
+                      AT(Counters, tile_pairs),
+                      AT(Counters, overflow),
+                      AT(Counters, truncated_lists),
+                      AT(Counters, depths_low),
+                      AT(Counters, depths_high),
+                      AT(Counters, probe_low),
+                      AT(Counters, probe_high),
+                      AT(Counters, probe_squares_low),
+                      AT(Counters, probe_squares_high),
+                      AT(Counters, long_lists),
+                      AT(Counters, long_x),
+                      AT(Counters, long_y),
+                      AT(Counters, long_z),
+                      AT(Counters, large),
+                      AT(Counters, large_x),
+                      AT(Counters, large_y),
+                      AT(Counters, large_z),
+                      AT(Counters, large_entries),
+                      AT(Counters, fill_x),
+                      AT(Counters, fill_y),
+                      AT(Counters, fill_z),
+                      AT(Counters, slabs),
+                      AT(Counters, unused_1),
+                      AT(Counters, unused_2),
+                      AT(Counters, unused_3),
+                      STRIDE(Counters)};
+  for (std::size_t kind = 0; kind < SORT_KINDS; ++kind) {
+    const int at = static_cast<int>(offsetof(shared::Counters, lists) + kind * sizeof(shared::ListCount));
+    const std::string name = fmt::format("lists[{}].", kind);
+    for (int n = 0; const char* member : {"count", "groups_x", "groups_y", "groups_z"})
+      counters[name + member] = at + 4 * n++;
+  }
   EXPECT_EQ(driver_offsets("Counters"), counters);
   const Offsets arguments = {
-      AT(DispatchArguments, count),     AT(DispatchArguments, first),     AT(DispatchArguments, threads_x),
-      AT(DispatchArguments, threads_y), AT(DispatchArguments, threads_z), AT(DispatchArguments, scan_x),
-      AT(DispatchArguments, scan_y),    AT(DispatchArguments, scan_z),    AT(DispatchArguments, sort_x),
-      AT(DispatchArguments, sort_y),    AT(DispatchArguments, sort_z),    AT(DispatchArguments, unused),
-      STRIDE(DispatchArguments)};
+      AT(DispatchArguments, count),     AT(DispatchArguments, threads_x), AT(DispatchArguments, threads_y),
+      AT(DispatchArguments, threads_z), AT(DispatchArguments, bin_x),     AT(DispatchArguments, bin_y),
+      AT(DispatchArguments, bin_z),     AT(DispatchArguments, unused),    STRIDE(DispatchArguments)};
   EXPECT_EQ(driver_offsets("DispatchArguments"), arguments);
   Offsets wrong = arguments;  // the comparison sees a member out of place
-  wrong["sort_x"] += 4;
+  wrong["bin_x"] += 4;
   EXPECT_NE(driver_offsets("DispatchArguments"), wrong);
 }
 

@@ -36,39 +36,29 @@ void add_modes(test::CompiledShaders& compiled, const std::string& name, const D
 
 TEST_F(SubgroupShaders, Compile) {
   test::CompiledShaders compiled;
-  for (const char* name : {"pairs.comp", "project_count_tall.comp"}) {
-    const Defines defines = {{"TILES_NAME", "ellipse"}, {"TILES", "0"},          {"TH", "0"},
-                             {"TILE_SIZE", "16"},       {"SUPERTILE_SIDE", "2"}, {"HALF", "0"},
-                             {"WITH_SUBGROUPS", "1"}};
-    add_modes(compiled, name, defines);
-  }
+  add_modes(compiled, "bin_large.comp",
+            {{"TILES_NAME", "ellipse"},
+             {"TILES", "0"},
+             {"TH", "0"},
+             {"TILE_SIZE", "16"},
+             {"HALF", "0"},
+             {"WITH_SUBGROUPS", "1"}});
   for (const char* half : {"0", "1"}) {
-    const Defines defines = {{"TILES_NAME", "ellipse"}, {"TILES", "1"},         {"TH", "0"},
-                             {"TH_NAME", "tau"},        {"TRANSMITTANCE", "0"}, {"TILE_SIZE", "16"},
-                             {"SUPERTILE_SIDE", "2"},   {"HALF", half},         {"ANTIALIASED", "0"},
-                             {"OFFSETS", "0"},          {"SH_DEGREE", "1"},     {"MEASURES", "1"},
-                             {"WITH_SUBGROUPS", "1"}};
+    const Defines defines = {
+        {"TILES_NAME", "ellipse"}, {"TILES", "1"},      {"TH", "0"},       {"TH_NAME", "tau"},
+        {"TRANSMITTANCE", "0"},    {"TILE_SIZE", "16"}, {"HALF", half},    {"ANTIALIASED", "0"},
+        {"OFFSETS", "0"},          {"SH_DEGREE", "1"},  {"MEASURES", "1"}, {"WITH_SUBGROUPS", "1"}};
     add_modes(compiled, "project.comp", defines);
   }
-  for (const char* writes : {"0", "1"})
-    compiled.add("ranges_of_tiles.comp",
-                 {{"SUPERTILE_SIDE", "2"}, {"WITH_SUBGROUPS", "1"}, {"WRITES", writes}});
+  compiled.add("sort_split.comp", {{"WITH_SUBGROUPS", "1"}});
+  for (const char* threads : {"32", "1024"})
+    compiled.add("sort_lists.comp", {{"WITH_SUBGROUPS", "1"}, {"LIST_THREADS", threads}, {"LIST_EACH", "4"}});
   Defines check = {{"COLUMNS", "32"}, {"ROWS", "4"}};
   for (const char* fault :
        {"OF_OTHER_SIZE", "IN_OTHER_ORDER", "VOTE_WITH_OTHERS", "SHUFFLE_OTHERS", "ADD_OTHERS"})
     check.emplace_back(std::string("SUBGROUPS_") + fault, "1u");
   compiled.add("subgroups_check.comp", check);
-  for (const char* block : {"1024", "2048"}) {
-    for (const char* bits : {"8", "9"}) {
-      compiled.add("primitives/sort_scatter_subgroups.comp", {{"SORT_BLOCK", block}, {"DIGIT_BITS", bits}});
-      compiled.add("primitives/sort_digits.comp",
-                   {{"SORT_BLOCK", block}, {"DIGIT_BITS", bits}, {"PASSES", "3"}});
-    }
-    compiled.add("project_compact.comp", {{"SORT_BLOCK", block}, {"LOOKS_BACK", "1"}});
-    for (const char* both_eyes : {"0", "1"})
-      compiled.add("pairs_count.comp",
-                   {{"SORT_BLOCK", block}, {"LOOKS_BACK", "1"}, {"BOTH_EYES", both_eyes}});
-  }
+  compiled.add("project_compact.comp", {{"LOOKS_BACK", "1"}});
   EXPECT_EQ(compiled.errors(), "");
 }
 
@@ -76,7 +66,7 @@ TEST_F(SubgroupShaders, AWordThatIsNotThereIsNoticed) {
   const test::TempFolder shaders;
   test::write_text(shaders / "a.comp", "layout(local_size_x = 1) in;\nvoid main() { subgroupBarrier(); }\n");
   test::CompiledShaders compiled;
-  compiled.add("ranges_clear.comp", {});
+  compiled.add("bin_place.comp", {});
   compiled.add("a.comp", {{"WHICH", "1"}}, shaders.path());
   EXPECT_TRUE(compiled.errors().starts_with("a.comp WHICH=1: ERROR")) << compiled.errors();
 }

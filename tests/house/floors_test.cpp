@@ -29,24 +29,20 @@ const std::map<std::string, std::set<std::string>> may_see = {
     {"formats", {"scene", "base", "shared"}},
     {"gl", {"base", "shared"}},
     {"reference", {"scene", "base", "shared"}},
-    {"primitives", {"gl", "base", "shared"}},
-    {"render", {"primitives", "gl", "scene", "base", "shared"}},
-    {"measure", {"render", "primitives", "gl", "reference", "scene", "base", "shared"}},
-    {"stereo", {"measure", "render", "primitives", "gl", "reference", "scene", "base", "shared"}},
-    {"stream", {"render", "primitives", "gl", "formats", "scene", "base", "shared"}},
-    {"library", {"stream", "stereo", "formats", "render", "primitives", "gl", "scene", "base", "shared"}},
+    {"render", {"gl", "scene", "base", "shared"}},
+    {"measure", {"render", "gl", "reference", "scene", "base", "shared"}},
+    {"stereo", {"measure", "render", "gl", "reference", "scene", "base", "shared"}},
+    {"stream", {"render", "gl", "formats", "scene", "base", "shared"}},
+    {"library", {"stream", "stereo", "formats", "render", "gl", "scene", "base", "shared"}},
     {"lab",
-     {"stream", "stereo", "measure", "render", "primitives", "gl", "reference", "formats", "scene", "base",
-      "shared"}},
+     {"stream", "stereo", "measure", "render", "gl", "reference", "formats", "scene", "base", "shared"}},
     {"preview",
-     {"stream", "stereo", "measure", "render", "primitives", "gl", "reference", "formats", "scene", "base",
-      "shared"}},
+     {"stream", "stereo", "measure", "render", "gl", "reference", "formats", "scene", "base", "shared"}},
     {"xr", {"base"}},
-    {"python",
-     {"stereo", "measure", "render", "primitives", "gl", "reference", "formats", "scene", "base", "shared"}},
+    {"python", {"stereo", "measure", "render", "gl", "reference", "formats", "scene", "base", "shared"}},
     {"app",
-     {"demo", "preview", "xr", "lab", "stream", "stereo", "measure", "render", "primitives", "gl",
-      "reference", "formats", "scene", "base", "shared"}},
+     {"demo", "preview", "xr", "lab", "stream", "stereo", "measure", "render", "gl", "reference", "formats",
+      "scene", "base", "shared"}},
 };
 
 bool starts_with(const std::string& text, const std::string& start) { return text.rfind(start, 0) == 0; }
@@ -147,7 +143,7 @@ Texts planted(const std::string& path, const std::string& text) {
                  {"tests/support/scenes.h", "\n"},
                  {"shaders/shared/types.h", "\n"},
                  {"shaders/tiles/ellipse.glsl", "\n"},
-                 {"src/primitives/scan.h", "#include \"shared/types.h\"\n"}};
+                 {"src/gl/fence.h", "#include \"shared/types.h\"\n"}};
   files[path] = text;
   return breaches(files);
 }
@@ -172,7 +168,7 @@ TEST(Floors, PlantedBreachesAreCaught) {
       {"shaders/shared/a.h", "tiles/ellipse.glsl"},
       {"shaders/a.comp", "scene/model.h"},
       {"src/scene/a.cpp", "model.h"},
-      {"src/primitives/a.cpp", "render/frame.h"},
+      {"src/gl/a.cpp", "render/frame.h"},
       {"src/new_room/a.cpp", "base/error.h"},
       {"src/app/a.cpp", "formats/no_such_file.h"},
       {"shaders/a.comp", "tiles/{TILES_NAME}.comp"},

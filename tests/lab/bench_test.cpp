@@ -42,7 +42,7 @@ TEST_F(BenchPoint, ExactIsEqualAndAToleranceIsNot) {
   EXPECT_TRUE(std::isinf(exact.exact.psnr_db));
   EXPECT_TRUE(std::isinf(exact.exact.disagreement_db)) << "the eyes agree";
   EXPECT_EQ(exact.frames, 4u);
-  EXPECT_EQ(exact.stages.size(), 6u);
+  EXPECT_EQ(exact.stages.size(), 4u);
   for (const int transmittance : {TRANSMITTANCE_ONE, TRANSMITTANCE_DEPTH, TRANSMITTANCE_LAST}) {
     render::FrameSettings settings;
     settings.th = TH_SQUARED;

@@ -38,7 +38,7 @@ Page sample_page() {
   curve.log_x = true;
   page.sections.push_back(
       {"speed", "Accuracy against frame time", "Up and to the left is better.", {}, curve, speed});
-  Table stages{{"setting", "project", "order", "pairs", "tile_sort", "ranges", "blend"}, {}};
+  Table stages{{"setting", "project", "bin", "sort", "blend"}, {}};
   for (const std::string setting : {"aabb", "ellipse", "squared, last"}) {
     auto& cells = stages.rows.emplace_back(row(setting));
     for (std::size_t k = 1; k < stages.columns.size(); ++k)

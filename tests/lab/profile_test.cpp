@@ -274,7 +274,7 @@ TEST(Profile, TenMinutesAreWrittenWithin200MB) {
   Profile profile = made_up(54'000);
   for (render::FrameRecord& frame : profile.recording.frames) {
     frame.mhz = 1980.0;
-    for (const char* const stage : {"decode", "order", "pairs", "tile_sort", "ranges", "probe"})
+    for (const char* const stage : {"decode", "project", "bin", "sort", "blend", "probe"})
       frame.report.spans.push_back(
           {stage, frame.report.spans.back().end_ns, frame.report.spans.back().end_ns + 1000});
   }

@@ -126,7 +126,7 @@ TEST_F(Library, ReportsHaveWhatOverlaysShow) {
     for (const StageSpan& span : report.spans)
       of_spans += 1e-6 * static_cast<double>(span.end_ns - span.begin_ns);
     EXPECT_NEAR(of_spans, report.gpu_ms, 1e-6) << "nothing overflowed";
-    EXPECT_GE(report.spans.size(), 6u * static_cast<unsigned>(report.attempts));
+    EXPECT_GE(report.spans.size(), 4u * static_cast<unsigned>(report.attempts));
     for (const double ms : {report.plan_ms, report.upload_ms, report.submit_ms, report.read_ms})
       EXPECT_GT(ms, 0.0);
     EXPECT_GE(report.wait_ms, 0.0);

@@ -62,7 +62,7 @@ struct State : testing::Test {
 
   void add_changed() {
     add(
-        "program", [this] { gl.UseProgram(caller.context->program("ranges_clear.comp").id()); },
+        "program", [this] { gl.UseProgram(caller.context->program("recolour.comp").id()); },
         [this] { return integers(GL_CURRENT_PROGRAM); });
     add(
         "storage buffer", [this] { gl.BindBuffer(GL_SHADER_STORAGE_BUFFER, buffer.id()); },
@@ -361,7 +361,7 @@ TEST_F(State, IsTheSameAfterAFrame) {
 }
 
 TEST_F(State, AProgramThatWasDeletedInUseLeavesNoError) {
-  gl.UseProgram(caller.context->program("ranges_clear.comp").id());
+  gl.UseProgram(caller.context->program("recolour.comp").id());
   caller.context->set_shader_folder({});  // which deletes it
   {
     const gl::KeptState kept(*caller.context);

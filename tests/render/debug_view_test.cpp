@@ -69,7 +69,7 @@ struct ShowTest : testing::Test {
 };
 
 TEST_F(ShowTest, TellsWhatTheReferenceCounts) {
-  frame.draw(std::vector{view}, {}, test::given(render::Stage::ranges));
+  frame.draw(std::vector{view}, {}, test::given(render::Stage::sort));
   for (int what = SHOW_ALPHAS; what <= SHOW_MEDIAN_DEPTH; ++what) {
     const Image told = frame.read_debug_view(what).at(0);
     // Rounding turns an alpha at tau or an early stop in a few pixels.

@@ -176,7 +176,7 @@ TEST(DecodeStage, AnchorsOutOfSightAreDecodedWithoutTheCull) {
 TEST(DecodeStage, PagesMakeNoDifference) {
   const Model model = model_of(test::random_scaffold(14, {.anchors = 100}));
   const std::vector<shared::View> views{front_view(-0.1), front_view(0.1)};
-  test::StageRun run(model, views, {}, 1, {}, 75);
+  test::StageRun run(model, views, {}, {}, 75);
   run.run_until(render::Stage::decode);
   ASSERT_EQ(run.drawn.model_buffers().pages.size(), 15u);  // 7 anchors each
   for (std::uint32_t d = 0; d < 2; ++d) {

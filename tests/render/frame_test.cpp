@@ -124,8 +124,7 @@ TEST(Frame, ReferenceUntilAnyStageGivesTheSamePicture) {
     const Picture expected = reference::render(
         model, views[1], {.tiles = way.tiles, .th = way.th, .tolerance = static_cast<double>(way.tolerance)});
     EXPECT_GE(test::psnr(draw(model, views, way)[1], expected), 80.0) << tiles_choices[way.tiles].name;
-    for (const Stage stage :
-         {Stage::project, Stage::order, Stage::pairs, Stage::tile_sort, Stage::ranges, Stage::blend}) {
+    for (const Stage stage : {Stage::project, Stage::bin, Stage::sort, Stage::blend}) {
       EXPECT_GE(test::psnr(draw(model, views, way, test::given(stage))[1], expected), 80.0)
           << name_of(stage) << " " << tiles_choices[way.tiles].name;
     }
@@ -397,17 +396,14 @@ TEST(Frame, SaysBeforehandWhatMemoryItStartsWith) {
   const Model model = test::random_model(76, 20000, 2);
   const auto rig = stereo::make_rig(test::front_camera(300, 200, 300), {.ipd = 0.1});
   const std::int64_t before = test::gl_context().allocated_bytes();
-  for (const auto& [transmittance, supertile_side] :
-       {std::pair{TRANSMITTANCE_ONE, 1}, {TRANSMITTANCE_LAST, 1}, {TRANSMITTANCE_ONE, 2}}) {
+  for (const int transmittance : {TRANSMITTANCE_ONE, TRANSMITTANCE_LAST}) {
     const FrameSettings settings{.transmittance = transmittance};
-    const auto needs = render::memory_needs(
-        render::make_plan(rig.views, settings, model, {.supertile_side = supertile_side}));
+    const auto needs = render::memory_needs(render::make_plan(rig.views, settings, model));
     render::Frame frame(test::gl_context(), model);
     EXPECT_EQ(test::gl_context().allocated_bytes() - before, needs.model);
-    const double taken = static_cast<double>(
-        frame.draw(rig.views, settings, {.supertile_side = supertile_side}).gpu_bytes - before);
+    const double taken = static_cast<double>(frame.draw(rig.views, settings).gpu_bytes - before);
     const double said = static_cast<double>(needs.model + needs.frame);
-    EXPECT_NEAR(said / taken, 1.0, 0.03);  // what the sorts count in besides is small
+    EXPECT_NEAR(said / taken, 1.0, 0.03);
   }
 }
 

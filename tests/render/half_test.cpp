@@ -127,7 +127,7 @@ TEST(Half, TakesTheReferencesStages) {
   const Model model = test::random_model(45, 500, 1);
   const shared::View view = eyes_for_half()[0];
   const Picture right = reference::render(model, view);
-  for (const render::Stage until : {render::Stage::project, render::Stage::order, render::Stage::ranges}) {
+  for (const render::Stage until : {render::Stage::project, render::Stage::bin, render::Stage::sort}) {
     EXPECT_GE(test::psnr(test::draw(model, view, in_half, test::given(until)), right), 60.0);
   }
 }

@@ -66,8 +66,8 @@ TEST(LinearBlends, WeighWhatTheReferenceWeighs) {
     for (const double weight : weights) sum += weight;
     EXPECT_NEAR(sum + left, static_cast<double>(pixels), 0.1) << tile;
     EXPECT_EQ(weights, shown_values(model, 1.0f, {.tile_size = tile})) << "not the same bits twice";
-    EXPECT_EQ(weights, shown_values(model, 1.0f, {.tile_size = tile}, {.supertile_side = 1, .slots = 10}))
-        << "drawn again, in lists of other tiles";
+    EXPECT_EQ(weights, shown_values(model, 1.0f, {.tile_size = tile}, {.slots = 10, .pairs = 10}))
+        << "drawn again";
   }
 }
 
@@ -218,7 +218,7 @@ TEST(LinearBlends, OfLongListsAreWhole) {
     return differing_weights(weights, model) <= model.count() / 500 && blend.changes() == changes;
   };
   EXPECT_TRUE(right());
-  const test::FaultyShaders faulty("blend_long_lists.comp", "atomicAdd(counters.long_lists, 1u)",
+  const test::FaultyShaders faulty("tile_ranges.glsl", "atomicAdd(counters.long_lists, 1u)",
                                    "(counters.long_lists & 0u)");
   EXPECT_FALSE(right());
 }

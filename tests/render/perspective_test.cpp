@@ -154,9 +154,10 @@ TEST_P(InPerspective, PairsAreTheReferences) {
     if (!every_test && tiles != TILES_ELLIPSE && GetParam().order != ORDER_DEPTH)
       continue;  // what is sorted by is no matter of tiles
     test::StageRun run(model, {view}, {.tiles = tiles});
-    run.run_until(render::Stage::pairs);
-    const std::vector<std::uint32_t> on_gpu = run.projected(0).tiles;
-    std::vector<std::uint32_t> expected(model.count());
+    run.run_until(render::Stage::sort);
+    std::vector<std::uint32_t> on_gpu(model.count()), expected(model.count());
+    for (const auto& list : run.lists())
+      for (const std::uint32_t i : list) ++on_gpu[i];
     const auto splats = reference::project_all(model, view);
     for (const std::uint32_t i :
          reference::make_lists(splats, reference::depth_order(splats), view, tiles).gaussians)
@@ -186,7 +187,7 @@ TEST_P(InPerspective, ThresholdsAndStagesOfTheReferenceGiveItsPictures) {
     }
   }
   const std::vector<Picture> own = draw(model, {eyes.views.begin(), eyes.views.end()});
-  for (const render::Stage until : {render::Stage::project, render::Stage::order, render::Stage::ranges}) {
+  for (const render::Stage until : {render::Stage::project, render::Stage::bin, render::Stage::sort}) {
     const auto given = draw(model, {eyes.views.begin(), eyes.views.end()}, {}, test::given(until));
     for (const std::size_t eye : {0, 1})
       EXPECT_GE(psnr(given[eye], own[eye]), 80.0) << render::name_of(until);

@@ -16,8 +16,8 @@ constexpr glm::vec3 background{0.2f, 0.4f, 0.6f};
 // A frame with a probe, stage by stage.
 struct ProbeRun {
   ProbeRun(const Model& model, const std::vector<shared::View>& views, const FrameSettings& settings,
-           int supertile_side, const std::optional<Probe>& probe)
-      : run(model, views, settings, supertile_side, probe) {
+           const std::optional<Probe>& probe)
+      : run(model, views, settings, probe) {
     run.run_until(render::Stage::probe);
     const auto counters = run.frame.counters.read<shared::Counters>(1).front();
     EXPECT_EQ(counters.overflow, 0u);
@@ -77,36 +77,30 @@ std::vector<shared::View> eyes_for_probe(int width, int height, double cant = 0.
 }
 
 // Settings without tolerance, in which a probe must find no error.
-void expect_no_error(const Model& model, const FrameSettings& settings, int supertile_side, double cant) {
+void expect_no_error(const Model& model, const FrameSettings& settings, double cant) {
   constexpr int width = 100, height = 83;  // the last tiles of a row and a column are cut by the edge
   const auto views = eyes_for_probe(width, height, cant);
   const int side = settings.tile_size;
   for (const Probe& probe : probes({1, 2}, tiles_along(width, side), tiles_along(height, side))) {
-    EXPECT_EQ(ProbeRun(model, views, settings, supertile_side, probe).error, 0.0)
-        << tiles_choices[settings.tiles].name << ", tile " << side << ", supertiles of " << supertile_side
-        << ", cant " << cant << ", view " << probe.view << ", step " << probe.step << " from ("
-        << probe.column << ", " << probe.row << ")";
+    EXPECT_EQ(ProbeRun(model, views, settings, probe).error, 0.0)
+        << tiles_choices[settings.tiles].name << ", tile " << side << ", cant " << cant << ", view "
+        << probe.view << ", step " << probe.step << " from (" << probe.column << ", " << probe.row << ")";
   }
 }
 
 TEST(Probe, WithoutToleranceFindsNoErrorWhereverItsTilesLie) {
   const Model model = test::random_model(101, 1500, 1);
   for (const int tile_size : {8, 16, 32}) {
-    for (const int supertile_side : {1, 2}) {
-      const FrameSettings settings = {.th = TH_SQUARED, .tile_size = tile_size, .background = background};
-      expect_no_error(model, settings, supertile_side, supertile_side == 1 ? 0.0 : 4.0);
-    }
+    for (const double cant : {0.0, 4.0})
+      expect_no_error(model, {.th = TH_SQUARED, .tile_size = tile_size, .background = background}, cant);
   }
 }
 
 TEST(Probe, WithoutToleranceFindsNoErrorByAnyTileTest) {
   const Model model = test::random_model(102, 1500, 0);
   for (const int tiles : {TILES_SNUG, TILES_OBB, TILES_AABB, TILES_ALL}) {
-    for (const int supertile_side : {1, 2}) {
-      if (tiles == TILES_ALL && supertile_side == 2) continue;
-      expect_no_error(model, {.tiles = tiles, .th = TH_PERIPHERAL, .background = background}, supertile_side,
-                      supertile_side == 1 ? 4.0 : 0.0);
-    }
+    for (const double cant : {0.0, 4.0})
+      expect_no_error(model, {.tiles = tiles, .th = TH_PERIPHERAL, .background = background}, cant);
   }
 }
 
@@ -123,7 +117,7 @@ TEST(Probe, TellsTheErrorOfItsTilesAsTheScreenShowsThem) {
       const std::uint32_t across = tiles_along(width, side);
       const auto all = probes({1, 2, 3}, across, tiles_along(height, side));
       for (const Probe& probe : all) {
-        const ProbeRun run(model, views, settings, cant == 0.0 ? 1 : 2, probe);
+        const ProbeRun run(model, views, settings, probe);
         const Picture drawn = run.picture(probe.view);
         const double expected = error_in(probe, drawn, exact[probe.view], side);
         EXPECT_GT(expected, 1e-6);
@@ -152,7 +146,7 @@ TEST(Probe, TellsOfLongListsToo) {
   for (const float tolerance : {0.0f, 0.02f}) {
     const FrameSettings settings = {.th = TH_SQUARED, .tolerance = tolerance, .background = background};
     for (const Probe& probe : probes({1, 2}, 4, 3)) {
-      const ProbeRun run(model, views, settings, 2, probe);
+      const ProbeRun run(model, views, settings, probe);
       if (probe.step == 1) {
         EXPECT_GT(run.run.frame.counters.read<shared::Counters>(1).front().long_lists, 0u);
       }
@@ -171,9 +165,9 @@ TEST(Probe, IsNoPictureAndChangesNoneNorWhatIsMeasured) {
         FrameSettings{.th = TH_PERIPHERAL, .transmittance = TRANSMITTANCE_LAST}}) {
     FrameSettings lossy = settings;
     lossy.tolerance = 0.05f;
-    const ProbeRun without(model, views, lossy, 1, {});
+    const ProbeRun without(model, views, lossy, {});
     for (const Probe& probe : probes({2}, 6, 5)) {
-      const ProbeRun with(model, views, lossy, 1, probe);
+      const ProbeRun with(model, views, lossy, probe);
       for (std::uint32_t eye = 0; eye < 2; ++eye)
         EXPECT_TRUE(test::same_bits(with.picture(eye), without.picture(eye))) << probe.step;
       const std::size_t all = 2 * model.count();

@@ -1,6 +1,7 @@
 // The stage project against its float64 twin.
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <string>
@@ -149,7 +150,7 @@ TEST(Project, LeavesOutWhatIsBeforeTheNearPlane) {
   test::add(model, {0, 0, -1.0f}, glm::vec3(0.01f), 0.9f);
   test::StageRun run(model, {make_view(test::front_camera(64, 64, 64))});
   run.run_until(render::Stage::project);
-  const auto counts = run.projected(0).tiles;
+  const auto counts = run.projected(0).coverages;
   EXPECT_EQ(counts[0], 0u);
   EXPECT_GT(counts[1], 0u);
   EXPECT_EQ(counts[2], 0u);
@@ -164,8 +165,10 @@ TEST(Project, SurvivesHostileSizes) {
   test::add(model, {0, 0, 5}, glm::vec3(1.0f, 1e-20f, 1e-20f), 1.0f, glm::vec3(1), {1, 1, 1, 1});
   const shared::View view = make_view(test::front_camera(64, 48, 64));
   test::StageRun run(model, {view});
-  run.run_until(render::Stage::project);
-  const auto counts = run.projected(0).tiles;
+  run.run_until(render::Stage::sort);
+  std::array<std::uint32_t, 5> counts{};
+  for (const auto& list : run.lists())
+    for (const std::uint32_t i : list) ++counts[i];
   EXPECT_EQ(counts[0], 2u);  // centred on the edge of two tiles: (31.5, 23.5)
   EXPECT_EQ(counts[1], 12u);
   EXPECT_LE(counts[2], 12u);

@@ -77,8 +77,6 @@ TEST(Workings, ThatContradictAreNamed) {
         FrameSettings{.th = TH_SQUARED, .transmittance = TRANSMITTANCE_LAST}}) {
     EXPECT_TRUE(test::fails_saying([&] { check(blended, settings, "--"); }, {"--reference-until"}));
   }
-  EXPECT_TRUE(
-      test::fails_saying([] { check(render::Workings{.supertile_side = 3}, {}); }, {"supertiles of 3 x 3"}));
 }
 
 TEST(Settings, ThatGoTogetherDo) {

@@ -62,12 +62,10 @@ inline double psnr(const Picture& a, const Picture& b) {
 /// A frame drawn as far as a stage, with every buffer at hand.
 struct StageRun {
   StageRun(const Model& model, std::vector<shared::View> of_views, const render::FrameSettings& with = {},
-           int supertile_side = 1, const std::optional<render::Probe>& and_probe = {},
-           std::uint32_t page_gaussians = 0)
+           const std::optional<render::Probe>& and_probe = {}, std::uint32_t page_gaussians = 0)
       : drawn(std::make_shared<render::GpuModel>(gl_context(), model, with.precision, page_gaussians)),
         views(std::move(of_views)),
         settings(with),
-        workings{.supertile_side = supertile_side},
         probe(and_probe) {}
 
   void run_until(render::Stage stage) {
@@ -79,24 +77,52 @@ struct StageRun {
     }
   }
 
-  /// The splats of a view by Gaussian of the model; tiles 0 where the view does not draw it. With lists of
-  /// one tile: those of several are not only counted (supertiles.glsl).
+  /// The splats of a view by Gaussian of the model; coverage 0 where the view does not draw it.
   struct Projected {
     std::vector<shared::Splat> splats;
-    std::vector<std::uint32_t> tiles;
+    std::vector<std::uint32_t> coverages;
   };
   Projected projected(std::uint32_t view) const {
     const std::size_t all = std::size_t{frame.slots} * plan.view_count();
     const auto splats = frame.projected.splats.read<shared::Splat>(all);
-    const auto tiles = frame.projected.coverages.read<std::uint32_t>(all);
+    const auto coverages = frame.projected.coverages.read<std::uint32_t>(all);
     Projected out{std::vector<shared::Splat>(plan.gaussian_count),
                   std::vector<std::uint32_t>(plan.gaussian_count)};
     const auto& of_group = indices[plan.views[view].order_group];
     for (std::size_t slot = 0; slot < of_group.size(); ++slot) {
       out.splats[of_group[slot]] = splats[std::size_t{view} * frame.slots + slot];
-      out.tiles[of_group[slot]] = tiles[slot * plan.view_count() + view];
+      out.coverages[of_group[slot]] = coverages[std::size_t{view} * frame.slots + slot];
     }
     return out;
+  }
+
+  /// Each tile's list after the stage sort, in the order of blending: a view's tiles row by row, view after
+  /// view; view * Gaussians of the model + Gaussian.
+  using Lists = std::vector<std::vector<std::uint32_t>>;
+  Lists lists() const {
+    const auto counters = frame.counters.read<shared::Counters>(1).front();
+    EXPECT_EQ(counters.overflow, 0u);
+    const auto values = frame.lists.tile_values.read<std::uint32_t>(counters.tile_pairs);
+    const auto ranges = frame.lists.tile_ranges.read<glm::uvec2>(plan.tile_count());
+    Lists lists;
+    std::size_t total = 0;
+    for (std::uint32_t v = 0; v < plan.view_count(); ++v) {
+      const shared::View& view = plan.views[v];
+      const std::uint32_t side = SUPERTILE_SIDE, across = (view.tiles_x + side - 1) / side;
+      for (std::uint32_t n = 0; n < view.tiles_x * view.tiles_y; ++n) {
+        const std::uint32_t x = n % view.tiles_x, y = n / view.tiles_x;
+        const std::uint32_t supertile = view.supertile_offset + y / side * across + x / side;
+        const glm::uvec2 range = ranges[supertile * side * side + y % side * side + x % side];
+        std::vector<std::uint32_t>& list = lists.emplace_back();
+        for (std::uint32_t k = range.x; k < range.y; ++k) {
+          EXPECT_EQ(values.at(k) / frame.slots, v);
+          list.push_back(v * plan.gaussian_count + indices[view.order_group].at(values[k] % frame.slots));
+        }
+        total += list.size();
+      }
+    }
+    EXPECT_EQ(total, counters.tile_pairs) << "entries beyond the pictures";
+    return lists;
   }
 
   render::Frame drawn;

@@ -44,11 +44,9 @@ FrameSettings with(FrameSettings settings, std::vector<ViewRegion> parts) {
 }
 
 // Whether windows of a picture, drawn in one frame, are what the whole picture has there.
-testing::AssertionResult windows_are_right(const Model& model, const FrameSettings& settings,
-                                           int supertile_side = 1) {
+testing::AssertionResult windows_are_right(const Model& model, const FrameSettings& settings) {
   const shared::View view = view_of_centre(87.3);
-  const render::Workings workings{.supertile_side = supertile_side};
-  const Picture whole = draw(model, view, settings, workings);
+  const Picture whole = draw(model, view, settings);
   struct Window {
     glm::uvec2 corner, size, extent;
   };
@@ -57,7 +55,7 @@ testing::AssertionResult windows_are_right(const Model& model, const FrameSettin
   std::vector<ViewRegion> parts;
   for (const Window& window : windows) parts.push_back({.corner = window.corner, .size = window.size});
   const std::vector<Picture> drawn =
-      draw(model, std::vector(std::size(windows), view), with(settings, parts), workings);
+      draw(model, std::vector(std::size(windows), view), with(settings, parts));
   for (std::size_t k = 0; k < std::size(windows); ++k) {
     const auto same = same_bits(drawn[k], cut(whole, windows[k].corner, windows[k].extent));
     if (!same) return testing::AssertionFailure() << "window " << k << ": " << same.message();
@@ -67,15 +65,13 @@ testing::AssertionResult windows_are_right(const Model& model, const FrameSettin
 
 TEST(Parts, WindowsAreTheWholePictureBitForBit) {
   const Model model = test::random_model(41, 3000, 1, 0.75);
-  for (const int supertile_side : {1, 2}) {
-    EXPECT_TRUE(windows_are_right(model, {}, supertile_side)) << supertile_side;
-    EXPECT_TRUE(windows_are_right(model, {.th = TH_SQUARED, .tolerance = 0.05f}, supertile_side));
-  }
+  EXPECT_TRUE(windows_are_right(model, {}));
+  EXPECT_TRUE(windows_are_right(model, {.th = TH_SQUARED, .tolerance = 0.05f}));
   for (const int tiles : {TILES_SNUG, TILES_OBB, TILES_AABB, TILES_ALL})
     EXPECT_TRUE(windows_are_right(model, {.tiles = tiles})) << tiles_choices[tiles].name;
   for (const int tile_size : {8, 32}) EXPECT_TRUE(windows_are_right(model, {.tile_size = tile_size}));
   EXPECT_TRUE(windows_are_right(
-      model, {.order = ORDER_DISTANCE, .projection = PROJECTION_TANGENT, .precision = PRECISION_HALF}, 2));
+      model, {.order = ORDER_DISTANCE, .projection = PROJECTION_TANGENT, .precision = PRECISION_HALF}));
 }
 
 TEST(Parts, AWindowBesideItsPlaceIsCaught) {
@@ -125,76 +121,59 @@ Picture masked(Picture whole, const ViewRegion& part, int tile) {
 TEST(Parts, WhatIsNotShownIsBackgroundAndTheRestAsBefore) {
   const Model model = test::random_model(42, 3000, 1, 0.75);
   const std::vector views = {view_of_centre(100), view_of_centre(70)};
-  for (const auto& [settings, side] :
-       {std::pair{FrameSettings{}, 1},
-        {FrameSettings{}, 2},
-        {FrameSettings{.tile_size = 8}, 2},
-        {FrameSettings{.tiles = TILES_ALL}, 1},
-        {FrameSettings{.th = TH_SQUARED, .tolerance = 0.05f, .projection = PROJECTION_TANGENT}, 2}}) {
+  for (const FrameSettings& settings :
+       {FrameSettings{}, FrameSettings{.tile_size = 8}, FrameSettings{.tiles = TILES_ALL},
+        FrameSettings{.th = TH_SQUARED, .tolerance = 0.05f, .projection = PROJECTION_TANGENT}}) {
     const ViewRegion part = ragged(settings.tile_size);
-    const render::Workings workings{.supertile_side = side};
-    const std::vector<Picture> whole = draw(model, views, settings, workings);
-    const auto drawn = draw(model, views, with(settings, {part, {}}), workings);
-    EXPECT_TRUE(same_bits(drawn[0], masked(whole[0], part, settings.tile_size))) << side;
-    EXPECT_TRUE(same_bits(drawn[1], whole[1])) << side;
+    const std::vector<Picture> whole = draw(model, views, settings);
+    const auto drawn = draw(model, views, with(settings, {part, {}}));
+    EXPECT_TRUE(same_bits(drawn[0], masked(whole[0], part, settings.tile_size)));
+    EXPECT_TRUE(same_bits(drawn[1], whole[1]));
     EXPECT_FALSE(same_bits(drawn[0], whole[0]));
   }
 }
 
 // How long the lists of a view's tiles are; only those that no hole hides.
-std::vector<std::uint32_t> list_sizes(const Model& model, const FrameSettings& settings, int supertile_side,
-                                      const ViewRegion& shown) {
-  test::StageRun run(model, {view_of_centre(100)}, settings, supertile_side);
-  run.run_until(render::Stage::ranges);
-  const auto counters = run.frame.counters.read<shared::Counters>(1).front();
-  EXPECT_EQ(counters.overflow, 0u);
-  const auto ranges =
-      run.frame.lists.ranges_of_tiles(run.plan).read<std::uint32_t>(2 * std::size_t{run.plan.tile_count()});
-  const shared::View& view = run.plan.views.front();
-  const auto side = static_cast<std::uint32_t>(supertile_side);
-  const std::uint32_t across = (view.tiles_x + side - 1) / side;
-  std::vector<std::uint32_t> sizes;
-  std::uint32_t pairs = 0;
-  for (std::uint32_t y = 0; y < view.tiles_y; ++y) {
-    for (std::uint32_t x = 0; x < view.tiles_x; ++x) {
-      const std::uint32_t tile = (y / side * across + x / side) * side * side + y % side * side + x % side;
-      const std::uint32_t length = ranges[2 * tile + 1] - ranges[2 * tile];
-      pairs += length;
-      const int px = settings.tile_size;
-      const auto in_span = shown.columns[y].x <= x && x < shown.columns[y].y;
-      const bool is_shown = shows(shown, px, static_cast<int>(x) * px, static_cast<int>(y) * px);
-      sizes.push_back(is_shown ? length : 0);
-      if (!is_shown && !in_span && !settings.regions.empty()) {
-        EXPECT_EQ(length, 0u) << x << " " << y;
-      }
+std::vector<std::size_t> list_sizes(const Model& model, const FrameSettings& settings,
+                                    const ViewRegion& shown) {
+  test::StageRun run(model, {view_of_centre(100)}, settings);
+  run.run_until(render::Stage::sort);
+  const std::uint32_t across = run.plan.views.front().tiles_x;
+  std::vector<std::size_t> sizes;
+  for (const auto& list : run.lists()) {
+    const auto x = static_cast<std::uint32_t>(sizes.size()) % across;
+    const auto y = static_cast<std::uint32_t>(sizes.size()) / across;
+    const int px = settings.tile_size;
+    const auto in_span = shown.columns[y].x <= x && x < shown.columns[y].y;
+    const bool is_shown = shows(shown, px, static_cast<int>(x) * px, static_cast<int>(y) * px);
+    sizes.push_back(is_shown ? list.size() : 0);
+    if (!is_shown && !in_span && !settings.regions.empty()) {
+      EXPECT_EQ(list.size(), 0u) << x << " " << y;
     }
   }
-  EXPECT_EQ(pairs, supertile_side == 1 ? counters.pairs : counters.tile_pairs);
   return sizes;
 }
 
 TEST(Parts, WhatIsNotShownMakesNoPairs) {
   const Model model = test::random_model(43, 3000, 1, 0.75);
   for (const int tiles : {TILES_ELLIPSE, TILES_SNUG, TILES_AABB}) {
-    for (const int side : {1, 2}) {
-      const FrameSettings whole{.tiles = tiles};
-      const ViewRegion part = ragged(whole.tile_size);
-      EXPECT_EQ(list_sizes(model, with(whole, {part}), side, part), list_sizes(model, whole, side, part))
-          << tiles_choices[tiles].name << " " << side;
-    }
+    const FrameSettings whole{.tiles = tiles};
+    const ViewRegion part = ragged(whole.tile_size);
+    EXPECT_EQ(list_sizes(model, with(whole, {part}), part), list_sizes(model, whole, part))
+        << tiles_choices[tiles].name;
   }
 }
 
 TEST(Parts, AColumnTooManyOrTooFewIsCaught) {
   const Model model = test::random_model(43, 3000, 1, 0.75);
   const ViewRegion part = ragged(16);
-  const auto right = list_sizes(model, {}, 1, part);
+  const auto right = list_sizes(model, {}, part);
   for (const char* fault : {"min(columns.y, drawn.y - 1u)", "min(columns.y, drawn.y + 1u)"}) {
     const test::FaultyShaders faulty("tiles/regions.glsl", "min(columns.y, drawn.y)", fault);
     testing::TestPartResultArray said;
     {
       const testing::ScopedFakeTestPartResultReporter caught(&said);
-      const auto sizes = list_sizes(model, with({}, {part}), 1, part);
+      const auto sizes = list_sizes(model, with({}, {part}), part);
       if (sizes != right) ADD_FAILURE() << "other lists";
     }
     EXPECT_GT(said.size(), 0) << fault;

@@ -37,9 +37,9 @@ struct Drawn {
 };
 
 Drawn draw(const Model& model, std::span<const shared::View> views, const Foveation& foveation,
-           const render::FrameSettings& settings = {}, int supertile_side = 0) {
+           const render::FrameSettings& settings = {}) {
   FoveatedFrame frame(std::make_shared<render::GpuModel>(test::gl_context(), model, settings.precision));
-  const auto report = frame.draw(views, foveation, settings, {.supertile_side = supertile_side});
+  const auto report = frame.draw(views, foveation, settings);
   return {frame.read_pictures(), frame.parts(), report};
 }
 
@@ -78,7 +78,7 @@ TEST(Foveate, TheInsetIsTheExactPictureBitForBit) {
     for (std::size_t n = 0; n < gazes.size(); ++n) {
       const Foveation foveation{
           .inset_degrees = 18, .context_scale = 0.3 + 0.1 * static_cast<double>(n), .gaze = gazes[n]};
-      const auto drawn = draw(model, views, foveation, {}, 1 + static_cast<int>(n % 2));
+      const auto drawn = draw(model, views, foveation);
       EXPECT_EQ(drawn.report.order_groups, rig.cant_degrees == 0.0 ? 1u : 2u);
       for (std::size_t eye = 0; eye < 2; ++eye) {
         const glm::dvec2 gaze =

@@ -1,13 +1,13 @@
 #pragma once
 // What work groups leave for those after them in the one dispatch in which they count
-// (primitives/look_back.glsl).
+// (look_back.glsl).
 
 #include <cstdint>
 #include <utility>
 
 #include "gl/buffer.h"
 
-namespace binosplat::primitives {
+namespace binosplat::render {
 
 class LookBack {
  public:
@@ -31,4 +31,4 @@ class LookBack {
   std::uint32_t half_ = 0;
 };
 
-}  // namespace binosplat::primitives
+}  // namespace binosplat::render

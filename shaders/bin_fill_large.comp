@@ -1,0 +1,24 @@
+// Stage 2, bin: the entries that bin_large.comp made, each to the place of its supertile. Neighbours are in different supertiles, so
+// each asks for its place by itself.
+#include "shared/limits.h"
+#include "shared/types.h"
+#include "shared/grid.glsl"
+#include "slots.glsl"
+#include "supertiles.glsl"
+
+layout(local_size_x = THREADS) in;
+
+layout(std430, binding = 0) readonly buffer Views { View views[]; };
+layout(std430, binding = 1) readonly buffer FrameCounters { Counters counters; };
+layout(std430, binding = 3) buffer SupertileEnds { uint supertile_ends[]; };  // where each one's next entry goes
+layout(std430, binding = 4) readonly buffer Depths { uint depths[]; };        // (order group, slot): slots.glsl
+layout(std430, binding = 5) buffer Entries { uvec2 entries[]; };              // depth, entry; from first_entry on supertile, entry
+uniform uint first_entry;
+
+void main() {
+  uint nth = thread_index();
+  if (nth >= counters.large_entries || counters.overflow != 0u) return;
+  uvec2 made = entries[first_entry + nth];
+  uint splat = SPLAT_OF(made.y);
+  entries[atomicAdd(supertile_ends[made.x], 1u)] = uvec2(DEPTH_OF(splat, views[view_of(splat)]), made.y);
+}

@@ -1,0 +1,58 @@
+// Stage 2, bin: where the entries of each supertile go, and its list among those that are to be sorted. One invocation a
+// supertile. Both in any order.
+#include "shared/limits.h"
+#include "shared/types.h"
+#include "shared/grid.glsl"
+#include "shared/arguments.glsl"
+#include "supertiles.glsl"
+
+layout(local_size_x = THREADS) in;
+
+layout(std430, binding = 0) buffer FrameCounters { Counters counters; };
+layout(std430, binding = 1) buffer SupertileCounts { uint supertile_counts[]; };  // made 0 for the next frame
+layout(std430, binding = 2) writeonly buffer SupertileEnds { uint supertile_ends[]; };
+layout(std430, binding = 3) writeonly buffer TileRanges { uvec2 tile_ranges[]; };  // begin, end
+#define ITEMS_BINDING 4
+#include "sort_items.glsl"
+uniform uint supertile_count;
+uniform uint capacity;  // entries that there is room for
+uniform uint groups_max;
+
+shared uint of_kind[SORT_LONG_KIND + 1u], first_of_kind[SORT_LONG_KIND + 1u];
+shared uint sum, base;
+
+void main() {
+  uint self = gl_LocalInvocationIndex, supertile = thread_index();
+  bool is_one = supertile < supertile_count;
+  uint count = is_one ? supertile_counts[supertile] : 0u;
+  if (is_one) supertile_counts[supertile] = 0u;
+  if (self <= SORT_LONG_KIND) of_kind[self] = 0u;
+  if (self == 0u) sum = 0u;
+  memoryBarrierShared();
+  barrier();
+  uint kind = 0u, place = 0u, first = 0u;
+  if (count != 0u) {
+    kind = count <= SORT_MOST ? CLASS_OF(count) : SORT_LONG_KIND;
+    place = atomicAdd(of_kind[kind], 1u);
+    first = atomicAdd(sum, count);
+  }
+  memoryBarrierShared();
+  barrier();
+  if (self <= SORT_LONG_KIND) first_of_kind[self] = of_kind[self] == 0u ? 0u : make_room(self, of_kind[self]);
+  if (self == 0u) {
+    base = atomicAdd(counters.pairs, sum);
+    if (base + sum > capacity) atomicOr(counters.overflow, OVERFLOW_PAIRS);
+    if (group_index() == 0u) {  // of bin_fill_large.comp
+      uvec2 groups = split_groups(blocks_of(counters.large_entries, THREADS), groups_max);
+      counters.fill_x = groups.x;
+      counters.fill_y = groups.y;
+      counters.fill_z = 1u;
+    }
+  }
+  memoryBarrierShared();
+  barrier();
+  if (!is_one) return;
+  supertile_ends[supertile] = base + first;
+  if (count != 0u) add_item(kind, first_of_kind[kind] + place, uvec4(supertile, base + first, count, 0u));
+  else for (uint tile = 0u; tile < SUPERTILE_TILES; ++tile) tile_ranges[supertile * SUPERTILE_TILES + tile] = uvec2(0u);
+}

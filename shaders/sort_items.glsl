@@ -1,0 +1,23 @@
+// The lists that are to be sorted, by kind, each kind in any order: SORT_CLASSES classes of length, which are sorted by groups of
+// 32, 64, ... SORT_MOST / SORT_EACH invocations, SORT_EACH entries each; slabs of longer lists; lists with too many of a few
+// depths; and from SORT_LONG_KIND on what each round is to part into slabs (sort_split.comp).
+#define CLASS_OF(length) uint(max(findMSB((length) - 1u) + 1 - findMSB(32u * SORT_EACH), 0))
+
+// (supertile, first entry, entries, 0; or of a part the number by which slab_tiles knows it, and 1)
+layout(std430, binding = ITEMS_BINDING) writeonly buffer Items { uvec4 items[]; };
+uniform uint item_room;  // of each kind
+uniform uint rounds;     // that part lists
+
+// Of `count` lists of a kind, where the first goes.
+uint make_room(uint kind, uint count) {
+  uint place = atomicAdd(counters.lists[kind].count, count);
+  atomicMax(counters.lists[kind].groups_x, min(place + count, SORT_GROUPS_MOST));
+  counters.lists[kind].groups_y = 1u;
+  counters.lists[kind].groups_z = 1u;
+  if (kind >= SORT_LONG_KIND + rounds) atomicOr(counters.overflow, OVERFLOW_ROUNDS);
+  return place;
+}
+
+void add_item(uint kind, uint place, uvec4 item) {
+  if (kind < SORT_LONG_KIND + rounds && place < item_room) items[kind * item_room + place] = item;
+}

@@ -1,0 +1,297 @@
+#if WITH_SUBGROUPS
+#extension GL_KHR_shader_subgroup_basic : require
+#extension GL_KHR_shader_subgroup_arithmetic : require
+#extension GL_KHR_shader_subgroup_ballot : require
+#endif
+#pragma optionNV(unroll all)
+// Stage 3, sort, last: a work group sorts a supertile's entries by depth, those that are as far by splat, and writes its tiles'
+// lists. LIST_THREADS invocations of LIST_EACH entries.
+//
+// Depths are parted into as many equal steps as there are invocations, and each step gets as many bins as it has entries, so that a
+// bin holds one or two; these are compared with one another. In what order entries come to a bin does not matter, so one atomic in
+// shared memory an entry and histogram does what takes a radix sort passes of ballots (README.md of render). A list in which a bin
+// holds more than SORT_BIN_MOST, since many have one of a few depths, is left to CROWDED, which sorts by a bitonic network in the buffer.
+#include "shared/limits.h"
+#include "shared/types.h"
+#include "shared/grid.glsl"
+#include "supertiles.glsl"
+#undef THREADS
+#define THREADS LIST_THREADS
+#include "scan_block.glsl"
+
+layout(local_size_x = THREADS) in;
+
+#define EACH uint(LIST_EACH)
+#define MOST (THREADS * EACH)
+#define ROWS (THREADS / 32u)
+
+layout(std430, binding = 0) buffer FrameCounters { Counters counters; };
+layout(std430, binding = 1) readonly buffer ItemsRead { uvec4 items_read[]; };  // sort_items.glsl
+#if CROWDED
+layout(std430, binding = 2) coherent buffer Entries { uvec2 entries[]; };
+#else
+layout(std430, binding = 2) readonly buffer Entries { uvec2 entries[]; };
+#endif
+layout(std430, binding = 3) readonly buffer SlabTiles { uint slab_tiles[]; };     // sort_split.comp
+#include "tile_ranges.glsl"  // bindings 6 and 7
+layout(std430, binding = 5) writeonly buffer TileValues { uint tile_values[]; };  // splats
+uniform uint kind;  // of lists
+#define ITEMS_BINDING 8
+#include "sort_items.glsl"
+uniform uint capacity;  // of tile_values
+
+shared uint board[MOST];    // entries of each bin, then where it begins; then depths; then entries in their order
+shared uint steps[THREADS];  // bins before the step's, and from bit 16 its own
+shared uint low, high, of_tiles, list_begin, is_tied, is_crowded;
+shared uvec4 row_counts[ROWS];
+#if !WITH_SUBGROUPS
+shared uint touching[ROWS][EACH][SUPERTILE_TILES];
+#endif
+
+// The tiles' lists, of the entries that lie in their order on the board.
+void write_lists(uvec4 item) {
+  uint self = gl_LocalInvocationIndex, row = self / 32u, lane = self % 32u, length = item.z;
+  uint value[EACH];
+  // Each row of 32 invocations takes EACH times 32 of them: how many of each 32 are in each tile, then which.
+  uint from = row * 32u * EACH + lane;
+  for (uint i = 0u; i < EACH; ++i) value[i] = from + 32u * i < length ? board[from + 32u * i] : 0u;
+#if WITH_SUBGROUPS
+#define TOUCHING(i, tile) subgroupBallot(TOUCHES(value[i], tile)).x
+#else
+#define TOUCHING(i, tile) touching[row][i][tile]
+  for (uint k = lane; k < EACH * SUPERTILE_TILES; k += 32u) touching[row][k / SUPERTILE_TILES][k % SUPERTILE_TILES] = 0u;
+  memoryBarrierShared();
+  barrier();
+  for (uint i = 0u; i < EACH; ++i)
+    for (uint tile = 0u; tile < SUPERTILE_TILES; ++tile)
+      if (TOUCHES(value[i], tile)) atomicOr(touching[row][i][tile], 1u << lane);
+  memoryBarrierShared();
+  barrier();
+#endif
+  uvec4 of_row = uvec4(0u), in_list = uvec4(0u), to = uvec4(0u);
+  for (uint tile = 0u; tile < SUPERTILE_TILES; ++tile)
+    for (uint i = 0u; i < EACH; ++i) of_row[tile] += uint(bitCount(TOUCHING(i, tile)));
+  if (lane == 0u) row_counts[row] = of_row;
+  memoryBarrierShared();
+  barrier();
+#if WITH_SUBGROUPS
+  of_row = lane < ROWS ? row_counts[lane] : uvec4(0u);
+  in_list = subgroupAdd(of_row);
+  to = subgroupAdd(lane < row ? of_row : uvec4(0u));
+#else
+  for (uint r = 0u; r < ROWS; ++r) {
+    in_list += row_counts[r];
+    if (r < row) to += row_counts[r];
+  }
+#endif
+  uint tile_begin = list_begin;
+  for (uint tile = 0u; tile < SUPERTILE_TILES; ++tile) {
+    if (item.w != 0u) tile_begin = slab_tiles[(item.w - 1u) * SUPERTILE_TILES + tile];
+    else if (self == 0u) set_range(item.x * SUPERTILE_TILES + tile, tile_begin, in_list[tile]);
+    uint next = tile_begin + to[tile];
+    for (uint i = 0u; i < EACH; ++i) {
+      uint all = TOUCHING(i, tile), at = next + uint(bitCount(all & (1u << lane) - 1u));
+      if (TOUCHES(value[i], tile) && at < capacity) tile_values[at] = SPLAT_OF(value[i]);
+      next += uint(bitCount(all));
+    }
+    tile_begin += in_list[tile];
+  }
+  if (self == 0u && list_begin + in_list.x + in_list.y + in_list.z + in_list.w > capacity && item.w == 0u)
+    atomicOr(counters.overflow, OVERFLOW_TILE_PAIRS);
+}
+
+#if CROWDED
+// By depth, then by splat, in the buffer itself. Each merge compares mirrored halves first: all go one way, whatever the length.
+void sort_list(uvec4 item) {
+  uint self = gl_LocalInvocationIndex, in_tiles = 0u;
+  if (self == 0u) of_tiles = 0u;
+  for (uint size = 2u; size < 2u * item.z; size *= 2u) {
+    for (uint stride = size / 2u; stride > 0u; stride /= 2u) {
+      for (uint k = self; k < MOST / 2u; k += THREADS) {
+        uint first = k / stride * 2u * stride + k % stride;
+        uint second = stride == size / 2u ? first / size * size + size - 1u - first % size : first + stride;
+        if (second >= item.z) continue;
+        uvec2 a = entries[item.y + first], b = entries[item.y + second];
+        if (a.x < b.x || (a.x == b.x && SPLAT_OF(a.y) < SPLAT_OF(b.y))) continue;
+        entries[item.y + first] = b;
+        entries[item.y + second] = a;
+      }
+      memoryBarrierBuffer();
+      barrier();
+    }
+  }
+  for (uint i = self; i < item.z; i += THREADS) {
+    board[i] = entries[item.y + i].y;
+    in_tiles += uint(bitCount(board[i] >> SUPERTILE_SPLAT_BITS));
+  }
+  atomicAdd(of_tiles, in_tiles);
+  memoryBarrierShared();
+  barrier();
+  if (self == 0u) list_begin = item.w == 0u ? atomicAdd(counters.tile_pairs, of_tiles) : 0u;
+  memoryBarrierShared();
+  barrier();
+  write_lists(item);
+}
+
+#else
+// Of those that hold an entry, the least and the greatest key.
+void find_range(uint key[EACH], uint length) {
+  uint self = gl_LocalInvocationIndex, least = 0xFFFFFFFFu, most = 0u;
+  if (self == 0u) {
+    low = 0xFFFFFFFFu;
+    high = 0u;
+  }
+  memoryBarrierShared();
+  barrier();
+  for (uint i = 0u; i < EACH; ++i) {
+    if (i * THREADS + self >= length) continue;
+    least = min(least, key[i]);
+    most = max(most, key[i]);
+  }
+#if WITH_SUBGROUPS
+  least = subgroupMin(least);
+  most = subgroupMax(most);
+  if (gl_SubgroupInvocationID == 0u)
+#endif
+  {
+    atomicMin(low, least);
+    atomicMax(high, most);
+  }
+  memoryBarrierShared();
+  barrier();
+}
+
+void sort_list(uvec4 item) {
+  uint self = gl_LocalInvocationIndex, length = item.z;
+  uint key[EACH], value[EACH], place[EACH];
+  for (uint i = 0u; i < EACH; ++i) {
+    uint at = i * THREADS + self;
+    uvec2 entry = at < length ? entries[item.y + at] : uvec2(0xFFFFFFFFu, 0u);
+    key[i] = entry.x;
+    value[i] = entry.y;
+  }
+  for (uint i = 0u; i < EACH; ++i) board[i * THREADS + self] = 0u;
+  steps[self] = 0u;
+  if (self == 0u) of_tiles = is_tied = is_crowded = 0u;
+  find_range(key, length);
+  uint in_tiles = 0u;
+  for (uint i = 0u; i < EACH; ++i) in_tiles += uint(bitCount(value[i] >> SUPERTILE_SPLAT_BITS));
+#if WITH_SUBGROUPS
+  in_tiles = subgroupAdd(in_tiles);
+  if (gl_SubgroupInvocationID == 0u)
+#endif
+  atomicAdd(of_tiles, in_tiles);
+  if (low == high) {  // all as far: by splat alone
+    for (uint i = 0u; i < EACH; ++i) key[i] = SPLAT_OF(value[i]);
+    memoryBarrierShared();
+    barrier();
+    find_range(key, length);
+  }
+  uint least = low;
+  precise float scale = float(THREADS) / (float(high - least) + 1.0);
+  uint step[EACH];
+  float within[EACH];
+  for (uint i = 0u; i < EACH; ++i) {
+    precise float at = float(key[i] - least) * scale;
+    step[i] = min(uint(at), THREADS - 1u);
+    precise float rest = at - float(step[i]);
+    within[i] = rest;
+    if (i * THREADS + self < length) atomicAdd(steps[step[i]], 1u);
+  }
+  memoryBarrierShared();
+  barrier();
+  uint in_step = steps[self], before_step = scan_group(in_step);
+  steps[self] = before_step | in_step << 16;
+  memoryBarrierShared();
+  barrier();
+  for (uint i = 0u; i < EACH; ++i) {
+    if (i * THREADS + self >= length) continue;
+    uint bins = steps[step[i]];
+    place[i] = (bins & 0xFFFFu) + min(uint(within[i] * float(bins >> 16)), (bins >> 16) - 1u);
+    place[i] |= atomicAdd(board[place[i]], 1u) << 16;
+  }
+  memoryBarrierShared();
+  barrier();
+  uint own[EACH], of_own = 0u;
+  for (uint i = 0u; i < EACH; ++i) {
+    own[i] = board[self * EACH + i];
+    of_own += own[i];
+    if (own[i] > SORT_BIN_MOST) is_crowded = 1u;
+  }
+  uint start = scan_group(of_own);
+  for (uint i = 0u; i < EACH; ++i) {
+    board[self * EACH + i] = start;
+    start += own[i];
+  }
+  memoryBarrierShared();
+  barrier();
+  if (is_crowded != 0u) {
+    if (self == 0u) add_item(SORT_CROWDED_KIND, make_room(SORT_CROWDED_KIND, 1u), item);
+    return;
+  }
+  uint begin = 0u;  // of the list, if it is no part of one: asked for here, needed later
+  if (self == 0u && item.w == 0u) begin = atomicAdd(counters.tile_pairs, of_tiles);
+  uint bin[EACH];  // where it begins, and from bit 16 how many it holds
+  for (uint i = 0u; i < EACH; ++i) {
+    bin[i] = 0u;
+    if (i * THREADS + self >= length) continue;
+    uint at = place[i] & 0xFFFFu, first = board[at];
+    bin[i] = first | (at + 1u < MOST ? board[at + 1u] : length) - first << 16;
+    place[i] = first + (place[i] >> 16);
+  }
+  memoryBarrierShared();
+  barrier();
+  for (uint i = 0u; i < EACH; ++i)
+    if (i * THREADS + self < length) board[place[i]] = key[i];
+  memoryBarrierShared();
+  barrier();
+  for (uint i = 0u; i < EACH; ++i) {
+    uint first = bin[i] & 0xFFFFu, count = bin[i] >> 16;
+    bin[i] = 0u;
+    if (count <= 1u) continue;
+    uint less = 0u, as_far = 0u, earlier = 0u;
+    for (uint k = first; k < first + count; ++k) {
+      less += board[k] < key[i] ? 1u : 0u;
+      as_far += board[k] == key[i] ? 1u : 0u;
+      earlier += board[k] == key[i] && k < place[i] ? 1u : 0u;
+    }
+    place[i] = first + less + earlier;
+    if (as_far <= 1u) continue;
+    bin[i] = first + less | as_far << 16;  // of those that are as far
+    is_tied = 1u;
+  }
+  if (self == 0u) list_begin = begin;
+  memoryBarrierShared();
+  barrier();
+  for (uint i = 0u; i < EACH; ++i)
+    if (i * THREADS + self < length) board[place[i]] = value[i];
+  memoryBarrierShared();
+  barrier();
+  if (is_tied != 0u) {
+    for (uint i = 0u; i < EACH; ++i) {
+      if (bin[i] == 0u) continue;
+      uint first = bin[i] & 0xFFFFu, count = bin[i] >> 16;
+      place[i] = first;
+      for (uint k = first; k < first + count; ++k) place[i] += SPLAT_OF(board[k]) < SPLAT_OF(value[i]) ? 1u : 0u;
+    }
+    memoryBarrierShared();
+    barrier();
+    for (uint i = 0u; i < EACH; ++i)
+      if (bin[i] != 0u) board[place[i]] = value[i];
+    memoryBarrierShared();
+    barrier();
+  }
+  write_lists(item);
+}
+#endif
+
+// As many groups as there are lists, unless there are too many for a launch.
+void main() {
+  if ((counters.overflow & OVERFLOW_UNSORTED) != 0u) return;
+  uint count = counters.lists[kind].count;
+  for (uint nth = gl_WorkGroupID.x; nth < count; nth += gl_NumWorkGroups.x) {
+    sort_list(items_read[kind * item_room + nth]);
+    memoryBarrierShared();
+    barrier();
+  }
+}

@@ -1,0 +1,16 @@
+// Where each tile's list is, as the stage sort finds it. Tiles with long lists are noted, too: a launch of their own draws them,
+// which starts before the others' and has more invocations a tile. The file that includes this declares `counters`.
+#include "frame.glsl"
+
+layout(std430, binding = 6) writeonly buffer TileRanges { uvec2 tile_ranges[]; };  // begin, end
+layout(std430, binding = 7) writeonly buffer LongLists { uint long_lists[]; };    // tiles
+
+void set_range(uint tile, uint begin, uint length) {
+  tile_ranges[tile] = uvec2(begin, begin + length);
+  if (length <= LONG_LIST || frame.list_per_view != 0u) return;
+  uint place = atomicAdd(counters.long_lists, 1u);
+  long_lists[place] = tile;
+  counters.long_x = LONG_ROW;
+  if (place % LONG_ROW == 0u) atomicMax(counters.long_y, place / LONG_ROW + 1u);
+  counters.long_z = 1u;
+}
