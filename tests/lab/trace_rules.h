@@ -55,7 +55,7 @@ inline std::vector<std::string> faults_of_trace(const nlohmann::json& trace) {
       fault("a kind of event that nobody writes: " + kind);
     }
   }
-  if (processes != 1) faults.push_back("the process has no name, or many");
+  if (processes != 1) faults.emplace_back("the process has no name, or many");
   constexpr double rounding = 0.01;  // us
   for (auto& [track, slices] : tracks) {
     if (!named.contains(track)) faults.push_back(fmt::format("track {} has no name", track));
