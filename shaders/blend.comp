@@ -1,4 +1,4 @@
-// Stage 6: the picture. One work group a tile, whose splats pass front to back through shared memory. Tiles with long lists
+// Stage 4: the picture. One work group a tile, whose splats pass front to back through shared memory. Tiles with long lists
 // are drawn by a launch of their own, which starts first and has more invocations (tile_ranges.glsl).
 //
 // Programs that measure something of each splat or tell what they come by have no other way through the lists.

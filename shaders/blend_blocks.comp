@@ -1,4 +1,4 @@
-// Stage 6 on software renderers, as llvmpipe, which draws eight invocations by one of its own: one work group a tile, a
+// Stage 4 on software renderers, as llvmpipe, which draws eight invocations by one of its own: one work group a tile, a
 // row of invocations a block of it. Together they take the list's next splats to shared memory and ask which blocks each reaches;
 // an invocation a block lists them; then each row blends those that reach its own. The bits are those of blend.comp.
 #define BLOCK_WIDTH 8

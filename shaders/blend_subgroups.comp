@@ -7,7 +7,7 @@
 #if HALF && defined(GL_NV_gpu_shader5)
 #extension GL_NV_gpu_shader5 : require
 #endif
-// Stage 6 where subgroups have 32 invocations: one work group a tile, a subgroup a block of it. Together they take the list's
+// Stage 4 where subgroups have 32 invocations: one work group a tile, a subgroup a block of it. Together they take the list's
 // next splats to shared memory and ask which blocks each reaches; then each subgroup blends those that reach its own. The bits
 // are those of blend.comp, but in packed halves.
 #define BLOCK_WIDTH 8

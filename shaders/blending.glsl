@@ -1,4 +1,4 @@
-// What the programs of stage 6 share: an invocation's pixels, and how splats are blended into them (docs/method.md 3).
+// What the programs of stage 4 share: an invocation's pixels, and how splats are blended into them (docs/method.md 3).
 //   COLUMN      pixels of an invocation, one below the other
 //   AHEAD       splats whose alphas are found at once
 //   BATCH       splats that the work group has in shared memory; the includer fills them by stage()
