@@ -114,7 +114,10 @@ void FrameBuffers::reserve(const FramePlan& plan, const ModelBuffers& model, con
   projected.coverages.reserve(splats * 4);
   projected.large.reserve(splats * 4);
   lists.first_large = static_cast<std::uint32_t>(capacity.pairs);
-  lists.entries.reserve((capacity.pairs + capacity.large_pairs) * 8);
+  // Where lists are parted, there is room for each entry a second time.
+  const std::int64_t behind =
+      capacity.rounds > 0 ? std::max(capacity.large_pairs, capacity.pairs) : capacity.large_pairs;
+  lists.entries.reserve((capacity.pairs + behind) * 8);
   if (const std::int64_t bytes = plan.supertile_count * 4LL; lists.supertile_counts.bytes() < bytes)
     lists.supertile_counts.reserve_zeros(bytes);
   lists.supertile_ends.reserve(plan.supertile_count * 4LL);

@@ -92,7 +92,6 @@ void Capacity::grow(const FramePlan& plan, const shared::Counters& counters) {
     log_info("drawn again: a list of over {} Gaussians is parted once more", SORT_MOST);
     if (++rounds > SORT_ROUNDS) throw std::logic_error("a list that cannot be parted: sort_split.comp");
   }
-  if (rounds > 0) large_pairs = std::max(large_pairs, pairs);  // parts of lists lie there, too
 }
 
 }  // namespace binosplat::render

@@ -293,6 +293,19 @@ TEST_P(HardLists, AreWholeAndInOrder) {
 INSTANTIATE_TEST_SUITE_P(All, HardLists, testing::ValuesIn(hard_depths),
                          [](const auto& one) { return one.param.name; });
 
+TEST(HardListsOf, ArePartedInFramesOfMoreViews) {
+  // Splats in one supertile and in all eight, that fill more than half of the room for entries and no other.
+  const Camera camera = test::front_camera(112, 48, 64);
+  Model model = crowd(20'000, hard_depths.front(), camera);
+  for (std::size_t i = 0; i < model.count(); ++i)
+    if (i % 20 < 9) model.scale[i] = glm::vec3(2.0f);
+  render::Frame frame(test::gl_context(), model);
+  const std::vector<shared::View> views(4, make_view(camera));
+  EXPECT_GT(frame.draw(std::span(views).first(1)).redrawn, 0);  // for one more round
+  frame.draw(views);
+  EXPECT_TRUE(same_bits(frame.read_pictures()[3], draw(model, views)[3]));
+}
+
 TEST(HardListsOf, EachPartOfTheSortIsNeeded) {
   struct Fault {
     const char *depths, *shader, *sought, *fault;
