@@ -32,7 +32,7 @@ void main() {
   barrier();
   uint kind = 0u, place = 0u, first = 0u;
   if (count != 0u) {
-    kind = count <= SORT_MOST ? CLASS_OF(count) : SORT_LONG_KIND;
+    kind = kind_of(count, 0u);
     place = atomicAdd(of_kind[kind], 1u);
     first = atomicAdd(sum, count);
   }

@@ -1,12 +1,17 @@
 // The lists that are to be sorted, by kind, each kind in any order: SORT_CLASSES classes of length, which are sorted by groups of
-// 32, 64, ... SORT_MOST / SORT_EACH invocations, SORT_EACH entries each; slabs of longer lists; lists with too many of a few
-// depths; and from SORT_LONG_KIND on what each round is to part into slabs (sort_split.comp).
-#define CLASS_OF(length) uint(max(findMSB((length) - 1u) + 1 - findMSB(32u * SORT_EACH), 0))
+// 32, 64, ... SORT_MOST / SORT_EACH invocations, SORT_EACH entries each; lists with too many of a few depths; and from
+// SORT_LONG_KIND on what each round is to part into slabs, which are lists then (sort_split.comp).
 
 // (supertile, first entry, entries, 0; or of a part the number by which slab_tiles knows it, and 1)
 layout(std430, binding = ITEMS_BINDING) writeonly buffer Items { uvec4 items[]; };
 uniform uint item_room;  // of each kind
 uniform uint rounds;     // that part lists
+
+// Of a list, that `round` parts first if it is too long.
+uint kind_of(uint length, uint round) {
+  if (length > SORT_MOST) return SORT_LONG_KIND + round;
+  return uint(max(findMSB(length - 1u) + 1 - findMSB(32u * SORT_EACH), 0));
+}
 
 // Of `count` lists of a kind, where the first goes.
 uint make_room(uint kind, uint count) {

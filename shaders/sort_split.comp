@@ -125,9 +125,8 @@ void split_list(uvec4 item) {
   if (self < SORT_SLABS && slab_begin[self] < length) {  // a slab that no step begins in is empty, and the one before it longer
     uint end = length;
     for (uint slab = self + 1u; slab < SORT_SLABS; ++slab) end = min(end, slab_begin[slab]);
-    uint count = end - slab_begin[self], kind = count <= SORT_MOST ? SORT_SLAB_KIND : SORT_LONG_KIND + round + 1u;
-    uint place = make_room(kind, 1u);
-    add_item(kind, place, uvec4(item.x, other + slab_begin[self], count, first_slab + self + 1u));
+    uint count = end - slab_begin[self], kind = kind_of(count, round + 1u);
+    add_item(kind, make_room(kind, 1u), uvec4(item.x, other + slab_begin[self], count, first_slab + self + 1u));
   }
 }
 

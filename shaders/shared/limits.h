@@ -59,10 +59,9 @@
 #define SORT_CLASSES 6u
 #define SORT_SLABS 64u
 #define SORT_ROUNDS 12u
-#define SORT_SLAB_KIND 6u     // of lists: classes, slabs of long ones,
-#define SORT_CROWDED_KIND 7u  // those with more than SORT_BIN_MOST of nearly one depth,
-#define SORT_LONG_KIND 8u     // those that each round parts, and those left then
-#define SORT_KINDS 21
+#define SORT_CROWDED_KIND 6u  // of lists: classes, those with more than SORT_BIN_MOST of nearly one depth,
+#define SORT_LONG_KIND 7u     // those that each round parts, and those left then
+#define SORT_KINDS 20
 #define SORT_GROUPS_MOST 65535u
 
 // The transmittance that a frame measures of a Gaussian (docs/method.md 5) never falls below BOUND_FLOOR, or

@@ -4,7 +4,6 @@
 #include <bit>
 #include <cmath>
 #include <map>
-#include <utility>
 
 #include "base/error.h"
 #include "reference/render.h"

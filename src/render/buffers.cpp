@@ -1,9 +1,6 @@
 #include "render/buffers.h"
 
 #include <algorithm>
-#include <bit>
-#include <cmath>
-#include <cstring>
 
 #include "base/error.h"
 #include "render/halves.h"

@@ -1,7 +1,6 @@
 #include "render/frame_plan.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <cstring>
 #include <functional>

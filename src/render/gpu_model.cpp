@@ -4,7 +4,6 @@
 #include <cstddef>
 #include <cstring>
 #include <functional>
-#include <mutex>
 #include <numeric>
 #include <span>
 

@@ -24,30 +24,32 @@ void sort(gl::Dispatcher& dispatcher, const Capacity& capacity, FrameBuffers& bu
   const auto rounds = static_cast<std::uint32_t>(capacity.rounds);
   const auto tile_pairs = static_cast<std::uint32_t>(capacity.tile_pairs);
   // Made with the others, since a frame that needs it is to be drawn at once.
-  const gl::Program& parting = context.program("sort_split.comp", subgroups_number(context));
-  const auto part = [&](std::uint32_t round) {
-    dispatcher.start(parting, lists_of(SORT_LONG_KIND + round, buffers),
-                     {{"Frame", buffers.parameters},
-                      {"FrameCounters", buffers.counters},
-                      {"Entries", buffers.lists.entries},
-                      {"SlabTiles", buffers.lists.slab_tiles},
-                      {"TileRanges", buffers.lists.tile_ranges},
-                      {"LongLists", buffers.lists.long_lists},
-                      {"ItemsRead", buffers.lists.items},
-                      {"Items", buffers.lists.items}},
-                     {{"item_room", buffers.lists.item_room},
-                      {"rounds", rounds},
-                      {"round", round},
-                      {"first_entry", buffers.lists.first_large},
-                      {"capacity", tile_pairs}});
-  };
-  const auto sort_kind = [&](std::uint32_t kind, std::uint32_t length_class, bool crowded = false) {
+  const gl::Program& split = context.program("sort_split.comp", subgroups_number(context));
+  for (std::uint32_t round = 0; round < rounds; ++round) {
+    dispatcher.run(split, lists_of(SORT_LONG_KIND + round, buffers),
+                   {{"Frame", buffers.parameters},
+                    {"FrameCounters", buffers.counters},
+                    {"Entries", buffers.lists.entries},
+                    {"SlabTiles", buffers.lists.slab_tiles},
+                    {"TileRanges", buffers.lists.tile_ranges},
+                    {"LongLists", buffers.lists.long_lists},
+                    {"ItemsRead", buffers.lists.items},
+                    {"Items", buffers.lists.items}},
+                   {{"item_room", buffers.lists.item_room},
+                    {"rounds", rounds},
+                    {"round", round},
+                    {"first_entry", buffers.lists.first_large},
+                    {"capacity", tile_pairs}});
+  }
+  const auto sort_kind = [&](std::uint32_t kind) {
     // A software renderer pays for each invocation at each barrier, and seconds to compile a program.
     const bool software = context.software();
     const std::uint32_t each = software ? 4 * SORT_EACH : SORT_EACH;
-    const std::uint32_t threads = software ? (length_class < 3 ? 32 : SORT_MOST / each) : 32 << length_class;
+    const std::uint32_t most = 32 * SORT_EACH << std::min(kind, SORT_CLASSES - 1);  // entries of a list
+    const std::uint32_t threads = software ? (most <= 512 ? 32 : SORT_MOST / each) : most / each;
     const std::array variant = {subgroups_number(context), gl::Number{"LIST_THREADS", threads, 1025},
-                                gl::Number{"LIST_EACH", each, 33}, gl::Number{"CROWDED", crowded, 2}};
+                                gl::Number{"LIST_EACH", each, 33},
+                                gl::Number{"CROWDED", kind == SORT_CROWDED_KIND, 2}};
     dispatcher.start(context.program("sort_lists.comp", variant), lists_of(kind, buffers),
                      {{"Frame", buffers.parameters},
                       {"FrameCounters", buffers.counters},
@@ -63,19 +65,9 @@ void sort(gl::Dispatcher& dispatcher, const Capacity& capacity, FrameBuffers& bu
                       {"rounds", rounds},
                       {"capacity", tile_pairs}});
   };
-  // What takes longest begins first. Software renderers take seconds to compile each program.
-  if (rounds > 0) part(0);
-  for (std::uint32_t kind = SORT_CLASSES; kind-- > 0;) sort_kind(kind, kind);
+  for (std::uint32_t kind = SORT_CLASSES; kind-- > 0;) sort_kind(kind);  // what takes longest first
   dispatcher.wait_for_writes();
-  for (std::uint32_t round = 1; round < rounds; ++round) {
-    part(round);
-    dispatcher.wait_for_writes();
-  }
-  if (rounds > 0) {
-    sort_kind(SORT_SLAB_KIND, SORT_CLASSES - 1);
-    dispatcher.wait_for_writes();
-  }
-  sort_kind(SORT_CROWDED_KIND, SORT_CLASSES - 1, true);
+  sort_kind(SORT_CROWDED_KIND);  // which those have left aside
   dispatcher.wait_for_writes();
 }
 
