@@ -1,6 +1,7 @@
-// Stage 2, bin: of a view's splats in few supertiles, how many are in each supertile; with FILLS the entries themselves, each to
-// the place of its supertile. A work group counts the entries of BIN_BLOCK splats in shared memory first, so that neighbours, which
-// often are in one supertile, do not wait for one another; of as many supertiles as it has room for, from first_supertile on.
+// Stage 2, bin: of the splats in few supertiles of a view, or of both eyes that share lists, how many are in each supertile; with
+// FILLS the entries themselves, each to the place of its supertile. A work group counts the entries of BIN_BLOCK splats in shared
+// memory first, so that neighbours, which often are in one supertile, do not wait for one another; of as many supertiles as it has
+// room for, from first_supertile on.
 #include "shared/limits.h"
 #include "shared/types.h"
 #include "shared/grid.glsl"
@@ -20,18 +21,30 @@ layout(std430, binding = 6) readonly buffer FrameCounters { Counters counters; }
 #else
 layout(std430, binding = 3) buffer SupertileCounts { uint supertile_counts[]; };
 #endif
-uniform uint view_index;
+uniform uint view_index;       // the first of those that share lists
 uniform uint first_supertile;  // in the view
 
 #define EACH (BIN_BLOCK / BIN_THREADS)
 shared uint bins[SUPERTILES];  // of each supertile: entries, then with FILLS where the next one goes
 
-uint tiles_of(uint coverage, uint nth) { return coverage >> 4u * nth & 15u; }
+#define ENTRIES (4u * uint(LIST_VIEWS))  // that a splat in few supertiles may have
+uint across;                             // supertiles of a row
+uint coverage[EACH][LIST_VIEWS];
 
-// Of the nth of a coverage's four supertiles; more than SUPERTILES where there is no entry for these bins.
-uint bin_of(uint coverage, uint nth, uint across) {
-  if (tiles_of(coverage, nth) == 0u) return 0xFFFFFFFFu;
-  return ((coverage & ~IN_FEW_SUPERTILES) >> FEW_SHIFT) + nth % 2u + nth / 2u * across - first_supertile;
+uint supertile_of(uint coverage, uint nth) { return ((coverage & ~IN_FEW_SUPERTILES) >> FEW_SHIFT) + nth % 2u + nth / 2u * across; }
+uint tiles_of(uint coverage, uint nth) { return nth < 4u ? coverage >> 4u * nth & 15u : 0u; }
+
+// Of splat k's entries the nth: its supertile from first_supertile on, and the tiles; 0 tiles: there is none.
+uvec2 entry_of(uint k, uint nth) {
+  uint supertile = supertile_of(coverage[k][nth / 4u], nth % 4u), tiles = tiles_of(coverage[k][nth / 4u], nth % 4u);
+#if LIST_VIEWS == 2
+  // In the supertiles of the first eye's both eyes have an entry, elsewhere the second.
+  uint before = supertile - supertile_of(coverage[k][1u - nth / 4u], 0u);
+  uint same = before < 2u ? before : before - across < 2u ? before - across + 2u : 4u;
+  if (nth < 4u) tiles |= tiles_of(coverage[k][1], same) << SUPERTILE_TILES;
+  else tiles = same < 4u ? 0u : tiles << SUPERTILE_TILES;
+#endif
+  return uvec2(supertile - first_supertile, tiles);
 }
 
 void main() {
@@ -42,20 +55,23 @@ void main() {
   if (counters.overflow != 0u) return;
 #endif
   View view = views[view_index];
-  uint across = supertiles_across(view), offset = view.supertile_offset + first_supertile;
+  across = supertiles_across(view);
+  uint offset = view.supertile_offset + first_supertile;
   for (uint b = self; b < SUPERTILES; b += BIN_THREADS) bins[b] = 0u;
-  uint coverage[EACH];
   for (uint k = 0u; k < EACH; ++k) {
     uint slot = first + k * BIN_THREADS + self;
-    coverage[k] = slot < count ? coverages[splat_of(slot, view_index)] : 0u;
-    if ((coverage[k] & IN_FEW_SUPERTILES) == 0u) coverage[k] = 0u;
+    for (uint eye = 0u; eye < uint(LIST_VIEWS); ++eye) {
+      bool is_there = slot < count && view_index + eye < frame.view_count;
+      coverage[k][eye] = is_there ? coverages[splat_of(slot, view_index + eye)] : 0u;
+      if ((coverage[k][eye] & IN_FEW_SUPERTILES) == 0u) coverage[k][eye] = 0u;
+    }
   }
   memoryBarrierShared();
   barrier();
   for (uint k = 0u; k < EACH; ++k) {
-    for (uint nth = 0u; nth < 4u; ++nth) {
-      uint at = bin_of(coverage[k], nth, across);
-      if (at < SUPERTILES) atomicAdd(bins[at], 1u);
+    for (uint nth = 0u; nth < ENTRIES; ++nth) {
+      uvec2 entry = entry_of(k, nth);
+      if (entry.y != 0u && entry.x < SUPERTILES) atomicAdd(bins[entry.x], 1u);
     }
   }
   memoryBarrierShared();
@@ -72,12 +88,14 @@ void main() {
   memoryBarrierShared();
   barrier();
   for (uint k = 0u; k < EACH; ++k) {
-    if (coverage[k] == 0u) continue;
+    uint any = 0u;
+    for (uint eye = 0u; eye < uint(LIST_VIEWS); ++eye) any |= coverage[k][eye];
+    if (any == 0u) continue;
     uint splat = splat_of(first + k * BIN_THREADS + self, view_index), depth = DEPTH_OF(splat, view);
-    for (uint nth = 0u; nth < 4u; ++nth) {
-      uint at = bin_of(coverage[k], nth, across);
-      if (at < SUPERTILES)
-        entries[atomicAdd(bins[at], 1u)] = uvec2(depth, splat | tiles_of(coverage[k], nth) << SUPERTILE_SPLAT_BITS);
+    for (uint nth = 0u; nth < ENTRIES; ++nth) {
+      uvec2 entry = entry_of(k, nth);
+      if (entry.y != 0u && entry.x < SUPERTILES)
+        entries[atomicAdd(bins[entry.x], 1u)] = uvec2(depth, splat << LIST_TILES | entry.y);
     }
   }
 #endif

@@ -12,11 +12,29 @@ layout(std430, binding = 0) buffer FrameCounters { Counters counters; };
 layout(std430, binding = 1) buffer SupertileCounts { uint supertile_counts[]; };  // made 0 for the next frame
 layout(std430, binding = 2) writeonly buffer SupertileEnds { uint supertile_ends[]; };
 layout(std430, binding = 3) writeonly buffer TileRanges { uvec2 tile_ranges[]; };  // begin, end
+#if LIST_VIEWS == 2
+#include "frame.glsl"
+layout(std430, binding = 5) readonly buffer Views { View views[]; };
+#endif
 #define ITEMS_BINDING 4
 #include "sort_items.glsl"
 uniform uint supertile_count;
 uniform uint capacity;  // entries that there is room for
 uniform uint groups_max;
+
+// Where lists are shared, the second eye's supertile that shares that of the first's; none of a view without a second.
+uint second_of(uint supertile) {
+#if LIST_VIEWS == 2
+  uint v = 0u;
+  while (v + 2u < frame.view_count && supertile >= views[v + 2u].supertile_offset) v += 2u;
+  if (v + 1u == frame.view_count) return NO_SECOND;
+  View view = views[v + 1u];
+  uint across = supertiles_across(view), nth = supertile - views[v].supertile_offset, column = nth % across;
+  return view.supertile_offset + nth - column + (column + across - view.lists_shift) % across;
+#else
+  return NO_SECOND;
+#endif
+}
 
 shared uint of_kind[SORT_LONG_KIND + 1u], first_of_kind[SORT_LONG_KIND + 1u];
 shared uint sum, base;
@@ -53,6 +71,6 @@ void main() {
   barrier();
   if (!is_one) return;
   supertile_ends[supertile] = base + first;
-  if (count != 0u) add_item(kind, first_of_kind[kind] + place, uvec4(supertile, base + first, count, 0u));
+  if (count != 0u) add_item(kind, first_of_kind[kind] + place, uvec4(supertile, base + first, count, second_of(supertile)));
   else for (uint tile = 0u; tile < SUPERTILE_TILES; ++tile) tile_ranges[supertile * SUPERTILE_TILES + tile] = uvec2(0u);
 }

@@ -31,7 +31,8 @@ layout(std430, binding = 11) writeonly buffer Large { uint large[]; };  // splat
 uniform uint view_begin;
 uniform uint view_end;
 
-// All invocations must call it: they share an atomic where they can, since all wait for one counter.
+// Leaves a splat to bin_large.comp, of both eyes if they share lists. All invocations must call it: they share an atomic where they
+// can, since all wait for one counter.
 void leave_aside(uint splat, bool is_large) {
 #if WITH_SUBGROUPS
   uint all = subgroupBallot(is_large).x, lane = gl_SubgroupInvocationID, place = 0u;
@@ -43,8 +44,9 @@ void leave_aside(uint splat, bool is_large) {
 #endif
   if (!is_large) return;
   large[place] = splat;
+  if (place % (LARGE_EACH * LARGE_ROW) != 0u) return;
   counters.large_x = LARGE_ROW;
-  if (place % (LARGE_EACH * LARGE_ROW) == 0u) atomicMax(counters.large_y, place / (LARGE_EACH * LARGE_ROW) + 1u);
+  atomicMax(counters.large_y, place / (LARGE_EACH * LARGE_ROW) + 1u);
   counters.large_z = 1u;
 }
 
@@ -57,6 +59,9 @@ void main() {
   mat3 axes = scaled_axes(g);
 #if SH_DEGREE == 0 && OFFSETS == 0
   vec3 colour = sh_colour(i, vec3(0.0));  // the same for every eye
+#endif
+#if LIST_VIEWS == 2
+  uint first_eyes = 0u;  // coverage by the first of both eyes
 #endif
   for (uint v = view_begin; v < view_end; ++v) {
     View view = views[v];
@@ -74,7 +79,18 @@ void main() {
 #endif
       coverage = coverage_of(outline_of(splat, view), view);
     }
+#if LIST_VIEWS == 2
+    bool is_first = v % 2u == 0u;
+    if (!is_first && (coverage == IN_MANY_SUPERTILES || first_eyes == IN_MANY_SUPERTILES)) {
+      if (first_eyes != 0u) coverages[splat_at - frame.slots] = IN_MANY_SUPERTILES;
+      if (coverage != 0u) coverage = IN_MANY_SUPERTILES;
+      first_eyes = IN_MANY_SUPERTILES;
+    }
+    if (is_first) first_eyes = coverage;
+    if (!is_first || v + 1u == view_end) leave_aside(is_first ? splat_at : splat_at - frame.slots, first_eyes == IN_MANY_SUPERTILES);
+#else
     leave_aside(splat_at, coverage == IN_MANY_SUPERTILES);
+#endif
     if (is_here) coverages[splat_at] = coverage;
 #if MEASURES
     if (is_here) measured[splat_at] = 0u;

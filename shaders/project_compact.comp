@@ -4,7 +4,7 @@
 #extension GL_KHR_shader_subgroup_ballot : require
 #endif
 // Stage 1, project, second part: the Gaussians drawn get slots without gaps, in index order, by which lists break ties. The last
-// block leaves the arguments of later dispatches.
+// block leaves the arguments of later dispatches. And how far they are in the middle.
 //   LOOKS_BACK    1: blocks count and compact in this one dispatch; 0: blocks were counted (project_compact_count.comp)
 #include "shared/limits.h"
 #include "shared/types.h"
@@ -42,6 +42,7 @@ uint sum_before(uint block, uint blocks, uint own) {
 #define EACH (COMPACT_BLOCK / THREADS)
 #define WORDS (THREADS / 32)
 shared uint masks[EACH][WORDS];  // of each round: a bit for each Gaussian that is drawn
+shared uint depth_sum;
 
 void main() {
   uint blocks = max(1u, blocks_of(frame.gaussian_count, COMPACT_BLOCK));
@@ -51,13 +52,20 @@ void main() {
   block = take_number();
 #endif
   uint self = gl_LocalInvocationIndex;
-  uint key[EACH];
+  uint key[EACH], own_sum = 0u;
   for (uint i = 0u; i < EACH; ++i) {
     uint at = block * COMPACT_BLOCK + i * THREADS + self;
     key[i] = at < frame.gaussian_count ? depth_keys[at] : DEPTH_KEY_NONE;
+    if (key[i] != DEPTH_KEY_NONE) own_sum += key[i] / COMPACT_BLOCK;
   }
   if (self < EACH * WORDS) masks[self / WORDS][self % WORDS] = 0u;
+  if (self == 0u) depth_sum = 0u;
   barrier();
+#if LOOKS_BACK
+  own_sum = subgroupAdd(own_sum);
+  if (gl_SubgroupInvocationID == 0u)
+#endif
+  atomicAdd(depth_sum, own_sum);
   uint place[EACH];  // among those of the block
   uint seen = 0u;
   for (uint i = 0u; i < EACH; ++i) {
@@ -73,6 +81,10 @@ void main() {
   }
   uint before = sum_before(block, blocks, seen);
   if (block + 1u == blocks && self == 0u) set_arguments(before + seen);
+  if (self == 0u && seen != 0u) {
+    uint low = atomicAdd(counters.depths_low, depth_sum);
+    if (low + depth_sum < low) atomicAdd(counters.depths_high, 1u);
+  }
   for (uint i = 0u; i < EACH; ++i) {
     uint to = before + place[i];
     if (key[i] == DEPTH_KEY_NONE || to >= capacity) continue;

@@ -2,10 +2,15 @@
 // 32, 64, ... SORT_MOST / SORT_EACH invocations, SORT_EACH entries each; lists with too many of a few depths; and from
 // SORT_LONG_KIND on what each round is to part into slabs, which are lists then (sort_split.comp).
 
-// (supertile, first entry, entries, 0; or of a part the number by which slab_tiles knows it, and 1)
+// Supertile, first entry, entries; of a list the second eye's supertile, or NO_SECOND; of a part PART and the number by which
+// slab_tiles knows it.
+#define PART 0x80000000u
+#define NO_SECOND 0x7FFFFFFFu
 layout(std430, binding = ITEMS_BINDING) writeonly buffer Items { uvec4 items[]; };
 uniform uint item_room;  // of each kind
 uniform uint rounds;     // that part lists
+
+bool is_part(uvec4 item) { return (item.w & PART) != 0u; }
 
 // Of a list, that `round` parts first if it is too long.
 uint kind_of(uint length, uint round) {

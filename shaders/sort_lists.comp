@@ -33,19 +33,19 @@ layout(std430, binding = 2) coherent buffer Entries { uvec2 entries[]; };
 layout(std430, binding = 2) readonly buffer Entries { uvec2 entries[]; };
 #endif
 layout(std430, binding = 3) readonly buffer SlabTiles { uint slab_tiles[]; };     // sort_split.comp
-#include "tile_ranges.glsl"  // bindings 6 and 7
 layout(std430, binding = 5) writeonly buffer TileValues { uint tile_values[]; };  // splats
 uniform uint kind;  // of lists
 #define ITEMS_BINDING 8
 #include "sort_items.glsl"
+#include "tile_ranges.glsl"  // bindings 6 and 7
 uniform uint capacity;  // of tile_values
 
 shared uint board[MOST];    // entries of each bin, then where it begins; then depths; then entries in their order
 shared uint steps[THREADS];  // bins before the step's, and from bit 16 its own
 shared uint low, high, of_tiles, list_begin, is_tied, is_crowded;
-shared uvec4 row_counts[ROWS];
+shared uint of_rows[ROWS][LIST_TILES], of_list[LIST_TILES];
 #if !WITH_SUBGROUPS
-shared uint touching[ROWS][EACH][SUPERTILE_TILES];
+shared uint touching[ROWS][EACH][LIST_TILES];
 #endif
 
 // The tiles' lists, of the entries that lie in their order on the board.
@@ -59,45 +59,56 @@ void write_lists(uvec4 item) {
 #define TOUCHING(i, tile) subgroupBallot(TOUCHES(value[i], tile)).x
 #else
 #define TOUCHING(i, tile) touching[row][i][tile]
-  for (uint k = lane; k < EACH * SUPERTILE_TILES; k += 32u) touching[row][k / SUPERTILE_TILES][k % SUPERTILE_TILES] = 0u;
+  for (uint k = lane; k < EACH * LIST_TILES; k += 32u) touching[row][k / LIST_TILES][k % LIST_TILES] = 0u;
   memoryBarrierShared();
   barrier();
   for (uint i = 0u; i < EACH; ++i)
-    for (uint tile = 0u; tile < SUPERTILE_TILES; ++tile)
+    for (uint tile = 0u; tile < LIST_TILES; ++tile)
       if (TOUCHES(value[i], tile)) atomicOr(touching[row][i][tile], 1u << lane);
   memoryBarrierShared();
   barrier();
 #endif
-  uvec4 of_row = uvec4(0u), in_list = uvec4(0u), to = uvec4(0u);
-  for (uint tile = 0u; tile < SUPERTILE_TILES; ++tile)
-    for (uint i = 0u; i < EACH; ++i) of_row[tile] += uint(bitCount(TOUCHING(i, tile)));
-  if (lane == 0u) row_counts[row] = of_row;
+  uint sum = 0u;  // each row's lanes count a tile each
+  for (uint tile = 0u; tile < LIST_TILES; ++tile) {
+    uint touched = 0u;
+    for (uint i = 0u; i < EACH; ++i) touched += uint(bitCount(TOUCHING(i, tile)));
+    if (lane == tile) sum = touched;
+  }
+  if (lane < LIST_TILES) of_rows[row][lane] = sum;
   memoryBarrierShared();
   barrier();
-#if WITH_SUBGROUPS
-  of_row = lane < ROWS ? row_counts[lane] : uvec4(0u);
-  in_list = subgroupAdd(of_row);
-  to = subgroupAdd(lane < row ? of_row : uvec4(0u));
-#else
-  for (uint r = 0u; r < ROWS; ++r) {
-    in_list += row_counts[r];
-    if (r < row) to += row_counts[r];
+  uint before = 0u;
+  sum = 0u;
+  if (lane < LIST_TILES) {
+    for (uint r = 0u; r < ROWS; ++r) {
+      uint touched = of_rows[r][lane];
+      sum += touched;
+      before += r < row ? touched : 0u;
+    }
+    if (row == 0u) of_list[lane] = sum;
   }
-#endif
-  uint tile_begin = list_begin;
-  for (uint tile = 0u; tile < SUPERTILE_TILES; ++tile) {
-    if (item.w != 0u) tile_begin = slab_tiles[(item.w - 1u) * SUPERTILE_TILES + tile];
-    else if (self == 0u) set_range(item.x * SUPERTILE_TILES + tile, tile_begin, in_list[tile]);
-    uint next = tile_begin + to[tile];
+  memoryBarrierShared();
+  barrier();
+  if (lane < LIST_TILES) {
+    uint begin = list_begin;
+    for (uint tile = 0u; tile < LIST_TILES; ++tile) begin += tile < lane ? of_list[tile] : 0u;
+    if (is_part(item)) begin = slab_tiles[(item.w & ~PART) * LIST_TILES + lane];
+    else if (row == 0u) {
+      set_range(item, lane, begin, sum);
+      if (begin + sum > capacity) atomicOr(counters.overflow, OVERFLOW_TILE_PAIRS);
+    }
+    of_rows[row][lane] = begin + before;
+  }
+  memoryBarrierShared();
+  barrier();
+  for (uint tile = 0u; tile < LIST_TILES; ++tile) {
+    uint next = of_rows[row][tile];
     for (uint i = 0u; i < EACH; ++i) {
       uint all = TOUCHING(i, tile), at = next + uint(bitCount(all & (1u << lane) - 1u));
-      if (TOUCHES(value[i], tile) && at < capacity) tile_values[at] = SPLAT_OF(value[i]);
+      if (TOUCHES(value[i], tile) && at < capacity) tile_values[at] = SPLAT_OF(value[i]) + tile / SUPERTILE_TILES * frame.slots;
       next += uint(bitCount(all));
     }
-    tile_begin += in_list[tile];
   }
-  if (self == 0u && list_begin + in_list.x + in_list.y + in_list.z + in_list.w > capacity && item.w == 0u)
-    atomicOr(counters.overflow, OVERFLOW_TILE_PAIRS);
 }
 
 #if CROWDED
@@ -112,7 +123,7 @@ void sort_list(uvec4 item) {
         uint second = stride == size / 2u ? first / size * size + size - 1u - first % size : first + stride;
         if (second >= item.z) continue;
         uvec2 a = entries[item.y + first], b = entries[item.y + second];
-        if (a.x < b.x || (a.x == b.x && SPLAT_OF(a.y) < SPLAT_OF(b.y))) continue;
+        if (a.x < b.x || (a.x == b.x && a.y < b.y)) continue;
         entries[item.y + first] = b;
         entries[item.y + second] = a;
       }
@@ -122,12 +133,12 @@ void sort_list(uvec4 item) {
   }
   for (uint i = self; i < item.z; i += THREADS) {
     board[i] = entries[item.y + i].y;
-    in_tiles += uint(bitCount(board[i] >> SUPERTILE_SPLAT_BITS));
+    in_tiles += uint(bitCount(TILES_OF(board[i])));
   }
   atomicAdd(of_tiles, in_tiles);
   memoryBarrierShared();
   barrier();
-  if (self == 0u) list_begin = item.w == 0u ? atomicAdd(counters.tile_pairs, of_tiles) : 0u;
+  if (self == 0u) list_begin = is_part(item) ? 0u : atomicAdd(counters.tile_pairs, of_tiles);
   memoryBarrierShared();
   barrier();
   write_lists(item);
@@ -175,7 +186,7 @@ void sort_list(uvec4 item) {
   if (self == 0u) of_tiles = is_tied = is_crowded = 0u;
   find_range(key, length);
   uint in_tiles = 0u;
-  for (uint i = 0u; i < EACH; ++i) in_tiles += uint(bitCount(value[i] >> SUPERTILE_SPLAT_BITS));
+  for (uint i = 0u; i < EACH; ++i) in_tiles += uint(bitCount(TILES_OF(value[i])));
 #if WITH_SUBGROUPS
   in_tiles = subgroupAdd(in_tiles);
   if (gl_SubgroupInvocationID == 0u)
@@ -230,7 +241,7 @@ void sort_list(uvec4 item) {
     return;
   }
   uint begin = 0u;  // of the list, if it is no part of one: asked for here, needed later
-  if (self == 0u && item.w == 0u) begin = atomicAdd(counters.tile_pairs, of_tiles);
+  if (self == 0u && !is_part(item)) begin = atomicAdd(counters.tile_pairs, of_tiles);
   uint bin[EACH];  // where it begins, and from bit 16 how many it holds
   for (uint i = 0u; i < EACH; ++i) {
     bin[i] = 0u;
@@ -272,7 +283,7 @@ void sort_list(uvec4 item) {
       if (bin[i] == 0u) continue;
       uint first = bin[i] & 0xFFFFu, count = bin[i] >> 16;
       place[i] = first;
-      for (uint k = first; k < first + count; ++k) place[i] += SPLAT_OF(board[k]) < SPLAT_OF(value[i]) ? 1u : 0u;
+      for (uint k = first; k < first + count; ++k) place[i] += board[k] < value[i] ? 1u : 0u;
     }
     memoryBarrierShared();
     barrier();

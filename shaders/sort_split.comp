@@ -18,10 +18,10 @@ layout(local_size_x = THREADS) in;
 layout(std430, binding = 0) buffer FrameCounters { Counters counters; };
 layout(std430, binding = 1) buffer Entries { uvec2 entries[]; };
 layout(std430, binding = 2) buffer SlabTiles { uint slab_tiles[]; };              // by slab and tile
-#include "tile_ranges.glsl"  // bindings 6 and 7
 layout(std430, binding = 5) readonly buffer ItemsRead { uvec4 items_read[]; };
 #define ITEMS_BINDING 4
 #include "sort_items.glsl"
+#include "tile_ranges.glsl"  // bindings 6 and 7
 uniform uint round;        // from 0
 uniform uint first_entry;  // of the other half
 uniform uint capacity;     // of tiles' lists
@@ -30,8 +30,8 @@ uniform uint capacity;     // of tiles' lists
 shared uint steps[STEPS];      // entries; then where the next one goes
 shared uint slab_of[STEPS];
 shared uint slab_begin[SORT_SLABS];
-shared uint slab_sums[SORT_SLABS][SUPERTILE_TILES];
-shared uint totals[SUPERTILE_TILES];
+shared uint slab_sums[SORT_SLABS][LIST_TILES];
+shared uint totals[LIST_TILES];
 shared uint low, high, first_slab, list_begin;
 
 uint key_of(uvec2 entry, bool by_splat) { return by_splat ? SPLAT_OF(entry.y) : entry.x; }
@@ -61,7 +61,7 @@ void split_list(uvec4 item) {
   steps[self] = steps[self + THREADS] = 0u;
   if (self < SORT_SLABS) {
     slab_begin[self] = length;
-    for (uint tile = 0u; tile < SUPERTILE_TILES; ++tile) slab_sums[self][tile] = 0u;
+    for (uint tile = 0u; tile < LIST_TILES; ++tile) slab_sums[self][tile] = 0u;
   }
   find_range(item, false);
   bool by_splat = low == high;
@@ -92,12 +92,12 @@ void split_list(uvec4 item) {
     uvec2 entry = entries[item.y + at];
     uint step = STEP_OF(entry);
     entries[other + atomicAdd(steps[step], 1u)] = entry;
-    for (uint tile = 0u; tile < SUPERTILE_TILES; ++tile)
+    for (uint tile = 0u; tile < LIST_TILES; ++tile)
       if (TOUCHES(entry.y, tile)) atomicAdd(slab_sums[slab_of[step]][tile], 1u);
   }
   memoryBarrierShared();
   barrier();
-  if (self < SUPERTILE_TILES) {
+  if (self < LIST_TILES) {
     uint sum = 0u;
     for (uint slab = 0u; slab < SORT_SLABS; ++slab) sum += slab_sums[slab][self];
     totals[self] = sum;
@@ -105,20 +105,21 @@ void split_list(uvec4 item) {
   memoryBarrierShared();
   barrier();
   if (self == 0u) {
-    uint in_tiles = totals[0] + totals[1] + totals[2] + totals[3];
+    uint in_tiles = 0u;
+    for (uint tile = 0u; tile < LIST_TILES; ++tile) in_tiles += totals[tile];
     first_slab = atomicAdd(counters.slabs, SORT_SLABS);
-    list_begin = item.w == 0u ? atomicAdd(counters.tile_pairs, in_tiles) : 0u;
-    if (item.w == 0u && list_begin + in_tiles > capacity) atomicOr(counters.overflow, OVERFLOW_TILE_PAIRS);
+    list_begin = is_part(item) ? 0u : atomicAdd(counters.tile_pairs, in_tiles);
+    if (!is_part(item) && list_begin + in_tiles > capacity) atomicOr(counters.overflow, OVERFLOW_TILE_PAIRS);
   }
   memoryBarrierShared();
   barrier();
-  if (self < SUPERTILE_TILES) {
+  if (self < LIST_TILES) {
     uint begin = list_begin;
     for (uint tile = 0u; tile < self; ++tile) begin += totals[tile];
-    if (item.w == 0u) set_range(item.x * SUPERTILE_TILES + self, begin, totals[self]);
-    else begin = slab_tiles[(item.w - 1u) * SUPERTILE_TILES + self];
+    if (!is_part(item)) set_range(item, self, begin, totals[self]);
+    else begin = slab_tiles[(item.w & ~PART) * LIST_TILES + self];
     for (uint slab = 0u; slab < SORT_SLABS; ++slab) {
-      slab_tiles[(first_slab + slab) * SUPERTILE_TILES + self] = begin;
+      slab_tiles[(first_slab + slab) * LIST_TILES + self] = begin;
       begin += slab_sums[slab][self];
     }
   }
@@ -126,7 +127,7 @@ void split_list(uvec4 item) {
     uint end = length;
     for (uint slab = self + 1u; slab < SORT_SLABS; ++slab) end = min(end, slab_begin[slab]);
     uint count = end - slab_begin[self], kind = kind_of(count, round + 1u);
-    add_item(kind, make_room(kind, 1u), uvec4(item.x, other + slab_begin[self], count, first_slab + self + 1u));
+    add_item(kind, make_room(kind, 1u), uvec4(item.x, other + slab_begin[self], count, PART | (first_slab + self)));
   }
 }
 

@@ -5,7 +5,10 @@
 layout(std430, binding = 6) writeonly buffer TileRanges { uvec2 tile_ranges[]; };  // begin, end
 layout(std430, binding = 7) writeonly buffer LongLists { uint long_lists[]; };    // tiles
 
-void set_range(uint tile, uint begin, uint length) {
+// Of the nth tile of a list that is no part.
+void set_range(uvec4 item, uint nth, uint begin, uint length) {
+  if (nth >= SUPERTILE_TILES && item.w == NO_SECOND) return;
+  uint tile = (nth < SUPERTILE_TILES ? item.x : item.w) * SUPERTILE_TILES + nth % SUPERTILE_TILES;
   tile_ranges[tile] = uvec2(begin, begin + length);
   if (length <= LONG_LIST || frame.list_per_view != 0u) return;
   uint place = atomicAdd(counters.long_lists, 1u);

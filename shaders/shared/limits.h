@@ -45,7 +45,6 @@
 
 // Tiles along a side of a supertile, and the bits of an entry that are its splat (supertiles.glsl).
 #define SUPERTILE_SIDE 2
-#define SUPERTILE_SPLAT_BITS 28
 // Splats whose entries a work group counts in shared memory at a time, and its invocations.
 #define BIN_BLOCK 4096
 #define BIN_THREADS 1024
@@ -99,8 +98,8 @@
 
 // Boxes of more than TALL_ROWS rows of tiles are asked about the picture's rectangle first.
 #define TALL_ROWS 4u
-// Splats in many supertiles that a work group bins, LARGE_ROW groups along x.
-#define LARGE_EACH 64
+// Splats in many supertiles that a work group bins, an eye's as one each, LARGE_ROW groups along x.
+#define LARGE_VIEWS 64u
 #define LARGE_ROW 1024u
 
 // Invocations of a work group that handles one thing each.

@@ -48,6 +48,8 @@ struct View {
   uint first_row;         // place of its first row of tiles in region_rows (tiles/regions.glsl)
   float tolerance_share;  // its tolerance over the frame's
   float low_pass_share;   // share of the low-pass that takes no weight from Gaussians (projection.glsl)
+  uint lists_shift;       // columns of supertiles, where it shares lists as the second eye (supertiles.glsl)
+  uint unused_1, unused_2, unused_3;
 };
 
 // What holds for all of a frame. It lies in a uniform block, whose std140 agrees with std430 where there are
@@ -144,7 +146,7 @@ struct Counters {
   uint overflow;         // OVERFLOW_ bits
   uint truncated_lists;  // tiles whose list the driver ended early: the picture must not be used
   uint depths_low;       // sum of what the Gaussians are sorted by, bits of floats, world units, over
-  uint depths_high;      // THREADS: low and high half
+  uint depths_high;      // COMPACT_BLOCK: low and high half
   uint probe_low;   // squared error of the probe, summed over pixels and channels, times PROBE_SCALE: low and
   uint probe_high;  // high half
   uint probe_squares_low;  // squares of such sums of THREADS pixels each, likewise
@@ -181,7 +183,7 @@ struct DispatchArguments {
 };
 
 #ifdef __cplusplus
-static_assert(sizeof(View) == 192 && offsetof(View, slopes) == 96 && offsetof(View, low_pass_share) == 188);
+static_assert(sizeof(View) == 208 && offsetof(View, slopes) == 96 && offsetof(View, low_pass_share) == 188);
 static_assert(sizeof(FrameParameters) == 96 && offsetof(FrameParameters, tolerance) == 16);
 static_assert(sizeof(Gaussian) == 48 && offsetof(Gaussian, scale) == 32);
 static_assert(sizeof(Anchor) == 64 && offsetof(Anchor, scale) == 48);

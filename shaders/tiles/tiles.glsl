@@ -118,20 +118,21 @@ SupertileRow supertile_row(Outline outline, View view, uvec4 box, uint nth) {
   return supertile_row_of(tiles);
 }
 
-// The entry of a splat in a column of such a row (supertiles.glsl).
-uint entry_of(uint splat, SupertileRow row, uint column) {
+// The tiles that it touches in a column of such a row, a bit each.
+uint tiles_in(SupertileRow row, uint column) {
   uvec2 tiles = uvec2(2u * column, 2u * column + 1u);
   uvec2 upper = uvec2(greaterThanEqual(tiles, row.tiles.xx)) * uvec2(lessThan(tiles, row.tiles.yy));
   uvec2 lower = uvec2(greaterThanEqual(tiles, row.tiles.zz)) * uvec2(lessThan(tiles, row.tiles.ww));
-  return splat | (upper.x | upper.y << 1 | lower.x << 2 | lower.y << 3) << SUPERTILE_SPLAT_BITS;
+  return upper.x | upper.y << 1 | lower.x << 2 | lower.y << 3;
 }
 
 // A splat's coverage (supertiles.glsl). Tile row by tile row, so that neighbours ask at the same time.
 uint coverage_of(Outline outline, View view) {
   uvec4 box = box_of_tiles(outline, view);
   uvec2 rows = supertile_rows(box);
-  uint supertile = rows.x * supertiles_across(view) + box.x / 2u;
-  bool are_few = rows.y - rows.x <= 2u && (box.z + 1u) / 2u - box.x / 2u <= 2u && supertile < FEW_END;
+  uint across = supertiles_across(view), columns = (box.z + 1u) / 2u - box.x / 2u;
+  uint column = column_of_list(box.x / 2u, view), supertile = rows.x * across + column;
+  bool are_few = rows.y - rows.x <= 2u && columns <= 2u && column + columns <= across && supertile < FEW_END;
   if (outline.is_wide || !are_few) return IN_MANY_SUPERTILES;
   uint bits = 0u;
   for (uint row = box.y; row < box.w; ++row) {

@@ -186,7 +186,7 @@ Supertiles entries_of(const FramePlan& plan, const std::vector<Slots>& slots,
         const std::uint32_t i = lists.gaussians[k], splat = v * room + slots[view.order_group].of[i];
         Entry& entry = found[y / side * across + x / side][rank[i]];
         entry.x = std::bit_cast<std::uint32_t>(static_cast<float>(results[v].splats[i].order));
-        entry.y |= splat | 1u << (SUPERTILE_SPLAT_BITS + y % side * side + x % side);
+        entry.y |= splat << side * side | 1u << (y % side * side + x % side);
       }
     }
     for (std::uint32_t n = 0; n < found.size(); ++n)
@@ -230,8 +230,7 @@ void upload_lists(const FramePlan& plan, const Supertiles& supertiles, FrameBuff
     for (std::uint32_t tile = 0; tile < SUPERTILE_SIDE * SUPERTILE_SIDE; ++tile) {
       const std::size_t begin = values.size();
       for (const Entry& entry : entries) {
-        if ((entry.y >> (SUPERTILE_SPLAT_BITS + tile) & 1) != 0)
-          values.push_back(entry.y & ((1u << SUPERTILE_SPLAT_BITS) - 1));
+        if ((entry.y >> tile & 1) != 0) values.push_back(entry.y >> SUPERTILE_SIDE * SUPERTILE_SIDE);
       }
       ranges.emplace_back(begin, values.size());
     }
@@ -278,7 +277,7 @@ void upload_projection(const FramePlan& plan, const std::vector<Slots>& slots,
     buffers.drawn[group]->arguments.upload(std::vector{shared::DispatchArguments{.count = count}});
   }
   const auto count = static_cast<std::uint32_t>(large.size());
-  const std::uint32_t rows = (count + LARGE_EACH * LARGE_ROW - 1) / (LARGE_EACH * LARGE_ROW);
+  const std::uint32_t rows = (count + LARGE_VIEWS * LARGE_ROW - 1) / (LARGE_VIEWS * LARGE_ROW);
   buffers.counters.upload(std::vector{
       shared::Counters{.large = count, .large_x = LARGE_ROW, .large_y = std::max(rows, 1u), .large_z = 1}});
   buffers.projected.large.upload(large);

@@ -15,9 +15,10 @@ void bin_small(gl::Dispatcher& dispatcher, const FramePlan& plan, bool fills, Fr
   // Of a view as many supertiles at a time as shared memory has room for.
   const auto at_a_time = static_cast<std::uint32_t>(
       std::min<std::int64_t>(context.limits().shared_bytes, std::int64_t{48} << 10) / 4 - 64);
-  const std::array variant = {gl::Number{"FILLS", fills, 2}, gl::Number{"SUPERTILES", at_a_time, 1 << 14}};
+  const std::array variant = {gl::Number{"FILLS", fills, 2}, gl::Number{"SUPERTILES", at_a_time, 1 << 14},
+                              list_views_number(plan)};
   const gl::Program& program = context.program("bin.comp", variant);
-  for (std::uint32_t v = 0; v < plan.view_count(); ++v) {
+  for (std::uint32_t v = 0; v < plan.view_count(); v += static_cast<std::uint32_t>(plan.list_views)) {
     const gl::Buffer& arguments = buffers.drawn[plan.views[v].order_group]->arguments;
     for (std::uint32_t first = 0; first < plan.supertiles_of(v); first += at_a_time) {
       dispatcher.start(program,
@@ -41,6 +42,7 @@ void bin_small(gl::Dispatcher& dispatcher, const FramePlan& plan, bool fills, Fr
 void bin(gl::Dispatcher& dispatcher, const FramePlan& plan, const Capacity& capacity, FrameBuffers& buffers) {
   gl::Context& context = dispatcher.context();
   PairVariant variant(plan);
+  variant.list_views = plan.list_views;
   variant.subgroups = context.limits().subgroups_of_32;
   dispatcher.start(context.program("bin_large.comp", variant),
                    gl::DispatchSize::indirect(buffers.counters, offsetof(shared::Counters, large_x)),
@@ -57,8 +59,11 @@ void bin(gl::Dispatcher& dispatcher, const FramePlan& plan, const Capacity& capa
                     {"capacity", static_cast<std::uint32_t>(capacity.large_pairs)}});
   bin_small(dispatcher, plan, false, buffers);
   dispatcher.wait_for_writes();
-  dispatcher.run(context.program("bin_place.comp"), gl::DispatchSize::threads(plan.supertile_count, THREADS),
-                 {{"FrameCounters", buffers.counters},
+  dispatcher.run(context.program("bin_place.comp", list_views_number(plan)),
+                 gl::DispatchSize::threads(plan.supertile_count, THREADS),
+                 {{"Frame", buffers.parameters},
+                  {"Views", buffers.views},
+                  {"FrameCounters", buffers.counters},
                   {"SupertileCounts", buffers.lists.supertile_counts},
                   {"SupertileEnds", buffers.lists.supertile_ends},
                   {"TileRanges", buffers.lists.tile_ranges},
@@ -68,7 +73,7 @@ void bin(gl::Dispatcher& dispatcher, const FramePlan& plan, const Capacity& capa
                   {"rounds", static_cast<std::uint32_t>(capacity.rounds)},
                   {"capacity", static_cast<std::uint32_t>(capacity.pairs)},
                   {"groups_max", context.limits().groups}});
-  dispatcher.start(context.program("bin_fill_large.comp"),
+  dispatcher.start(context.program("bin_fill_large.comp", list_views_number(plan)),
                    gl::DispatchSize::indirect(buffers.counters, offsetof(shared::Counters, fill_x)),
                    {{"Frame", buffers.parameters},
                     {"Views", buffers.views},

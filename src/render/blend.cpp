@@ -156,9 +156,8 @@ void refuse_truncated(const gl::Context& context, const shared::Counters& counte
 }
 
 void keep_measured(gl::Dispatcher& dispatcher, const FramePlan& plan, bool measures, FrameBuffers& buffers) {
-  if (!measures && !plan.probe) return;
-  const gl::Program& program =
-      dispatcher.context().program("blend_measured.comp", gl::Number{"MEASURES", measures, 2});
+  if (!measures) return;
+  const gl::Program& program = dispatcher.context().program("blend_measured.comp");
   for (std::size_t group = 0; group < plan.groups.size(); ++group) {
     const DrawnBuffers& drawn = *buffers.drawn[group];
     dispatcher.run(
@@ -168,11 +167,8 @@ void keep_measured(gl::Dispatcher& dispatcher, const FramePlan& plan, bool measu
          {"Indices", drawn.indices},
          {"Coverages", buffers.projected.coverages},
          {"Measured", buffers.transmittance.measured},
-         {"NextBounds", *buffers.transmittance.next_bounds},
-         {"Depths", buffers.projected.depths},
-         {"FrameCounters", buffers.counters}},
-        {{"order_group", static_cast<std::uint32_t>(group)},
-         {"view_begin", plan.groups[group].begin},
+         {"NextBounds", *buffers.transmittance.next_bounds}},
+        {{"view_begin", plan.groups[group].begin},
          {"view_end", std::min(plan.groups[group].end, plan.asked)}});
   }
 }

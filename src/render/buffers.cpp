@@ -122,7 +122,7 @@ void FrameBuffers::reserve(const FramePlan& plan, const ModelBuffers& model, con
       plan.supertile_count + static_cast<std::uint32_t>(capacity.rounds * capacity.pairs / (SORT_MOST / 4));
   lists.items.reserve(std::int64_t{SORT_LONG_KIND + capacity.rounds} * lists.item_room * 16);
   lists.slab_tiles.reserve(
-      std::max<std::int64_t>(1, capacity.rounds * capacity.pairs / SORT_MOST * SORT_SLABS) * 16);
+      std::max<std::int64_t>(1, capacity.rounds * capacity.pairs / SORT_MOST * SORT_SLABS) * 32);
   lists.tile_ranges.reserve(plan.tile_count() * 8LL);
   lists.tile_values.reserve(capacity.tile_pairs * 4);
   lists.long_lists.reserve(plan.tile_count() * 4LL);

@@ -186,6 +186,7 @@ void Frame::wait_and_read(FrameReport& report) {
 
 void Frame::record() {
   const Workings& workings = submitted_.workings;
+  if (!workings.stand_in) share_lists(plan_, capacity_.slots, middle_depth(counters_));
   {
     const TimedSpan span("upload", &cpu_.upload);
     buffers_.reserve(plan_, *model_buffers_, capacity_);
@@ -223,7 +224,7 @@ void Frame::record_stages() {
         [&] { project(dispatcher_, plan_, group, measuring_.measures, *model_buffers_, buffers_); });
   }
   run(Stage::bin, [&] { bin(dispatcher_, plan_, capacity_, buffers_); });
-  run(Stage::sort, [&] { sort(dispatcher_, capacity_, buffers_); });
+  run(Stage::sort, [&] { sort(dispatcher_, plan_, capacity_, buffers_); });
   run(Stage::blend, [&] {
     blend(dispatcher_, plan_, measuring_.measures, tiles_a_splat_, buffers_);
     keep_measured(dispatcher_, plan_, measuring_.measures, buffers_);

@@ -83,7 +83,44 @@ void add_view(FramePlan& plan, shared::View view, const ViewRegion& region,
   plan.views.push_back(view);
 }
 
+// How many columns of supertiles the second eye sees what is at this depth before the first.
+std::uint32_t disparity(const shared::View& first, const shared::View& second, int tile, double depth) {
+  const std::uint32_t across = (first.tiles_x + SUPERTILE_SIDE - 1) / SUPERTILE_SIDE;
+  if (!(depth > 0.0)) return 0;
+  const auto rows = [](const shared::View& v) {  // the rotation's, as columns
+    return glm::dmat3(glm::dvec3(v.row_x), glm::dvec3(v.row_y), glm::dvec3(v.row_z));
+  };
+  const auto translation = [](const shared::View& v) { return glm::dvec3(v.row_x.w, v.row_y.w, v.row_z.w); };
+  const double x = first.shift_x + 0.5 * first.width;
+  const glm::dvec3 seen((x - first.lens.z) / first.lens.x * depth, 0.0, depth);
+  const glm::dvec3 other = (rows(first) * (seen - translation(first))) * rows(second) + translation(second);
+  const double moved =
+      x - first.shift_x - (second.lens.x * other.x / other.z + second.lens.z - second.shift_x);
+  const double columns = std::round(moved / (SUPERTILE_SIDE * tile));
+  if (!(std::abs(columns) < across)) return 0;
+  return static_cast<std::uint32_t>(columns + across) % across;
+}
+
 }  // namespace
+
+void share_lists(FramePlan& plan, std::int64_t slots, double middle_depth) {
+  constexpr std::int64_t splats_max = std::int64_t{1} << (32 - 2 * SUPERTILE_SIDE * SUPERTILE_SIDE);
+  plan.list_views = plan.asked >= 2 && slots * (plan.view_count() - 1) <= splats_max ? 2 : 1;
+  if (plan.settings.tiles == TILES_ALL) plan.list_views = 1;
+  for (std::size_t v = 0; v + 1 < plan.view_count(); v += 2) {
+    const shared::View &first = plan.views[v], &second = plan.views[v + 1];
+    if (first.order_group != second.order_group || first.tiles_x != second.tiles_x ||
+        first.tiles_x <= SUPERTILE_SIDE || first.tiles_y != second.tiles_y ||
+        first.is_probe != second.is_probe)
+      plan.list_views = 1;
+  }
+  for (std::size_t v = 0; v < plan.view_count(); ++v) {
+    plan.views[v].lists_shift =
+        plan.list_views == 2 && v % 2 == 1
+            ? disparity(plan.views[v - 1], plan.views[v], plan.settings.tile_size, middle_depth)
+            : 0;
+  }
+}
 
 int FramePlan::depth() const {
   if (visibility_as_depth) return DEPTH_VISIBILITY;

@@ -66,6 +66,7 @@ struct FramePlan {
   int depth_rows = 1;            // with canvases: depths are wanted in every row, or every second one
   Meshes meshes;
   std::uint32_t supertile_count = 0;  // over all views
+  int list_views = 1;                 // views that share lists, by share_lists()
   std::int64_t pixel_count = 0;       // over all views
   // For Scaffold-GS; K is 0 for other models.
   std::uint32_t offset_count = 0;        // K
@@ -108,6 +109,11 @@ struct PlanRequest {
   std::optional<float> tolerance;  // in the place of the settings'
   CallersTextures textures;
 };
+
+/// Lets both eyes of all pairs share lists (supertiles.glsl), where these see equal depths in grids of equal
+/// size and `slots` Gaussians can be told apart by an entry. The second eye's grid is moved by the disparity
+/// at `middle_depth`, world units; unless it is above 0, not at all.
+void share_lists(FramePlan& plan, std::int64_t slots, double middle_depth);
 
 /// Makes the plan for a model of this size, whatever model.count() says: the model in memory may have changed
 /// since it was uploaded. Throws Error(bad_input) for no views, more than MAX_VIEWS, an empty or huge

@@ -36,14 +36,14 @@ std::span<const glm::uvec2> rows_asked(const FramePlan& plan) {
       .first(has_probe ? plan.views[plan.asked].first_row : plan.region_rows.size());
 }
 
-// In the middle of a logarithmic scale, world units: the mean of floats' bits is nearly one of logarithms.
+}  // namespace
+
+// The mean of floats' bits is nearly one of logarithms.
 double middle_depth(const shared::Counters& counters) {
   if (counters.visible == 0) return 0.0;
-  const double sum = (counters.depths_high * 0x1p32 + counters.depths_low) * THREADS;
+  const double sum = (counters.depths_high * 0x1p32 + counters.depths_low) * COMPACT_BLOCK;
   return std::bit_cast<float>(static_cast<std::uint32_t>(sum / counters.visible));
 }
-
-}  // namespace
 
 bool continues(const FramePlan& before, const FramePlan& now, double middle_depth, double share) {
   if (!std::ranges::equal(rows_asked(before), rows_asked(now))) return false;
@@ -85,7 +85,7 @@ Measuring FrameHistory::decide(const FramePlan& now) {
 void FrameHistory::keep(const FramePlan& drawn, const Measuring& measuring,
                         const shared::Counters& counters) {
   last_ = drawn;
-  if (measuring.measures || drawn.probe) middle_depth_ = middle_depth(counters);
+  middle_depth_ = middle_depth(counters);
   if (measuring.measures) {
     measured_ = drawn;
     since_measured_ = 0;

@@ -13,6 +13,9 @@ namespace binosplat::render {
 /// these two limits.
 bool continues(const FramePlan& before, const FramePlan& now, double middle_depth, double share = 1.0);
 
+/// The depth of what a frame drew in the middle of a logarithmic scale, world units; 0 if it drew nothing.
+double middle_depth(const shared::Counters& counters);
+
 /// Whether a frame uses measured transmittance, and whether it measures.
 struct Measuring {
   bool uses_last = false;  // an earlier frame measured for this one

@@ -81,6 +81,7 @@ void project(gl::Dispatcher& dispatcher, const FramePlan& plan, std::uint32_t gr
   const DrawnBuffers& drawn = *buffers.drawn[group];
   compact(dispatcher, plan, group, drawn, buffers);
   variant.subgroups = dispatcher.context().limits().subgroups_of_32;
+  variant.list_views = plan.list_views;
   variant.sh_degree = plan.degree;
   const gl::Program& program = dispatcher.context().program("project.comp", variant);
   for (std::size_t p = 0; p < model.pages.size(); ++p) {

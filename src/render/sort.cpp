@@ -19,12 +19,14 @@ gl::DispatchSize lists_of(std::uint32_t kind, const FrameBuffers& buffers) {
 
 }  // namespace
 
-void sort(gl::Dispatcher& dispatcher, const Capacity& capacity, FrameBuffers& buffers) {
+void sort(gl::Dispatcher& dispatcher, const FramePlan& plan, const Capacity& capacity,
+          FrameBuffers& buffers) {
   gl::Context& context = dispatcher.context();
   const auto rounds = static_cast<std::uint32_t>(capacity.rounds);
   const auto tile_pairs = static_cast<std::uint32_t>(capacity.tile_pairs);
   // Made with the others, since a frame that needs it is to be drawn at once.
-  const gl::Program& split = context.program("sort_split.comp", subgroups_number(context));
+  const gl::Program& split =
+      context.program("sort_split.comp", std::array{subgroups_number(context), list_views_number(plan)});
   for (std::uint32_t round = 0; round < rounds; ++round) {
     dispatcher.run(split, lists_of(SORT_LONG_KIND + round, buffers),
                    {{"Frame", buffers.parameters},
@@ -47,8 +49,8 @@ void sort(gl::Dispatcher& dispatcher, const Capacity& capacity, FrameBuffers& bu
     const std::uint32_t each = software ? 4 * SORT_EACH : SORT_EACH;
     const std::uint32_t most = 32 * SORT_EACH << std::min(kind, SORT_CLASSES - 1);  // entries of a list
     const std::uint32_t threads = software ? (most <= 512 ? 32 : SORT_MOST / each) : most / each;
-    const std::array variant = {subgroups_number(context), gl::Number{"LIST_THREADS", threads, 1025},
-                                gl::Number{"LIST_EACH", each, 33},
+    const std::array variant = {subgroups_number(context), list_views_number(plan),
+                                gl::Number{"LIST_THREADS", threads, 1025}, gl::Number{"LIST_EACH", each, 33},
                                 gl::Number{"CROWDED", kind == SORT_CROWDED_KIND, 2}};
     dispatcher.start(context.program("sort_lists.comp", variant), lists_of(kind, buffers),
                      {{"Frame", buffers.parameters},

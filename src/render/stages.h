@@ -19,7 +19,7 @@ void project(gl::Dispatcher& dispatcher, const FramePlan& plan, std::uint32_t gr
 void bin(gl::Dispatcher& dispatcher, const FramePlan& plan, const Capacity& capacity, FrameBuffers& buffers);
 
 /// Sorts each supertile's list front to back, ties by the Gaussian's index, and makes its tiles' lists of it.
-void sort(gl::Dispatcher& dispatcher, const Capacity& capacity, FrameBuffers& buffers);
+void sort(gl::Dispatcher& dispatcher, const FramePlan& plan, const Capacity& capacity, FrameBuffers& buffers);
 
 /// Blends the pictures; and, where the frame `measures` the transmittance, the largest that each splat met.
 /// `tiles_a_splat` is the last frame's, 0 where it is not known; the pictures do not depend on it.
@@ -54,8 +54,7 @@ void blend_visibility(gl::Dispatcher& dispatcher, const FramePlan& plan, FrameBu
 /// Throws Error(out_of_memory) where the driver ended a list of splats before its end.
 void refuse_truncated(const gl::Context& context, const shared::Counters& counters);
 
-/// Keeps what the frame measured for the next one, and sums up how far Gaussians are. Does nothing in a frame
-/// that neither measures nor has a probe.
+/// Keeps what the frame measured for the next one. Does nothing in a frame that measures nothing.
 void keep_measured(gl::Dispatcher& dispatcher, const FramePlan& plan, bool measures, FrameBuffers& buffers);
 
 /// Sums up the squared error in the probe's tiles. Does nothing without a probe.

@@ -39,6 +39,8 @@ gl::Number subgroups_number(const gl::Context& context) {
   return {"WITH_SUBGROUPS", context.limits().subgroups_of_32, flag};
 }
 
+gl::Number list_views_number(const FramePlan& plan) { return number("LIST_VIEWS", plan.list_views, 3); }
+
 PairVariant::PairVariant(const FramePlan& plan)
     : tiles(plan.settings.tiles),
       th(plan.settings.th),
@@ -54,7 +56,7 @@ PairVariant::PairVariant(const FramePlan& plan)
       between_pixels(plan.between_pixels),
       kernel_px2(plan.kernel_px2 == KERNEL_PX2 ? 0.0f : static_cast<float>(plan.kernel_px2)) {}
 
-std::array<gl::Number, 17> PairVariant::numbers() const {
+std::array<gl::Number, 18> PairVariant::numbers() const {
   return {number("TILES", tiles, std::size(tiles_choices), tiles_choices[tiles].name),
           number("TH", th, std::size(th_choices), th_choices[th].name),
           number("TRANSMITTANCE", transmittance, std::size(transmittance_choices)),
@@ -71,6 +73,7 @@ std::array<gl::Number, 17> PairVariant::numbers() const {
           number("EYES", eyes, 3),
           number("SH_DEGREE", sh_degree, 4),
           number("WITH_SUBGROUPS", subgroups, flag),
+          number("LIST_VIEWS", list_views, 3),
           {"KERNEL_PX2", std::bit_cast<std::uint32_t>(kernel_px2), std::uint64_t{1} << 32, nullptr, true}};
 }
 

@@ -35,9 +35,13 @@ struct PairVariant {
   int eyes = 1;           // invocations along y of project_cull.comp
   int sh_degree = 0;
   bool subgroups = false;
+  int list_views = 1;
 
-  std::array<gl::Number, 17> numbers() const;
+  std::array<gl::Number, 18> numbers() const;
 };
+
+/// The define LIST_VIEWS of the programs that make lists (supertiles.glsl).
+gl::Number list_views_number(const FramePlan& plan);
 
 /// The programs of the blend, which draw the same bits: for any GPU, for software renderers, and for
 /// subgroups of 32 invocations.

@@ -88,6 +88,7 @@ TEST(Layout, ViewIsWhereTheDriverPutsIt) {
                             AT(View, first_row),
                             AT(View, tolerance_share),
                             AT(View, low_pass_share),
+                            AT(View, lists_shift),
                             STRIDE(View)};
   EXPECT_EQ(driver_offsets("View"), expected);
 }

@@ -162,6 +162,93 @@ TEST(ListsOf, ManySupertilesAreBinnedInParts) {
   EXPECT_LE(differing_entries(lists, expected), total(expected) / 5000 + 1);
 }
 
+// Eyes so far apart that the grid of the second is moved in their shared lists, and what is near lies
+// further apart than that; at the edges, what only one of them sees.
+std::vector<shared::View> both_eyes() {
+  Camera camera = test::front_camera(333, 187, 250);
+  std::vector<shared::View> eyes{make_view(camera, glm::vec3(0.0f), near_default)};
+  camera.position.x += 0.8;
+  eyes.push_back(make_view(camera, glm::vec3(0.0f), near_default));
+  return eyes;
+}
+
+// Small splats and some in many supertiles, from near to far.
+Model both_eyes_model() {
+  Model model = test::random_model(57, 3000, 0);
+  for (std::size_t i = 0; i < model.count(); i += 20) model.scale[i] *= 8.0f;
+  for (std::size_t i = 0; i < 100; ++i) model.position[i].z = 0.3f;
+  return model;
+}
+
+TEST(SharedLists, AreThoseOfEachEye) {
+  const Model model = both_eyes_model();
+  const std::vector<shared::View> eyes = both_eyes();
+  const auto lists_of = [&](const std::vector<shared::View>& views, int list_views,
+                            const std::optional<render::Probe>& probe = {}) {
+    test::StageRun run(model, views, {}, probe);
+    run.run_until(render::Stage::probe);  // which tells the next frame how far the grid is to be moved
+    TileLists lists = gpu_lists(run);
+    EXPECT_EQ(run.plan.list_views, list_views);
+    if (list_views == 2) EXPECT_GT(run.plan.views[1].lists_shift, 0u);
+    for (TileLists::value_type& list : lists)
+      for (std::uint32_t& entry : list) entry %= run.plan.gaussian_count;
+    return lists;
+  };
+  TileLists alone;
+  for (const shared::View& eye : eyes) std::ranges::move(lists_of({eye}, 1), std::back_inserter(alone));
+  const TileLists together = lists_of(eyes, 2);
+  EXPECT_EQ(together, alone);
+  TileLists of_three = lists_of({eyes[0], eyes[1], eyes[0]}, 2);
+  of_three.resize(alone.size());
+  EXPECT_EQ(of_three, alone);
+  TileLists with_probe = lists_of(eyes, 2, render::Probe{.view = 1, .step = 3});
+  with_probe.resize(alone.size());
+  EXPECT_EQ(with_probe, alone);
+  struct Fault {
+    const char *shader, *sought, *fault;
+  };
+  for (const Fault& fault :
+       {Fault{"bin.comp", "same < 4u ? 0u :", "same < 0u ? 0u :"},
+        Fault{"bin.comp", "tiles |= tiles_of(coverage[k][1], same) << SUPERTILE_TILES", "tiles |= 0u"},
+        Fault{"bin_large.comp", "if (column >= across) column -= across;", ""},
+        Fault{"bin_large.comp", "row.columns.x, second.columns.x) + nth",
+              "row.columns.x, row.columns.x) + nth"},
+        Fault{"bin_place.comp", "across - view.lists_shift", "across"},
+        Fault{"project.comp", "if (first_eyes != 0u) coverages[splat_at - frame.slots] = IN_MANY_SUPERTILES;",
+              ""},
+        Fault{"sort_lists.comp", "tile / SUPERTILE_TILES * frame.slots", "0u"}}) {
+    const test::FaultyShaders faulty(fault.shader, fault.sought, fault.fault);
+    testing::TestPartResultArray said;
+    const testing::ScopedFakeTestPartResultReporter caught(&said);
+    EXPECT_FALSE(lists_of(eyes, 2) == alone && said.size() == 0) << fault.sought;
+  }
+}
+
+TEST(SharedLists, AreOnlyWhereEyesSeeEqualDepthsInEqualGrids) {
+  const std::vector<shared::View> eyes = both_eyes();
+  const Model model = test::random_model(58, 10, 0);
+  const auto list_views = [&](const std::vector<shared::View>& views, std::int64_t slots = 1000,
+                              const render::FrameSettings& settings = {}) {
+    render::FramePlan plan = render::make_plan(views, settings, model);
+    render::share_lists(plan, slots, 3.0);
+    return plan.list_views;
+  };
+  EXPECT_EQ(list_views(eyes), 2);
+  EXPECT_EQ(list_views({eyes[0]}), 1);
+  EXPECT_EQ(list_views(eyes, 1 << 24), 2);
+  EXPECT_EQ(list_views(eyes, (1 << 24) + 1), 1);
+  EXPECT_EQ(list_views({eyes[0], eyes[1], eyes[0], eyes[1]}, (1 << 24) / 3 + 1), 1);
+  EXPECT_EQ(list_views(eyes, 1000, {.tiles = TILES_ALL}), 1);
+  std::vector<shared::View> canted = eyes, wider = eyes;
+  canted[1].row_z.x += 0.01f;
+  EXPECT_EQ(list_views(canted), 1);
+  wider[1].width += TILE_SIZE_DEFAULT;
+  EXPECT_EQ(list_views(wider), 1);
+  wider[1].width = eyes[0].width;
+  wider[1].height += TILE_SIZE_DEFAULT;
+  EXPECT_EQ(list_views(wider), 1);
+}
+
 TEST(ListsOf, FaultsInBinningAreNoticed) {
   const Model model = test::random_model(52, 4000, 1);
   const std::vector<Picture> right = draw(model, two_views());
@@ -312,7 +399,7 @@ TEST(HardListsOf, EachPartOfTheSortIsNeeded) {
   };
   const Camera camera = test::front_camera(48, 48, 64);
   for (const Fault& fault :
-       {Fault{"Tied", "sort_lists.comp", "SPLAT_OF(board[k]) < SPLAT_OF(value[i])", "k < place[i]"},
+       {Fault{"Tied", "sort_lists.comp", "board[k] < value[i] ?", "k < place[i] ?"},
         Fault{"AllOver", "sort_lists.comp", "board[k] < key[i] ? 1u", "board[k] > key[i] ? 1u"},
         Fault{"Equal", "sort_split.comp", "bool by_splat = low == high", "bool by_splat = false"},
         Fault{"EqualBehindOne", "sort_split.comp", "before + count / 2u", "before"},
