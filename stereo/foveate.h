@@ -1,6 +1,6 @@
 #pragma once
 // Foveated pictures: for each eye a window about its gaze, exact to the bit, and around it the same picture
-// in fewer pixels, brought to one size on the GPU. Both are views of one frame and share its depth order.
+// in fewer pixels, brought to one size on the GPU. Both are views of one frame and are projected together.
 
 #include <binosplat/settings.h>
 

@@ -30,7 +30,7 @@ struct RigSettings {
 struct EyePair {
   std::array<Camera, 2> cameras;      // named NAME_left and NAME_right
   std::array<shared::View, 2> views;  // both have one anchor; the frame fills in tiles, offsets and groups
-  bool parallel = true;  // the views' third rows are equal to the bit: one depth order serves both
+  bool parallel = true;  // the views' third rows are equal to the bit: both are projected together
 };
 
 /// The eyes of a head: at head.position -+ x axis * ipd / 2. Parallel eyes (no cant) share their y and z rows

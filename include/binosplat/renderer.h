@@ -98,10 +98,10 @@ class Renderer {
   /// written or deleted, and no other frame of this renderer may be submitted. Nothing in it waits for the
   /// GPU, but for the first frame of a combination of settings, whose shaders are compiled.
   ///
-  /// Views that look the same way from the same depth share a depth order, which saves time, if they follow
-  /// one another: put an eye's views side by side. Those of one orientation that lie before or behind the
-  /// first one by less than a millionth of its distance from the eyes' origin are moved to its depth: poses
-  /// of parallel eyes are as far apart by rounding.
+  /// Views that look the same way from the same depth are projected together, which saves time, if they
+  /// follow one another: put an eye's views side by side. Those of one orientation that lie before or behind
+  /// the first one by less than a millionth of its distance from the eyes' origin are moved to its depth:
+  /// poses of parallel eyes are as far apart by rounding.
   ///
   /// With a quality, or a transmittance that is measured, a frame uses what earlier ones measured. It begins
   /// anew where a view has turned by more than 15 degrees, has moved by more than a tenth of the middle depth

@@ -38,7 +38,7 @@ struct View {
   uint tiles_y;
   uint supertile_offset;  // this view's first supertile in the frame
   uint pixel_offset;      // this view's first pixel in the frame's pixel buffers
-  uint order_group;       // views of equal number share one depth order
+  uint order_group;       // views of equal number see equal depths
   uint pitch;  // px from one of its tiles to the next: a tile's side; more in a probe, whose tiles lie apart
   uint shift_x;  // px, where its first tile begins
   uint shift_y;
@@ -139,7 +139,7 @@ struct ListCount {
 // What a frame counts on the GPU, read back after it. An overflow bit says that a buffer was too small for
 // the number wanted; the frame is then drawn again with larger ones.
 struct Counters {
-  uint visible;          // Gaussians in depth order, summed over the order groups
+  uint visible;          // Gaussians drawn, summed over the order groups
   uint order_wanted;     // the most Gaussians that one order group had
   uint pairs;            // Gaussian-supertile pairs wanted, over all views: entries
   uint tile_pairs;       // Gaussian-tile pairs wanted, over all views

@@ -32,7 +32,7 @@ struct CpuTimes {
 
 /// What drawing a frame took.
 struct FrameReport {
-  std::uint64_t visible = 0;  // Gaussians in depth order, summed over the order groups (1 for parallel eyes)
+  std::uint64_t visible = 0;  // Gaussians drawn, summed over the order groups (1 for parallel eyes)
   std::uint64_t pairs = 0;    // Gaussian-tile pairs over all views, a probe's included
   std::uint64_t supertile_pairs = 0;  // those that were sorted, of supertiles of 2 x 2 tiles
   std::uint32_t order_groups = 0;
@@ -72,7 +72,7 @@ class Frame {
       : Frame(std::make_shared<GpuModel>(context, model, precision)) {}
 
   /// Draws all views at once, and waits for the GPU: submit() and finish(). Views that follow one another
-  /// with equal depths (third row and anchor equal to the bit) share one depth order; each eye of a rig has
+  /// with equal depths (third row and anchor equal to the bit) are projected together; each eye of a rig has
   /// the same bits drawn together with the other or alone. A frame that overflows its buffers is drawn again
   /// with larger ones. After GpuModel::reload() a tolerance that was found stays, but no measured
   /// transmittance. Throws Error: bad views or settings (bad_input), no room (out_of_memory).

@@ -16,7 +16,7 @@
 
 namespace binosplat::render {
 
-/// Views that share one depth order: [begin, end) of the frame's views.
+/// Views that see equal depths and are projected together: [begin, end) of the frame's views.
 struct OrderGroup {
   std::uint32_t begin = 0;
   std::uint32_t end = 0;

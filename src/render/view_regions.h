@@ -13,7 +13,7 @@ namespace binosplat::render {
 struct FrameSettings;
 
 /// What is drawn of a view, and how exactly. By default all of it, as the frame's settings say. Regions do
-/// not change which views share a depth order.
+/// not change which views are projected together.
 struct ViewRegion {
   /// px. A window of the view's picture: it alone is drawn and kept, its pixels equal to the whole picture's
   /// to the bit. Corner and size are multiples of BLEND_CELL px, or reach to the picture's edge. A size of 0

@@ -24,7 +24,7 @@ constexpr int depth_step = 8;
 constexpr std::array<std::int64_t, 3> depth_formats = {GL_DEPTH_COMPONENT32F, GL_DEPTH_COMPONENT24,
                                                        GL_DEPTH_COMPONENT16};
 
-// Where a view of the runtime's is drawn: an eye's views side by side, so that they share their depth order.
+// Where a view of the runtime's is drawn: an eye's views side by side, so that they are projected together.
 std::size_t place_of(std::size_t view, std::size_t views) {
   return views == 4 ? (view % 2) * 2 + view / 2 : view;
 }

@@ -89,6 +89,9 @@ TEST(Layout, ViewIsWhereTheDriverPutsIt) {
                             AT(View, tolerance_share),
                             AT(View, low_pass_share),
                             AT(View, lists_shift),
+                            AT(View, unused_1),
+                            AT(View, unused_2),
+                            AT(View, unused_3),
                             STRIDE(View)};
   EXPECT_EQ(driver_offsets("View"), expected);
 }

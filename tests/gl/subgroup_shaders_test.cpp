@@ -36,23 +36,38 @@ void add_modes(test::CompiledShaders& compiled, const std::string& name, const D
 
 TEST_F(SubgroupShaders, Compile) {
   test::CompiledShaders compiled;
-  add_modes(compiled, "bin_large.comp",
-            {{"TILES_NAME", "ellipse"},
-             {"TILES", "0"},
-             {"TH", "0"},
-             {"TILE_SIZE", "16"},
-             {"HALF", "0"},
-             {"WITH_SUBGROUPS", "1"}});
-  for (const char* half : {"0", "1"}) {
-    const Defines defines = {
-        {"TILES_NAME", "ellipse"}, {"TILES", "1"},      {"TH", "0"},       {"TH_NAME", "tau"},
-        {"TRANSMITTANCE", "0"},    {"TILE_SIZE", "16"}, {"HALF", half},    {"ANTIALIASED", "0"},
-        {"OFFSETS", "0"},          {"SH_DEGREE", "1"},  {"MEASURES", "1"}, {"WITH_SUBGROUPS", "1"}};
-    add_modes(compiled, "project.comp", defines);
+  for (const char* views : {"1", "2"}) {  // whose lists are apart, or shared by both eyes
+    const Defines::value_type list_views = {"LIST_VIEWS", views};
+    add_modes(compiled, "bin_large.comp",
+              {{"TILES_NAME", "ellipse"},
+               {"TILES", "0"},
+               {"TH", "0"},
+               {"TILE_SIZE", "16"},
+               {"HALF", "0"},
+               {"WITH_SUBGROUPS", "1"},
+               list_views});
+    for (const char* half : {"0", "1"}) {
+      const Defines defines = {{"TILES_NAME", "ellipse"},
+                               {"TILES", "1"},
+                               {"TH", "0"},
+                               {"TH_NAME", "tau"},
+                               {"TRANSMITTANCE", "0"},
+                               {"TILE_SIZE", "16"},
+                               {"HALF", half},
+                               {"ANTIALIASED", "0"},
+                               {"OFFSETS", "0"},
+                               {"SH_DEGREE", "1"},
+                               {"MEASURES", "1"},
+                               {"WITH_SUBGROUPS", "1"},
+                               list_views};
+      add_modes(compiled, "project.comp", defines);
+    }
+    compiled.add("sort_split.comp", {{"WITH_SUBGROUPS", "1"}, list_views});
+    for (const char* threads : {"32", "1024"}) {
+      compiled.add("sort_lists.comp",
+                   {{"WITH_SUBGROUPS", "1"}, {"LIST_THREADS", threads}, {"LIST_EACH", "4"}, list_views});
+    }
   }
-  compiled.add("sort_split.comp", {{"WITH_SUBGROUPS", "1"}});
-  for (const char* threads : {"32", "1024"})
-    compiled.add("sort_lists.comp", {{"WITH_SUBGROUPS", "1"}, {"LIST_THREADS", threads}, {"LIST_EACH", "4"}});
   Defines check = {{"COLUMNS", "32"}, {"ROWS", "4"}};
   for (const char* fault :
        {"OF_OTHER_SIZE", "IN_OTHER_ORDER", "VOTE_WITH_OTHERS", "SHUFFLE_OTHERS", "ADD_OTHERS"})
