@@ -44,6 +44,14 @@ SupertileRow row_at(uint at, uint eye) {
   return supertile_row_of(uvec4(tiles.x & 0xFFFFu, tiles.x >> 16, tiles.y & 0xFFFFu, tiles.y >> 16));
 }
 
+// How many columns of supertiles an eye's are moved by, so that both eyes' lie side by side; not yet round the edge. Where the
+// second eye's are moved by more than half a row, which is back, the first eye's are moved by a whole one.
+uint moved_by(uint first_view, uint eye) {
+  if (first_view + 1u >= frame.view_count) return 0u;
+  uint across = supertiles_across(views[first_view]), shift = LIST_VIEWS == 2 ? views[first_view + 1u].lists_shift : 0u;
+  return eye == 1u ? shift : shift > across / 2u ? across : 0u;
+}
+
 #if LIST_VIEWS == 2
 // Whether the columns of both eyes are one run, in which no supertile is without an entry.
 bool are_one(uvec2 a, uvec2 b) { return max(a.x, b.x) <= min(a.y, b.y); }
@@ -93,7 +101,7 @@ void main() {
       View view = views[min(view_of(splat) + eye, frame.view_count - 1u)];
       if (in_view >= of_view.x && in_view < of_view.y) {
         SupertileRow row = supertile_row(outline_of(SPLAT(splat + eye * frame.slots), view), view, box, in_view);
-        uvec4 moved = row.tiles + view.lists_shift * uint(SUPERTILE_SIDE);
+        uvec4 moved = row.tiles + moved_by(view_of(splat), eye) * uint(SUPERTILE_SIDE);
         if (row.columns.x != row.columns.y) {
           touches[at][eye] = 1u;
           tiles = uvec2(moved.x | moved.y << 16, moved.z | moved.w << 16);

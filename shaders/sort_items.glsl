@@ -5,7 +5,6 @@
 // Supertile, first entry, entries; of a list the second eye's supertile, or NO_SECOND; of a part PART and the number by which
 // slab_tiles knows it.
 #define PART 0x80000000u
-#define NO_SECOND 0x7FFFFFFFu
 layout(std430, binding = ITEMS_BINDING) writeonly buffer Items { uvec4 items[]; };
 uniform uint item_room;  // of each kind
 uniform uint rounds;     // that part lists

@@ -281,9 +281,10 @@ void sort_list(uvec4 item) {
   if (is_tied != 0u) {
     for (uint i = 0u; i < EACH; ++i) {
       if (bin[i] == 0u) continue;
-      uint first = bin[i] & 0xFFFFu, count = bin[i] >> 16;
+      uint first = bin[i] & 0xFFFFu, count = bin[i] >> 16, was = place[i];
       place[i] = first;
-      for (uint k = first; k < first + count; ++k) place[i] += board[k] < value[i] ? 1u : 0u;
+      for (uint k = first; k < first + count; ++k)  // a splat may have two entries without tiles
+        place[i] += board[k] < value[i] || board[k] == value[i] && k < was ? 1u : 0u;
     }
     memoryBarrierShared();
     barrier();

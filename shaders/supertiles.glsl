@@ -15,7 +15,8 @@
 
 // The tile coverage of a splat, which `project` leaves for `bin`: 0 of one that touches no tile; IN_FEW_SUPERTILES where it is in at
 // most 2 x 2 supertiles, with the list of the first of these, counted in the view, at FEW_SHIFT, and below a bit for each tile, four
-// for each supertile, row by row; or IN_MANY_SUPERTILES, whose entries bin_large.comp makes, of both eyes if they share lists.
+// for each supertile, row by row; or IN_MANY_SUPERTILES, whose entries bin_large.comp makes; so is one whose lists
+// lie round the edge, and one that is in many of the other eye's, if they share lists.
 #define IN_FEW_SUPERTILES 0x80000000u
 #define FEW_SHIFT 16
 #define FEW_END 0x8000u  // what is in a supertile beyond counts as in many

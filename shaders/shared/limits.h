@@ -43,7 +43,7 @@
 // use some.
 #define MAX_CANVASES 4
 
-// Tiles along a side of a supertile, and the bits of an entry that are its splat (supertiles.glsl).
+// Tiles along a side of a supertile (supertiles.glsl).
 #define SUPERTILE_SIDE 2
 // Splats whose entries a work group counts in shared memory at a time, and its invocations.
 #define BIN_BLOCK 4096
@@ -62,6 +62,7 @@
 #define SORT_LONG_KIND 7u     // those that each round parts, and those left then
 #define SORT_KINDS 20
 #define SORT_GROUPS_MOST 65535u
+#define NO_SECOND 0x7FFFFFFFu  // sort_items.glsl
 
 // The transmittance that a frame measures of a Gaussian (docs/method.md 5) never falls below BOUND_FLOOR, or
 // a hidden one would divide by zero. While Th leaves a Gaussian out, each frame that measures multiplies its

@@ -141,7 +141,7 @@ struct ListCount {
 struct Counters {
   uint visible;          // Gaussians drawn, summed over the order groups
   uint order_wanted;     // the most Gaussians that one order group had
-  uint pairs;            // Gaussian-supertile pairs wanted, over all views: entries
+  uint pairs;            // entries wanted: Gaussian-supertile pairs, of both eyes one where they share lists
   uint tile_pairs;       // Gaussian-tile pairs wanted, over all views
   uint overflow;         // OVERFLOW_ bits
   uint truncated_lists;  // tiles whose list the driver ended early: the picture must not be used
@@ -153,7 +153,8 @@ struct Counters {
   uint probe_squares_high;
   uint long_lists;  // tiles with more than LONG_LIST pairs, and the groups of their launch
   uint long_x, long_y, long_z;
-  uint large;  // splats in many supertiles, and the groups of the launch that bins them
+  uint large;  // splats in many supertiles, of both eyes one if these share lists, and the groups of the
+               // launch that bins them
   uint large_x, large_y, large_z;
   uint large_entries;  // what that made, and the groups of the launch that places these
   uint fill_x, fill_y, fill_z;

@@ -90,8 +90,8 @@ std::vector<StageFloor> profile(const FrameWork& work, const Peaks& peaks) {
                           work.splats * (splat_bytes + 4),
                       work.gaussians * projection_fmas + work.splats * (basis_fmas + harmonics)};
   least["project"].seconds = least["project"].operations / peaks.fmas;
-  // Coverages are read twice, to count and to place; depths once.
-  least["bin"] = {work.splats * 12 + work.supertile_pairs * 8};
+  // Coverages are read twice, to count and to place; depths once, for both eyes.
+  least["bin"] = {work.splats * 10 + work.supertile_pairs * 8};
   least["sort"] = {work.supertile_pairs * 8 + work.pairs * 4 + work.tiles * 8};
   least["blend"] = {work.pairs * (splat_bytes + 4) + work.pixels * 20, work.alphas};
   least["blend"].seconds = least["blend"].operations / peaks.alphas;

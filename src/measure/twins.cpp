@@ -209,7 +209,7 @@ void upload_entries(const Supertiles& supertiles, FrameBuffers& buffers) {
     const auto kind = static_cast<std::uint32_t>(std::max(bits, 0));
     shared::ListCount& lists = counters.lists[kind];
     items[std::size_t{kind} * buffers.lists.item_room + lists.count++] = {
-        s, static_cast<std::uint32_t>(entries.size()), length, 0};
+        s, static_cast<std::uint32_t>(entries.size()), length, NO_SECOND};
     lists.groups_x = std::min(lists.count, SORT_GROUPS_MOST);
     lists.groups_y = lists.groups_z = 1;
     entries.insert(entries.end(), supertiles[s].begin(), supertiles[s].end());

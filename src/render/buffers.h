@@ -90,7 +90,7 @@ struct FrameBuffers {
     gl::Buffer supertile_ends;    // uint, where the next entry of each goes
     std::uint32_t item_room = 0;  // of each kind
     gl::Buffer items;             // uvec4 by kind: sort_items.glsl
-    gl::Buffer slab_tiles;        // uint by slab and tile of a supertile: sort_split.comp
+    gl::Buffer slab_tiles;        // uint by slab and tile of its list: sort_split.comp
 
     // The blend reads these.
     gl::Buffer tile_ranges;  // begin and end by tile; with --tiles all by the first tile of a view

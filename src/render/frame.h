@@ -32,9 +32,9 @@ struct CpuTimes {
 
 /// What drawing a frame took.
 struct FrameReport {
-  std::uint64_t visible = 0;  // Gaussians drawn, summed over the order groups (1 for parallel eyes)
-  std::uint64_t pairs = 0;    // Gaussian-tile pairs over all views, a probe's included
-  std::uint64_t supertile_pairs = 0;  // those that were sorted, of supertiles of 2 x 2 tiles
+  std::uint64_t visible = 0;          // Gaussians drawn, summed over the order groups (1 for parallel eyes)
+  std::uint64_t pairs = 0;            // Gaussian-tile pairs over all views, a probe's included
+  std::uint64_t supertile_pairs = 0;  // sorted, of supertiles of 2 x 2 tiles; for both eyes one
   std::uint32_t order_groups = 0;
   int attempts = 0;  // with settings.quality: how often the frame was drawn until it reached that
   int redrawn = 0;   // times that buffers had to grow

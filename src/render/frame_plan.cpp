@@ -49,7 +49,7 @@ void add_view(FramePlan& plan, shared::View view, const ViewRegion& region,
   const std::uint32_t v = plan.view_count();
   if (view.width == 0 || view.height == 0)
     fail("a view of {} x {} px has no picture", view.width, view.height);
-  view.left = view.top = 0;
+  view.left = view.top = view.lists_shift = 0;
   plan.meshes.whole_sizes.emplace_back(view.width, view.height);
   take_window(region, view);
   view.tolerance_share = region.tolerance_share;
@@ -105,13 +105,14 @@ std::uint32_t disparity(const shared::View& first, const shared::View& second, i
 
 void share_lists(FramePlan& plan, std::int64_t slots, double middle_depth) {
   constexpr std::int64_t splats_max = std::int64_t{1} << (32 - 2 * SUPERTILE_SIDE * SUPERTILE_SIDE);
-  plan.list_views = plan.asked >= 2 && slots * (plan.view_count() - 1) <= splats_max ? 2 : 1;
-  if (plan.settings.tiles == TILES_ALL) plan.list_views = 1;
+  const std::int64_t firsts_end = (plan.view_count() - 1) | 1;  // of those whose splats lists number
+  plan.list_views =
+      plan.asked >= 2 && slots * firsts_end <= splats_max && plan.settings.tiles != TILES_ALL ? 2 : 1;
   for (std::size_t v = 0; v + 1 < plan.view_count(); v += 2) {
     const shared::View &first = plan.views[v], &second = plan.views[v + 1];
     if (first.order_group != second.order_group || first.tiles_x != second.tiles_x ||
         first.tiles_x <= SUPERTILE_SIDE || first.tiles_y != second.tiles_y ||
-        first.is_probe != second.is_probe)
+        first.is_probe != second.is_probe || first.lens.x != second.lens.x || first.lens.y != second.lens.y)
       plan.list_views = 1;
   }
   for (std::size_t v = 0; v < plan.view_count(); ++v) {

@@ -110,9 +110,10 @@ struct PlanRequest {
   CallersTextures textures;
 };
 
-/// Lets both eyes of all pairs share lists (supertiles.glsl), where these see equal depths in grids of equal
-/// size and `slots` Gaussians can be told apart by an entry. The second eye's grid is moved by the disparity
-/// at `middle_depth`, world units; unless it is above 0, not at all.
+/// Lets both eyes, views 2k and 2k + 1, share lists (supertiles.glsl), if all of these see equal depths
+/// through equal lenses in grids of equal size, and entries have enough bits for `slots` Gaussians. The
+/// second eye's grid is moved by the disparity at `middle_depth`, world units; unless it is above 0, not at
+/// all.
 void share_lists(FramePlan& plan, std::int64_t slots, double middle_depth);
 
 /// Makes the plan for a model of this size, whatever model.count() says: the model in memory may have changed

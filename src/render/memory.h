@@ -22,7 +22,7 @@ MemoryNeeds memory_needs(const FramePlan& plan);
 /// What the buffers of frames that follow one another have room for.
 struct Capacity {
   std::int64_t slots = 0;        // Gaussians that an order group draws
-  std::int64_t pairs = 0;        // Gaussian-supertile pairs
+  std::int64_t pairs = 0;        // Gaussian-supertile pairs: entries
   std::int64_t large_pairs = 0;  // those of Gaussians in many supertiles
   std::int64_t tile_pairs = 0;   // Gaussian-tile pairs
   std::int64_t rounds = 0;       // that part lists which are too long to be sorted at once

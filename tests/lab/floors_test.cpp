@@ -30,7 +30,7 @@ TEST(Floors, AreWhatMustBeMovedAndComputed) {
   ASSERT_EQ(stages.size(), 5u);
   EXPECT_TRUE(std::isnan(stages[0].floor_ms)) << "decode has none";
   const std::map<std::string, double> bytes = {{"project", 1000 * 52.0 + 500 * 48.0 + 1000 * 52.0},
-                                               {"bin", 1000 * 12.0 + 80000.0},
+                                               {"bin", 1000 * 10.0 + 80000.0},
                                                {"sort", 80000.0 + 48000.0 + 800.0},
                                                {"blend", 12000 * 52.0 + 25600 * 20.0}};
   for (const StageFloor& stage : stages) {

@@ -164,10 +164,11 @@ TEST(ListsOf, ManySupertilesAreBinnedInParts) {
 
 // Eyes so far apart that the grid of the second is moved in their shared lists, and what is near lies
 // further apart than that; at the edges, what only one of them sees.
-std::vector<shared::View> both_eyes() {
+std::vector<shared::View> both_eyes(double second_cx = 0.0) {
   Camera camera = test::front_camera(333, 187, 250);
   std::vector<shared::View> eyes{make_view(camera, glm::vec3(0.0f), near_default)};
   camera.position.x += 0.8;
+  camera.cx += second_cx;
   eyes.push_back(make_view(camera, glm::vec3(0.0f), near_default));
   return eyes;
 }
@@ -204,6 +205,12 @@ TEST(SharedLists, AreThoseOfEachEye) {
   TileLists with_probe = lists_of(eyes, 2, render::Probe{.view = 1, .step = 3});
   with_probe.resize(alone.size());
   EXPECT_EQ(with_probe, alone);
+  // Eyes that look at what is nearer than the middle see that further to the other side.
+  const std::vector<shared::View> converged = both_eyes(150.0);
+  TileLists of_converged;
+  for (const shared::View& eye : converged)
+    std::ranges::move(lists_of({eye}, 1), std::back_inserter(of_converged));
+  EXPECT_EQ(lists_of(converged, 2), of_converged);
   struct Fault {
     const char *shader, *sought, *fault;
   };
@@ -237,7 +244,12 @@ TEST(SharedLists, AreOnlyWhereEyesSeeEqualDepthsInEqualGrids) {
   EXPECT_EQ(list_views({eyes[0]}), 1);
   EXPECT_EQ(list_views(eyes, 1 << 24), 2);
   EXPECT_EQ(list_views(eyes, (1 << 24) + 1), 1);
-  EXPECT_EQ(list_views({eyes[0], eyes[1], eyes[0], eyes[1]}, (1 << 24) / 3 + 1), 1);
+  for (const std::size_t count : {3, 4}) {  // lists number the splats of the third
+    std::vector<shared::View> views = {eyes[0], eyes[1], eyes[0], eyes[1]};
+    views.resize(count);
+    EXPECT_EQ(list_views(views, (1 << 24) / 3), 2);
+    EXPECT_EQ(list_views(views, (1 << 24) / 3 + 1), 1);
+  }
   EXPECT_EQ(list_views(eyes, 1000, {.tiles = TILES_ALL}), 1);
   std::vector<shared::View> canted = eyes, wider = eyes;
   canted[1].row_z.x += 0.01f;
@@ -247,6 +259,9 @@ TEST(SharedLists, AreOnlyWhereEyesSeeEqualDepthsInEqualGrids) {
   wider[1].width = eyes[0].width;
   wider[1].height += TILE_SIZE_DEFAULT;
   EXPECT_EQ(list_views(wider), 1);
+  std::vector<shared::View> nearer = eyes;  // such as an eye's window beside its context
+  nearer[1].lens.x *= 2.0f;
+  EXPECT_EQ(list_views(nearer), 1);
 }
 
 TEST(ListsOf, FaultsInBinningAreNoticed) {
@@ -399,7 +414,7 @@ TEST(HardListsOf, EachPartOfTheSortIsNeeded) {
   };
   const Camera camera = test::front_camera(48, 48, 64);
   for (const Fault& fault :
-       {Fault{"Tied", "sort_lists.comp", "board[k] < value[i] ?", "k < place[i] ?"},
+       {Fault{"Tied", "sort_lists.comp", "board[k] < value[i] || board[k] == value[i] && k < was", "k < was"},
         Fault{"AllOver", "sort_lists.comp", "board[k] < key[i] ? 1u", "board[k] > key[i] ? 1u"},
         Fault{"Equal", "sort_split.comp", "bool by_splat = low == high", "bool by_splat = false"},
         Fault{"EqualBehindOne", "sort_split.comp", "before + count / 2u", "before"},
