@@ -69,11 +69,16 @@ void write_lists(uvec4 item) {
   barrier();
 #endif
   uint sum = 0u;  // each row's lanes count a tile each
+#if WITH_SUBGROUPS
   for (uint tile = 0u; tile < LIST_TILES; ++tile) {
     uint touched = 0u;
     for (uint i = 0u; i < EACH; ++i) touched += uint(bitCount(TOUCHING(i, tile)));
     if (lane == tile) sum = touched;
   }
+#else
+  if (lane < LIST_TILES)
+    for (uint i = 0u; i < EACH; ++i) sum += uint(bitCount(TOUCHING(i, lane)));
+#endif
   if (lane < LIST_TILES) of_rows[row][lane] = sum;
   memoryBarrierShared();
   barrier();
