@@ -83,22 +83,17 @@ void add_view(FramePlan& plan, shared::View view, const ViewRegion& region,
   plan.views.push_back(view);
 }
 
-// How many columns of supertiles the second eye sees what is at this depth before the first.
+// How many columns of supertiles the second eye sees what is at this depth before the first, if both look the
+// same way; between 0 and those of a row, round the edge.
 std::uint32_t disparity(const shared::View& first, const shared::View& second, int tile, double depth) {
-  const std::uint32_t across = (first.tiles_x + SUPERTILE_SIDE - 1) / SUPERTILE_SIDE;
   if (!(depth > 0.0)) return 0;
-  const auto rows = [](const shared::View& v) {  // the rotation's, as columns
-    return glm::dmat3(glm::dvec3(v.row_x), glm::dvec3(v.row_y), glm::dvec3(v.row_z));
-  };
-  const auto translation = [](const shared::View& v) { return glm::dvec3(v.row_x.w, v.row_y.w, v.row_z.w); };
-  const double x = first.shift_x + 0.5 * first.width;
-  const glm::dvec3 seen((x - first.lens.z) / first.lens.x * depth, 0.0, depth);
-  const glm::dvec3 other = (rows(first) * (seen - translation(first))) * rows(second) + translation(second);
-  const double moved =
-      x - first.shift_x - (second.lens.x * other.x / other.z + second.lens.z - second.shift_x);
-  const double columns = std::round(moved / (SUPERTILE_SIDE * tile));
-  if (!(std::abs(columns) < across)) return 0;
-  return static_cast<std::uint32_t>(columns + across) % across;
+  const auto across = static_cast<int>((first.tiles_x + SUPERTILE_SIDE - 1) / SUPERTILE_SIDE);
+  const auto centre = [](const shared::View& v) { return double{v.lens.z} - v.shift_x; };  // px in its grid
+  const double apart = double{first.row_x.w} - second.row_x.w;
+  const double pixels = centre(first) - centre(second) + first.lens.x * apart / depth;
+  const double columns = std::round(pixels / (SUPERTILE_SIDE * tile));
+  return std::abs(columns) < across ? static_cast<std::uint32_t>(columns < 0.0 ? columns + across : columns)
+                                    : 0;
 }
 
 }  // namespace

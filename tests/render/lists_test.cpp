@@ -231,6 +231,20 @@ TEST(SharedLists, AreThoseOfEachEye) {
   }
 }
 
+TEST(SharedLists, TheSecondEyesGridIsMovedByTheDisparity) {
+  const Model model = test::random_model(58, 10, 0);
+  const auto shift = [&](double second_cx, double depth) {
+    render::FramePlan plan = render::make_plan(both_eyes(second_cx), {}, model);
+    render::share_lists(plan, 1000, depth);
+    EXPECT_EQ(plan.views[0].lists_shift, 0u);
+    return plan.views[1].lists_shift;
+  };
+  EXPECT_EQ(shift(0.0, 3.0), 2u);          // 0.8 * 250 / 3 px of 32
+  EXPECT_EQ(shift(0.0, 0.0), 0u);          // nothing was drawn
+  EXPECT_EQ(shift(0.0, 0.1), 0u);          // further than the picture is wide
+  EXPECT_EQ(shift(150.0, 3.0), 11u - 3u);  // 83 px back, round the edge of eleven columns
+}
+
 TEST(SharedLists, AreOnlyWhereEyesSeeEqualDepthsInEqualGrids) {
   const std::vector<shared::View> eyes = both_eyes();
   const Model model = test::random_model(58, 10, 0);
