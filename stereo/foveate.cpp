@@ -131,9 +131,10 @@ FoveatedViews foveated_views(std::span<const shared::View> eyes, const Foveation
   return out;
 }
 
-void FoveatedFrame::submit(std::span<const shared::View> eyes, const Foveation& foveation,
-                           const render::FrameSettings& settings, const render::Workings& workings,
-                           const render::CallersTextures& textures) {
+// To a function of the frame that draws the parts.
+void FoveatedFrame::hand_over(std::span<const shared::View> eyes, const Foveation& foveation,
+                              const render::FrameSettings& settings, const render::Workings& workings,
+                              const render::CallersTextures& textures, decltype(&render::Frame::submit) to) {
   const std::size_t canvases = textures.canvases.size(), meshes = textures.mesh_depths.size();
   if (canvases != 0 && canvases != eyes.size())
     fail("{} canvases for {} eyes: expected one each", canvases, eyes.size());
@@ -163,7 +164,7 @@ void FoveatedFrame::submit(std::span<const shared::View> eyes, const Foveation& 
   with_compose.then = [this](gl::Dispatcher& dispatcher) { compose(dispatcher); };
   std::vector<render::MeshDepth> of_views;
   for (const render::MeshDepth& mesh : textures.mesh_depths) of_views.insert(of_views.end(), 2, mesh);
-  frame_.submit(drawn.views, drawn.settings, with_compose, {.mesh_depths = of_views});
+  (frame_.*to)(drawn.views, drawn.settings, with_compose, {.mesh_depths = of_views});
 }
 
 render::FrameReport FoveatedFrame::finish() {

@@ -70,8 +70,16 @@ class FoveatedFrame {
   /// The same in two calls, as those of frame().
   void submit(std::span<const shared::View> eyes, const Foveation& foveation,
               const render::FrameSettings& settings = {}, const render::Workings& workings = {},
-              const render::CallersTextures& textures = {});
+              const render::CallersTextures& textures = {}) {
+    hand_over(eyes, foveation, settings, workings, textures, &render::Frame::submit);
+  }
   render::FrameReport finish();
+
+  /// As render::Frame::prepare().
+  void prepare(std::span<const shared::View> eyes, const Foveation& foveation,
+               const render::FrameSettings& settings, const render::CallersTextures& textures) {
+    hand_over(eyes, foveation, settings, {}, textures, &render::Frame::prepare);
+  }
 
   /// The composed pictures of the last frame, one an eye; and on the GPU, as a frame's lie: vec4 (C, T) by
   /// pixel, a view's from its pixel_offset on; unless they went onto canvases.
@@ -85,6 +93,9 @@ class FoveatedFrame {
   render::Frame& frame() { return frame_; }
 
  private:
+  void hand_over(std::span<const shared::View> eyes, const Foveation& foveation,
+                 const render::FrameSettings& settings, const render::Workings& workings,
+                 const render::CallersTextures& textures, decltype(&render::Frame::submit) to);
   void compose(gl::Dispatcher& dispatcher);
   void compose_eye(gl::Dispatcher& dispatcher, std::size_t k);
 

@@ -227,6 +227,15 @@ void Presenter::draw(const gl::Buffer& colours, std::span<const shared::View> vi
     context.gl().NamedFramebufferTexture(target_framebuffer_, GL_COLOR_ATTACHMENT0, 0, 0);
 }
 
+void Presenter::prepare(const render::Frame& frame, bool with_depths) {
+  gl::Context& context = dispatcher_.context();
+  context.prepare([&] {
+    context.program("present.comp", gl::Number{"OVER", !frame.plan().meshes.depths.empty(), 2});
+    for (const std::uint32_t is_depth : {0u, 1u})
+      if (with_depths) context.program("present_depth.frag", gl::Number{"IS_DEPTH", is_depth, 2});
+  });
+}
+
 Canvases Presenter::canvases(std::span<const Target> targets, const Background& background,
                              bool over_target) {
   Canvases found;

@@ -69,6 +69,10 @@ class Presenter {
   void draw(const gl::Buffer& colours, std::span<const shared::View> views, std::size_t first, int layout,
             const Target& target, const Backdrop& backdrop);
 
+  /// Compiles the programs of draw(), over a colour or what is in the target, and, where `frame` tells depths
+  /// to be written, of draw_depth().
+  void prepare(const render::Frame& frame, bool with_depths);
+
   /// The canvases through which a frame's own blend may draw into these targets, one a view
   /// (LAYOUT_SEPARATE): the same bits as draw() writes afterwards, in less time. None for more than
   /// MAX_CANVASES targets, or where one of them takes a copy. Throws as draw() does.

@@ -73,8 +73,9 @@ struct View {
 /// Elsewhere calls throw Error(no_gl), and the destructor, where another context is current, frees nothing
 /// and says so on standard error. Renderers of different contexts do not know of each other.
 ///
-/// Time: the renderer compiles its shaders at the first frame of each combination of settings, which may take
-/// seconds, and keeps them in $XDG_CACHE_HOME/binosplat, or ~/.cache/binosplat, for later runs.
+/// Time: the renderer compiles its shaders in prepare(), or at the first frames of each combination of
+/// settings, which may take seconds, and keeps them in $XDG_CACHE_HOME/binosplat, or ~/.cache/binosplat, for
+/// later runs.
 ///
 /// State: after each call, and after an error, the context's state is what it was before, but for a program
 /// in use that was deleted, which OpenGL does not set again. What is bound, enabled or masked does not change
@@ -114,6 +115,11 @@ class Renderer {
   /// finished; out_of_memory; no_gl for a GPU that was reset, and where the context is not current.
   void submit(std::span<const View> views, const Placement& placement, const Settings& settings = {});
 
+  /// Compiles every shader that frames of these settings may need, with targets such as these, so that no
+  /// submit() has to: call it while the user waits anyway. Takes the frames' memory, too, and writes nothing
+  /// into targets. The next frame goes by no earlier ones. Throws as submit() does.
+  void prepare(std::span<const View> views, const Placement& placement, const Settings& settings = {});
+
   /// Whether the GPU has blended the frame that was submitted. finish() then returns at once, unless the
   /// frame must be drawn again. True where no frame is under way.
   bool is_done();
@@ -132,6 +138,9 @@ class Renderer {
   }
 
  private:
+  void hand_over(std::span<const View> views, const Placement& placement, const Settings& settings,
+                 bool prepares);
+
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };

@@ -111,6 +111,16 @@ Renderer& Renderer::operator=(Renderer&& other) noexcept {
 }
 
 void Renderer::submit(std::span<const View> views, const Placement& placement, const Settings& settings) {
+  hand_over(views, placement, settings, false);
+}
+
+void Renderer::prepare(std::span<const View> views, const Placement& placement, const Settings& settings) {
+  hand_over(views, placement, settings, true);
+}
+
+// To the frame that draws the views, or compiles what drawing them takes.
+void Renderer::hand_over(std::span<const View> views, const Placement& placement, const Settings& settings,
+                         bool prepares) {
   if (usable(impl_).submitted) fail("a frame is under way: call finish() before the next submit()");
   Impl::Submitted to{.layout = library::layout_of(settings.layout), .background = settings.background};
   to.callers_errors = impl_->callers_errors();
@@ -158,10 +168,19 @@ void Renderer::submit(std::span<const View> views, const Placement& placement, c
       .canvases = to.canvases.list,
       .depth_rows = stereo::depth_rows(*impl_->context, head.views, to.depths),
       .mesh_depths = to.mesh_depths.list};
+  stereo::FoveatedFrame& frame = *impl_->frame;
+  if (prepares) {
+    if (to.is_foveated) {
+      frame.prepare(head.views, *settings.foveation, over, of_caller);
+    } else {
+      frame.frame().prepare(head.views, over, {}, of_caller);
+    }
+    return impl_->presenter->prepare(frame.frame(), !to.depths.empty());
+  }
   if (to.is_foveated) {
-    impl_->frame->submit(head.views, *settings.foveation, over, {}, of_caller);
+    frame.submit(head.views, *settings.foveation, over, {}, of_caller);
   } else {
-    impl_->frame->frame().submit(head.views, over, {}, of_caller);
+    frame.frame().submit(head.views, over, {}, of_caller);
   }
   impl_->submitted = std::move(to);
   if (impl_->stream) impl_->stream->is_drawn = true;

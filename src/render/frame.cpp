@@ -50,16 +50,43 @@ Frame::Frame(std::shared_ptr<GpuModel> model)
       buffers_(model_->context()),
       counters_read_(model_->context(), "counters for the CPU", gl::Buffer::Use::read) {}
 
+void Frame::take(std::span<const shared::View> views, const FrameSettings& settings, const Workings& workings,
+                 const CallersTextures& textures) {
+  check(textures, views.size(), settings, workings);
+  submitted_ = {.views = {views.begin(), views.end()}, .settings = settings, .workings = workings};
+  if (workings.stand_in) return;
+  submitted_.canvases.assign(textures.canvases.begin(), textures.canvases.end());
+  submitted_.mesh_depths.assign(textures.mesh_depths.begin(), textures.mesh_depths.end());
+  submitted_.depth_rows = textures.depth_rows;
+}
+
+void Frame::prepare(std::span<const shared::View> views, const FrameSettings& settings,
+                    const Workings& workings, const CallersTextures& textures) {
+  take(views, settings, workings, textures);
+  // Frames of a quality that sample their error draw a probe, and not on canvases.
+  const bool searches = settings.quality > 0.0f;
+  for (const bool samples : {false, true}) {
+    if (samples && !searches) continue;
+    PlanRequest request{.textures = submitted_textures(!samples)};
+    if (samples) request.probe = tolerance_control_.next_probe(submitted_.views, settings);
+    if (searches) request.tolerance = tolerance_control_.next_tolerance();
+    begin(request);
+    for (const bool measures_too : {false, true}) {
+      if (measures_too && !measures(settings.transmittance)) continue;
+      measuring_ = {.measures = measures_too};
+      capacity_.start(plan_, workings);
+      reserve();
+      dispatcher_.context().prepare([this] { record_stages(); });
+    }
+  }
+  is_prepared_ = true;
+  start_over();
+}
+
 void Frame::submit(std::span<const shared::View> views, const FrameSettings& settings,
                    const Workings& workings, const CallersTextures& textures) {
-  check(textures, views.size(), settings, workings);
+  take(views, settings, workings, textures);
   note_begin();
-  submitted_ = {.views = {views.begin(), views.end()}, .settings = settings, .workings = workings};
-  if (!workings.stand_in) {
-    submitted_.canvases.assign(textures.canvases.begin(), textures.canvases.end());
-    submitted_.mesh_depths.assign(textures.mesh_depths.begin(), textures.mesh_depths.end());
-    submitted_.depth_rows = textures.depth_rows;
-  }
   const PlanRequest request{.textures = submitted_textures(true)};
   begin(request);
   is_cut_ = (settings.quality > 0.0f || measures(settings.transmittance)) && !history_.goes_on(plan_);
@@ -184,16 +211,18 @@ void Frame::wait_and_read(FrameReport& report) {
   counters_ = counters_read_.mapped<shared::Counters>(1).front();
 }
 
+void Frame::reserve() {
+  if (!submitted_.workings.stand_in) share_lists(plan_, capacity_.slots, middle_depth(counters_));
+  const TimedSpan span("upload", &cpu_.upload);
+  buffers_.reserve(plan_, *model_buffers_, capacity_);
+  buffers_.upload(plan_, measuring_.uses_last);
+  model_buffers_->reserve(plan_);
+  buffers_.counters.upload(std::vector{shared::Counters{}});
+}
+
 void Frame::record() {
   const Workings& workings = submitted_.workings;
-  if (!workings.stand_in) share_lists(plan_, capacity_.slots, middle_depth(counters_));
-  {
-    const TimedSpan span("upload", &cpu_.upload);
-    buffers_.reserve(plan_, *model_buffers_, capacity_);
-    buffers_.upload(plan_, measuring_.uses_last);
-    model_buffers_->reserve(plan_);
-    buffers_.counters.upload(std::vector{shared::Counters{}});
-  }
+  reserve();
   pictures_stood_in_.clear();
   if (!std::exchange(is_prepared_, true)) {
     const TimedSpan span("prepare programs", &cpu_.submit);

@@ -95,6 +95,11 @@ class Frame {
   void submit(std::span<const shared::View> views, const FrameSettings& settings = {},
               const Workings& workings = {}, const CallersTextures& textures = {});
 
+  /// Compiles every program that frames of these settings may need, those that measure included, and takes
+  /// their memory. Draws nothing; the next frame is as a first one.
+  void prepare(std::span<const shared::View> views, const FrameSettings& settings,
+               const Workings& workings = {}, const CallersTextures& textures = {});
+
   /// Whether finish() would find the GPU done. Even then it may have to draw again.
   bool is_done() { return dispatcher_.is_done(); }
 
@@ -160,11 +165,14 @@ class Frame {
   };
 
   CallersTextures submitted_textures(bool with_canvases) const;
+  void take(std::span<const shared::View> views, const FrameSettings& settings, const Workings& workings,
+            const CallersTextures& textures);
   void note_begin();
   void begin(PlanRequest request);
   void start_search();
   void start_attempt();
   void wait_and_read(FrameReport& report);
+  void reserve();
   void record();
   void record_stages();
   FrameReport finish_attempt();
