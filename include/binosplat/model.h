@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 
 #include <binosplat/eyes.h>
@@ -19,6 +20,19 @@ struct ModelOptions {
   /// files are there.
   std::optional<int> lod = {};
   std::optional<std::size_t> appearance = {};  // for Scaffold-GS models; none: the first
+};
+
+/// The Gaussians of a model in memory, an element of each array for each of them. Only read while a
+/// SplatModel is made of them.
+struct Gaussians {
+  std::span<const glm::vec3> means = {};   // world units
+  std::span<const glm::vec4> quats = {};   // quaternions w, x, y, z, of any length but 0
+  std::span<const glm::vec3> scales = {};  // standard deviations, world units: exp() of what trainers store
+  std::span<const float> opacities = {};   // from 0 to 1: the sigmoid of what trainers store
+  /// RGB coefficients of the spherical harmonics, the constant one first: 1, 4, 9 or 16 for each Gaussian.
+  std::span<const glm::vec3> sh = {};
+  std::string axes = "RDF";  // where x, y and z point: right, down, forward, as COLMAP's; OpenGL's is "RUB"
+  bool antialiased = false;  // trained with Mip-Splatting's compensation
 };
 
 /// A box with sides along the axes of the model's world.
@@ -40,6 +54,10 @@ class SplatModel {
   /// model; the text says what it looks like instead.
   explicit SplatModel(const std::filesystem::path& path, const ModelOptions& options = {});
 
+  /// Copies Gaussians from arrays. Throws Error(bad_input), naming the array and the row, for arrays of
+  /// different lengths, and numbers that are no Gaussian.
+  explicit SplatModel(const Gaussians& gaussians, const std::string& name = "arrays");
+
   /// For the library's own code, which has models in memory. Not null.
   explicit SplatModel(std::shared_ptr<const Model> model);
 
@@ -57,6 +75,7 @@ class SplatModel {
   Placement placement(const glm::dvec3& origin = glm::dvec3(0.0), double units_per_metre = 1.0) const;
 
  private:
+  friend class Calibration;
   friend class Renderer;
   std::shared_ptr<const Model> model_;
 };

@@ -4,6 +4,7 @@
 #include "base/error.h"
 #include "formats/model_file.h"
 #include "library/placement.h"
+#include "scene/model_rows.h"
 
 namespace binosplat {
 
@@ -19,6 +20,28 @@ const Model& model_in(const std::shared_ptr<const Model>& model) {
 SplatModel::SplatModel(const std::filesystem::path& path, const ModelOptions& options) {
   if (path.empty()) fail("an empty path: expected that of a model");
   model_ = std::make_shared<const Model>(load_model(path, options));
+}
+
+SplatModel::SplatModel(const Gaussians& from, const std::string& name) {
+  const std::size_t count = from.means.size();
+  const auto check_length = [&](const char* array, std::size_t length) {
+    if (length != count) fail("{}: {} elements for {} means: expected as many", array, length, count);
+  };
+  check_length("quats", from.quats.size());
+  check_length("scales", from.scales.size());
+  check_length("opacities", from.opacities.size());
+  int degree = 0;
+  while (degree < 3 && from.sh.size() != count * static_cast<std::size_t>(sh_count(degree))) ++degree;
+  const auto each = static_cast<std::size_t>(sh_count(degree));
+  if (from.sh.size() != count * each)
+    fail("sh: {} elements for {} means: expected 1, 4, 9 or 16 for each", from.sh.size(), count);
+  Model model = model_of_rows(count, degree, from.axes, [&](std::size_t i) {
+    return GaussianValues{from.means[i], from.scales[i], from.quats[i], from.opacities[i],
+                          &from.sh[i * each].x};
+  });
+  model.name = name;
+  model.antialiased = from.antialiased;
+  model_ = std::make_shared<const Model>(std::move(model));
 }
 
 SplatModel::SplatModel(std::shared_ptr<const Model> model) : model_(std::move(model)) {}
