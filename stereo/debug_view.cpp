@@ -101,12 +101,22 @@ glm::vec3 map_colour(float number) {
 std::vector<Picture> DebugView::exact(std::span<const shared::View> views,
                                       const render::FrameSettings& settings) {
   if (!exact_) exact_ = std::make_unique<render::Frame>(model_);
-  exact_->draw(views, render::exact_of(settings));
+  exact_report_ = exact_->draw(views, render::exact_of(settings));
   return exact_->read_pictures();
 }
 
 std::vector<Image> DebugView::map(int what, const DrawnFrame& drawn, const Background& background) {
   const auto& [frame, views, pictures, settings] = drawn;
+  if (what == SHOW_LEFT_OUT) {
+    exact(views, settings);
+    std::vector<Image> all = exact_->read_debug_view(SHOW_PAIRS);
+    const std::vector<Image> drawn_pairs = frame.read_debug_view(SHOW_PAIRS);
+    for (std::size_t v = 0; v < all.size(); ++v) {
+      for (std::size_t k = 0; k < all[v].data.size(); ++k)
+        all[v].data[k] = std::max(0.0f, all[v].data[k] - drawn_pairs[v].data[k]);
+    }
+    return all;
+  }
   if (what >= SHOW_ALPHAS) return frame.read_debug_view(what);
   std::vector<Image> maps;
   if (what == SHOW_DEPTH) {

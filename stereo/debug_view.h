@@ -46,6 +46,8 @@ class DebugView {
   /// The exact pictures of these views. A Frame of their own draws them, so that the other one's history
   /// stays.
   std::vector<Picture> exact(std::span<const shared::View> views, const render::FrameSettings& settings);
+  /// What that frame took.
+  const render::FrameReport& exact_report() const { return exact_report_; }
 
   /// Gives the memory of that frame back.
   void release() { exact_.reset(); }
@@ -55,6 +57,7 @@ class DebugView {
 
   std::shared_ptr<render::GpuModel> model_;
   std::unique_ptr<render::Frame> exact_;
+  render::FrameReport exact_report_;
 };
 
 }  // namespace binosplat::stereo

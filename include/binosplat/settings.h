@@ -22,6 +22,16 @@ enum class Threshold {
 enum class Transmittance {
   all,       // as if nothing stood before it
   measured,  // what earlier frames measured: faster, for heads that stand still
+  by_depth,  // the most that reaches its depth, by Settings::depth_table (AdaGScale)
+};
+
+/// The most light that reaches any Gaussian whose view depth lies in a bin (AdaGScale's T_upper, sections 3.2
+/// and 3.4 of the paper), in equal bins over [0, far) world units; Projection::tangent counts the distance
+/// from the eye. A bin of 0 is one in which no Gaussian was seen: there, and beyond `far`, all light counts.
+/// Calibration reads one from a file (binosplat/calibration.h).
+struct DepthTable {
+  float far = 0.0f;                // world units
+  std::vector<float> bounds = {};  // from 0 to 1, by bin
 };
 
 /// What Gaussians are sorted by, front to back.
@@ -82,6 +92,7 @@ struct Settings {
   /// None: `squared` with a quality or a tolerance, else `exact`, which takes neither.
   std::optional<Threshold> threshold = {};
   Transmittance transmittance = Transmittance::all;
+  DepthTable depth_table = {};  // with Transmittance::by_depth
 
   std::optional<Order> order = {};            // none: as the model was trained
   std::optional<Projection> projection = {};  // likewise

@@ -52,7 +52,7 @@
 #define LAYOUT_GREY 12
 
 // --show: what of a frame is shown. Those from SHOW_DIFFERENCE on are maps in colours; those from SHOW_ALPHAS
-// on are made by a walk through the blend's lists.
+// on are made by walks through the blend's lists.
 #define SHOW_PICTURE 0
 #define SHOW_SPLIT 1
 #define SHOW_DIFFERENCE 2
@@ -63,6 +63,7 @@
 #define SHOW_PAIRS 7
 #define SHOW_LIGHT 8
 #define SHOW_MEDIAN_DEPTH 9
+#define SHOW_LEFT_OUT 10
 
 // What a GPU does at best (shaders/floors.comp).
 #define FLOOR_BYTES 0
@@ -145,6 +146,7 @@ inline constexpr Choice show_choices[] = {
     {"pairs", "Gaussians in the list of the pixel's tile"},
     {"light", "max(T), the most light that reaches a Gaussian: the mean of those seen"},
     {"median-depth", "view depth by which half of the light is gone, world units"},
+    {"left-out", "Gaussians that the threshold leaves out of the pixel's tile"},
 };
 
 }  // namespace binosplat

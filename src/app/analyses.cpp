@@ -73,7 +73,7 @@ lab::Analysis analyse_scene(MeasuredOptions options, const AnalysesOptions& anal
       *context, scene.model, calibrated, tested,
       {.scene = scene.model.name,
        .near_plane = scene.near_plane,
-       .kind = photos ? lab::CalibrationTarget::Kind::drop : lab::CalibrationTarget::Kind::quality,
+       .kind = photos ? CalibrationTarget::Kind::drop : CalibrationTarget::Kind::quality,
        .targets = photos ? std::vector{0.1, 0.2, 0.3, 0.4, 0.5} : std::vector{50.0, 45.0, 40.0, 37.0, 34.0},
        .far = analyses.far,
        .frames = analyses.frames,

@@ -12,9 +12,9 @@
 #include "base/error.h"
 #include "base/numbers.h"
 #include "base/output_file.h"
+#include "formats/calibration_file.h"
 #include "formats/image_file.h"
 #include "formats/whole.h"
-#include "lab/calibration.h"
 #include "lab/fields.h"
 #include "lab/settings.h"
 
@@ -53,7 +53,7 @@ void add_cases(BenchPlan& plan, std::size_t scene) {
 void add_calibrated(const std::string& file, lab::Axes& axes) {
   std::set<lab::NamedSettings> known;
   for (const lab::BenchSettings& settings : axes.settings) known.insert(lab::named(settings));
-  for (const lab::CalibrationEntry& entry : lab::load_calibration(file).entries) {
+  for (const CalibrationEntry& entry : load_calibration(file).entries) {
     lab::BenchSettings settings;
     settings.th = entry.th;
     settings.transmittance = entry.transmittance;

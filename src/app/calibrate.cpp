@@ -15,6 +15,7 @@
 #include "app/shots.h"
 #include "base/log.h"
 #include "base/progress.h"
+#include "formats/calibration_file.h"
 #include "lab/calibrate.h"
 
 namespace binosplat::app {
@@ -29,8 +30,8 @@ struct CalibrateOptions : MeasuredOptions {
   std::string output;
 };
 
-void print_calibration(const lab::Calibration& c, const CalibrateOptions& o) {
-  const bool drop = c.target.kind == lab::CalibrationTarget::Kind::drop;
+void print_calibration(const ThresholdCalibration& c, const CalibrateOptions& o) {
+  const bool drop = c.target.kind == CalibrationTarget::Kind::drop;
   fmt::print("{} views of {} x {} px; {}\n", c.views.size(), c.width, c.height,
              drop ? fmt::format("target: at most {} dB lost against the photos", c.target.db)
                   : fmt::format("target: {} dB against the exact pictures", c.target.db));
@@ -38,7 +39,7 @@ void print_calibration(const lab::Calibration& c, const CalibrateOptions& o) {
              c.depth_table.far, c.depth_table_seconds);
   fmt::print("{:<12}{:<8}{:>12}{:>10}{:>10}  {:<14}{:>8}{:>8}\n", "th", "source", "tolerance",
              drop ? "drop dB" : "PSNR dB", "worst dB", "in view", "pairs", "s");
-  for (const lab::CalibrationEntry& e : c.entries) {
+  for (const CalibrationEntry& e : c.entries) {
     fmt::print("{:<12}{:<8}{:>12.5g}{:>10.3f}{:>10.3f}  {:<14}{:>7.1f}%{:>8.2f}\n", th_choices[e.th].name,
                transmittance_choices[e.transmittance].name, e.tolerance, e.reached_db, e.worst_db,
                e.worst_view, -100 * e.pairs_removed, e.seconds);
@@ -72,11 +73,11 @@ ExitCode calibrate(const CalibrateOptions& o) {
   leave_out_blind("calibrate", *context, scene.model, scene.near_plane, views);
   const std::vector<lab::Rule> rules = rules_of(o.rules);
   Progress progress("calibrating", lab::calibrated_settings(rules).size());
-  const lab::Calibration found = lab::calibrate(
+  const ThresholdCalibration found = lab::calibrate(
       *context, scene.model, views, scene.near_plane,
       {o.target.target(), o.table, rules, keep_steps(o.output, o, photos.exposures, scene.list, *context)},
       [&](std::size_t entries, std::size_t) { progress.update(entries); });
-  save_json(o.output, lab::to_json(found));
+  save_json(o.output, json_of(found));
   forget_steps(o.output);
   print_calibration(found, o);
   // A tolerance goes with the size of the pictures: render warns where it differs.

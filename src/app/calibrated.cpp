@@ -1,71 +1,49 @@
 #include "app/calibrated.h"
 
+#include <algorithm>
 #include <cmath>
 
-#include "base/error.h"
 #include "base/log.h"
-#include "render/frame_plan.h"
+#include "formats/calibration_file.h"
+#include "measure/depth_table.h"
+#include "scene/axes.h"
 
 namespace binosplat::app {
 
-namespace {
-
-constexpr double same_focal = 0.05;  // share: nearer than this the tolerance needs no scaling to speak of
-
-render::FrameSettings without_calibration(render::FrameSettings settings) {
-  settings.th = TH_TAU;
-  settings.tolerance = 0.0f;
-  settings.transmittance = TRANSMITTANCE_ONE;
-  return settings;
+render::ThresholdPolicy policy_of(const DrawingOptions& options) {
+  if (options.calibration.empty()) return {};
+  render::ThresholdPolicy policy(options.calibration, load_calibration(options.calibration));
+  policy.check(settings_of(options));
+  return policy;
 }
 
-}  // namespace
-
-CalibratedSettings::CalibratedSettings(const DrawingOptions& options)
-    : file_(options.calibration), own_tolerance_(options.tolerance.has_value()) {
-  if (file_.empty()) return;
-  calibration_ = lab::load_calibration(file_);
-  const render::FrameSettings asked = settings_of(options);
-  if (!lab::calibrated(*calibration_, asked, calibration_->focal))
-    fail("--calibration {} has no entry for --th {} --transmittance {}", file_, th_choices[asked.th].name,
-         transmittance_choices[asked.transmittance].name);
-}
-
-void CalibratedSettings::check_model(const Model& model, const render::FrameSettings& settings) {
-  const Perspective drawn = render::perspective_of(settings, model);
-  if (calibration_ && calibration_->perspective != drawn) {
-    const auto text = [](const Perspective& p) {
-      return fmt::format("--order {} --projection {}", order_choices[p.order].name,
-                         projection_choices[p.projection].name);
-    };
-    fail("--calibration {} is for {}, and this is drawn with {}: calibrate with these", file_,
-         text(calibration_->perspective), text(drawn));
-  }
-  other_model_ = calibration_ && !lab::is_of(*calibration_, model);
-  if (other_model_)
-    log_warning("--calibration {} is of another model ({}, {} Gaussians): drawing exactly", file_,
-                calibration_->model_name, calibration_->gaussians);
-}
-
-render::FrameSettings CalibratedSettings::of(const Shot& shot, render::FrameSettings settings) const {
-  if (!calibration_) return settings;
-  if (other_model_) return without_calibration(settings);
-  const Camera& camera = shot.eyes.front().camera;
-  if (!lab::covers(*calibration_, camera.position)) {
+render::FrameSettings settings_of(const render::ThresholdPolicy& policy, const Shot& shot,
+                                  const render::FrameSettings& asked, const ModelAxes& axes) {
+  constexpr double same_focal = 0.05;  // share: nearer than this the tolerance needs no scaling to speak of
+  if (!policy.is_calibrated()) return asked;
+  const shared::View& view = shot.eyes.front().view;
+  const double focal = policy.calibration().focal;
+  if (!policy.covers(view, axes)) {
     log_warning("{} is far from the calibrated views: drawing it exactly", shot.name);
-    return without_calibration(settings);
-  }
-  if (own_tolerance_) {
-    settings.depth_table = calibration_->depth_table;
-    return settings;
-  }
-  if (std::abs(camera.fx / calibration_->focal - 1.0) > same_focal)
+  } else if (asked.tolerance == 0.0f && std::abs(view.lens.x / focal - 1.0) > same_focal) {
     log_warning(
         "{} has a focal length of {:.0f} px and was calibrated at {:.0f}: the tolerance is scaled, the dB "
-        "are "
-        "rough",
-        shot.name, camera.fx, calibration_->focal);
-  return *lab::calibrated(*calibration_, settings, camera.fx);
+        "are rough",
+        shot.name, view.lens.x, focal);
+  }
+  return policy.settings(asked, view, axes);
+}
+
+std::vector<shared::View> views_of_depth_table(const Lens& lens, const CameraList& list, double near_plane,
+                                               const ModelAxes& axes) {
+  const std::size_t count = std::min(measure::depth_table_views, list.cameras.size());
+  std::vector<shared::View> views;
+  for (std::size_t k = 0; k < count; ++k) {
+    const Camera camera = sized(lens, list.cameras[k * list.cameras.size() / count]);
+    views.push_back(make_view(into_axes(camera, axes), near_plane));
+  }
+  log_info("--transmittance depth: measuring {} view{} of {}", count, count == 1 ? "" : "s", list.source);
+  return views;
 }
 
 }  // namespace binosplat::app

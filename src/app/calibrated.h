@@ -1,34 +1,24 @@
 #pragma once
 // --calibration: which settings a shot is drawn with.
 
-#include <optional>
-#include <string>
+#include <vector>
 
 #include "app/drawing_options.h"
 #include "app/shots.h"
-#include "lab/calibration.h"
-#include "render/settings.h"
+#include "render/threshold_policy.h"
 
 namespace binosplat::app {
 
-class CalibratedSettings {
- public:
-  /// Reads the options' file, if they name one; it must have an entry for what they ask for (else: Error).
-  explicit CalibratedSettings(const DrawingOptions& options);
+/// Reads the options' file, if they name one; it must have an entry for what they ask for (else: Error).
+render::ThresholdPolicy policy_of(const DrawingOptions& options);
 
-  /// A file of another model is not gone by: a warning says so. Throws Error where frames of these settings
-  /// have another order or projection than the file. To be called before of().
-  void check_model(const Model& model, const render::FrameSettings& settings);
+/// As ThresholdPolicy::settings(), with a warning where the shot is drawn exactly, or its dB are rough.
+render::FrameSettings settings_of(const render::ThresholdPolicy& policy, const Shot& shot,
+                                  const render::FrameSettings& asked, const ModelAxes& axes);
 
-  /// `settings` with the file's tolerance, unless they have one of their own, and its transmittance by depth;
-  /// as they are without a file. Exact for a
-  /// shot that is far from the calibrated views, and for another model: a warning says so.
-  render::FrameSettings of(const Shot& shot, render::FrameSettings settings) const;
-
- private:
-  std::string file_;
-  std::optional<lab::Calibration> calibration_;
-  bool other_model_ = false, own_tolerance_ = false;
-};
+/// What --transmittance depth is measured in where no calibration has a table: 16 cameras of the list, evenly
+/// chosen. Says so.
+std::vector<shared::View> views_of_depth_table(const Lens& lens, const CameraList& list, double near_plane,
+                                               const ModelAxes& axes);
 
 }  // namespace binosplat::app

@@ -30,21 +30,6 @@ namespace binosplat::app {
 
 namespace {
 
-// What --transmittance depth goes by: the cameras of the list, evenly chosen, as the shots see the scene.
-render::DepthTable depth_table(render::Frame& frame, const Lens& lens, const CameraList& list,
-                               double near_plane, const ModelAxes& axes,
-                               const render::FrameSettings& settings) {
-  constexpr std::size_t views_max = 16;
-  const std::size_t count = std::min(views_max, list.cameras.size());
-  std::vector<shared::View> views;
-  for (std::size_t k = 0; k < count; ++k)
-    views.push_back(
-        make_view(into_axes(sized(lens, list.cameras[k * list.cameras.size() / count]), axes), near_plane));
-  log_info("--transmittance depth: measuring {} view{} of {}", count, count == 1 ? "" : "s", list.source);
-  return measure::measure_depth_table(frame, views,
-                                      {.order = settings.order, .projection = settings.projection});
-}
-
 // How far the screen is, in metres, where no option says it: what suits the first view of the run, whichever
 // part of it is drawn here; nothing where that shows nothing.
 std::optional<double> find_screen(render::Frame& frame, const render::FrameSettings& settings,
@@ -299,9 +284,11 @@ void draw_all(gl::Context& context, const Work& work, RenderReport& report) {
   auto drawer =
       drawer_of(work.stream ? work.stream->gpu_model(context, settings.precision)
                             : std::make_shared<render::GpuModel>(context, report.model, settings.precision));
-  if (settings.transmittance == TRANSMITTANCE_DEPTH && o.drawing.calibration.empty())
-    settings.depth_table =
-        depth_table(drawer->frame, o.camera.lens, work.list, report.near_plane, report.model.axes, settings);
+  if (settings.transmittance == TRANSMITTANCE_DEPTH && !work.policy.is_calibrated()) {
+    settings.depth_table = measure::measure_depth_table(
+        drawer->frame, views_of_depth_table(o.camera.lens, work.list, report.near_plane, report.model.axes),
+        {.order = settings.order, .projection = settings.projection});
+  }
   if (work.screen) report.convergence = find_screen(drawer->frame, settings, *work.screen);
   std::optional<glm::vec3> of_switches;  // the background, where they are reported
   if (o.output.detail_report && work.heads_turn) of_switches = settings.background;
@@ -328,7 +315,7 @@ void draw_all(gl::Context& context, const Work& work, RenderReport& report) {
     drawn.shot = shot;
     if (work.screen && report.convergence) converge(drawn.shot, *report.convergence);
     const std::vector<shared::View> views = views_of(drawn.shot);
-    render::FrameSettings of_shot = work.calibrated.of(drawn.shot, settings);
+    render::FrameSettings of_shot = settings_of(work.policy, drawn.shot, settings, report.model.axes);
     of_shot.depth = o.output.exr_depth;
     if (work.stream) {
       drawn.levels = settle_shot(*work.stream, drawer->frame, drawer->show, views, of_shot, of_switches);

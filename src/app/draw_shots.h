@@ -16,7 +16,7 @@ namespace binosplat::app {
 /// What is drawn, and by what.
 struct Work {
   Outputs outputs;
-  CalibratedSettings calibrated;
+  render::ThresholdPolicy policy;
   CameraList list;
   std::vector<Shot> shots;
   std::optional<Shot> screen;  // what tells how far the screen is, where no option does

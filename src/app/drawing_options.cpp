@@ -6,17 +6,15 @@
 
 namespace binosplat::app {
 
-void add_drawing_options(CLI::App& sub, DrawingOptions& o, bool in_window) {
+void add_drawing_options(CLI::App& sub, DrawingOptions& o) {
   sub.option_defaults()->group("Drawing");
   choose_explained(sub, "--tiles", o.tiles, "Which tiles a Gaussian is drawn in (ellipse)", tiles_choices);
   std::string rules_help =
       "The alpha below which a Gaussian is left out of a tile (tau;\nwith --tolerance: squared)";
   Words<int> rules = words_of(th_choices);
   for (const Choice& rule : th_choices) rules_help += fmt::format("\n  {}: {}", rule.name, rule.help);
-  if (!in_window) {
-    rules.emplace_back("adagscale", TH_PERIPHERAL);
-    rules_help += "\n  adagscale: the whole of AdaGScale: peripheral with --transmittance depth";
-  }
+  rules.emplace_back("adagscale", TH_PERIPHERAL);
+  rules_help += "\n  adagscale: the whole of AdaGScale: peripheral with --transmittance depth";
   choose(sub, "--th", o.th, rules_help, rules)->each([&o](const std::string& rule) {
     o.adagscale = rule == "adagscale";
     if (o.adagscale) o.transmittance = TRANSMITTANCE_DEPTH;
@@ -29,8 +27,7 @@ void add_drawing_options(CLI::App& sub, DrawingOptions& o, bool in_window) {
   sub.add_option("--calibration", o.calibration, "Take the tolerance from a file of binosplat calibrate")
       ->type_name("FILE");
   choose_explained(sub, "--transmittance", o.transmittance,
-                   "The light that reaches a Gaussian, for --th (one)", transmittance_choices,
-                   in_window ? TRANSMITTANCE_DEPTH : -1);
+                   "The light that reaches a Gaussian, for --th (one)", transmittance_choices);
   choose_explained(sub, "--decode", o.decode, "For which eye a Scaffold-GS model makes its Gaussians (eyes)",
                    decode_choices);
   choose_explained(sub, "--order", o.order, "What Gaussians are sorted by (as the model was trained: depth)",

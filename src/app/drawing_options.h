@@ -28,8 +28,8 @@ struct DrawingOptions {
   int frames = 1;  // of each view
 };
 
-/// Adds all of them; `options` must outlive the parsing. A window measures no --transmittance depth.
-void add_drawing_options(CLI::App& sub, DrawingOptions& options, bool in_window = false);
+/// Adds all of them; `options` must outlive the parsing.
+void add_drawing_options(CLI::App& sub, DrawingOptions& options);
 
 /// Throws Error for options that contradict each other.
 void check(const DrawingOptions& options);

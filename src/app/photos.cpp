@@ -104,8 +104,8 @@ lab::PhotoOf photo_finder(const PhotoSource& photos) {
   };
 }
 
-lab::CalibrationTarget TargetOptions::target() const {
-  using Kind = lab::CalibrationTarget::Kind;
+CalibrationTarget TargetOptions::target() const {
+  using Kind = CalibrationTarget::Kind;
   return {max_drop ? Kind::drop : Kind::quality, max_drop ? *max_drop : *quality};
 }
 

@@ -54,7 +54,7 @@ lab::PhotoOf photo_finder(const PhotoSource& photos);
 struct TargetOptions {
   std::optional<double> max_drop, quality;  // dB
 
-  lab::CalibrationTarget target() const;
+  CalibrationTarget target() const;
 };
 
 /// Throws Error unless there is one of the two, with what it needs; `command` needs `what`, as in "a bound".

@@ -25,6 +25,7 @@
 #include "lab/csv.h"
 #include "lab/profile_run.h"
 #include "lab/settings.h"
+#include "measure/depth_table.h"
 
 namespace binosplat::app {
 
@@ -111,12 +112,13 @@ struct Profiled {
   Model loaded;
   lab::ProfileRun run;
   lab::Profile profile;
+  std::vector<shared::View> table_views;  // --transmittance depth is measured in; empty: it is known
 
   const Model& model() const { return stream ? stream->model() : loaded; }
 };
 
 Profiled open_profiled(ProfileOptions o) {
-  CalibratedSettings calibrated(o.drawing);
+  const render::ThresholdPolicy policy = policy_of(o.drawing);
   CameraList list = listed_cameras(o.scene, o.camera, o.rig);
   check_views(o.camera.views, o.rig.mono, list);
   if (o.camera.views == all_views || view_names(o.camera.views, list).size() > 1)
@@ -134,8 +136,11 @@ Profiled open_profiled(ProfileOptions o) {
       make_shots(o.camera.views, o.camera.lens, o.rig, list, near_plane, all.model().axes);
   if (!o.camera.along_path()) shots.resize(1);
   if (way.empty()) way = "standing at " + shots.front().name;
-  calibrated.check_model(all.model(), settings);
-  settings = calibrated.of(shots.front(), settings);
+  policy.check_perspective(settings, all.model());
+  policy.check_model(all.model());
+  settings = settings_of(policy, shots.front(), settings, all.model().axes);
+  if (settings.transmittance == TRANSMITTANCE_DEPTH && !policy.is_calibrated())
+    all.table_views = views_of_depth_table(o.camera.lens, list, near_plane, all.model().axes);
   all.run = {frames_to_profile(o, shots), settings, o.foveate, o.fps, o.asks_clock};
   all.profile.facts = {o.scene.name, way, drawing_of(o, settings), lab::device_text(*all.context),
                        all.context->software()};
@@ -156,6 +161,12 @@ lab::Profile record(const ProfileOptions& o, const std::optional<lab::Table>& be
   const auto model =
       all.stream ? all.stream->gpu_model(*all.context, all.run.settings.precision)
                  : std::make_shared<render::GpuModel>(*all.context, all.loaded, all.run.settings.precision);
+  if (!all.table_views.empty()) {
+    render::FrameSettings& settings = all.run.settings;
+    render::Frame frame(model);
+    settings.depth_table = measure::measure_depth_table(
+        frame, all.table_views, {.order = settings.order, .projection = settings.projection});
+  }
   lab::ProfileDrawer drawer(model, all.run, all.stream.get());
   tell_how_long(drawer.warm_up(), all.run.frames.size());
   {
@@ -196,7 +207,7 @@ void add_profile(CLI::App& program, Command& command) {
   CLI::App* sub = program.add_subcommand("profile", "Time every frame on a way, and say why some are slow");
   const auto options = std::make_shared<ProfileOptions>();
   ProfileOptions& o = *options;
-  add_picture_options(*sub, o, true);
+  add_picture_options(*sub, o);
   add_tour_options(*sub, o.camera);
   add_foveate_option(*sub, o.foveate);
   sub->option_defaults()->group("Options");

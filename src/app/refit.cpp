@@ -25,7 +25,7 @@ namespace {
 
 using lab::Calibrator;
 using nlohmann::ordered_json;
-using TargetKind = lab::CalibrationTarget::Kind;
+using TargetKind = CalibrationTarget::Kind;
 
 struct RefitOptions : MeasuredOptions {
   bool against_exact = false;

@@ -171,7 +171,7 @@ ExitCode render(const RenderOptions& asked) {
   check(asked);
   RenderOptions o = with_eyes_of_demo(asked);
   std::unique_ptr<gl::Context> context;  // outlives what draws with it
-  Work work{.outputs = outputs_of(o), .calibrated = CalibratedSettings(o.drawing)};
+  Work work{.outputs = outputs_of(o), .policy = policy_of(o.drawing)};
   const std::vector<fs::path> sequence = sequence_of(o);
   if (!sequence.empty()) o.scene.name = sequence[0].string();
   work.list = find_list(o, work.outputs);
@@ -200,7 +200,8 @@ ExitCode render(const RenderOptions& asked) {
   }
   const Model& model = work.stream ? work.stream->model() : loaded;
   log_model(o.scene.name, o.drawing.decode, model, work.stream.get());
-  work.calibrated.check_model(model, settings);
+  work.policy.check_perspective(settings, model);
+  work.policy.check_model(model);
   if (!work.list.listed) work.list = made_up_cameras(o.scene, o.camera, work.list.known, model);
 
   const double near_plane = near_plane_of(o.camera, work.list);

@@ -40,8 +40,8 @@ void check_regions(const RenderOptions& o) {
 }
 
 // What a window that goes where its user goes does not do.
-constexpr std::array render_only = {"--mono", "--only",   "--preset",      "--orbit",
-                                    "--path", "--frames", "--calibration", "--reference-until"};
+constexpr std::array render_only = {"--mono", "--only",   "--preset",         "--orbit",
+                                    "--path", "--frames", "--reference-until"};
 // What a window's system decides, and a headset does not.
 constexpr std::array not_in_windows = {"--backend", "--device"};
 
@@ -54,16 +54,16 @@ std::string keys_text() {
 
 }  // namespace
 
-void add_picture_options(CLI::App& sub, RenderOptions& o, bool in_window) {
+void add_picture_options(CLI::App& sub, RenderOptions& o) {
   add_scene_options(sub, o.scene);
   add_camera_options(sub, o.camera);
   add_rig_options(sub, o.rig);
-  add_drawing_options(sub, o.drawing, in_window);
+  add_drawing_options(sub, o.drawing);
   add_context_options(sub, o.context);
 }
 
 void add_options(CLI::App& sub, RenderOptions& o) {
-  add_picture_options(sub, o, false);
+  add_picture_options(sub, o);
   add_vr180_option(sub, o.camera.lens);
   add_foveate_option(sub, o.foveate);
   add_tour_options(sub, o.camera);
@@ -76,7 +76,7 @@ void add_options(CLI::App& sub, RenderOptions& o) {
 }
 
 void add_view_options(CLI::App& sub, RenderOptions& o) {
-  add_picture_options(sub, o, true);
+  add_picture_options(sub, o);
   add_look_options(sub, o.output, true);
   sub.add_option("-o,--output", o.output.output, "A folder for pictures and paths (out/SCENE)")
       ->type_name("DIR");

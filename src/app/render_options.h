@@ -30,9 +30,8 @@ struct RenderOptions {
   std::vector<std::string> given;  // options_given(), for resume
 };
 
-/// Adds those that say which pictures are drawn, and how; nothing of what is done with them. A window
-/// measures no --transmittance depth.
-void add_picture_options(CLI::App& sub, RenderOptions& options, bool in_window);
+/// Adds those that say which pictures are drawn, and how; nothing of what is done with them.
+void add_picture_options(CLI::App& sub, RenderOptions& options);
 
 /// Adds all of them to the sub-command; `options` must outlive the parsing. Values that cannot be understood
 /// end it with CLI::ParseError or Error.

@@ -30,7 +30,7 @@ namespace {
 namespace fs = std::filesystem;
 using lab::Calibrator;
 using nlohmann::ordered_json;
-using BoundKind = lab::CalibrationTarget::Kind;
+using BoundKind = CalibrationTarget::Kind;
 
 struct TrimOptions : MeasuredOptions {
   TargetOptions bound;

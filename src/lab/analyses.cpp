@@ -188,7 +188,7 @@ nlohmann::ordered_json to_json(const Analysis& a) {
   for (const reference::DistanceBin& bin : a.contributions.by_distance)
     distances.push_back(object("from", bin.from, "to", bin.to, "fragments", bin.fragments, "sum", bin.sum,
                                "largest", bin.largest));
-  const auto table = [](const render::DepthTable& of) { return object("far", of.far, "upper", of.bounds); };
+  const auto table = [](const DepthTable& of) { return object("far", of.far, "upper", of.bounds); };
   FieldWriter{json}("depth_table", table(a.depth_table), "fitted_table", table(a.fitted_table),
                     "contributions",
                     object("skipping", a.contributions.skipping, "by_distance", distances, "by_depth",

@@ -50,8 +50,8 @@ struct Analysis {
   std::string chosen;                                  // how the views were chosen; empty: by name
   int width = 0, height = 0;                           // px
   double calibration_photo_db = 0, test_photo_db = 0;  // of the exact pictures; of a drop
-  render::DepthTable depth_table;                      // the paper's, over [0, far]
-  render::DepthTable fitted_table;  // ours, which ends where 95 % of what is drawn lies nearer
+  DepthTable depth_table;                              // the paper's, over [0, far]
+  DepthTable fitted_table;  // ours, which ends where 95 % of what is drawn lies nearer
   Contributions contributions;
   std::vector<AnalysedSystem> systems;
   std::vector<AnalysedSystem> found;  // every rule at every target, its tolerance from the calibration views

@@ -208,7 +208,7 @@ const std::vector<Bench::Exact>& Bench::exact() {
   return exact_;
 }
 
-const render::DepthTable& Bench::depth_table() {
+const DepthTable& Bench::depth_table() {
   if (!depth_table_.bounds.empty()) return depth_table_;
   std::vector<shared::View> views;
   for (const BenchView& view : views_) views.push_back(view.eyes.front());

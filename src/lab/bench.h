@@ -59,7 +59,7 @@ class Bench {
   };
 
   const std::vector<Exact>& exact();
-  const render::DepthTable& depth_table();
+  const DepthTable& depth_table();
   std::string verify(const BenchSettings& settings);
   void time(const BenchSettings& settings, BenchNumbers& point);
   void judge(const BenchSettings& settings, BenchNumbers& point);
@@ -71,7 +71,7 @@ class Bench {
   shared::View small_;
   BenchEffort effort_;
   std::vector<Exact> exact_;
-  render::DepthTable depth_table_;  // of the views, at first use
+  DepthTable depth_table_;  // of the views, at first use
 };
 
 /// `count` of `all` things, spread evenly, first and last among them; all where there are no more.

@@ -132,7 +132,7 @@ double Calibrator::exact_photo_db() const {
   return sum / static_cast<double>(references_.size());
 }
 
-render::DepthTable Calibrator::depth_table(const measure::DepthTableSettings& settings) {
+DepthTable Calibrator::depth_table(const measure::DepthTableSettings& settings) {
   return measure::measure_depth_table(frame_, views_, settings);
 }
 
@@ -165,13 +165,14 @@ std::vector<render::FrameSettings> calibrated_settings(const std::vector<Rule>& 
   return all;
 }
 
-Calibration calibrate(gl::Context& context, const Model& model, const std::vector<CalibrationView>& views,
-                      double near_plane, const CalibrationSettings& wanted,
-                      const std::function<void(std::size_t, std::size_t)>& done) {
+ThresholdCalibration calibrate(gl::Context& context, const Model& model,
+                               const std::vector<CalibrationView>& views, double near_plane,
+                               const CalibrationSettings& wanted,
+                               const std::function<void(std::size_t, std::size_t)>& done) {
   const render::FrameSettings exact{.order = wanted.table.order, .projection = wanted.table.projection};
   Calibrator calibrator(context, model, views, near_plane, wanted.target.kind,
                         {wanted.keep, exact.order, exact.projection});
-  Calibration c;
+  ThresholdCalibration c;
   c.model_name = model.name;
   c.gaussians = model.count();
   c.hash = model_hash(model);

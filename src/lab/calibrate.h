@@ -10,12 +10,12 @@
 #include <vector>
 
 #include "base/image.h"
-#include "lab/calibration.h"
 #include "lab/rule.h"
 #include "lab/settings.h"
 #include "measure/depth_table.h"
 #include "render/frame.h"
 #include "scene/camera.h"
+#include "scene/threshold_calibration.h"
 
 namespace binosplat::lab {
 
@@ -77,7 +77,7 @@ class Calibrator {
   /// of a view the median time counts. `after_view(views)` is called after each.
   Cost cost(const Model& other, int drawings = 1, const std::function<void(std::size_t)>& after_view = {});
 
-  render::DepthTable depth_table(const measure::DepthTableSettings& settings = {});
+  DepthTable depth_table(const measure::DepthTableSettings& settings = {});
 
   /// The largest tolerance that costs no more than the target: the mean over the views. The settings' own
   /// tolerance is where the search begins.
@@ -110,8 +110,9 @@ struct CalibrationSettings {
 std::vector<render::FrameSettings> calibrated_settings(const std::vector<Rule>& rules = all_rules());
 
 /// Measures the table of bounds by depth, then finds every entry, and calls `done(entries, of)` after each.
-Calibration calibrate(gl::Context& context, const Model& model, const std::vector<CalibrationView>& views,
-                      double near_plane, const CalibrationSettings& wanted,
-                      const std::function<void(std::size_t, std::size_t)>& done = {});
+ThresholdCalibration calibrate(gl::Context& context, const Model& model,
+                               const std::vector<CalibrationView>& views, double near_plane,
+                               const CalibrationSettings& wanted,
+                               const std::function<void(std::size_t, std::size_t)>& done = {});
 
 }  // namespace binosplat::lab

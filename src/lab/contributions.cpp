@@ -24,7 +24,7 @@ struct ShownGaussian {
   double transmittance;  // max(T)
 };
 
-double bound_at(const render::DepthTable& table, double depth) {
+double bound_at(const DepthTable& table, double depth) {
   const auto bins = static_cast<double>(table.bounds.size());
   const double bin = depth / static_cast<double>(table.far) * bins;
   if (!(bin >= 0.0) || bin >= bins) return 1.0;
@@ -36,7 +36,7 @@ double bound_at(const render::DepthTable& table, double depth) {
 /// sees.
 std::array<std::vector<double>, known.size()> bounds_by(const std::vector<reference::Splat>& splats,
                                                         const std::vector<double>& largest,
-                                                        const render::DepthTable& table) {
+                                                        const DepthTable& table) {
   std::array<std::vector<double>, known.size()> bounds;
   bounds[1] = largest;
   for (const reference::Splat& splat : splats) bounds[2].push_back(bound_at(table, splat.depth));
@@ -49,8 +49,7 @@ Spread spread(const std::vector<double>& values) {
   return {quantile(values, 0.5), quantile(values, 0.9), quantile(values, 1.0)};
 }
 
-std::vector<DepthBin> bins_by_depth(const std::vector<ShownGaussian>& shown,
-                                    const render::DepthTable& table) {
+std::vector<DepthBin> bins_by_depth(const std::vector<ShownGaussian>& shown, const DepthTable& table) {
   std::vector<DepthBin> bins;
   if (shown.empty()) return bins;
   std::vector<double> depths;
@@ -75,7 +74,7 @@ double capped(double db) { return std::min(db, equal_db); }
 }  // namespace
 
 Contributions contributions(const Model& model, std::span<const ContributionView> views,
-                            const render::DepthTable& table, const render::DepthTable& fitted,
+                            const DepthTable& table, const DepthTable& fitted,
                             const std::function<void()>& progress) {
   Contributions found;
   for (const char* by : known)

@@ -58,7 +58,7 @@ struct Contributions {
 /// T_upper(depth) is the `table`'s for skipping, and the `fitted` one's for the bins of depth. `progress` is
 /// called after each view.
 Contributions contributions(const Model& model, std::span<const ContributionView> views,
-                            const render::DepthTable& table, const render::DepthTable& fitted,
+                            const DepthTable& table, const DepthTable& fitted,
                             const std::function<void()>& progress);
 
 }  // namespace binosplat::lab

@@ -69,7 +69,7 @@ class Drive {
   const ProgressOf& progress_;
   render::Frame frame_;
   ExactFrames exact_;
-  render::DepthTable table_;
+  DepthTable table_;
 };
 
 void Drive::measure_table(const std::vector<MotionPath>& paths) {

@@ -14,10 +14,17 @@ static_assert(static_cast<int>(Precision::half) == PRECISION_HALF);
 static_assert(static_cast<int>(Order::distance) == ORDER_DISTANCE);
 static_assert(static_cast<int>(Projection::tangent) == PROJECTION_TANGENT);
 
-int rule_of(const Settings& settings) {
-  if (!settings.threshold) return settings.quality || settings.tolerance ? TH_SQUARED : TH_TAU;
-  if (*settings.threshold == Threshold::squared) return TH_SQUARED;
-  return *settings.threshold == Threshold::peripheral ? TH_PERIPHERAL : TH_TAU;
+/// The library's choices in the order of the shaders' numbers.
+constexpr Threshold thresholds[] = {Threshold::exact, Threshold::peripheral, Threshold::squared};
+constexpr Transmittance transmittances[] = {Transmittance::all, Transmittance::by_depth,
+                                            Transmittance::measured};
+static_assert(TH_TAU == 0 && TH_PERIPHERAL == 1 && TH_SQUARED == 2 &&
+              std::size(thresholds) == std::size(th_choices));
+static_assert(TRANSMITTANCE_ONE == 0 && TRANSMITTANCE_DEPTH == 1 && TRANSMITTANCE_LAST == 2 &&
+              std::size(transmittances) == std::size(transmittance_choices));
+
+int number_of(auto choice, const auto& choices) {
+  return static_cast<int>(std::ranges::find(choices, choice) - std::begin(choices));
 }
 
 /// In the names of this library; render::check_choice has the program's.
@@ -28,10 +35,15 @@ void check_choices(const Settings& s) {
     fail("settings.{0} has no effect with settings.threshold exact: leave one of them out",
          s.quality ? "quality" : "tolerance");
   }
-  if (s.transmittance == Transmittance::measured && render::is_exact(rule_of(s))) {
+  const int transmittance = transmittance_of(s.transmittance);
+  if (transmittance != TRANSMITTANCE_ONE && render::is_exact(rule_of(s, TH_TAU))) {
+    fail("settings.transmittance {} has no effect on an exact picture: give a quality or a tolerance, too",
+         transmittance == TRANSMITTANCE_LAST ? "measured" : "by_depth");
+  }
+  if (transmittance == TRANSMITTANCE_DEPTH && s.depth_table.bounds.empty()) {
     fail(
-        "settings.transmittance measured has no effect on an exact picture: give a quality or a tolerance, "
-        "too");
+        "settings.transmittance by_depth needs settings.depth_table: take both from a Calibration, or give a "
+        "table");
   }
 }
 
@@ -47,13 +59,23 @@ render::ViewRegion region_of(const ViewRegion& region) {
 
 }  // namespace
 
+int rule_of(const Settings& settings, int otherwise) {
+  if (settings.threshold) return number_of(*settings.threshold, thresholds);
+  return settings.quality || settings.tolerance ? TH_SQUARED : otherwise;
+}
+
+int transmittance_of(Transmittance transmittance) { return number_of(transmittance, transmittances); }
+Transmittance transmittance_of(int number) { return transmittances[number]; }
+Threshold threshold_of(int number) { return thresholds[number]; }
+
 render::FrameSettings frame_settings(const Settings& from, std::span<const View> views, int precision) {
   check_numbers(from);
   check_choices(from);
   render::FrameSettings to;
   to.precision = precision;
-  to.th = rule_of(from);
-  to.transmittance = from.transmittance == Transmittance::measured ? TRANSMITTANCE_LAST : TRANSMITTANCE_ONE;
+  to.th = rule_of(from, TH_TAU);
+  to.transmittance = transmittance_of(from.transmittance);
+  if (to.transmittance == TRANSMITTANCE_DEPTH) to.depth_table = from.depth_table;
   if (from.quality && !(*from.quality > 0.0f))
     fail("settings.quality {}: expected decibels above zero", *from.quality);
   to.quality = from.quality.value_or(0.0f);

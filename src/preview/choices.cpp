@@ -36,6 +36,10 @@ void make_consistent(Choices& choices) {
   if (rule.exact) s.quality = 0.0f;
   if (rule.exact || s.quality > 0.0f) s.tolerance = 0.0f;
   if (!render::takes(s.th, s.transmittance)) s.transmittance = TRANSMITTANCE_ONE;
+  const bool given = s.tolerance > 0.0f || s.quality > 0.0f;
+  if (!rule.exact && !given && !choices.policy.has_entry(s))
+    s.tolerance = static_cast<float>(rule.careful_tolerance);
+  if (is_exact(s)) choices.flipped = false;
   s.background = choices.background;
 }
 

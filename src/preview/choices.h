@@ -4,7 +4,7 @@
 #include <glm/glm.hpp>
 #include <optional>
 
-#include "render/settings.h"
+#include "render/threshold_policy.h"
 #include "shared/axes.h"
 #include "stereo/rig.h"
 
@@ -16,6 +16,9 @@ struct Choices {
   int show = SHOW_PICTURE;
   double split = 0.5;  // with SHOW_SPLIT: the share of a picture's width that is shown as drawn
   render::FrameSettings settings;
+  /// What a calibration of the model says of `settings` that have neither a tolerance nor a quality.
+  render::ThresholdPolicy policy;
+  bool flipped = false;  // the exact picture is shown in place of that of `settings`
   stereo::RigSettings rig;
   glm::vec3 background{0.0f};
   bool seeks_screen = false;  // rig.convergence is to suit what a model's first picture shows

@@ -20,6 +20,7 @@ inline constexpr KeyHelp key_help[] = {
     {"R", "back to the camera (reset view)"},
     {"L, V", "next layout, kind of picture; Shift: back"},
     {"B, C", "show or hide a grid on the ground, the cameras"},
+    {"X", "flip between the picture and the exact one"},
     {"T, H", "next (exact) tile test, threshold; Shift: back"},
     {"F", "full screen, or a window again"},
     {"F1", "show or hide the panel"},

@@ -78,7 +78,7 @@ bool draw_quality(render::FrameSettings& s) {
   return true;
 }
 
-bool draw_thresholds(render::FrameSettings& s) {
+bool draw_thresholds(render::FrameSettings& s, const render::ThresholdPolicy& policy) {
   bool changed = combo("tiles", s.tiles, tiles_choices, {TILES_ALL});
   if (combo("threshold", s.th, th_choices)) {
     choose_threshold(s, s.th);
@@ -86,16 +86,39 @@ bool draw_thresholds(render::FrameSettings& s) {
   }
   if (render::is_exact(s.th)) return changed;
   float tolerance = s.tolerance;
-  if (ImGui::SliderFloat("tolerance", &tolerance, 0.001f, 10.0f, s.quality > 0.0f ? "by quality" : "%.3f",
-                         ImGuiSliderFlags_Logarithmic)) {
-    s.tolerance = std::max(0.0f, tolerance);
+  const char* const format = s.quality > 0.0f ? "by quality" : s.tolerance > 0.0f ? "%.3f" : "as calibrated";
+  if (ImGui::SliderFloat("tolerance", &tolerance, 0.001f, 10.0f, format, ImGuiSliderFlags_Logarithmic)) {
+    s.tolerance = std::max(0.001f, tolerance);
     s.quality = 0.0f;
     changed = true;
   }
-  // The depth table needs cameras to be measured from: `binosplat render` has it.
   if (render::threshold_rules[s.th].uses_bound)
-    changed |= combo("transmittance", s.transmittance, transmittance_choices, {TRANSMITTANCE_DEPTH});
+    changed |= combo("transmittance", s.transmittance, transmittance_choices);
+  if (policy.has_entry(s) && (s.tolerance > 0.0f || s.quality > 0.0f) && ImGui::Button("as calibrated")) {
+    s.tolerance = s.quality = 0.0f;
+    changed = true;
+  }
   return changed;
+}
+
+void draw_row(const char* name, const render::FrameReport& report, const std::string& psnr) {
+  ImGui::TableNextColumn();
+  ImGui::TextUnformatted(name);
+  for (const std::string& text : {fmt::format("{:.3g} M", 1e-6 * static_cast<double>(report.pairs)),
+                                  fmt::format("{:.2f} ms", report.total_ms), psnr}) {
+    ImGui::TableNextColumn();
+    ImGui::TextUnformatted(text.c_str());
+  }
+}
+
+// Pairs, GPU time and error of the picture beside those of the exact one.
+void draw_effect(const ThresholdEffect& effect) {
+  if (!ImGui::BeginTable("effect", 4)) return;
+  for (const char* name : {"", "pairs", "GPU", "PSNR"}) ImGui::TableSetupColumn(name);
+  ImGui::TableHeadersRow();
+  draw_row("drawn", effect.drawn, std::isinf(effect.psnr) ? "equal" : fmt::format("{:.1f} dB", effect.psnr));
+  draw_row("exact", effect.exact, "");
+  ImGui::EndTable();
 }
 
 void draw_keys() {
@@ -192,13 +215,18 @@ void Panel::draw_times_of(Session& session) {
 }
 
 void Panel::draw_accuracy(Session& session) {
-  if (draw_thresholds(session.choices.settings)) {
-    session.change();
-    psnr.reset();
+  Choices& c = session.choices;
+  bool changed = draw_thresholds(c.settings, c.policy);
+  if (const auto progress = session.depth_table_progress())
+    ImGui::TextWrapped("measuring the transmittance by depth: %zu of %zu views", progress->first,
+                       progress->second);
+  if (is_exact(c.settings)) {
+    ImGui::TextWrapped("exact: choose a threshold, or less quality");
+  } else {
+    changed |= ImGui::Checkbox("the exact picture (X)", &c.flipped);
   }
-  if (ImGui::Button("PSNR against exact")) psnr = session.psnr_against_exact();
-  if (psnr) ImGui::SameLine();
-  if (psnr) ImGui::Text(std::isinf(*psnr) ? "equal" : "%.2f dB", *psnr);
+  if (changed) session.change();
+  if (const auto& effect = session.threshold_effect()) draw_effect(*effect);
 }
 
 void Panel::draw_controls(Session& session) {
@@ -216,10 +244,7 @@ void Panel::draw_controls(Session& session) {
   changed |= draw_quality(c.settings);
   if (ImGui::CollapsingHeader("view", ImGuiTreeNodeFlags_DefaultOpen)) changed |= draw_view(session);
   if (ImGui::CollapsingHeader("eyes", ImGuiTreeNodeFlags_DefaultOpen)) changed |= draw_rig(c);
-  if (changed) {
-    session.change();
-    psnr.reset();
-  }
+  if (changed) session.change();
 }
 
 void Panel::draw(Session& session) {
@@ -237,9 +262,9 @@ void Panel::draw(Session& session) {
   if (ImGui::Button("full screen (F)")) requests.full_screen();
   draw_speed(session.frames(), frames_a_second);
   draw_controls(session);
+  if (ImGui::CollapsingHeader("accuracy", ImGuiTreeNodeFlags_DefaultOpen)) draw_accuracy(session);
   if (ImGui::CollapsingHeader("path", ImGuiTreeNodeFlags_DefaultOpen)) draw_path(session);
   if (ImGui::CollapsingHeader("open", ImGuiTreeNodeFlags_DefaultOpen)) draw_open();
-  if (ImGui::CollapsingHeader("accuracy")) draw_accuracy(session);
   if (ImGui::CollapsingHeader("times")) draw_times_of(session);
   if (ImGui::CollapsingHeader("keys")) draw_keys();
   ImGui::PopItemWidth();

@@ -26,7 +26,6 @@ struct Panel {
   bool stereo_window = false;        // LAYOUT_QUAD_BUFFER may be chosen
   Requests requests;
   std::optional<double> frames_a_second;  // as they were shown last while the head moved
-  std::optional<double> psnr;             // dB, of the last picture that was compared
 
   /// How much of a window it takes at the right, both in px: no picture is drawn there. 0 while it is hidden.
   float width(float window) const;

@@ -78,6 +78,7 @@ void Session::rest() {
 
 void Session::change() {
   make_consistent(choices);
+  threshold_effect_.reset();
   pending_ = render::measures(choices.settings.transmittance) ? render::settling_frames : 1;
 }
 
@@ -141,7 +142,7 @@ void Session::make_shown(std::span<const shared::View> views) {
     return;
   }
   const std::vector<Picture> pictures = frame_.read_pictures();
-  const render::FrameSettings of_frame = settings();
+  const render::FrameSettings of_frame = settings(views);
   shown_.pictures =
       debug_view_.make(choices.show, {frame_, views, pictures, of_frame}, choices.background, choices.split);
   std::vector<glm::vec4> colours;
@@ -150,8 +151,51 @@ void Session::make_shown(std::span<const shared::View> views) {
   shown_.colours.upload(colours);
 }
 
-render::FrameSettings Session::settings() const {
-  render::FrameSettings of_frame = choices.settings;
+bool Session::needs_depth_table() const {
+  return choices.settings.transmittance == TRANSMITTANCE_DEPTH && !choices.policy.is_calibrated() &&
+         !depth_table_.table;
+}
+
+bool Session::measure_depth_table() {
+  // Of levels the table is that of those which stay.
+  if (!needs_depth_table() || (loaded_.stream && !loaded_.stream->settled())) return false;
+  DepthTableWork& work = depth_table_;
+  if (!work.frame) {
+    const glm::ivec2 size = glm::max(eye_size(), glm::ivec2(1));
+    const std::size_t count = std::min(measure::depth_table_views, start_.cameras.size());
+    for (std::size_t k = 0; k < count; ++k) {
+      const Camera& camera = start_.cameras[k * start_.cameras.size() / count];
+      work.views.push_back(
+          make_view(into_axes(resized(camera, size.x, size.y), model().axes), choices.rig.near_plane));
+    }
+    work.measurement = measure::DepthTableMeasurement(
+        {.order = choices.settings.order, .projection = choices.settings.projection});
+    work.frame = std::make_unique<render::Frame>(frame_.model());
+  }
+  work.measurement.add(*work.frame, work.views[work.measured++]);
+  if (work.measured < work.views.size()) return true;
+  work.table = work.measurement.table();
+  work.frame.reset();
+  change();
+  return false;
+}
+
+std::optional<std::pair<std::size_t, std::size_t>> Session::depth_table_progress() const {
+  if (!depth_table_.frame) return std::nullopt;
+  return std::pair(depth_table_.measured, depth_table_.views.size());
+}
+
+render::FrameSettings Session::settings(std::span<const shared::View> views) const {
+  if (choices.flipped) {
+    render::FrameSettings exact = render::exact_of(choices.settings);
+    exact.precision = choices.settings.precision;
+    exact.background = choices.background;
+    return exact;
+  }
+  render::FrameSettings of_frame = choices.policy.settings(choices.settings, views.front(), model().axes);
+  // What is not measured yet lets all light through.
+  if (of_frame.transmittance == TRANSMITTANCE_DEPTH && !choices.policy.is_calibrated())
+    of_frame.depth_table = depth_table_.table.value_or(DepthTable{1.0f, {1.0f}});
   if (loaded_.stream) of_frame.quality = static_cast<float>(loaded_.stream->quality_left(of_frame.quality));
   return of_frame;
 }
@@ -169,7 +213,7 @@ bool Session::shows_marks() const {
 render::FrameReport Session::draw_frame(std::span<const shared::View> asked) {
   if (!shows_marks()) {
     marks_.drawing.reset();
-    return frame_.draw(asked, settings());
+    return frame_.draw(asked, settings(asked));
   }
   const MarkPlaces places = mark_places();
   std::vector<Line> lines;
@@ -180,7 +224,7 @@ render::FrameReport Session::draw_frame(std::span<const shared::View> asked) {
     lines.insert(lines.end(), more.begin(), more.end());
   }
   if (!marks_.drawing) marks_.drawing = std::make_unique<MarkDrawing>(context_);
-  return marks_.drawing->draw(frame_, asked, eyes_, settings(), lines);
+  return marks_.drawing->draw(frame_, asked, eyes_, settings(asked), lines);
 }
 
 void Session::follow_levels() {
@@ -208,7 +252,7 @@ std::vector<shared::View> Session::views_of(const Camera& camera) {
 
 bool Session::draw() {
   const bool interlaced = choices.layout == LAYOUT_ROWS || choices.layout == LAYOUT_COLUMNS;  // never scaled
-  const bool shrinks = moving_ && !interlaced && !last_.frames.empty();
+  const bool shrinks = moving_ && !keeps_size && !interlaced && !last_.frames.empty();
   const int divisor = shrinks ? next_divisor(divisor_, last_.frames.back().report.total_ms) : 1;
   const glm::ivec2 size = eye_size(divisor);
   if (pending_ == 0 || size.x < 1 || size.y < 1) return false;
@@ -226,6 +270,7 @@ bool Session::draw() {
     last_.frames.push_back(std::move(frame));
     shown_layout_ = choices.layout;
     drawn_ = frame_.views();
+    threshold_effect_.reset();
     make_shown(asked);
     trouble_.clear();
   } catch (const Error& error) {
@@ -353,21 +398,24 @@ void Session::save_pose(const std::filesystem::path& path) const {
   binosplat::save_pose(path, pose);
 }
 
-double Session::psnr_against_exact() {
-  draw_at_rest();
-  if (shows_marks()) {  // which the exact pictures are without
-    frame_.draw(views(), settings());
-    change();
-  }
+const std::optional<ThresholdEffect>& Session::threshold_effect() {
+  const bool is_at_rest = !moving_ && divisor_ == 1 && pending_ == 0 && frames_drawn_ > 0;
+  if (threshold_effect_ || !is_at_rest || choices.flipped || is_exact(choices.settings) || shows_marks())
+    return threshold_effect_;
+  const std::vector<shared::View> now = views();
   const std::vector<Picture> shown = frame_.read_pictures();
-  const std::vector<Picture> right = debug_view_.exact(views(), choices.settings);
-  return measure::psnr(shown, right, choices.background);
+  ThresholdEffect effect{.drawn = last_.frames.back().report};
+  const std::vector<Picture> exact = debug_view_.exact(now, choices.settings);
+  effect.exact = debug_view_.exact_report();
+  effect.psnr = measure::psnr(shown, exact, choices.background);
+  threshold_effect_ = std::move(effect);
+  return threshold_effect_;
 }
 
 Image Session::picture_of(const shared::View& view) {
-  frame_.draw({&view, 1}, settings());
-  change();
-  return composite(frame_.read_pictures().front(), choices.background);
+  render::Frame other(frame_.model());  // the picture that is shown stays
+  other.draw({&view, 1}, settings({&view, 1}));
+  return composite(other.read_pictures().front(), choices.background);
 }
 
 }  // namespace binosplat::preview

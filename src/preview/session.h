@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "gl/texture.h"
+#include "measure/depth_table.h"
 #include "preview/choices.h"
 #include "preview/key_list.h"
 #include "preview/mark_drawing.h"
@@ -49,6 +50,12 @@ struct Start {
   bool listed = true;           // the cameras are a file's or a built-in scene's, and not made up
 };
 
+/// What the threshold does to the picture of a head at rest.
+struct ThresholdEffect {
+  render::FrameReport drawn, exact;
+  double psnr = 0.0;  // dB of what is drawn against the exact picture, over both eyes
+};
+
 class Session {
  public:
   /// Uploads; the context is current here and in every call. `folder` is where pictures and keys are saved.
@@ -60,10 +67,19 @@ class Session {
   KeyList keys;
   Navigator head;
   Choices choices;
+  bool keeps_size = false;  // frames are no smaller while the head moves
 
   /// Has the stream's levels, if there is one, follow what the next frame shows, which takes some ms; all
   /// else stays. Throws what reading them threw.
   void follow_levels();
+  /// Whether choices ask for a table of transmittance by depth that nobody has measured yet.
+  bool needs_depth_table() const;
+  /// Measures one more of the views from which it is made, of levels once these have settled. Returns whether
+  /// there are more to measure.
+  bool measure_depth_table();
+  /// How many views were measured of how many; none where nothing is to be measured.
+  std::optional<std::pair<std::size_t, std::size_t>> depth_table_progress() const;
+
   /// None where the model has no levels that follow.
   const Stream* stream() const { return loaded_.stream.get(); }
 
@@ -112,8 +128,9 @@ class Session {
   void go_to(const Camera& camera);
   /// Writes head, up, scale and the eyes' distance to where they are found again (formats/pose_file.h).
   void save_pose(const std::filesystem::path& path) const;
-  /// PSNR of what is drawn against the exact frame, dB, over both eyes.
-  double psnr_against_exact();
+  /// What the threshold does to the last picture. Draws the exact frame, too, the first time that it is asked
+  /// of a picture. None while the head moves, and of exact pictures.
+  const std::optional<ThresholdEffect>& threshold_effect();
   /// What a view shows, as frames are drawn now.
   Image picture_of(const shared::View& view);
 
@@ -136,7 +153,7 @@ class Session {
   std::vector<shared::View> views_of(const Camera& camera);
   void draw_at_rest();
   std::string write_picture(bool exr);
-  render::FrameSettings settings() const;
+  render::FrameSettings settings(std::span<const shared::View> views) const;
   void find_screen();
   bool shows_marks() const;
   render::FrameReport draw_frame(std::span<const shared::View> asked);
@@ -184,6 +201,16 @@ class Session {
   };
   Last last_;
   std::string trouble_;
+  std::optional<ThresholdEffect> threshold_effect_;  // of the last frame drawn
+  /// The table of transmittance by depth, or how far its measurement is.
+  struct DepthTableWork {
+    std::optional<DepthTable> table;
+    measure::DepthTableMeasurement measurement{{}};
+    std::unique_ptr<render::Frame> frame;
+    std::vector<shared::View> views;
+    std::size_t measured = 0;
+  };
+  DepthTableWork depth_table_;
   /// Whether the convergence that suits the first picture is sought, and what was found.
   struct Screen {
     bool is_sought = false;

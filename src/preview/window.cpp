@@ -95,6 +95,8 @@ void Window::run() {
       play();
       if (session_->moving() && glfwGetTime() - hands_.moved > seconds_to_rest) session_->rest();
       follow_levels();
+      measure_depth_table();
+      if (recording_) session_->change_show();  // at rest, too
       if (draw()) {
         if (recording_) record(session_->frames().back());
         measure_pace();
@@ -117,15 +119,15 @@ void Window::run() {
 // At rest nothing is drawn: only input, a model that is being read, a message that goes, or shaders that are
 // watched, end the wait.
 void Window::wait() {
-  if (ui_frames_ > 0 || going() || playing_) return glfwPollEvents();
+  if (ui_frames_ > 0 || going() || playing_ || recording_) return glfwPollEvents();
   drawn_at_.reset();
   std::optional<double> seconds = messages_.next_change(glfwGetTime());
   const auto at_most = [&](double most) { seconds = std::min(seconds.value_or(most), most); };
   if (loading_.loaded.valid()) at_most(0.05);
   if (levels_.moved || levels_move()) at_most(0.02);
+  if (is_measuring_) at_most(0.001);
   if (session_ && session_->moving()) at_most(seconds_to_rest);
   if (turns()) at_most(std::max(0.005, turn_.due - glfwGetTime()));
-  if (recording_) at_most(std::max(0.0, recording_->until - glfwGetTime()));
   if (!settings_.shader_folder.empty()) at_most(0.5);
   if (!seconds) return glfwWaitEvents();
   glfwWaitEventsTimeout(std::max(*seconds, 1e-3));
@@ -219,6 +221,25 @@ void Window::follow_levels() {
     tell(error.what(), true);
   }
   if (moved) ui_frames_ = 3;
+}
+
+void Window::measure_depth_table() {
+  is_measuring_ = false;
+  if (!session_->needs_depth_table()) return;
+  const bool was_under_way = session_->depth_table_progress().has_value();
+  try {
+    is_measuring_ = session_->measure_depth_table();
+  } catch (const Error& error) {
+    if (error.code() == ExitCode::no_gl || error.code() == ExitCode::out_of_memory) throw;
+    tell(error.what(), true);
+  }
+  if (is_measuring_ && !was_under_way)
+    tell("measuring how much light reaches each depth, from the cameras: until then all of it counts");
+  if (!session_->needs_depth_table()) {
+    tell("measured how much light reaches each depth");
+    log_info("{}: measured how much light reaches each depth", scene_.name);
+  }
+  ui_frames_ = std::max(ui_frames_, 1);
 }
 
 void Window::reload_shaders() {

@@ -163,7 +163,15 @@ void Window::key_of_scene(int key, int by) {
   if (key == GLFW_KEY_H) {
     next(c.settings.th, static_cast<int>(std::size(th_choices)), by);
     choose_threshold(c.settings, c.settings.th);
+    c.flipped = false;
     tell(fmt::format("threshold {}: {}", th_choices[c.settings.th].name, th_choices[c.settings.th].help));
+  }
+  if (key == GLFW_KEY_X && is_exact(c.settings)) {
+    tell("the picture is exact: choose a threshold (H), or less quality");
+  } else if (key == GLFW_KEY_X) {
+    c.flipped = !c.flipped;
+    session_->change();
+    tell(c.flipped ? "the exact picture" : "the picture as it is drawn");
   }
   if (key == GLFW_KEY_B || key == GLFW_KEY_C) key_of_marks(key);
   if (key == GLFW_KEY_L || key == GLFW_KEY_T || key == GLFW_KEY_H) session_->change();
@@ -244,9 +252,10 @@ void Window::save_in_folder(const std::function<std::string()>& write) {
   });
 }
 
-// A frame is due as often as the display shows one.
+// A frame is due as often as the display shows one, and of the size that it has at rest.
 void Window::record_or_stop() {
   constexpr double seconds = 10.0;
+  session_->keeps_size = !recording_;
   if (!recording_) {
     recording_.emplace(
         Recording{{*context_, 1000.0 / panel_.budget_ms, std::make_shared<gl::GpuClock>(*context_)},
@@ -255,8 +264,7 @@ void Window::record_or_stop() {
   }
   render::Recording recording = recording_->recorder.finish();
   recording_.reset();
-  if (recording.frames.empty())
-    return tell("no frame was drawn meanwhile: move the head while recording", true);
+  if (recording.frames.empty()) return tell("no frame was drawn meanwhile", true);
   save_in_folder([&] {
     const std::filesystem::path folder = free_name(scene_.folder, "profile", "");
     settings_.save_recording(folder, scene_.name, *context_, std::move(recording),

@@ -40,6 +40,7 @@ class Window {
   void take_turn();
   bool levels_move() const;
   void follow_levels();
+  void measure_depth_table();
   void reload_shaders();
   bool draw();
   void measure_pace();
@@ -105,6 +106,7 @@ class Window {
     std::size_t gaussians = 0;  // that the log reported last
   };
   Levels levels_;
+  bool is_measuring_ = false;  // a table of transmittance by depth
   /// When hands did what, in s.
   struct Hands {
     double went = 0.0, clicked = 0.0, moved = 0.0;

@@ -1,6 +1,8 @@
 #pragma once
 // What a caller may choose about a frame.
 
+#include <binosplat/settings.h>
+
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <optional>
@@ -14,14 +16,6 @@
 #include "shared/limits.h"
 
 namespace binosplat::render {
-
-/// The table of TRANSMITTANCE_DEPTH: the largest T in front of any Gaussian whose view depth lies in a bin
-/// (AdaGScale, sections 3.2 and 3.4), in equal bins over [0, far) world units. A bin of 0 is one in which no
-/// Gaussian was seen: there, and beyond `far`, frames take 1.
-struct DepthTable {
-  float far = 0.0f;
-  std::vector<float> bounds;
-};
 
 /// Whether frames measure transmittance for later ones.
 constexpr bool measures(int transmittance) { return transmittance == TRANSMITTANCE_LAST; }

@@ -70,7 +70,7 @@ SampleError sample_error(const LevelChoice& choice, std::span<const std::size_t>
   return error;
 }
 
-void Calibration::add(const SampleError& error) {
+void LevelCalibration::add(const SampleError& error) {
   if (!(error.predicted > 0.0 && error.all > 0.0)) return;
   const double left = 1.0 - std::min(error.predicted / error.all, 1.0),
                times = error.measured / error.predicted;

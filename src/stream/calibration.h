@@ -48,7 +48,7 @@ SampleError sample_error(const LevelChoice& choice, std::span<const std::size_t>
 
 /// The calibration factor: the measured error of levels over the predicted one. It is a mean over samples, in
 /// which earlier ones fade; a sample with all chunks that lose anything replaces it.
-class Calibration {
+class LevelCalibration {
  public:
   void add(const SampleError& error);
   double factor() const { return measured_ / chunks_; }

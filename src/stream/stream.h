@@ -154,7 +154,7 @@ class Stream {
 
   // Used by settle():
   Chooser chooser_;
-  Calibration calibration_;
+  LevelCalibration calibration_;
   unsigned samples_ = 0;
   double sample_error_ = 0.0;  // measured with the last sample
   Times times_;

@@ -101,6 +101,7 @@ class Viewer {
       stream_->begin_frame(frame.views, placement, asked, beside_.levels_ms(frame.period_ms, drawn_ms));
       if (asked.quality) drawing.quality = beside_.quality(*asked.quality);
     }
+    if (settings_.calibration) drawing = settings_.calibration->settings(frame.views, placement, drawing);
     frame.report = renderer_.draw(frame.views, placement, drawing);
     times_.push_back(frame.report.gpu_ms);
     if (budget_) budget_->took(frame.report.gpu_ms, frame.period_ms);

@@ -1,6 +1,7 @@
 #pragma once
 // A model in a headset, until its user has seen enough.
 
+#include <binosplat/calibration.h>
 #include <binosplat/stream.h>
 
 #include <functional>
@@ -16,6 +17,7 @@ struct HeadsetSettings {
   /// How frames are drawn, with a background. No depths go with foveated pictures. The near plane is for a
   /// metre of start.units_per_metre.
   Settings drawing;
+  std::optional<Calibration> calibration;  // which `drawing` is completed by
   std::optional<double> budget_ms;  // for a frame, by quality and size; 0: a share of the runtime's period
   Placement start;                  // at the eyes of a viewer who stands (upright_at)
 };

@@ -13,8 +13,8 @@ using test::Outcome;
 using test::Words;
 using Names = std::set<std::string>;
 
-struct Layout : test::SceneTest {
-  Layout() { add_cameras(); }
+struct LayoutOption : test::SceneTest {
+  LayoutOption() { add_cameras(); }
   nlohmann::json view(std::size_t k = 0) const { return test::load_json(folder / "r.json")["views"][k]; }
   Outcome draw(const Words& words) const {
     Outcome outcome = render(joined(words, {"--json", folder / "r.json"}));
@@ -23,7 +23,7 @@ struct Layout : test::SceneTest {
   }
 };
 
-TEST_F(Layout, AnExrFileHasBothEyesAsViews) {
+TEST_F(LayoutOption, AnExrFileHasBothEyesAsViews) {
   draw({"-o", folder / "pair.exr", "--exr", "float"});
   draw({"--layout", "multi-view", "--background", "none"});
   EXPECT_EQ(folder.files(), (Names{"cameras.json", "model.ply", "pair.exr", "out/front.exr", "r.json"}));
@@ -37,7 +37,7 @@ TEST_F(Layout, AnExrFileHasBothEyesAsViews) {
   EXPECT_LT(psnr("/front_right.png"), 60.0) << "the right eye as the default view goes unnoticed";
 }
 
-TEST_F(Layout, DisparityIsToldAndWarnedOf) {
+TEST_F(LayoutOption, DisparityIsToldAndWarnedOf) {
   // The model begins 2.5 to 3 units away: 0.6 degrees with eyes 0.03 apart, 4 with eyes 0.2 apart.
   const Outcome plain = draw({"--ipd", "0.03"});
   EXPECT_TRUE(has(plain.out, "disparity"));
@@ -63,7 +63,7 @@ TEST_F(Layout, DisparityIsToldAndWarnedOf) {
   EXPECT_GE(disparity["far_degrees"].get<double>(), -1.0);
 }
 
-TEST_F(Layout, AScreenStandsWhereItSuitsTheFirstView) {
+TEST_F(LayoutOption, AScreenStandsWhereItSuitsTheFirstView) {
   const std::string png = folder / "pair.png";
   const auto with_eyes = [&](const Words& words) { return draw(joined(words, {"--ipd", "0.1"})); };
   const auto metres = [&](std::size_t k) { return view(k)["convergence_metres"]; };

@@ -10,7 +10,7 @@ namespace {
 using nlohmann::json;
 using test::Words;
 
-struct Threshold : test::SceneTest {
+struct ThresholdOptions : test::SceneTest {
   json drawn(const std::string& scene, const Words& words) const {
     const test::Outcome outcome =
         test::run_program(joined({"render", scene, "--json", folder / "r.json"}, words));
@@ -26,7 +26,7 @@ struct Threshold : test::SceneTest {
 
 double pairs_of(const json& run, std::size_t view = 0) { return run["views"][view]["pairs"]; }
 
-TEST_F(Threshold, AToleranceMakesFewerPairs) {
+TEST_F(ThresholdOptions, AToleranceMakesFewerPairs) {
   const json exact = city({}), lossy = city({"--tolerance", "0.1"});
   EXPECT_EQ(exact["settings"]["th"], "tau");
   EXPECT_EQ(lossy["settings"]["th"], "squared");
@@ -37,7 +37,7 @@ TEST_F(Threshold, AToleranceMakesFewerPairs) {
   EXPECT_LE(pairs_of(city({"--tolerance", "0.1", "--transmittance", "depth"})), pairs_of(lossy));
 }
 
-TEST_F(Threshold, AQualityIsComeToWithoutATolerance) {
+TEST_F(ThresholdOptions, AQualityIsComeToWithoutATolerance) {
   const auto draw = [&](const std::string& name, const Words& words) {
     // Not smaller: where dozens of Gaussians share a pixel the error is a step of the tolerance.
     return room(joined(words, {"--mono", "--size", "192x108", "-o", folder / name}));
@@ -50,7 +50,7 @@ TEST_F(Threshold, AQualityIsComeToWithoutATolerance) {
   EXPECT_NEAR(measure::psnr(load_image(folder / "near.png"), load_image(folder / "exact.png")), 36.0, 1.0);
 }
 
-TEST_F(Threshold, EveryFrameOfAPathGoesByWhatTheLastOneMeasured) {
+TEST_F(ThresholdOptions, EveryFrameOfAPathGoesByWhatTheLastOneMeasured) {
   json frames;
   for (int n = 0; n < 3; ++n) {
     frames.push_back(test::camera_json("frame_" + std::to_string(n), 0.011 * n));

@@ -68,9 +68,9 @@ TEST(View, HelpHasKeysAndNoOptionThatIsRefused) {
   if (!is_built()) GTEST_SKIP() << "the preview is not built";
   const Outcome outcome = test::run_program({"view", "--help"});
   ASSERT_TRUE(good(outcome));
-  for (const char* said : {"--layout", "Escape", "F12", "full screen"})
+  for (const char* said : {"--layout", "Escape", "F12", "full screen", "adagscale", "--calibration", "flip"})
     EXPECT_NE(outcome.out.find(said), std::string::npos) << said;
-  for (const char* refused : {"--mono", "--only", "--preset", "--path", "--calibration", "multi-view"})
+  for (const char* refused : {"--mono", "--only", "--preset", "--path", "multi-view"})
     EXPECT_EQ(outcome.out.find(refused), std::string::npos) << refused;
 }
 
@@ -189,6 +189,38 @@ TEST_F(ViewOnADisplay, ShowsWhatRenderDraws) {
   EXPECT_TRUE(fs::exists(folder / "replayed/path_00004.png")) << "there are two seconds between keys";
 
   EXPECT_EQ(leave(program).code, 0);
+}
+
+TEST_F(ViewOnADisplay, DrawsByACalibrationAndFlipsToTheExactPicture) {
+  const std::string file = folder / "calibration.json";
+  ASSERT_TRUE(good(test::run_program({"calibrate", model, "--quality", "36", "-o", file})));
+  Program program = view({"--th", "adagscale", "--calibration", file});
+  ASSERT_TRUE(says(program, "Gaussians"));
+  key("F1");
+  key("k");
+  ASSERT_TRUE(says(program, "saved", 1));
+  int saved = 1;
+  const auto now = [&] {
+    key("F12");
+    EXPECT_TRUE(says(program, "saved", ++saved));
+    return picture(saved - 1);
+  };
+  const Image approximate = now();
+  EXPECT_TRUE(same(
+      approximate,
+      rendered("key_000", "300x400", {"--layout", "parallel", "--th", "adagscale", "--calibration", file})));
+  key("x");
+  const Image exact = now();
+  EXPECT_TRUE(same(exact, rendered("key_000", "300x400", {"--layout", "parallel"})));
+  EXPECT_FALSE(same(exact, approximate)) << "the calibration leaves nothing out";
+  key("x");
+  EXPECT_TRUE(same(now(), approximate));
+  EXPECT_EQ(leave(program).code, 0);
+
+  // Without a calibration the table is measured while the window shows its first pictures.
+  Program measuring = view({"--th", "adagscale", "--tolerance", "3"});
+  EXPECT_TRUE(says(measuring, "measured how much light reaches each depth"));
+  EXPECT_EQ(leave(measuring).code, 0);
 }
 
 TEST_F(ViewOnADisplay, AGridAndCamerasAreShownByKeys) {

@@ -32,7 +32,7 @@ Contributions of_walls() {
   for (int i = 0; i < 4; ++i)
     test::add(model, {0, 0, 1 + i}, glm::vec3(1e4f, 1e4f, 1e-3f), static_cast<float>(wall_alpha[i]));
   const ContributionView view{"front", make_view(test::front_camera(32, 24, 32.0)), {}};
-  const render::DepthTable table{5.0f, {1.0f, 1.0f, 1.0f, 0.1f, 1.0f}};
+  const DepthTable table{5.0f, {1.0f, 1.0f, 1.0f, 0.1f, 1.0f}};
   int views = 0;
   Contributions found = contributions(model, std::span(&view, 1), table, table, [&] { ++views; });
   EXPECT_EQ(views, 1);

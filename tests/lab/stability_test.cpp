@@ -49,7 +49,7 @@ struct StabilityResult {
 struct ExactCase {
   std::vector<std::vector<Picture>> pictures;  // by frame; of a still camera one
   std::vector<double> pairs;
-  render::DepthTable table;
+  DepthTable table;
 
   const std::vector<Picture>& of(std::size_t n) const {
     return pictures.size() == 1 ? pictures[0] : pictures[n];

@@ -11,7 +11,9 @@
 #include "formats/model_file.h"
 #include "formats/pose_file.h"
 #include "measure/metrics.h"
+#include "stereo/layout.h"
 #include "support/broken.h"
+#include "support/calibration.h"
 #include "support/fixtures.h"
 #include "support/gl.h"
 #include "support/level_errors.h"
@@ -188,8 +190,9 @@ TEST_F(SessionTest, AQualityAndAToleranceExcludeEachOther) {
   EXPECT_EQ(s.tolerance, 0.0f);
   picture();
   EXPECT_TRUE(session.trouble().empty()) << session.trouble();
-  EXPECT_GT(session.psnr_against_exact(), 38.0);
-  EXPECT_LT(session.psnr_against_exact(), 60.0) << "it is exact";
+  ASSERT_TRUE(session.threshold_effect());
+  EXPECT_GT(session.threshold_effect()->psnr, 38.0);
+  EXPECT_LT(session.threshold_effect()->psnr, 60.0) << "it is exact";
   choose_threshold(s, TH_PERIPHERAL);
   EXPECT_EQ(s.quality, 0.0f);
   choose_quality(s, 30.0f);
@@ -197,7 +200,116 @@ TEST_F(SessionTest, AQualityAndAToleranceExcludeEachOther) {
   choose_quality(s, {});
   session.change();
   picture();
-  EXPECT_TRUE(std::isinf(session.psnr_against_exact()));
+  EXPECT_FALSE(session.threshold_effect()) << "of an exact picture";
+}
+
+TEST_F(SessionTest, FlippingShowsTheExactPicture) {
+  const Image drawn = picture();
+  const auto effect = session.threshold_effect();
+  ASSERT_TRUE(effect);
+  EXPECT_LT(effect->drawn.pairs, effect->exact.pairs);
+  session.choices.flipped = true;
+  session.change();
+  EXPECT_FALSE(session.threshold_effect()) << "there is another picture to draw";
+  const Image exact = picture();
+  EXPECT_FALSE(session.threshold_effect()) << "of the exact picture";
+  EXPECT_EQ(session.frames().back().report.pairs, effect->exact.pairs);
+  // Both pictures have 8 bits here, as those that the PSNR is of.
+  EXPECT_NEAR(effect->psnr, measure::psnr(drawn, exact), 0.01);
+  session.choices.flipped = false;
+  session.change();
+  EXPECT_EQ(apart(picture(), drawn), 0.0);
+  session.choices.flipped = true;
+  session.choices.settings = {};
+  session.change();
+  EXPECT_FALSE(session.choices.flipped) << "there is nothing to flip to";
+  EXPECT_EQ(apart(picture(), exact), 0.0);
+}
+
+TEST_F(SessionTest, WhatIsLeftOutIsShownByTile) {
+  session.choices.show = SHOW_LEFT_OUT;
+  session.change_show();
+  picture();
+  EXPECT_GT(session.most_shown().value_or(0.0), 0.0);
+  session.choices.settings = {};
+  session.change();
+  picture();
+  EXPECT_EQ(session.most_shown(), 0.0) << "an exact picture leaves nothing out";
+}
+
+/// The pictures of both eyes as a frame draws them, over black, side by side.
+Image expected(Session& session, const render::FrameSettings& settings) {
+  render::Frame frame(test::gl_context(), session.model());
+  frame.draw(session.views(), settings);
+  const std::vector<Picture> eyes = frame.read_pictures();
+  return quantised(
+      composite(stereo::lay_out(LAYOUT_PARALLEL, eyes[0], eyes[1], glm::vec3(0.0f)), glm::vec3(0.0f)));
+}
+
+TEST_F(SessionTest, ATableByDepthIsMeasuredFromTheCameras) {
+  const render::FrameSettings by_depth{
+      .th = TH_PERIPHERAL, .transmittance = TRANSMITTANCE_DEPTH, .tolerance = 3.0f};
+  session.choices.settings = by_depth;
+  session.change();
+  render::FrameSettings all_light = by_depth;
+  all_light.transmittance = TRANSMITTANCE_ONE;
+  EXPECT_EQ(apart(picture(), expected(session, all_light)), 0.0) << "nothing is measured yet";
+  EXPECT_FALSE(session.depth_table_progress());
+  EXPECT_FALSE(session.measure_depth_table()) << "there is one camera";
+  EXPECT_FALSE(session.measure_depth_table()) << "it is measured again";
+  EXPECT_FALSE(session.depth_table_progress());
+  render::Frame frame(test::gl_context(), session.model());
+  render::FrameSettings measured = by_depth;
+  const shared::View view = make_view(test::front_camera(64, 40, 55.0), session.choices.rig.near_plane);
+  measured.depth_table = measure::measure_depth_table(frame, std::span(&view, 1));
+  const Image drawn = picture();
+  EXPECT_EQ(apart(drawn, expected(session, measured)), 0.0);
+  EXPECT_GT(apart(drawn, expected(session, all_light)), 0.0) << "the table changes nothing";
+}
+
+TEST_F(SessionTest, DrawsByACalibration) {
+  ThresholdCalibration calibration = test::sample_calibration();
+  calibration.gaussians = session.model().count();
+  calibration.hash = model_hash(session.model());
+  calibration.perspective = {};
+  calibration.focal = 55.0;
+  calibration.depth_table = {6.0f, {1.0f, 0.5f, 0.25f, 0.125f}};
+  calibration.views = {{"a", {}}};
+  calibration.entries = {{TH_PERIPHERAL, TRANSMITTANCE_DEPTH, 3.0}};
+  session.choices.settings = {.th = TH_PERIPHERAL, .transmittance = TRANSMITTANCE_DEPTH};
+  session.choices.policy = {"c.json", calibration};
+  session.change();
+  EXPECT_FALSE(session.measure_depth_table()) << "it has a table";
+  render::FrameSettings by_it = session.choices.settings;
+  by_it.tolerance = 3.0f;
+  by_it.depth_table = calibration.depth_table;
+  const Image drawn = picture();
+  EXPECT_EQ(apart(drawn, expected(session, by_it)), 0.0);
+  by_it.depth_table.bounds = {1.0f, 1.0f, 1.0f, 1.0f};  // planted
+  EXPECT_GT(apart(drawn, expected(session, by_it)), 0.0);
+  // A rule that it has nothing for gets the tolerance that a search begins with.
+  session.choices.settings = {.th = TH_SQUARED};
+  session.change();
+  EXPECT_GT(session.choices.settings.tolerance, 0.0f);
+}
+
+TEST_F(SessionTest, APictureOfAnotherViewLeavesTheOneThatIsShown) {
+  const Image before = picture();
+  EXPECT_EQ(session.picture_of(session.views()[1]).width, 64);
+  EXPECT_FALSE(session.draw()) << "what is shown was drawn over";
+  EXPECT_EQ(apart(picture(), before), 0.0);
+}
+
+TEST_F(SessionTest, FramesThatAreRecordedKeepTheirSize) {
+  session.resize({1600, 1000});
+  session.draw();
+  for (const bool keeps : {true, false}) {
+    session.keeps_size = keeps;
+    session.move();
+    const int expected = keeps ? 1 : next_divisor(1, session.frames().back().report.total_ms);
+    ASSERT_TRUE(session.draw());
+    EXPECT_EQ(session.divisor(), expected);
+  }
 }
 
 TEST_F(SessionTest, TheNextTilesOfExactPicturesAreExact) {
@@ -267,19 +379,16 @@ TEST_F(SessionTest, MapsHaveARangeAndGoAgain) {
   EXPECT_FALSE(session.most_shown());
 }
 
-TEST_F(SessionTest, PsnrLeavesWhatIsSeen) {
+TEST_F(SessionTest, TheEffectOfAThresholdLeavesWhatIsSeen) {
   session.choices.settings.transmittance = TRANSMITTANCE_LAST;
   session.change();
   while (session.draw()) {
   }
   const Image before = picture();
-  EXPECT_LT(session.psnr_against_exact(), 60.0);
+  ASSERT_TRUE(session.threshold_effect());
+  EXPECT_LT(session.threshold_effect()->psnr, 60.0);
   EXPECT_FALSE(session.draw());
   EXPECT_EQ(apart(picture(), before), 0.0);
-  session.choices.settings = {};
-  session.change();
-  picture();
-  EXPECT_TRUE(std::isinf(session.psnr_against_exact()));
 }
 
 TEST_F(SessionTest, ThePoseHasWhatIsUpAndHowLargeTheWorldIs) {

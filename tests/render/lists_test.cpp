@@ -190,7 +190,9 @@ TEST(SharedLists, AreThoseOfEachEye) {
     run.run_until(render::Stage::probe);  // which tells the next frame how far the grid is to be moved
     TileLists lists = gpu_lists(run);
     EXPECT_EQ(run.plan.list_views, list_views);
-    if (list_views == 2) EXPECT_GT(run.plan.views[1].lists_shift, 0u);
+    if (list_views == 2) {
+      EXPECT_GT(run.plan.views[1].lists_shift, 0u);
+    }
     for (TileLists::value_type& list : lists)
       for (std::uint32_t& entry : list) entry %= run.plan.gaussian_count;
     return lists;

@@ -198,7 +198,7 @@ TEST_P(InPerspective, TheTableOfDepthsGoesByWhatThresholdsAskItWith) {
   const Model model = in(GetParam(), surrounding_model(71, 2000));
   const shared::View view = make_view(wide_camera());
   render::Frame frame(test::gl_context(), model);
-  const render::DepthTable table =
+  const DepthTable table =
       measure::measure_depth_table(frame, std::span(&view, 1), {.bins = 40, .far = 8.0f});
   const auto splats = reference::project_all(model, view);
   const auto measured = frame.read_measured(0);

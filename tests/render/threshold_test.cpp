@@ -91,7 +91,7 @@ TEST(DepthTable, EachDepthHasItsTransmittance) {
   const Model model = test::random_model(95, 3000, 0);
   const shared::View view = make_view(test::front_camera(120, 90, 110));
   // Depths reach 6: what lies beyond 4 gets all light, and so does an empty bin; 0.001 is floored.
-  const render::DepthTable table{4.0f, {0.5f, 0.001f, 0.0f, 0.8f}};
+  const DepthTable table{4.0f, {0.5f, 0.001f, 0.0f, 0.8f}};
   std::vector<double> bounds, shifted;
   for (std::size_t i = 0; i < model.count(); ++i) {
     const double z = reference::project(model, i, view).depth;
@@ -119,9 +119,9 @@ TEST(DepthTable, EachDepthHasItsTransmittance) {
 TEST(DepthTable, OneThatMakesNoSenseIsNamed) {
   const Model model = test::random_model(96, 10, 0);
   const shared::View view = make_view(test::front_camera(32, 32, 32));
-  for (const render::DepthTable& table :
-       {render::DepthTable{}, render::DepthTable{0.0f, {1.0f}}, render::DepthTable{5.0f, {0.5f, 1.5f}},
-        render::DepthTable{5.0f, {std::nanf("")}}}) {
+  for (const DepthTable& table :
+       {DepthTable{}, DepthTable{0.0f, {1.0f}}, DepthTable{5.0f, {0.5f, 1.5f}},
+        DepthTable{5.0f, {std::nanf("")}}}) {
     const FrameSettings settings = {
         .th = TH_SQUARED, .transmittance = TRANSMITTANCE_DEPTH, .depth_table = table, .tolerance = 1};
     EXPECT_TRUE(test::fails_saying([&] { test::draw(model, view, settings); }, {"transmittance depth"}));

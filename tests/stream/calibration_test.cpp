@@ -97,8 +97,8 @@ TEST(Sample, IsPredictedToLoseASum) {
   EXPECT_EQ(error.chunks, 3u);
 }
 
-TEST(Calibration, IsWhatSamplesOfAllLose) {
-  Calibration calibration;
+TEST(LevelCalibration, IsWhatSamplesOfAllLose) {
+  LevelCalibration calibration;
   EXPECT_EQ(calibration.factor(), 1.0) << "as predicted";
   calibration.add({});
   calibration.add({.predicted = 0.0, .measured = 1.0, .all = 1.0, .chunks = 8});
@@ -116,8 +116,8 @@ TEST(Calibration, IsWhatSamplesOfAllLose) {
 }
 
 // One of some parts may be far off.
-TEST(Calibration, IsWhatSamplesOfSomeLose) {
-  Calibration calibration;
+TEST(LevelCalibration, IsWhatSamplesOfSomeLose) {
+  LevelCalibration calibration;
   for (int k = 0; k < 200; ++k)
     calibration.add({.predicted = 5e-5, .measured = 2.5e-5, .all = 1e-4, .chunks = 8});
   EXPECT_NEAR(10.0 * std::log10(calibration.factor()), -3.0 + 0.4, 0.1)
@@ -128,8 +128,8 @@ TEST(Calibration, IsWhatSamplesOfSomeLose) {
 }
 
 // 0.8 dB, as pictures of the city and of taebak have it.
-TEST(Calibration, ChunksLoseMoreTogether) {
-  Calibration calibration;
+TEST(LevelCalibration, ChunksLoseMoreTogether) {
+  LevelCalibration calibration;
   for (int k = 0; k < 200; ++k)
     calibration.add({.predicted = 1e-7, .measured = 1e-7, .all = 1e-4, .chunks = 8});
   EXPECT_NEAR(10.0 * std::log10(calibration.factor()), 0.8, 0.1);

@@ -6,15 +6,19 @@
 #include <chrono>
 #include <cmath>
 #include <cstring>
+#include <nlohmann/json.hpp>
 #include <thread>
 
 #include "base/error.h"
+#include "formats/calibration_file.h"
 #include "formats/model_file.h"
 #include "formats/model_output.h"
 #include "lab/trace_rules.h"
 #include "measure/metrics.h"
+#include "render/threshold_policy.h"
 #include "stereo/eyes.h"
 #include "stereo/foveate.h"
+#include "support/calibration.h"
 #include "support/display.h"
 #include "support/gl.h"
 #include "support/models.h"
@@ -326,6 +330,34 @@ TEST_F(XrView, OutlivesALostSessionButNotALostRuntime) {
   EXPECT_EQ(ended.code, 3);
   EXPECT_NE(ended.err.find("has ended"), std::string::npos) << ended.err;
   EXPECT_EQ(stage.log().faults(), Strings());
+}
+
+TEST_F(XrView, DrawsByACalibration) {
+  ThresholdCalibration calibration = sample_calibration();
+  calibration.gaussians = model.count();
+  calibration.hash = model_hash(model);
+  calibration.perspective = {};
+  calibration.focal = 60.0;
+  calibration.depth_table = {8.0f, {1.0f, 0.5f, 0.25f, 0.125f}};
+  calibration.views = {{"a", {0, 0, 0}}};
+  calibration.entries = {{TH_PERIPHERAL, TRANSMITTANCE_DEPTH, 3.0}};
+  const std::string path = folder / "c.json";
+  write_text(path, json_of(calibration).dump());
+  const Outcome outcome = view({"--th", "adagscale", "--calibration", path});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const XrLog log = stage.log();
+  const Json frame = log.frames()[0];
+  const auto [eyes, sizes] = views_of(frame);
+  const shared::View left = stereo::views_from_xr(eyes, start(), sizes).views.front();
+  const render::FrameSettings asked{
+      .th = TH_PERIPHERAL, .transmittance = TRANSMITTANCE_DEPTH, .depth = Depth::median};
+  const render::ThresholdPolicy policy(path, calibration);
+  EXPECT_EQ(log.colours(frame, 0),
+            bytes_of(expected(frame, start(), policy.settings(asked, left, model.axes))[0]));
+  EXPECT_NE(log.colours(frame, 0), bytes_of(expected(frame, start())[0])) << "it leaves nothing out";
+  // Without one the table is measured from the cameras.
+  EXPECT_EQ(view({"--th", "adagscale", "--tolerance", "3"}).code, 0);
+  EXPECT_NE(stage.log().colours(frame, 0), bytes_of(expected(frame, start())[0]));
 }
 
 // Nothing is left where a session is lost while it is set up.

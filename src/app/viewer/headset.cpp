@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <utility>
 
+#include "app/calibrated.h"
 #include "app/command_line.h"
 #include "app/context_options.h"
 #include "app/load_scene.h"
@@ -12,6 +13,7 @@
 #include "base/error.h"
 #include "base/log.h"
 #include "base/mapped_file.h"
+#include "measure/depth_table.h"
 #include "preview/key_list.h"
 #include "preview/mirror.h"
 #include "render/recorder.h"
@@ -51,6 +53,7 @@ Settings drawing_of(const RenderOptions& o, const preview::Choices& choices, con
                     .cyclopean = model.scaffold && o.drawing.decode == DECODE_CYCLOPEAN};
   if (o.drawing.th == TH_PERIPHERAL) settings.threshold = Threshold::peripheral;
   if (o.drawing.transmittance == TRANSMITTANCE_LAST) settings.transmittance = Transmittance::measured;
+  if (o.drawing.transmittance == TRANSMITTANCE_DEPTH) settings.transmittance = Transmittance::by_depth;
   if (o.drawing.order) settings.order = static_cast<Order>(*o.drawing.order);
   if (o.drawing.projection) settings.projection = static_cast<Projection>(*o.drawing.projection);
   return settings;
@@ -161,7 +164,7 @@ void view_in_headset(const RenderOptions& o, const preview::Opened& scene, previ
     }
   }
   if (!mirror) own = open_context(o.context);
-  const gl::Context& context = mirror ? mirror->context() : *own;
+  gl::Context& context = mirror ? mirror->context() : *own;
 
   preview::Loaded loaded = scene.load();
   const std::shared_ptr<Stream> levels = std::move(loaded.stream);
@@ -171,13 +174,25 @@ void view_in_headset(const RenderOptions& o, const preview::Opened& scene, previ
   const auto gaussians = [&] { return levels ? levels->gaussians() : model->count(); };
   log_info("{}: {} Gaussians", scene.name, gaussians());
   const Camera eyes = into_axes(start.cameras.front(), {shown.axes.letters, glm::dvec3(0.0)});
-  const xr::HeadsetSettings settings{
+  xr::HeadsetSettings settings{
       .scale = o.headset.scale,
       .drawing = drawing_of(o, choices, shown),
       .budget_ms = o.headset.budget_ms,
       .start = xr::upright_at(eyes.position, eyes.rotation,
                               glm::transpose(world_from_axes(shown.axes.letters)) * start.up,
                               choices.rig.units_per_metre)};
+  const auto precision = static_cast<Precision>(o.drawing.precision);
+  if (choices.policy.is_calibrated()) {
+    settings.calibration.emplace(o.drawing.calibration, SplatModel(model));
+  } else if (o.drawing.transmittance == TRANSMITTANCE_DEPTH) {
+    render::Frame frame(levels ? levels->gpu_model(context, o.drawing.precision)
+                               : std::make_shared<render::GpuModel>(context, *model, o.drawing.precision));
+    settings.drawing.depth_table = measure::measure_depth_table(
+        frame,
+        views_of_depth_table({}, {.source = scene.name, .cameras = start.cameras}, choices.rig.near_plane,
+                             shown.axes),
+        {.order = o.drawing.order, .projection = o.drawing.projection});
+  }
   tell_first_signal();
   HeadsetRecording recording(context, scene, instance.headset);
   if (o.headset.record_s) recording.begin(*o.headset.record_s);
@@ -194,7 +209,6 @@ void view_in_headset(const RenderOptions& o, const preview::Opened& scene, previ
   beside.levels_ms = time_for_levels;
   beside.quality = [&](float quality) { return static_cast<float>(levels->quality_left(quality)); };
   if (mirror) beside.show = [&](const Target& left, const glm::ivec2& size) { mirror->show(left, size); };
-  const auto precision = static_cast<Precision>(o.drawing.precision);
   std::optional<SplatStream> stream;
   if (levels) stream.emplace(levels);
   Renderer renderer = stream ? Renderer(xr::get_proc_address(), *stream, precision)

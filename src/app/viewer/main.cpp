@@ -7,6 +7,7 @@
 #include <csignal>
 #include <memory>
 
+#include "app/calibrated.h"
 #include "app/command.h"
 #include "app/command_line.h"
 #include "app/followed.h"
@@ -65,6 +66,7 @@ struct Wanted {
   CameraOptions camera;
   RigOptions rig;
   render::FrameSettings settings;
+  render::ThresholdPolicy policy;
 };
 
 preview::Loaded load(const SceneOptions& scene, const std::vector<Camera>& cameras,
@@ -95,6 +97,9 @@ preview::Opened open(const Wanted& wanted) {
   };
   opened.start = [wanted, list, pose](const Model& model, preview::Choices& choices) {
     const CameraOptions& o = wanted.camera;
+    wanted.policy.check_perspective(wanted.settings, model);
+    wanted.policy.check_model(model);
+    choices.policy = wanted.policy;
     const CameraList all = list.listed ? list : made_up_cameras(wanted.scene, o, list.known, model);
     const stereo::RigSettings found =
         rig_settings(wanted.rig, list.known, near_plane_of(o, pose ? *pose : all));
@@ -132,7 +137,7 @@ void view(const RenderOptions& o) {
   const std::vector<fs::path> sequence = sequence_of(o);
   check_view(o, !sequence.empty());
   const fs::path folder = o.output.output;
-  const Wanted wanted{folder, o.scene, o.camera, o.rig, settings_of(o.drawing)};
+  const Wanted wanted{folder, o.scene, o.camera, o.rig, settings_of(o.drawing), policy_of(o.drawing)};
   const preview::Opened opened =
       sequence.empty() ? open(wanted) : open_sequence(wanted, sequence, *o.output.fps);
   if (o.headset.xr) return view_in_headset(o, opened, choices_of(o));
@@ -148,7 +153,7 @@ void view(const RenderOptions& o) {
   // What is saved of another model lies apart.
   const auto open_other = [folder, metre = o.rig.units_per_metre](const std::string& file) {
     const fs::path own = folder.empty() ? folder : folder / default_folder(file).filename();
-    return open({own, {.name = file}, {}, {.units_per_metre = metre}, {}});
+    return open({own, {.name = file}, {}, {.units_per_metre = metre}, {}, {}});
   };
   preview::run(opened, choices_of(o), window, open_other);
 }

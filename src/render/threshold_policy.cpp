@@ -1,0 +1,77 @@
+#include "render/threshold_policy.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "base/error.h"
+#include "render/frame_plan.h"
+#include "scene/axes.h"
+
+namespace binosplat::render {
+
+namespace {
+
+constexpr double tolerance_power = 1.25;  // of the focal length
+
+const CalibrationEntry* entry_for(const ThresholdCalibration& calibration, const FrameSettings& asked) {
+  for (const CalibrationEntry& entry : calibration.entries)
+    if (entry.th == asked.th && entry.transmittance == asked.transmittance) return &entry;
+  return nullptr;
+}
+
+std::string text_of(const Perspective& perspective) {
+  return fmt::format("order {} and projection {}", order_choices[perspective.order].name,
+                     projection_choices[perspective.projection].name);
+}
+
+}  // namespace
+
+bool ThresholdPolicy::has_entry(const FrameSettings& asked) const {
+  return calibration_ && entry_for(*calibration_, asked) != nullptr;
+}
+
+void ThresholdPolicy::check(const FrameSettings& asked) const {
+  if (!calibration_ || has_entry(asked)) return;
+  fail("calibration {} has no entry for threshold {} with transmittance {}", name_, th_choices[asked.th].name,
+       transmittance_choices[asked.transmittance].name);
+}
+
+void ThresholdPolicy::check_perspective(const FrameSettings& asked, const Model& model) const {
+  const Perspective drawn = perspective_of(asked, model);
+  if (!calibration_ || calibration_->perspective == drawn) return;
+  fail("calibration {} is for {}, and this is drawn with {}: calibrate with these", name_,
+       text_of(calibration_->perspective), text_of(drawn));
+}
+
+void ThresholdPolicy::check_model(const Model& model) const {
+  if (!calibration_ || is_of(*calibration_, model)) return;
+  fail("calibration {} is of another model ({}, {} Gaussians): calibrate this one, or draw without", name_,
+       calibration_->model_name, calibration_->gaussians);
+}
+
+bool ThresholdPolicy::covers(const shared::View& view, const ModelAxes& axes) const {
+  if (!calibration_) return true;
+  const glm::dvec3 eye = glm::dvec3(view.anchor) + glm::dvec3(view.eye);
+  return binosplat::covers(*calibration_, into_world(eye, axes));
+}
+
+FrameSettings ThresholdPolicy::settings(FrameSettings asked, const shared::View& view,
+                                        const ModelAxes& axes) const {
+  if (!calibration_ || is_exact(asked.th)) return asked;
+  if (!covers(view, axes)) {
+    asked.th = TH_TAU;
+    asked.tolerance = asked.quality = 0.0f;
+    asked.transmittance = TRANSMITTANCE_ONE;
+    return asked;
+  }
+  asked.depth_table = calibration_->depth_table;
+  if (asked.tolerance > 0.0f || asked.quality > 0.0f) return asked;
+  check(asked);
+  const double focal = static_cast<double>(view.lens.x) / calibration_->focal;
+  asked.tolerance =
+      static_cast<float>(entry_for(*calibration_, asked)->tolerance * std::pow(focal, tolerance_power));
+  return asked;
+}
+
+}  // namespace binosplat::render

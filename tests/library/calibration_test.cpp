@@ -1,0 +1,127 @@
+// A calibration's settings are those that the programs draw by, to the bit.
+
+#include <binosplat/calibration.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "formats/calibration_file.h"
+#include "library/renderer_fixture.h"
+#include "render/frame.h"
+#include "render/threshold_policy.h"
+#include "stereo/eyes.h"
+#include "support/calibration.h"
+#include "support/errors.h"
+#include "support/models.h"
+#include "support/program.h"
+
+namespace binosplat {
+namespace {
+
+struct CalibrationTest : Library {
+  test::TempFolder folder;
+  Model model = test::random_model(3, 400, 2);
+  ThresholdCalibration found = test::sample_calibration();
+
+  CalibrationTest() {
+    found.gaussians = model.count();
+    found.hash = model_hash(model);
+    found.perspective = {};
+    found.focal = 50.0;
+    found.depth_table = {8.0f, {1.0f, 0.5f, 0.25f, 0.125f}};
+    found.views = {{"a", {0, 0, 0}}, {"b", {1, 0, 0}}};
+    found.entries = {{TH_PERIPHERAL, TRANSMITTANCE_DEPTH, 3.0}, {TH_SQUARED, TRANSMITTANCE_ONE, 0.5}};
+  }
+
+  Calibration calibration() const {
+    const std::filesystem::path path = folder / "c.json";
+    test::write_text(path, json_of(found).dump());
+    return {path, in_memory(model)};
+  }
+
+  /// As the programs draw the same views.
+  std::vector<float> expected_left(render::FrameSettings asked) const {
+    const auto head = stereo::views_from_xr(quest_eyes(), placement, std::array{size, size}).views;
+    asked.background = glm::vec3(0.0f);
+    asked.depth = Depth::none;
+    const render::ThresholdPolicy policy("c.json", found);
+    render::Frame frame(*caller.context, model);
+    frame.draw(head, policy.settings(asked, head.front(), model.axes));
+    const Image image = composite(frame.read_pictures().front(), glm::vec3(0.0f));
+    return {image.data.begin(), image.data.end()};
+  }
+
+  std::vector<float> drawn_left(const Settings& settings) {
+    Renderer renderer(caller.get_proc_address(), in_memory(model));
+    renderer.draw(views(), placement, settings);
+    const std::vector<float> rgba = read(0);
+    std::vector<float> rgb;  // from the top
+    for (int y = size.y - 1; y >= 0; --y) {
+      for (int x = 0; x < size.x; ++x) {
+        const float* const at = &rgba[4 * static_cast<std::size_t>(y * size.x + x)];
+        rgb.insert(rgb.end(), at, at + 3);
+      }
+    }
+    return rgb;
+  }
+};
+
+TEST_F(CalibrationTest, DrawsAsTheProgramsDo) {
+  Settings asked = adagscale;
+  asked.background = glm::vec3(0.0f);
+  const Settings settings = calibration().settings(views(), placement, asked);
+  EXPECT_EQ(settings.depth_table.bounds, found.depth_table.bounds);
+  EXPECT_GT(settings.tolerance.value_or(0.0f), 0.0f);
+  const render::FrameSettings by_depth{.th = TH_PERIPHERAL, .transmittance = TRANSMITTANCE_DEPTH};
+  const std::vector<float> drawn = drawn_left(settings);
+  EXPECT_EQ(drawn, expected_left(by_depth));
+  EXPECT_NE(drawn, expected_left({})) << "it leaves nothing out";
+  found.depth_table.bounds = {1.0f, 1.0f, 1.0f, 1.0f};  // planted: another table
+  EXPECT_NE(drawn, expected_left(by_depth));
+}
+
+TEST_F(CalibrationTest, CompletesWhatIsAskedFor) {
+  const Calibration read = calibration();
+  const Settings squared =
+      read.settings(views(), placement, {.threshold = Threshold::squared, .near_plane = 0.3});
+  EXPECT_EQ(squared.threshold, Threshold::squared);
+  EXPECT_EQ(squared.near_plane, 0.3) << "what it says nothing of stays";
+  Settings own = adagscale;
+  own.tolerance = 7.0f;
+  EXPECT_EQ(read.settings(views(), placement, own).tolerance, 7.0f);
+  EXPECT_EQ(read.settings(views(), placement, own).depth_table.bounds, found.depth_table.bounds);
+  Settings quality = adagscale;
+  quality.quality = 40.0f;
+  EXPECT_FALSE(read.settings(views(), placement, quality).tolerance);
+  // Neighbours are 1 apart: what is more than 2 from both is drawn exactly.
+  Placement far = placement;
+  far.origin.z -= 3.0;
+  const Settings exact = read.settings(views(), far);
+  EXPECT_EQ(exact.threshold, Threshold::exact);
+  EXPECT_EQ(exact.transmittance, Transmittance::all);
+  EXPECT_FALSE(exact.tolerance);
+  EXPECT_EQ(drawn_left(exact), drawn_left({})) << "it is no setting of a renderer's";
+}
+
+TEST_F(CalibrationTest, RefusesWhatItIsNotFor) {
+  const Calibration read = calibration();
+  Settings asked = adagscale;
+  asked.transmittance = Transmittance::all;
+  EXPECT_TRUE(test::fails_saying([&] { read.settings(views(), placement, asked); },
+                                 {"c.json", "no entry for threshold peripheral"}));
+  asked = adagscale;
+  asked.projection = Projection::tangent;
+  EXPECT_TRUE(test::fails_saying([&] { read.settings(views(), placement, asked); }, {"tangent"}));
+  EXPECT_TRUE(test::fails_saying([&] { read.settings({}, placement); }, {"views"}));
+  model.opacity[0] *= 0.5f;
+  EXPECT_TRUE(
+      test::fails_saying([&] { Calibration(folder / "c.json", in_memory(model)); }, {"another model"}));
+  Renderer renderer(caller.get_proc_address(), in_memory(model));
+  asked = adagscale;
+  asked.tolerance = 1.0f;
+  EXPECT_TRUE(
+      test::fails_saying([&] { renderer.draw(views(), placement, asked); }, {"needs settings.depth_table"}));
+}
+
+}  // namespace
+}  // namespace binosplat

@@ -1,0 +1,85 @@
+#include "render/threshold_policy.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "base/error.h"
+#include "scene/axes.h"
+#include "support/calibration.h"
+#include "support/errors.h"
+#include "support/models.h"
+
+namespace binosplat::render {
+namespace {
+
+struct ThresholdPolicyTest : testing::Test {
+  Model model = test::random_model(3, 100, 1);
+  ThresholdCalibration calibration = test::sample_calibration();  // at a focal length of 100 px
+
+  ThresholdPolicyTest() {
+    calibration.gaussians = model.count();
+    calibration.hash = model_hash(model);
+    calibration.perspective = {};
+  }
+  ThresholdPolicy policy() const { return {"c.json", calibration}; }
+  /// At a place of the world, as the model's frame has it.
+  shared::View view(double focal, const glm::dvec3& at = {0.5, 0.0, 0.0}) const {
+    Camera camera = test::front_camera(60, 40, focal);
+    camera.position = at;
+    return make_view(into_axes(camera, model.axes));
+  }
+};
+
+TEST_F(ThresholdPolicyTest, GivesTheToleranceOfItsEntry) {
+  FrameSettings found = policy().settings({.th = TH_PERIPHERAL}, view(100.0), model.axes);
+  EXPECT_EQ(found.tolerance, 2.0f);
+  EXPECT_EQ(found.depth_table.bounds, calibration.depth_table.bounds);
+  found = policy().settings({.th = TH_PERIPHERAL}, view(200.0), model.axes);
+  EXPECT_FLOAT_EQ(found.tolerance, 2.0f * std::pow(2.0f, 1.25f));
+  found = policy().settings({.th = TH_SQUARED, .transmittance = TRANSMITTANCE_LAST}, view(100.0), model.axes);
+  EXPECT_EQ(found.tolerance, 0.01f);
+  EXPECT_EQ(found.transmittance, TRANSMITTANCE_LAST);
+  found = policy().settings({.th = TH_PERIPHERAL, .tolerance = 7.0f}, view(200.0), model.axes);
+  EXPECT_EQ(found.tolerance, 7.0f) << "one that is asked for stays";
+  EXPECT_EQ(found.depth_table.bounds, calibration.depth_table.bounds);
+}
+
+TEST_F(ThresholdPolicyTest, IsExactFarFromWhatWasCalibrated) {
+  // Up to 6 from any calibrated view is covered, in the world, whatever the model's axes and origin are.
+  model.axes = {"LUF", {3.0, 2.0, 1.0}};
+  EXPECT_TRUE(policy().covers(view(100.0, {1, 8.9, 0}), model.axes));
+  EXPECT_EQ(policy().settings({.th = TH_PERIPHERAL}, view(100.0, {1, 8.9, 0}), model.axes).tolerance, 2.0f);
+  EXPECT_FALSE(policy().covers(view(100.0, {1, 9.1, 0}), model.axes));
+  const FrameSettings far = policy().settings({.th = TH_PERIPHERAL, .transmittance = TRANSMITTANCE_DEPTH},
+                                              view(100.0, {1, 9.1, 0}), model.axes);
+  EXPECT_EQ(far.th, TH_TAU);
+  EXPECT_EQ(far.transmittance, TRANSMITTANCE_ONE);
+  EXPECT_EQ(far.tolerance, 0.0f);
+}
+
+TEST_F(ThresholdPolicyTest, RefusesWhatItIsNotFor) {
+  const FrameSettings asked{.th = TH_PERIPHERAL};
+  policy().check(asked);
+  policy().check_perspective(asked, model);
+  policy().check_model(model);
+  EXPECT_TRUE(
+      test::fails_saying([&] { policy().check({.th = TH_PERIPHERAL, .transmittance = TRANSMITTANCE_DEPTH}); },
+                         {"c.json", "no entry for threshold peripheral with transmittance depth"}));
+  EXPECT_TRUE(test::fails_saying([&] { policy().check_model(test::random_model(4, 100, 1)); },
+                                 {"c.json", "another model (fox.ply, 100 Gaussians)"}));
+  EXPECT_TRUE(test::fails_saying(
+      [&] { policy().check_perspective({.th = TH_PERIPHERAL, .projection = PROJECTION_TANGENT}, model); },
+      {"is for order depth and projection affine", "drawn with order depth and projection tangent"}));
+}
+
+TEST_F(ThresholdPolicyTest, WithoutACalibrationSettingsStayAsTheyAre) {
+  const ThresholdPolicy none;
+  EXPECT_TRUE(none.covers(view(100.0, {1, 1e6, 0}), model.axes));
+  const FrameSettings same = none.settings({.th = TH_SQUARED, .tolerance = 0.5f}, view(100.0), model.axes);
+  EXPECT_EQ(same.th, TH_SQUARED);
+  EXPECT_EQ(same.tolerance, 0.5f);
+}
+
+}  // namespace
+}  // namespace binosplat::render

@@ -1,0 +1,26 @@
+#pragma once
+// A calibration of thresholds whose every number is known.
+
+#include "scene/threshold_calibration.h"
+
+namespace binosplat::test {
+
+inline ThresholdCalibration sample_calibration() {
+  ThresholdCalibration c;
+  c.model_name = "fox.ply";
+  c.gaussians = 109832;
+  c.hash = 0x00ff39ddbc3922b3ull;
+  c.perspective = {ORDER_DISTANCE, PROJECTION_TANGENT};
+  c.width = 518;
+  c.height = 944;
+  c.focal = 100.0;
+  c.near_plane = 0.2;
+  c.target = {CalibrationTarget::Kind::drop, 0.5};
+  c.depth_table = {8.5f, {1.0f, 0.25f, 0.0f}};
+  c.views = {{"a", {0, 0, 0}}, {"b", {1, 0, 0}}, {"c", {1, 3, 0}}};
+  c.entries = {{TH_PERIPHERAL, TRANSMITTANCE_ONE, 2.0, 0.499, 0.75, "b", 0.25, 12, 0.5},
+               {TH_SQUARED, TRANSMITTANCE_LAST, 0.01, 0.498, 0.6, "c", 0.5, 11, 0.25}};
+  return c;
+}
+
+}  // namespace binosplat::test
