@@ -9,7 +9,7 @@
 #include "app/photos.h"
 #include "app/render_table.h"
 #include "app/shots.h"
-#include "stream/stream.h"
+#include "stream/picture_stream.h"
 
 namespace binosplat::app {
 
@@ -22,7 +22,7 @@ struct Work {
   std::optional<Shot> screen;  // what tells how far the screen is, where no option does
   PhotoSource photos;
   bool heads_turn = false;
-  std::unique_ptr<Stream> stream;  // of a model whose levels follow the shots
+  std::unique_ptr<PictureStream> stream;  // of a model whose levels follow the shots
 };
 
 /// Draws every shot as often as asked for, and leaves the files of its last frame. All of OpenGL is called on

@@ -111,8 +111,9 @@ StreamSettings stream_settings(const SceneOptions& options, const render::FrameS
   return result;
 }
 
-std::unique_ptr<Stream> open_stream(const SceneOptions& options, StreamSettings settings) {
-  auto stream = std::make_unique<Stream>(options.name, std::move(settings));
+template <typename Kind>
+std::unique_ptr<Kind> open_stream(const SceneOptions& options, StreamSettings settings) {
+  auto stream = std::make_unique<Kind>(options.name, std::move(settings));
   set_as_asked(options, stream->model());
   return stream;
 }
@@ -123,18 +124,18 @@ std::unique_ptr<Stream> open_for_frames(const SceneOptions& options, const rende
   if (!follows) return nullptr;
   StreamSettings of_stream = stream_settings(options, settings);
   of_stream.reserve = std::size_t{1} << 22;  // 0.4 GB, or 1 with all their harmonics
-  return open_stream(options, std::move(of_stream));
+  return open_stream<Stream>(options, std::move(of_stream));
 }
 
-std::unique_ptr<Stream> open_for_shots(const SceneOptions& options, const render::FrameSettings& settings,
-                                       bool heads_turn) {
+std::unique_ptr<PictureStream> open_for_shots(const SceneOptions& options,
+                                              const render::FrameSettings& settings, bool heads_turn) {
   StreamSettings of_shots = stream_settings(options, settings);
   of_shots.detail.heads_turn = heads_turn;
   if (options.detail || options.gpu_memory) of_shots.all_up_to = 0;
-  return open_stream(options, std::move(of_shots));
+  return open_stream<PictureStream>(options, std::move(of_shots));
 }
 
-ShotLevels settle_shot(Stream& stream, render::Frame& frame, stereo::DebugView& show,
+ShotLevels settle_shot(PictureStream& stream, render::Frame& frame, stereo::DebugView& show,
                        std::span<const shared::View> views, const render::FrameSettings& settings,
                        const std::optional<glm::vec3>& background) {
   ShotLevels levels;
@@ -149,7 +150,7 @@ ShotLevels settle_shot(Stream& stream, render::Frame& frame, stereo::DebugView& 
   levels.gaussians = stream.gaussians();
   levels.predicted_psnr = stream.reported_db();
   levels.left = stream.quality_left(settings.quality);
-  const Stream::Times times = stream.take_times();
+  const PictureStream::Times times = stream.take_times();
   levels.read_ms = times.read_ms;
   levels.upload_ms = times.upload_ms;
   return levels;

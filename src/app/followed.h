@@ -12,6 +12,7 @@
 #include "render/frame.h"
 #include "stereo/debug_view.h"
 #include "stream/load_within.h"
+#include "stream/picture_stream.h"
 #include "stream/stream.h"
 
 namespace binosplat::app {
@@ -43,21 +44,18 @@ struct ShotLevels {
 /// few_gaussians; and --gpu-memory for the model and frames of such settings.
 StreamSettings stream_settings(const SceneOptions& options, const render::FrameSettings& settings);
 
-/// Opens a scene, with axes and anti-aliasing as options say. Throws Error where it is no streamed SOG.
-std::unique_ptr<Stream> open_stream(const SceneOptions& options, StreamSettings settings);
-
-/// The same for frames that must not wait, which begin with the coarsest levels while the others are read;
-/// null where no levels follow what is seen.
+/// Opens a scene, with axes and anti-aliasing as options say, for frames that must not wait, which begin with
+/// the coarsest levels while the others are read; null where no levels follow what is seen.
 std::unique_ptr<Stream> open_for_frames(const SceneOptions& options, const render::FrameSettings& settings);
 
 /// The same for shots that may wait, of a head that turns, or single pictures: those with little memory, or a
-/// --detail, go by dB however few Gaussians there are.
-std::unique_ptr<Stream> open_for_shots(const SceneOptions& options, const render::FrameSettings& settings,
-                                       bool heads_turn);
+/// --detail, go by dB however few Gaussians there are. Throws Error where the scene is no streamed SOG.
+std::unique_ptr<PictureStream> open_for_shots(const SceneOptions& options,
+                                              const render::FrameSettings& settings, bool heads_turn);
 
 /// Brings the stream's model to the levels that a shot needs, which `frame` and `show` draw; with a
 /// background before which pictures lie it reports what a switch of a turning head's levels changes.
-ShotLevels settle_shot(Stream& stream, render::Frame& frame, stereo::DebugView& show,
+ShotLevels settle_shot(PictureStream& stream, render::Frame& frame, stereo::DebugView& show,
                        std::span<const shared::View> views, const render::FrameSettings& settings,
                        const std::optional<glm::vec3>& background);
 

@@ -88,7 +88,7 @@ void check_photos_drawn(const RenderOptions& o, const Work& work) {
 }
 
 void log_model(const std::string& scene, const std::optional<int>& decode, const Model& model,
-               const Stream* stream) {
+               const StreamedModel* stream) {
   if (model.scaffold) {
     log_info("{}: {}", scene, describe(*model.scaffold));
   } else if (decode) {

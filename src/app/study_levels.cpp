@@ -73,7 +73,8 @@ Listed listed(const StudyOptions& options, const std::string& name) {
   return found;
 }
 
-lab::FollowingModel following_model(gl::Context& context, const DetailRequest& detail, Stream& stream) {
+lab::FollowingModel following_model(gl::Context& context, const DetailRequest& detail,
+                                    PictureStream& stream) {
   return {number_of_detail(detail), stream.gpu_model(context, PRECISION_FULL),
           [&stream](std::span<const shared::View> views) {
             stream.settle(views, {});
@@ -99,7 +100,7 @@ std::vector<lab::LevelsShot> shots_of(gl::Context& context, const StudyOptions& 
 
 lab::LevelsScene measured(gl::Context& context, const StudyOptions& options, const Listed& listed,
                           int frames) {
-  std::vector<std::unique_ptr<Stream>> streams;
+  std::vector<std::unique_ptr<PictureStream>> streams;
   std::vector<lab::FollowingModel> models;
   for (const DetailRequest& detail : options.details) {
     SceneOptions scene = listed.scene;

@@ -31,83 +31,25 @@ double time_for_levels(double frame_ms, double drawn_ms) {
   return std::clamp(frame_ms - drawn_ms - apart_ms, 2.5, levels_ms_most);
 }
 
-Stream::Stream(const std::filesystem::path& path, StreamSettings settings)
-    : settings_(std::move(settings)),
-      files_(path),
-      model_(files_.like()),
-      chunks_(files_.chunks().size() + 1),
-      chooser_(files_) {
-  files_.check(settings_.detail);
-  const std::size_t most = request_for({}).most, finest = files_.finest();
-  shows_all_ = finest <= std::min(settings_.all_up_to, most);
-  if (settings_.reserve > 0) {
-    model_.room = std::min(finest, most < finest ? most : settings_.reserve) + files_.spare();
-    // Touched now: the system gives memory a page at a time, and slowly while others decode (10 ms a frame).
-    model_.reserve(model_.room);
-    model_.resize(std::min(model_.room, settings_.reserve));
-  }
-  start_over();
-  bring_to(chooser_.choose({}, {}, {}));
-}
-
-std::shared_ptr<render::GpuModel> Stream::gpu_model(gl::Context& context, int precision) {
-  if (!gpu_model_) gpu_model_ = std::make_shared<render::GpuModel>(context, model_, precision);
-  return gpu_model_;
-}
-
-std::optional<double> Stream::db_for(double quality) const {
-  if (shows_all_) return std::nullopt;
-  if (settings_.shares && quality > 0.0 && files_.has_errors()) return levels_share(quality);
-  return settings_.detail.db;
-}
-
-bool Stream::are_last(std::span<const shared::View> views) const {
-  return std::ranges::equal(std::as_bytes(views), std::as_bytes(std::span(views_)));
-}
-
-DetailRequest Stream::request_for(std::span<const shared::View> views) const {
-  DetailRequest request = settings_.detail;
-  request.db = db_for(quality_);
-  request.calibration = elsewhere() * calibration_.to_choose_by();
-  if (settings_.room) {
-    const std::size_t fit = settings_.room(views, model_.degree);
-    request.most = std::min(request.most, fit - std::min(fit, files_.spare()));
-  }
-  return request;
-}
-
-double Stream::quality_left(double together_db) const {
-  const auto levels_db = db_for(together_db);
-  return together_db > 0.0 && levels_db ? left_of(together_db, *levels_db) : together_db;
-}
-
 std::optional<double> Stream::reported_db() const {
-  const StreamWorker::Chosen chosen = worker_ ? worker_->chosen() : chosen_;
+  const StreamWorker::Chosen chosen = worker_.chosen();
   if (!chosen.error) return std::nullopt;
   chosen.error->follow(drawn_);
   const double here = chosen.error->error(0, chosen.here);
-  if (chosen.here == chosen.error->views()) return reported(here);
+  if (chosen.here == chosen.error->views()) return reported(here, lost_now());
   // What comes nearer loses the more the nearer it is.
   const double share = std::min(1e-3 * ms_since(chosen.at) / lead_s, 1.0);
-  return reported(std::lerp(here, chosen.error->error(chosen.here, chosen.error->views()), share * share));
-}
-
-double Stream::reported(double error) const {
-  return psnr_of_error(std::max(elsewhere() * calibration_.factor() * error, sample_error_));
+  const double ahead = chosen.error->error(chosen.here, chosen.error->views());
+  return reported(std::lerp(here, ahead, share * share), lost_now());
 }
 
 // The factor for views that what levels lose was not measured for.
-double Stream::elsewhere() const { return worker_ && !is_calibrated_ ? lost_elsewhere : 1.0; }
+double Stream::lost_now() const { return is_calibrated_ ? 1.0 : lost_elsewhere; }
 
 bool Stream::begin_frame(std::span<const shared::View> views, const render::FrameSettings& settings,
                          double ms) {
   if (views.empty()) return false;
-  if (!worker_) {
-    worker_ = std::make_unique<StreamWorker>(files_, drawn_);
-    sample_error_ = 0.0;
-    views_.clear();
-  }
-  worker_->check();
+  worker_.check();
   motion_.note(views);
   if (!are_last(views) || settings.quality != quality_) {
     if (views.size() != views_.size() || settings.quality != quality_) pass_.views.clear();
@@ -134,22 +76,22 @@ bool Stream::begin_frame(std::span<const shared::View> views, const render::Fram
   return false;
 }
 
-bool Stream::settled() const { return !worker_ || (has_all() && (is_calibrated_ || !db_for(quality_))); }
+bool Stream::settled() const { return has_all() && (is_calibrated_ || !db_for(quality_)); }
 
 bool Stream::has_all() const {
-  return worker_->is_idle() && !is_due_ && pass_.views.empty() && !needs_another_pass();
+  return worker_.is_idle() && !is_due_ && pass_.views.empty() && !needs_another_pass();
 }
 
 // Coarse chunks hide what fine ones do not.
 bool Stream::needs_another_pass() const {
-  return db_for(quality_) && worker_->is_idle() &&
-         (worker_->chosen().is_limited || (pass_.is_outdated && passes_ < passes_most));
+  return db_for(quality_) && worker_.is_idle() &&
+         (worker_.chosen().is_limited || (pass_.is_outdated && passes_ < passes_most));
 }
 
 bool Stream::pass_is_due() const {
   if (!db_for(quality_)) return false;
   if (!pass_.views.empty()) return true;
-  return is_due_ && !worker_->is_choosing() && ms_since(worker_->chosen().made_at) >= between_passes_ms;
+  return is_due_ && !worker_.is_choosing() && ms_since(worker_.chosen().made_at) >= between_passes_ms;
 }
 
 // At one more of the views, each as it is by then.
@@ -180,17 +122,17 @@ void Stream::make_pass(const render::FrameSettings& settings) {
 // While a head moves no more is requested than frames can take in time: then all that is seen gets better by
 // a little, before some of it has all that it needs.
 void Stream::request(StreamWorker::Request request) {
-  request.detail = request_for(views_);
+  request.detail = request_for(views_, lost_now());
   const double in_time = requests_at_once * std::exchange(could_put_, 0.0);
-  if (passes_ == 0 && worker_->chosen().error)
+  if (passes_ == 0 && worker_.chosen().error)
     request.detail.most_new = static_cast<std::size_t>(std::clamp(in_time, requested_least, 1e15));
-  worker_->request(std::move(request));
+  worker_.request(std::move(request));
 }
 
 bool Stream::put_some(double ms) {
   const auto start = Clock::now();
   const auto most = static_cast<std::size_t>(put_share * ms * put_a_ms_);
-  std::vector<LodFiles::Piece> pieces = worker_->take(std::max(most, put_least));
+  std::vector<LodFiles::Piece> pieces = worker_.take(std::max(most, put_least));
   if (pieces.empty()) return false;
   const TimedSpan span("upload levels");
   put(pieces);
@@ -214,15 +156,6 @@ void Stream::calibrate_at_rest(const render::FrameSettings& settings) {
   LevelChoice choice = chooser_.choose(views_, request_for(views_), measure(views_, settings));
   calibrate(views_, settings, choice);
   sample_error_ = 0.0;
-}
-
-void Stream::put(std::span<const LodFiles::Piece> pieces) {
-  std::vector<ModelChunks::Replacement> replacements;
-  for (const LodFiles::Piece& piece : pieces) {
-    replacements.push_back({piece.chunk, &piece.model});
-    drawn_[piece.chunk] = piece.level;
-  }
-  chunks_.replace(model_, replacements);
 }
 
 }  // namespace binosplat

@@ -13,6 +13,7 @@
 #include "formats/model_file.h"
 #include "measure/metrics.h"
 #include "scene/camera.h"
+#include "stream/picture_stream.h"
 #include "stream/stream_levels.h"
 #include "support/broken.h"
 #include "support/details.h"
@@ -189,20 +190,21 @@ TEST(Stream, KeepsToTheRoomThatViewsLeave) {
   }
 }
 
-TEST(Stream, SettlesThePictureByItself) {
+TEST(PictureStream, SettlesThePictureByItself) {
   REQUIRE_FIXTURES(folder);
   const test::Copy copy(folder / "sog/st-lod");
   test::add_level_errors(copy);
   const auto settled = [&](const std::vector<double>& distances, bool heads_turn) {
-    Frames frames(copy.path(), {.detail = {.db = 30.0, .heads_turn = heads_turn}});
+    PictureStream stream(copy.path(), {.detail = {.db = 30.0, .heads_turn = heads_turn}});
+    const auto gpu_model = stream.gpu_model(test::gl_context(), PRECISION_FULL);
     for (const double distance : distances) {
       int told = 0;
-      const bool changed = frames.stream.settle(std::vector{before_all(distance)}, {}, [&] { ++told; });
+      const bool changed = stream.settle(std::vector{before_all(distance)}, {}, [&] { ++told; });
       EXPECT_EQ(told, changed ? 1 : 0);
-      EXPECT_FALSE(frames.stream.settle(std::vector{before_all(distance)}, {})) << "it is there";
-      EXPECT_TRUE(frames.stream.reported_db());
+      EXPECT_FALSE(stream.settle(std::vector{before_all(distance)}, {})) << "it is there";
+      EXPECT_TRUE(stream.reported_db());
     }
-    return std::pair(frames.stream.gaussians(), pictures(frames.gpu_model, before_all(distances.back())));
+    return std::pair(stream.gaussians(), pictures(gpu_model, before_all(distances.back())));
   };
   const auto alone = settled({60.0}, false), after_another = settled({8.0, 60.0}, false);
   EXPECT_EQ(alone.first, after_another.first);
@@ -224,13 +226,14 @@ TEST(Stream, CalibratesPictures) {
   });
   const shared::View view = before_all();
   const auto finest = pictures(load_model(copy.path(), {.lod = 0}), view);
-  const auto true_db = [&](const Frames& frames) {
-    return std::min(measure::psnr(pictures(frames.gpu_model, view), finest, glm::vec3(0.0f)), 60.0);
+  const auto true_db = [&](const std::shared_ptr<render::GpuModel>& model) {
+    return std::min(measure::psnr(pictures(model, view), finest, glm::vec3(0.0f)), 60.0);
   };
-  Frames picture(copy.path(), {.detail = {.db = 40.0, .heads_turn = false}});
-  picture.stream.settle(std::vector{view}, {});
-  EXPECT_GT(picture.stream.gaussians(), 250u);
-  EXPECT_NEAR(std::min(*picture.stream.reported_db(), 60.0), true_db(picture), 2.0);
+  PictureStream picture(copy.path(), {.detail = {.db = 40.0, .heads_turn = false}});
+  const auto of_picture = picture.gpu_model(test::gl_context(), PRECISION_FULL);
+  picture.settle(std::vector{view}, {});
+  EXPECT_GT(picture.gaussians(), 250u);
+  EXPECT_NEAR(std::min(*picture.reported_db(), 60.0), true_db(of_picture), 2.0);
   // Once nothing moves.
   Frames frames(copy.path(), {.detail = {.db = 40.0}});
   // The worker has chosen before the next frame, which would calibrate.
@@ -241,9 +244,9 @@ TEST(Stream, CalibratesPictures) {
   };
   do frames.step({view});
   while (!has_chosen());
-  EXPECT_GT(*frames.stream.reported_db(), true_db(frames) + 20.0) << "planted: as the file says";
+  EXPECT_GT(*frames.stream.reported_db(), true_db(frames.gpu_model) + 20.0) << "planted: as the file says";
   EXPECT_GT(frames.rest({view}), 250u);
-  EXPECT_NEAR(std::min(*frames.stream.reported_db(), 60.0), true_db(frames), 2.0);
+  EXPECT_NEAR(std::min(*frames.stream.reported_db(), 60.0), true_db(frames.gpu_model), 2.0);
 }
 
 TEST(Stream, DrawsLeavesWithoutLevels) {
@@ -256,7 +259,7 @@ TEST(Stream, DrawsLeavesWithoutLevels) {
   const std::size_t without = (*leaf)["lods"]["0"]["count"];
   (*leaf)["lods"] = nlohmann::json::object();
   test::write_text(file, meta.dump());
-  Stream stream(file, {.detail = {.db = 80.0}});
+  PictureStream stream(file, {.detail = {.db = 80.0}});
   const auto model = stream.gpu_model(test::gl_context(), PRECISION_FULL);
   for (int n = 0; n < 3; ++n) stream.settle(std::vector{before_all(3.0)}, {});
   EXPECT_EQ(stream.gaussians(), 1000 - without);

@@ -1,0 +1,71 @@
+#include "stream/picture_stream.h"
+
+#include <utility>
+
+namespace binosplat {
+
+namespace {
+
+constexpr int choices_most = 3;  // for the same views: after them a choice hardly changes any more
+// Samples of a picture: levels that one shows to miss what was asked for by more than this become finer, and
+// each further miss asks for so much more than what was asked for.
+constexpr int samples_most = 8;
+constexpr double misses_db = 1.0, more_db = 3.0;
+
+}  // namespace
+
+bool PictureStream::settle(std::span<const shared::View> views, const render::FrameSettings& settings,
+                           const std::function<void()>& before_change) {
+  if (views.empty() || (settings.quality == quality_ && are_last(views))) return false;
+  views_.assign(views.begin(), views.end());
+  quality_ = settings.quality;
+  if (!settings_.detail.heads_turn) {  // nothing counts that was found for other pictures
+    chooser_.forget();
+    calibration_ = {};
+    samples_ = 0;
+  }
+  const DetailRequest request = request_for(views);
+  if (settings_.room) model_.room = std::min(request.most, files_.finest()) + files_.spare();
+  bool changed = false;
+  const auto change = [&](const LevelChoice& choice) {
+    if (!std::exchange(changed, true) && before_change) before_change();
+    bring_to(choice);
+  };
+  if (!settings_.detail.heads_turn) {
+    if (request.db) {  // what is measured first is the coarsest
+      start_over();
+      change(chooser_.choose({}, {}, {}));
+    } else if (choose_levels(files_.chunks(), views, request).levels != drawn_) {
+      start_over();
+    }
+  }
+  if (request.db) visibility_.emplace(gpu_model_);
+  LevelChoice choice;
+  for (int k = 0; k < (request.db ? choices_most : 1); ++k) {
+    choice = chooser_.choose(views, request, request.db ? measure(views, settings) : VisibleChunks());
+    if (choice.levels == drawn_) break;
+    change(choice);
+  }
+  sample_error_ = 0.0;  // where dB are not gone by
+  for (int sample = 1; request.db && sample <= samples_most; ++sample) {
+    const VisibleChunks visible = calibrate(views, settings, choice);
+    DetailRequest finer = request_for(views);
+    const bool keeps = sample > 1 && reported(choice.error()) > *finer.db - misses_db;
+    if (keeps || visible.drawn.empty() || sample == samples_most) break;
+    *finer.db += more_db * (sample - 1);
+    choice = chooser_.choose(views, finer, visible);
+    if (choice.levels == drawn_) break;
+    change(choice);
+  }
+  choice_.reset();
+  if (request.db) choice_ = std::move(choice);
+  visibility_.reset();  // it takes the memory of a small frame
+  return changed;
+}
+
+std::optional<double> PictureStream::reported_db() const {
+  if (!choice_) return std::nullopt;
+  return reported(choice_->error_of(drawn_));
+}
+
+}  // namespace binosplat

@@ -1,0 +1,28 @@
+#pragma once
+// Levels of detail for pictures that may wait for them.
+
+#include "stream/streamed_model.h"
+
+namespace binosplat {
+
+class PictureStream : public StreamedModel {
+ public:
+  PictureStream(const std::filesystem::path& path, StreamSettings settings)
+      : StreamedModel(path, std::move(settings)) {}
+
+  /// Chooses, reads and uploads what the views need before it returns; by dB up
+  /// to eleven times, with a calibration for these views. With DetailRequest::heads_turn the choice starts
+  /// from the levels of the views before; without, it does not depend on them. Returns whether levels have
+  /// changed; calls `before_change` before they do. Throws Error where a file has become unreadable.
+  bool settle(std::span<const shared::View> views, const render::FrameSettings& settings,
+              const std::function<void()>& before_change = {});
+
+  /// The calibrated prediction of the last picture's PSNR against the finest levels, in dB. None where levels
+  /// are not chosen by dB, or nothing was measured yet.
+  std::optional<double> reported_db() const;
+
+ private:
+  std::optional<LevelChoice> choice_;  // by dB, of the last picture
+};
+
+}  // namespace binosplat

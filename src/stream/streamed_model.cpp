@@ -1,0 +1,147 @@
+#include "stream/streamed_model.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "base/clock.h"
+
+namespace binosplat {
+
+namespace {
+
+// Gaussians at whose finest levels it is measured what levels lose: of a picture, or of each of a turning
+// head's.
+constexpr std::size_t sample_of_one = 1 << 17, sample_of_many = 1 << 14;
+
+/// Takes of `other` what shows more than `visible` does.
+void show_more(VisibleChunks& visible, const VisibleChunks& other) {
+  for (std::size_t v = 0; v < visible.by_view.size(); ++v) {
+    for (std::size_t c = 0; c < visible.by_view[v].size(); ++c)
+      if (other.by_view[v][c].area > visible.by_view[v][c].area) visible.by_view[v][c] = other.by_view[v][c];
+  }
+}
+
+}  // namespace
+
+StreamedModel::StreamedModel(const std::filesystem::path& path, StreamSettings settings)
+    : settings_(std::move(settings)),
+      files_(path),
+      model_(files_.like()),
+      chunks_(files_.chunks().size() + 1),
+      chooser_(files_) {
+  files_.check(settings_.detail);
+  const std::size_t most = request_for({}).most, finest = files_.finest();
+  shows_all_ = finest <= std::min(settings_.all_up_to, most);
+  if (settings_.reserve > 0) {
+    model_.room = std::min(finest, most < finest ? most : settings_.reserve) + files_.spare();
+    // Touched now: the system gives memory a page at a time, and slowly while others decode (10 ms a frame).
+    model_.reserve(model_.room);
+    model_.resize(std::min(model_.room, settings_.reserve));
+  }
+  start_over();
+  bring_to(chooser_.choose({}, {}, {}));
+}
+
+std::shared_ptr<render::GpuModel> StreamedModel::gpu_model(gl::Context& context, int precision) {
+  if (!gpu_model_) gpu_model_ = std::make_shared<render::GpuModel>(context, model_, precision);
+  return gpu_model_;
+}
+
+std::optional<double> StreamedModel::db_for(double quality) const {
+  if (shows_all_) return std::nullopt;
+  if (settings_.shares && quality > 0.0 && files_.has_errors()) return levels_share(quality);
+  return settings_.detail.db;
+}
+
+bool StreamedModel::are_last(std::span<const shared::View> views) const {
+  return std::ranges::equal(std::as_bytes(views), std::as_bytes(std::span(views_)));
+}
+
+DetailRequest StreamedModel::request_for(std::span<const shared::View> views, double lost) const {
+  DetailRequest request = settings_.detail;
+  request.db = db_for(quality_);
+  request.calibration = lost * calibration_.to_choose_by();
+  if (settings_.room) {
+    const std::size_t fit = settings_.room(views, model_.degree);
+    request.most = std::min(request.most, fit - std::min(fit, files_.spare()));
+  }
+  return request;
+}
+
+double StreamedModel::quality_left(double together_db) const {
+  const auto levels_db = db_for(together_db);
+  return together_db > 0.0 && levels_db ? left_of(together_db, *levels_db) : together_db;
+}
+
+double StreamedModel::reported(double error, double lost) const {
+  return psnr_of_error(std::max(lost * calibration_.factor() * error, sample_error_));
+}
+
+void StreamedModel::put(std::span<const LodFiles::Piece> pieces) {
+  std::vector<ModelChunks::Replacement> replacements;
+  for (const LodFiles::Piece& piece : pieces) {
+    replacements.push_back({piece.chunk, &piece.model});
+    drawn_[piece.chunk] = piece.level;
+  }
+  chunks_.replace(model_, replacements);
+}
+
+// Where the sample is all that is not at its finest, a chunk counts as seen as much as in the
+// picture that shows more of it: it may hide others, or reach into the picture, at one of both levels only,
+// and what is lost there would be predicted to be nothing. Of fewer chunks that would be reported too often
+// of those in the sample.
+VisibleChunks StreamedModel::calibrate(std::span<const shared::View> views,
+                                       const render::FrameSettings& settings, LevelChoice& choice) {
+  const std::size_t gaussians = settings_.detail.heads_turn ? sample_of_many : sample_of_one;
+  const std::size_t most =
+      std::max<std::size_t>(gaussians * chunks_.size() / std::max<std::size_t>(files_.finest(), 1), 1);
+  sample_error_ = 0.0;
+  ChunkModels finest = files_.finest_of(sample_of(choice, drawn_, most, samples_++));
+  if (settings_.room) keep_what_fits(finest, model_, chunks_);
+  if (finest.chunks.empty()) return {};
+  visibility_->keep_picture(views.front(), settings);
+  VisibleChunks visible = measure(views, settings);
+  const ChunkModels before = exchange(finest, model_, chunks_);
+  gpu_model_->reload(chunks_.take_changes());
+  sample_error_ = visibility_->picture_error(views.front(), settings);
+  const auto finest_already = static_cast<std::size_t>(std::ranges::count(drawn_, 0u));
+  if (finest.chunks.size() + finest_already == drawn_.size()) show_more(visible, measure(views, settings));
+  exchange(before, model_, chunks_);
+  gpu_model_->reload(chunks_.take_changes());
+  choice = chooser_.choose(views, request_for(views), visible);
+  choice.levels = drawn_;
+  calibration_.add(sample_error(choice, drawn_, finest.chunks, sample_error_));
+  return visible;
+}
+
+VisibleChunks StreamedModel::measure(std::span<const shared::View> views,
+                                     const render::FrameSettings& settings) {
+  return {visibility_->measure(views, settings, chunks_), drawn_};
+}
+
+void StreamedModel::start_over() {
+  model_.resize(0);
+  chunks_ = ModelChunks(chunks_.size());
+  drawn_.clear();
+  for (const LodChunk& chunk : files_.chunks())
+    drawn_.push_back(chunk.levels.empty() ? 0 : LodFiles::not_read);  // there is nothing to read of some
+  chunks_.replace(model_, files_.chunks().size(), files_.environment());
+}
+
+void StreamedModel::bring_to(const LevelChoice& choice) {
+  const auto reading = Clock::now();
+  const std::vector<std::size_t> from = drawn_;
+  files_.read(from, choice, [&](const LodFiles::Piece& piece) { put({&piece, 1}); });
+  times_.read_ms += ms_since(reading);
+  const ModelChunks::Changes changes = chunks_.take_changes();
+  if (!gpu_model_) return;
+  const auto uploading = Clock::now();
+  if (settings_.detail.heads_turn) {
+    gpu_model_->reload(changes);
+  } else {
+    gpu_model_->reload();
+  }
+  times_.upload_ms += ms_since(uploading);
+}
+
+}  // namespace binosplat
