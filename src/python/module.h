@@ -1,48 +1,80 @@
 #pragma once
-// What the parts of `import binosplat` share.
+// What the parts of the private module _binosplat share. binosplat/__init__.py has what users see of it, with
+// types and documentation: there arguments get their defaults, and arrays their checks.
 
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
+#include <array>
 #include <memory>
 #include <optional>
-#include <span>
 #include <string>
 
-#include "base/choices.h"
 #include "base/image.h"
 #include "scene/model.h"
+#include "stereo/rig.h"
 
 namespace binosplat::python {
 
 namespace py = pybind11;
 
 // Each adds its classes and functions to the module.
-void add_errors(py::module_& module);
+void add_errors();
 void add_images(py::module_& module);
 void add_models(py::module_& module);
-void add_model_arrays(py::class_<Model, std::shared_ptr<Model>>& model);
 void add_cameras(py::module_& module);
 void add_renderer(py::module_& module);
 
-/// Throws Error for masked arrays (numpy.ma) with a value that is masked; `name` begins its text.
-void refuse_masked(const py::object& array, const std::string& name);
+template <typename T = float>
+using Dense = py::array_t<T, py::array::c_style>;
 
 /// The picture as float32 of (height, width, channels), of one channel as (height, width). Takes its memory
 /// over.
 py::array array_of(Image&& image);
 
-/// The picture that an array is, (height, width) or (height, width, 1, 3 or 4): uint8 and uint16 by their
-/// white, floats as they are. `name` begins the texts of errors: TypeError for other types, Error for other
-/// shapes.
-Image image_of(const py::object& picture, const std::string& name);
+/// Both eyes of a head, as the class Rig of the package holds them.
+struct Rig {
+  Camera head;                                // where there are no `eyes`
+  std::optional<std::array<Camera, 2>> eyes;  // given as a pair
+  stereo::RigSettings settings;
 
-/// The number of a choice; nothing for none.
-inline std::optional<int> choice(const char* name, const std::optional<std::string>& value,
-                                 std::span<const Choice> choices) {
-  return value ? std::optional(find_choice(name, *value, choices)) : std::nullopt;
-}
+  /// In the frame of a model with these axes (scene/axes.h). Throws Error as stereo::make_rig does.
+  stereo::EyePair pair(const ModelAxes& axes = {}, double near_plane = near_default) const;
+};
+
+// Of and to the package's classes Camera and Rig.
+bool is_a(py::handle value, const char* name);
+Camera camera_of(py::handle value);
+py::object object_of(const Camera& camera);
+Rig rig_of(py::handle value);
 
 }  // namespace binosplat::python
+
+namespace pybind11::detail {
+
+template <>
+struct type_caster<binosplat::Camera> {
+  PYBIND11_TYPE_CASTER(binosplat::Camera, const_name("binosplat.Camera"));
+  bool load(handle from, bool) {
+    const bool is_camera = binosplat::python::is_a(from, "Camera");
+    if (is_camera) value = binosplat::python::camera_of(from);
+    return is_camera;
+  }
+  static handle cast(const binosplat::Camera& camera, return_value_policy, handle) {
+    return binosplat::python::object_of(camera).release();
+  }
+};
+
+template <>
+struct type_caster<binosplat::python::Rig> {
+  PYBIND11_TYPE_CASTER(binosplat::python::Rig, const_name("binosplat.Rig"));
+  bool load(handle from, bool) {
+    const bool is_rig = binosplat::python::is_a(from, "Rig");
+    if (is_rig) value = binosplat::python::rig_of(from);
+    return is_rig;
+  }
+};
+
+}  // namespace pybind11::detail

@@ -6,11 +6,10 @@
 #include <variant>
 #include <vector>
 
+#include "base/choices.h"
 #include "base/error.h"
-#include "python/help.h"
 #include "python/module.h"
 #include "python/renderer.h"
-#include "python/rig.h"
 #include "python/unlocked.h"
 #include "scene/axes.h"
 
@@ -68,11 +67,11 @@ py::dict dict_of(const render::FrameReport& report) {
                   "gpu_bytes"_a = report.gpu_bytes);
 }
 
-/// What Python sees of a view's picture.
-struct DrawnPicture {
-  py::array colour, transmittance, depth;
-  py::dict report;
-};
+/// The number of a choice; nothing for none.
+std::optional<int> chosen(const char* name, const std::optional<std::string>& value,
+                          std::span<const Choice> choices) {
+  return value ? std::optional(find_choice(name, *value, choices)) : std::nullopt;
+}
 
 /// Of draw()'s keywords.
 Settings settings_of(const Renderer& renderer, const std::optional<float>& quality,
@@ -90,10 +89,10 @@ Settings settings_of(const Renderer& renderer, const std::optional<float>& quali
   render::FrameSettings settings;
   settings.quality = quality.value_or(0.0f);
   settings.tolerance = tolerance.value_or(0.0f);
-  settings.th = choice("th", th, th_choices).value_or(given ? TH_SQUARED : TH_TAU);
+  settings.th = chosen("th", th, th_choices).value_or(given ? TH_SQUARED : TH_TAU);
   settings.transmittance = find_choice("transmittance", transmittance, transmittance_choices);
-  settings.order = choice("order", order, order_choices);
-  settings.projection = choice("projection", projection, projection_choices);
+  settings.order = chosen("order", order, order_choices);
+  settings.projection = chosen("projection", projection, projection_choices);
   settings.tiles = find_choice("tiles", tiles, tiles_choices);
   settings.decode = find_choice("decode", decode, decode_choices);
   settings.background = {background[0], background[1], background[2]};
@@ -104,69 +103,56 @@ Settings settings_of(const Renderer& renderer, const std::optional<float>& quali
   return {settings, near_plane, follow};
 }
 
-/// A view's picture, or those of both eyes.
-py::object pictures_of(Drawn drawn) {
-  const py::dict report = dict_of(drawn.report);
-  py::list pictures;
+/// The three arrays of each view, and what they have in common.
+py::tuple arrays_of(Drawn drawn) {
+  py::list arrays;
   for (ViewImages& images : drawn.views) {
-    pictures.append(DrawnPicture{array_of(std::move(images.colour)),
-                                 array_of(std::move(images.transmittance)), array_of(std::move(images.depth)),
-                                 report});
+    arrays.append(py::make_tuple(array_of(std::move(images.colour)),
+                                 array_of(std::move(images.transmittance)),
+                                 array_of(std::move(images.depth))));
   }
-  return pictures.size() == 1 ? py::object(pictures[0]) : py::object(py::tuple(pictures));
+  return py::make_tuple(arrays, dict_of(drawn.report));
 }
 
 using SeenBy = std::variant<Camera, Rig>;
 
 // A Renderer that is held here outlives what Python does to its own while it ends.
-py::object draw(const std::shared_ptr<Renderer>& renderer, const SeenBy& view, const Settings& settings) {
+py::tuple draw(const std::shared_ptr<Renderer>& renderer, const SeenBy& view, const Settings& settings) {
   const Views views = views_of(view, renderer->model().axes, settings.near_plane);
-  return pictures_of(awaited(renderer->draw(views, settings)));
+  return arrays_of(awaited(renderer->draw(views, settings)));
 }
 
-/// Python's iterator of draw_all().
-class PathPictures {
+/// The frames of draw_all(), of which the GPU draws the next one while Python has the last one.
+class Frames {
  public:
-  PathPictures(std::shared_ptr<Renderer> renderer, const py::iterable& views, const Settings& settings)
-      : renderer_(std::move(renderer)), views_(py::iter(views)), settings_(settings) {}
-  ~PathPictures() { end(); }
-  PathPictures(const PathPictures&) = delete;
-  PathPictures& operator=(const PathPictures&) = delete;
+  Frames(std::shared_ptr<Renderer> renderer, const Settings& settings)
+      : renderer_(std::move(renderer)), settings_(settings) {}
+  ~Frames() {
+    if (GlThread::in_its_process() && has_begun_) renderer_->end(path_);
+  }
+  Frames(const Frames&) = delete;
+  Frames& operator=(const Frames&) = delete;
 
-  py::object next() {
-    const std::optional<Views> first = std::exchange(has_begun_, true) ? std::nullopt : next_views();
-    if (first) awaited(renderer_->begin(path_, *first, settings_));
-    // After an error or a Ctrl-C the path is at its end.
-    if (const bool goes_on = std::exchange(is_under_way_, false); !goes_on && !first) {
-      end();
-      throw py::stop_iteration();
-    }
-    const std::optional<Views> following = next_views();
-    Drawn drawn = awaited(renderer_->next(path_, following, settings_));
-    is_under_way_ = following.has_value();
-    return pictures_of(std::move(drawn));
+  void begin(const SeenBy& first) {
+    has_begun_ = true;
+    awaited(renderer_->begin(path_, views(first), settings_));
+  }
+
+  /// What was begun, or handed over last as the one that follows.
+  py::tuple next(const std::optional<SeenBy>& following) {
+    const std::optional<Views> more = following ? std::optional(views(*following)) : std::nullopt;
+    return arrays_of(awaited(renderer_->next(path_, more, settings_)));
   }
 
  private:
-  std::optional<Views> next_views() {
-    if (views_ == py::iterator::sentinel()) return std::nullopt;
-    if (!py::isinstance<Camera>(*views_) && !py::isinstance<Rig>(*views_))
-      throw py::type_error(
-          fmt::format("expected a Camera or a Rig, not {}", Py_TYPE((*views_).ptr())->tp_name));
-    const auto view = py::cast<SeenBy>(*views_);
-    ++views_;
+  Views views(const SeenBy& view) const {
     return views_of(view, renderer_->model().axes, settings_.near_plane);
   }
 
-  void end() {
-    if (GlThread::in_its_process() && has_begun_) renderer_->end(path_);
-  }
-
   std::shared_ptr<Renderer> renderer_;
-  py::iterator views_;
   Settings settings_;
   std::uint64_t path_ = Renderer::new_path();
-  bool has_begun_ = false, is_under_way_ = false;
+  bool has_begun_ = false;
 };
 
 void close(const std::shared_ptr<Renderer>& renderer) {
@@ -174,68 +160,22 @@ void close(const std::shared_ptr<Renderer>& renderer) {
   renderer->close();
 }
 
-using RendererClass = py::class_<Renderer, std::shared_ptr<Renderer>>;
-
-/// Defines a method of these keywords.
-template <typename View, typename Draw>
-void add_drawing(RendererClass& renderer, const char* name, const char* view, const Draw& draw,
-                 const char* help) {
-  renderer.def(
-      name,
-      [draw](const std::shared_ptr<Renderer>& of, const View& seen, const std::optional<float>& quality,
-             const std::optional<float>& tolerance, const std::optional<std::string>& th,
-             const std::string& transmittance, const std::optional<std::string>& order,
-             const std::optional<std::string>& projection, const std::string& tiles,
-             const std::string& decode, const std::array<float, 3>& background, double near_plane,
-             const std::string& depth, bool follow) {
-        return draw(of, seen,
-                    settings_of(*of, quality, tolerance, th, transmittance, order, projection, tiles, decode,
-                                background, near_plane, depth, follow));
-      },
-      py::arg(view), py::kw_only(), py::arg("quality") = py::none(), py::arg("tolerance") = py::none(),
-      py::arg("th") = py::none(), py::arg("transmittance") = "one", py::arg("order") = py::none(),
-      py::arg("projection") = py::none(), py::arg("tiles") = "ellipse", py::arg("decode") = "eyes",
-      py::arg("background") = std::array<float, 3>{}, py::arg("near") = near_default,
-      py::arg("depth") = "mean", py::arg("follow") = false, help);
-}
-
 }  // namespace
 
 void add_renderer(py::module_& module) {
-  py::class_<DrawnPicture>(module, "Picture", "What draw() makes of a view; rows from the top.")
-      .def_readonly("colour", &DrawnPicture::colour,
-                    "(height, width, 3) float32, display-referred RGB over the background, white 1;\n"
-                    "what Gaussians overshoot is not clamped.")
-      .def_readonly("transmittance", &DrawnPicture::transmittance,
-                    "(height, width) float32: the share of the background's light that is left, 1 - alpha.")
-      .def_readonly(
-          "depth", &DrawnPicture::depth,
-          "(height, width) float32: depth along the view's axis, world units, by draw(depth=); inf where\n"
-          "alpha is at most 0.5.")
-      .def_readonly(
-          "report", &DrawnPicture::report,
-          "Of the frame, a dict: total_ms and stages_ms (GPU times), submit_ms (CPU time of handing it to\n"
-          "the driver), visible, pairs, tolerance and quality (dB) that it came to, attempts, remembered\n"
-          "(whether it used what the frame before measured), gpu_bytes.");
-  py::class_<PathPictures>(module, "PathPictures", "What draw_all() returns: an iterator.")
-      .def("__iter__", [](PathPictures& pictures) -> PathPictures& { return pictures; })
-      .def("__next__", &PathPictures::next);
-  RendererClass renderer(module, "Renderer", help::renderer);
-  renderer
-      .def(py::init(&open), py::arg("model").none(false), py::kw_only(), py::arg("backend") = "auto",
-           py::arg("device") = py::none(), py::arg("precision") = "full")
-      .def_property_readonly("device", &Renderer::device, "What it draws with.")
-      .def("close", &close,
-           "Gives the GPU's memory back; it is also given back with the last reference, and by `with`.")
-      .def("__enter__", [](Renderer& self) -> Renderer& { return self; })
-      .def("__exit__", [](const std::shared_ptr<Renderer>& self, const py::args&) { close(self); });
-  add_drawing<SeenBy>(renderer, "draw", "view", &draw, help::draw);
-  add_drawing<py::iterable>(
-      renderer, "draw_all", "views",
-      [](const std::shared_ptr<Renderer>& of, const py::iterable& views, const Settings& settings) {
-        return std::make_unique<PathPictures>(of, views, settings);
-      },
-      help::draw_all);
+  const py::class_<Settings> settings(module, "Settings");
+  py::class_<Renderer, std::shared_ptr<Renderer>>(module, "Renderer")
+      .def(py::init(&open), py::arg("model"), py::arg("backend"), py::arg("device"), py::arg("precision"))
+      .def_property_readonly("device", &Renderer::device)
+      .def("settings", &settings_of, py::arg("quality"), py::arg("tolerance"), py::arg("th"),
+           py::arg("transmittance"), py::arg("order"), py::arg("projection"), py::arg("tiles"),
+           py::arg("decode"), py::arg("background"), py::arg("near"), py::arg("depth"), py::arg("follow"))
+      .def("draw", &draw, py::arg("view"), py::arg("settings"))
+      .def("close", &close);
+  py::class_<Frames>(module, "Path")
+      .def(py::init<std::shared_ptr<Renderer>, const Settings&>())
+      .def("begin", &Frames::begin)
+      .def("next", &Frames::next);
 }
 
 }  // namespace binosplat::python

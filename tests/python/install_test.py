@@ -17,7 +17,7 @@ def test_the_installed_module_draws(scene, tmp_path):
     subprocess.run([*install, "python", "--prefix", tmp_path / "first"], check=True, capture_output=True)
     (tmp_path / "first").rename(tmp_path / "prefix")
     (module,) = (tmp_path / "prefix").rglob("binosplat/__init__.py")
-    assert {file.suffix for file in module.parent.iterdir()} == {".py", ".pyi", ".so", ".typed"}
+    assert {file.suffix for file in module.parent.iterdir()} == {".py", ".so", ".typed"}
     environment = {**os.environ, "PYTHONPATH": str(module.parent.parent)}
     command = [sys.executable, "-c", CODE, scene / "model.ply", scene]
     ended = subprocess.run(command, capture_output=True, text=True, env=environment)

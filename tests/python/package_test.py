@@ -1,81 +1,74 @@
-"""What the package says of itself: its stubs and its documentation are those of what is there."""
+"""What the package says of itself: types for whoever checks them, words for whoever asks help()."""
 
-import ast
 import inspect
 import re
+import subprocess
+import sys
 from pathlib import Path
+
+import pytest
 
 import binosplat
 
-STUBS = Path(binosplat.__file__).with_name("__init__.pyi")
 
-
-def signature(thing):
-    """The names in the first signature that the documentation of a function has, without self."""
-    first = next(line for line in thing.__doc__.splitlines() if ") -> " in line)
-    return [name for name in re.findall(r"(\w+): ", first) if name != "self"]
-
-
-def stubbed(text):
-    """Of every function and method of the stubs: its arguments' names. Of every class: its attributes."""
-    functions, attributes = {}, {}
-
-    def add(node, prefix):
-        arguments = node.args.posonlyargs + node.args.args + node.args.kwonlyargs
-        functions.setdefault(prefix + node.name, [a.arg for a in arguments if a.arg != "self"])
-
-    for node in ast.parse(text).body:
-        if isinstance(node, ast.FunctionDef):
-            add(node, "")
-        elif isinstance(node, ast.ClassDef):
-            attributes[node.name] = {n.target.id for n in node.body if isinstance(n, ast.AnnAssign)}
-            for method in (n for n in node.body if isinstance(n, ast.FunctionDef)):
-                add(method, node.name + ".")
-    return functions, attributes
-
-
-def faults(text):
-    functions, attributes = stubbed(text)
-    found = []
+def callables():
+    """Every function of the package and every method of its classes that users call, by name."""
     for name in binosplat.__all__:
         thing = getattr(binosplat, name)
         if not inspect.isclass(thing):
-            if functions.get(name) != signature(thing):
-                found.append(name)
-        elif name not in attributes:
-            found.append(name)
+            yield name, thing
         elif not issubclass(thing, BaseException):
-            # Properties are the things of a class that nobody calls.
-            there = {n for n, v in vars(thing).items() if not n.startswith("_") and not callable(v)}
-            there -= {n for n, v in vars(thing).items() if isinstance(v, staticmethod)}
-            found += [f"{name}.{n}" for n in there ^ attributes[name]]
-            for method in ("__init__", "draw", "draw_all", "resized", "of_eyes"):
-                if method not in vars(thing) or f"{name}.{method}" not in functions:
-                    continue
-                if functions[f"{name}.{method}"] != signature(getattr(thing, method)):
-                    found.append(f"{name}.{method}")
-    return found
+            for method, function in vars(thing).items():
+                if inspect.isfunction(function) and (method == "__init__" or not method.startswith("_")):
+                    yield f"{name}.{method}", function
 
 
-def test_the_stubs_are_those_of_what_is_there():
-    text = STUBS.read_text()
-    assert STUBS.with_name("py.typed").exists() and faults(text) == []
-    for planted, name in (("tolerance: float | None = None,", "Renderer.draw"), ("    antialiased: bool\n", "Model.antialiased"),
-                          ("background: _Three | None = None", "compare")):
-        assert planted in text and name in faults(text.replace(planted, ""))
+def test_every_argument_and_result_has_a_type():
+    assert Path(binosplat.__file__).with_name("py.typed").exists()
+    for name, function in callables():
+        for argument in list(inspect.signature(function).parameters.values()):
+            assert argument.name == "self" or argument.annotation is not argument.empty, (name, argument)
+        if not name.startswith(("Picture.", "Comparison.")):  # which dataclass() makes
+            assert inspect.signature(function).return_annotation is not inspect.Signature.empty, name
 
 
-def test_every_function_says_what_it_takes_and_returns():
-    def is_told(thing):
-        text = inspect.getdoc(thing) or ""
-        return all(f"\n{title}\n{'-' * len(title)}\n" in text for title in ("Returns", "Raises"))
-
-    for name in ("load_model", "load_cameras", "look_at", "frame", "compare", "load_image"):
-        assert is_told(getattr(binosplat, name)), name
-    assert is_told(binosplat.Renderer.draw) and is_told(binosplat.Renderer.draw_all)
+def test_everything_has_documentation_and_every_argument_is_in_it():
     for name in binosplat.__all__:
         assert inspect.getdoc(getattr(binosplat, name)), name
-    assert not is_told(binosplat.Picture)
+    for name, function in callables():
+        owner = getattr(binosplat, name.removesuffix(".__init__")) if name.endswith("__init__") else function
+        text = inspect.getdoc(owner)
+        assert text, name
+        if "\nParameters\n----------\n" not in text or name == "Exposures.__init__":
+            continue
+        told = text.split("\nParameters\n----------\n")[1]
+        for argument in inspect.signature(function).parameters:
+            assert argument == "self" or re.search(rf"^(\w+, )*{argument}\b", told, re.M), (name, argument)
+
+
+TYPED = """
+import binosplat
+camera = binosplat.look_at((0, 0, 0), (0, 0, 1), 64, 48)
+renderer = binosplat.Renderer(binosplat.load_model("a.ply"))
+reveal_type(renderer.draw(camera))
+reveal_type(renderer.draw(binosplat.Rig(camera)))
+reveal_type([picture for picture in renderer.draw_all([camera])])
+renderer.draw(camera, tiles="round")
+renderer.draw(3)
+camera.widht
+"""
+
+
+def test_type_checkers_know_what_draw_returns(tmp_path):
+    pytest.importorskip("mypy")
+    (tmp_path / "program.py").write_text(TYPED)
+    command = [sys.executable, "-m", "mypy", "--cache-dir", tmp_path / "cache", tmp_path / "program.py"]
+    said = subprocess.run(command, capture_output=True, text=True).stdout
+    picture = "binosplat.Picture"
+    for words in (f'"{picture}"', f'"Tuple[{picture}, {picture}]"', f'"builtins.list[{picture}"'):
+        assert f"Revealed type is {words[:-1]}".lower() in said.lower(), said
+    for line in (7, 8, 9):
+        assert f"program.py:{line + 1}: error" in said, said
 
 
 def test_dir_has_what_there_is_for_users():
