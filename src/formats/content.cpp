@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <iterator>
 
 namespace binosplat {
 
@@ -9,26 +10,35 @@ namespace {
 
 using namespace std::string_view_literals;
 
-struct Signature {
-  std::string_view start;
+/// What a content is, for people, and how it begins; empty where that tells nothing.
+struct Kind {
   Content content;
+  std::string_view words, start = "";
 };
 
-constexpr Signature signatures[] = {
-    {"NGSP"sv, Content::spz},
-    {"\x89PNG\r\n\x1a\n"sv, Content::png},
-    {"\xff\xd8\xff"sv, Content::jpeg},
-    {"\x76\x2f\x31\x01"sv, Content::exr},
-    {"RIFF"sv, Content::webp},
-    {"\x1f\x8b"sv, Content::gzip},
-    {"PK\x03\x04"sv, Content::zip},
-    {"\x28\xb5\x2f\xfd"sv, Content::zstd},
-    {"\xfd\x37zXZ\0"sv, Content::xz},
-    {"glTF"sv, Content::glb},
-    {"#usda "sv, Content::usda},
-    {"PXR-USDC"sv, Content::usdc},
-    {"version https://git-lfs"sv, Content::git_lfs},
+constexpr Kind kinds[] = {
+    {Content::empty, "an empty file"},
+    {Content::ply, "a ply file"},
+    {Content::spz, "an spz model", "NGSP"sv},
+    {Content::png, "a PNG picture", "\x89PNG\r\n\x1a\n"sv},
+    {Content::jpeg, "a JPEG picture", "\xff\xd8\xff"sv},
+    {Content::exr, "an OpenEXR picture", "\x76\x2f\x31\x01"sv},
+    {Content::webp, "a WebP picture or another RIFF file", "RIFF"sv},
+    {Content::gzip, "a gzip-compressed file (spz models are such; or unpack it first)", "\x1f\x8b"sv},
+    {Content::zip, "a zip archive (sog models are such; or unpack it first)", "PK\x03\x04"sv},
+    {Content::zstd, "a zstd-compressed file (unpack it first)", "\x28\xb5\x2f\xfd"sv},
+    {Content::xz, "an xz-compressed file (unpack it first)", "\xfd\x37zXZ\0"sv},
+    {Content::glb, "a binary glTF file", "glTF"sv},
+    {Content::usda, "an OpenUSD scene in text", "#usda "sv},
+    {Content::usdc, "a binary OpenUSD scene", "PXR-USDC"sv},
+    {Content::git_lfs, "a git-LFS pointer, not the file itself (fetch that with: git lfs pull)",
+     "version https://git-lfs"sv},
+    {Content::html, "an HTML or XML page, perhaps an error page saved under this name"},
+    {Content::json, "a JSON file"},
+    {Content::text, "a text file"},
+    {Content::unknown, "something unknown"},
 };
+static_assert(std::size(kinds) == static_cast<std::size_t>(Content::unknown) + 1);
 
 bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n'; }
 
@@ -52,8 +62,8 @@ Content content_of(std::span<const std::byte> bytes) {
   std::string_view text = as_text(bytes).substr(0, 1024);
   if (text.empty()) return Content::empty;
   if (text.starts_with("ply") && (text.size() == 3 || is_blank(text[3]))) return Content::ply;
-  for (const Signature& signature : signatures) {
-    if (text.starts_with(signature.start)) return signature.content;
+  for (const Kind& kind : kinds) {
+    if (!kind.start.empty() && text.starts_with(kind.start)) return kind.content;
   }
   if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);
   if (!std::all_of(text.begin(), text.end(), is_text) || !is_utf8(text)) return Content::unknown;
@@ -63,49 +73,7 @@ Content content_of(std::span<const std::byte> bytes) {
   return *first == '{' || *first == '[' ? Content::json : Content::text;
 }
 
-std::string_view describe(Content content) {
-  switch (content) {
-    case Content::empty:
-      return "an empty file";
-    case Content::ply:
-      return "a ply file";
-    case Content::spz:
-      return "an spz model";
-    case Content::png:
-      return "a PNG picture";
-    case Content::jpeg:
-      return "a JPEG picture";
-    case Content::exr:
-      return "an OpenEXR picture";
-    case Content::webp:
-      return "a WebP picture or another RIFF file";
-    case Content::gzip:
-      return "a gzip-compressed file (spz models are such; or unpack it first)";
-    case Content::zip:
-      return "a zip archive (sog models are such; or unpack it first)";
-    case Content::zstd:
-      return "a zstd-compressed file (unpack it first)";
-    case Content::xz:
-      return "an xz-compressed file (unpack it first)";
-    case Content::glb:
-      return "a binary glTF file";
-    case Content::usda:
-      return "an OpenUSD scene in text";
-    case Content::usdc:
-      return "a binary OpenUSD scene";
-    case Content::git_lfs:
-      return "a git-LFS pointer, not the file itself (fetch that with: git lfs pull)";
-    case Content::html:
-      return "an HTML or XML page, perhaps an error page saved under this name";
-    case Content::json:
-      return "a JSON file";
-    case Content::text:
-      return "a text file";
-    case Content::unknown:
-      break;
-  }
-  return "something unknown";
-}
+std::string_view describe(Content content) { return kinds[static_cast<std::size_t>(content)].words; }
 
 std::string quoted(std::string_view text) {
   std::string out = "'";
