@@ -1,6 +1,10 @@
 #include "formats/gltf_document.h"
 
 #include <algorithm>
+#include <cstring>
+#include <iterator>
+#include <limits>
+#include <type_traits>
 
 #include "formats/bytes.h"
 #include "formats/content.h"
@@ -13,45 +17,34 @@ namespace {
 
 constexpr std::uint32_t json_chunk = 0x4e4f534a, binary_chunk = 0x004e4942;
 
-enum ComponentType { int8 = 5120, uint8 = 5121, int16 = 5122, uint16 = 5123, uint32 = 5125, float32 = 5126 };
-
-/// 0 for a type that numbers of Gaussians do not have.
-std::size_t size_of_component(int type) {
-  switch (type) {
-    case int8:
-    case uint8:
-      return 1;
-    case int16:
-    case uint16:
-      return 2;
-    case float32:
-      return 4;
-    default:
-      return 0;
-  }
+/// A number of a type, of whole numbers that are normalized as a part of the largest.
+template <typename T>
+float load_as(const std::byte* at, bool normalized) {
+  const auto value = static_cast<float>(load_number<T>(at));
+  if (std::is_floating_point_v<T> || !normalized) return value;
+  return std::max(value / static_cast<float>(std::numeric_limits<T>::max()), -1.0f);
 }
 
-float load_component(const std::byte* at, int type, bool normalized) {
-  switch (type) {
-    case int8: {
-      const auto v = static_cast<float>(load_number<std::int8_t>(at));
-      return normalized ? std::max(v / 127.0f, -1.0f) : v;
-    }
-    case uint8: {
-      const auto v = static_cast<float>(load_number<std::uint8_t>(at));
-      return normalized ? v / 255.0f : v;
-    }
-    case int16: {
-      const auto v = static_cast<float>(load_number<std::int16_t>(at));
-      return normalized ? std::max(v / 32767.0f, -1.0f) : v;
-    }
-    case uint16: {
-      const auto v = static_cast<float>(load_number<std::uint16_t>(at));
-      return normalized ? v / 65535.0f : v;
-    }
-    default:
-      return load_number<float>(at);
-  }
+/// The types that numbers of Gaussians may have, by glTF's numbers of them.
+struct Component {
+  int type;
+  std::size_t bytes;
+  float (*load)(const std::byte* at, bool normalized);
+};
+constexpr Component gltf_components[] = {{5120, 1, load_as<std::int8_t>},
+                                         {5121, 1, load_as<std::uint8_t>},
+                                         {5122, 2, load_as<std::int16_t>},
+                                         {5123, 2, load_as<std::uint16_t>},
+                                         {5126, 4, load_as<float>}};
+
+/// Throws Error for another type.
+const Component& component_of(const JsonValue& holder) {
+  const JsonValue type = holder.at("componentType");
+  const auto* const found =
+      std::ranges::find(gltf_components, static_cast<int>(type.whole(65535)), &Component::type);
+  if (found == std::end(gltf_components))
+    type.fail_here("{} is none that can be read (floats, bytes and shorts are)", type.whole(65535));
+  return *found;
 }
 
 constexpr const char* meshopt_names[] = {"EXT_meshopt_compression", "KHR_meshopt_compression"};
@@ -62,6 +55,10 @@ bool is_stand_in(const JsonValue& buffer) {
     return buffer.has("extensions") && buffer.at("extensions").has(name) &&
            buffer.at("extensions").at(name).has("fallback");
   });
+}
+
+bool is_normalized(const JsonValue& accessor) {
+  return accessor.has("normalized") && accessor.at("normalized").value() == true;
 }
 
 std::size_t optional_size(const JsonValue& value, const char* key) {
@@ -193,16 +190,10 @@ std::vector<float> GltfDocument::read(std::size_t index, std::size_t components,
     accessor.at("type").fail_here("expected {}, found {}", types[components], accessor.at("type").text());
   if (accessor.at("count").whole(gltf_number_most) != count)
     accessor.at("count").fail_here("expected {}, as {} have", count, like);
-  const int type = static_cast<int>(accessor.at("componentType").whole(65535));
-  const std::size_t size = components * size_of_component(type);
-  if (size == 0)
-    accessor.at("componentType")
-        .fail_here("{} is none that can be read (floats, bytes and shorts are)", type);
-  const bool normalized = accessor.has("normalized") && accessor.at("normalized").value() == true;
-  std::vector<float> values = accessor.has("bufferView")
-                                  ? read_dense(accessor, components, count, type, normalized)
-                                  : zeros(accessor, components, count);
-  if (accessor.has("sparse")) read_sparse(accessor.at("sparse"), components, type, normalized, values);
+  component_of(accessor);  // which throws
+  std::vector<float> values = accessor.has("bufferView") ? read_dense(accessor, components, count)
+                                                         : zeros(accessor, components, count);
+  if (accessor.has("sparse")) read_sparse(accessor, components, values);
   return values;
 }
 
@@ -215,8 +206,9 @@ std::vector<float> GltfDocument::zeros(const JsonValue& accessor, std::size_t co
 }
 
 std::vector<float> GltfDocument::read_dense(const JsonValue& accessor, std::size_t components,
-                                            std::size_t count, int type, bool normalized) {
-  const std::size_t size = components * size_of_component(type);
+                                            std::size_t count) {
+  const Component& component = component_of(accessor);
+  const std::size_t size = components * component.bytes;
   const std::size_t view_index = accessor.at("bufferView").whole(gltf_number_most);
   const auto bytes = view(view_index);
   std::size_t stride = optional_size(root().at("bufferViews").at(view_index), "byteStride");
@@ -227,28 +219,28 @@ std::vector<float> GltfDocument::read_dense(const JsonValue& accessor, std::size
     accessor.fail_here("{} elements of {} bytes, {} apart, from byte {} on leave their view of {} bytes",
                        count, size, stride, offset, bytes.size());
   }
+  const bool normalized = is_normalized(accessor);
   std::vector<float> values(count * components);
   for (std::size_t i = 0; i < count; ++i) {
-    const std::byte* at = &bytes[offset + i * stride];
     for (std::size_t c = 0; c < components; ++c)
-      values[i * components + c] = load_component(at + c * (size / components), type, normalized);
+      values[i * components + c] =
+          component.load(&bytes[offset + i * stride + c * component.bytes], normalized);
   }
   return values;
 }
 
-void GltfDocument::read_sparse(const JsonValue& sparse, std::size_t components, int type, bool normalized,
+void GltfDocument::read_sparse(const JsonValue& accessor, std::size_t components,
                                std::vector<float>& values) {
+  const JsonValue sparse = accessor.at("sparse");
   const std::size_t count = sparse.at("count").whole(gltf_number_most);
   if (count > values.size() / components)
     sparse.fail_here("{} elements are replaced, of {}", count, values.size() / components);
   const JsonValue indices = sparse.at("indices"), replaced = sparse.at("values");
-  const int index_type = static_cast<int>(indices.at("componentType").whole(65535));
-  const std::size_t index_size = index_type == uint32   ? 4
-                                 : index_type == uint16 ? 2
-                                 : index_type == uint8  ? 1
-                                                        : 0;
+  const auto index_type = indices.at("componentType").whole(65535);
+  const std::size_t index_size = index_type == 5125 ? 4 : index_type == 5123 ? 2 : index_type == 5121 ? 1 : 0;
   if (index_size == 0) indices.at("componentType").fail_here("{} is no type of an index", index_type);
-  const std::size_t component = size_of_component(type), element = components * component;
+  const Component& component = component_of(accessor);
+  const std::size_t element = components * component.bytes;
   const auto index_bytes = view(indices.at("bufferView").whole(gltf_number_most));
   const auto value_bytes = view(replaced.at("bufferView").whole(gltf_number_most));
   const std::size_t index_at = optional_size(indices, "byteOffset"),
@@ -257,16 +249,15 @@ void GltfDocument::read_sparse(const JsonValue& sparse, std::size_t components, 
       value_at > value_bytes.size() || count > (value_bytes.size() - value_at) / element) {
     sparse.fail_here("{} elements leave their views", count);
   }
+  const bool normalized = is_normalized(accessor);
   for (std::size_t k = 0; k < count; ++k) {
-    const std::byte* at = &index_bytes[index_at + k * index_size];
-    const std::size_t i = index_size == 4   ? load_number<std::uint32_t>(at)
-                          : index_size == 2 ? load_number<std::uint16_t>(at)
-                                            : load_number<std::uint8_t>(at);
+    std::size_t i = 0;
+    std::memcpy(&i, &index_bytes[index_at + k * index_size], index_size);  // the lowest byte first
     if (i >= values.size() / components)
       sparse.fail_here("element {} is replaced, of {}", i, values.size() / components);
     for (std::size_t c = 0; c < components; ++c)
       values[i * components + c] =
-          load_component(&value_bytes[value_at + k * element + c * component], type, normalized);
+          component.load(&value_bytes[value_at + k * element + c * component.bytes], normalized);
   }
 }
 

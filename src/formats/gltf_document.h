@@ -53,10 +53,8 @@ class GltfDocument {
   std::span<const std::byte> buffer(std::size_t index);
   std::span<const std::byte> bytes_of(std::size_t index, const JsonValue& buffer);
   std::vector<float> zeros(const JsonValue& accessor, std::size_t components, std::size_t count) const;
-  std::vector<float> read_dense(const JsonValue& accessor, std::size_t components, std::size_t count,
-                                int type, bool normalized);
-  void read_sparse(const JsonValue& sparse, std::size_t components, int type, bool normalized,
-                   std::vector<float>& values);
+  std::vector<float> read_dense(const JsonValue& accessor, std::size_t components, std::size_t count);
+  void read_sparse(const JsonValue& accessor, std::size_t components, std::vector<float>& values);
 
   std::filesystem::path path_;
   nlohmann::json json_;
