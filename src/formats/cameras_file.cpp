@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cctype>
-#include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -30,16 +29,13 @@ namespace {
 
 /// One object of a cameras.json; every error names the file, the object's number and the key.
 Camera read_camera(const JsonValue& object) {
-  const auto pixels = [&](const char* key) {
-    return static_cast<int>(object.at(key).whole(std::numeric_limits<int>::max()));
-  };
   const auto number = [&](const char* key, double otherwise) {
     return object.has(key) ? object.at(key).number() : otherwise;
   };
   Camera camera;
   camera.name = object.at("img_name").text();
-  camera.width = pixels("width");
-  camera.height = pixels("height");
+  camera.width = object.at("width").pixels();
+  camera.height = object.at("height").pixels();
   camera.fx = object.at("fx").above_zero();
   camera.fy = object.at("fy").above_zero();
   camera.cx = number("cx", camera.width / 2.0);
@@ -62,9 +58,7 @@ std::vector<Camera> load_list(const std::filesystem::path& path, const nlohmann:
   for (std::size_t i = 0; i < root.size(); ++i) {
     const std::string where = fmt::format("{}, camera {} (counted from 0)", path.string(), i);
     const JsonValue object(where, root[i]);
-    const KeyOf key = [&](const char* name) {
-      return object.has(name) ? std::optional(object.at(name)) : std::nullopt;
-    };
+    const KeyOf key = [&](const char* name) { return object.find(name); };
     if (const std::string fault = undrawable_lens(key); !fault.empty()) {
       drawn.leave_out(fmt::format("{}, {}", where, fault));
       continue;

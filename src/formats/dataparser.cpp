@@ -4,6 +4,7 @@
 #include "formats/cameras_file.h"
 #include "formats/content.h"
 #include "formats/json_file.h"
+#include "formats/training_run.h"
 #include "formats/transforms.h"
 
 namespace binosplat {
@@ -16,11 +17,6 @@ namespace fs = std::filesystem;
 struct Similarity : RigidTransform {
   double scale = 1.0;
 };
-
-double read_scale(const JsonValue& value) {
-  if (!(value.number() > 0.0)) value.fail_here("expected a number above 0");
-  return value.number();
-}
 
 // What ns-process-data did to the poses before it wrote them; nothing for COLMAP's own. `is_moved` is false
 // where they are in no world that a dataparser knows.
@@ -43,7 +39,7 @@ Similarity applied(const fs::path& cameras, bool& is_moved) {
     // Files from before the key was written.
     done.rotation = glm::dmat3(0, 1, 0, 1, 0, 0, 0, 0, -1);
   }
-  if (value.has("applied_scale")) done.scale = read_scale(value.at("applied_scale"));
+  if (value.has("applied_scale")) done.scale = value.at("applied_scale").above_zero();
   return done;
 }
 
@@ -51,13 +47,7 @@ Similarity applied(const fs::path& cameras, bool& is_moved) {
 
 std::optional<fs::path> find_dataparser(const fs::path& model) {
   std::error_code ignored;
-  fs::path folder = fs::absolute(model).lexically_normal();
-  if (!fs::is_directory(folder, ignored)) folder = folder.parent_path();
-  for (int up = 0; up < 4; ++up, folder = folder.parent_path()) {
-    const fs::path file = folder / "dataparser_transforms.json";
-    if (fs::is_regular_file(file, ignored)) return file;
-  }
-  return std::nullopt;
+  return find_above(fs::is_directory(model, ignored) ? model / "." : model, "dataparser_transforms.json", 3);
 }
 
 bool move_into_training(const fs::path& dataparser, const fs::path& cameras_file,
@@ -68,7 +58,7 @@ bool move_into_training(const fs::path& dataparser, const fs::path& cameras_file
   const MappedFile file(dataparser);
   const nlohmann::json root = parse_json(dataparser.string(), as_text(file.bytes()));
   const JsonValue value(dataparser.string(), root);
-  const Similarity to{read_rows(value.at("transform")), read_scale(value.at("scale"))};
+  const Similarity to{read_rows(value.at("transform")), value.at("scale").above_zero()};
   for (Camera& camera : cameras) {
     const glm::dvec3 p = glm::transpose(before.rotation) * (camera.position / before.scale - before.shift);
     camera.position = to.scale * (to.rotation * p + to.shift);

@@ -11,8 +11,7 @@ namespace {
 
 /// Whether a node has an extension, and what it says.
 std::optional<JsonValue> extension_of(const JsonValue& node, const char* name) {
-  if (!node.has("extensions") || !node.at("extensions").has(name)) return std::nullopt;
-  return node.at("extensions").at(name);
+  return node.has("extensions") ? node.at("extensions").find(name) : std::nullopt;
 }
 
 /// Translation, rotation as x y z w, and scale, in the order in which glTF applies them: scale first.

@@ -80,6 +80,10 @@ JsonValue JsonValue::at(const std::string& key) const {
   return inner(*found, key);
 }
 
+std::optional<JsonValue> JsonValue::find(const std::string& key) const {
+  return has(key) ? std::optional(at(key)) : std::nullopt;
+}
+
 JsonValue JsonValue::at(std::size_t index) const {
   if (index >= size()) fail_here("expected a list of more than {} values", index);
   return inner((*value_)[index], fmt::format("[{}]", index));

@@ -3,8 +3,10 @@
 
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <limits>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -29,13 +31,15 @@ class JsonValue {
 
   /// Whether an object has this key, with a value other than null.
   bool has(const std::string& key) const;
-  JsonValue at(const std::string& key) const;     // throws if it is missing
-  JsonValue at(std::size_t index) const;          // throws beyond size()
-  std::size_t size() const;                       // of a list; throws for anything else
-  JsonValue list_of(std::size_t n) const;         // itself, if it is a list of n
-  double number() const;                          // finite
-  double above_zero() const;                      // finite, too
+  JsonValue at(const std::string& key) const;                   // throws if it is missing
+  std::optional<JsonValue> find(const std::string& key) const;  // nothing where has() is false
+  JsonValue at(std::size_t index) const;                        // throws beyond size()
+  std::size_t size() const;                                     // of a list; throws for anything else
+  JsonValue list_of(std::size_t n) const;                       // itself, if it is a list of n
+  double number() const;                                        // finite
+  double above_zero() const;                                    // finite, too
   std::uint64_t whole(std::uint64_t most) const;  // from 0 to `most`, at most 2^53; 5.0 is whole, too
+  int pixels() const { return static_cast<int>(whole(std::numeric_limits<int>::max())); }
   std::string text() const;
   /// The numbers of a list of n.
   template <int n>

@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <glm/gtc/type_ptr.hpp>
-#include <limits>
 #include <optional>
 
 #include "base/error.h"
@@ -82,11 +81,8 @@ std::optional<double> transition(const JsonValue& root, const JsonValue& keyfram
 
 Camera frame_of(const fs::path& path, const JsonValue& root, const JsonValue& frame, bool is_keyframe) {
   Camera camera;
-  const auto pixels = [&](const char* key) {
-    return static_cast<int>(root.at(key).whole(std::numeric_limits<int>::max()));
-  };
-  camera.width = pixels("render_width");
-  camera.height = pixels("render_height");
+  camera.width = root.at("render_width").pixels();
+  camera.height = root.at("render_height").pixels();
   const JsonValue fov = frame.at("fov");
   if (!(fov.number() > 0.0 && fov.number() < 180.0)) fov.fail_here("expected degrees between 0 and 180");
   set_vertical_fov(camera, fov.number());
@@ -103,8 +99,7 @@ bool is_camera_path(const nlohmann::json& root) {
 
 std::vector<Camera> load_camera_path(const fs::path& path, const nlohmann::json& json) {
   const JsonValue root(path.string(), json);
-  const std::string fault = undrawable_lens(
-      [&](const char* key) { return root.has(key) ? std::optional(root.at(key)) : std::nullopt; });
+  const std::string fault = undrawable_lens([&](const char* key) { return root.find(key); });
   if (!fault.empty()) fail("{}, {}", path.string(), fault);
   const bool by_keys =
       !root.has("camera_path") || (root.at("camera_path").size() == 0 && root.has("keyframes"));

@@ -10,8 +10,6 @@
 
 namespace binosplat {
 
-namespace {}  // namespace
-
 std::filesystem::path pose_path(const std::filesystem::path& model) {
   std::filesystem::path path = model.has_filename() ? model : model.parent_path();
   std::error_code ignored;

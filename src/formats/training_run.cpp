@@ -183,10 +183,10 @@ std::optional<TrainingRun> read_run(const fs::path& file, const RunKind& kind) {
 
 }  // namespace
 
-std::optional<fs::path> find_above(const fs::path& model, const std::string& name) {
+std::optional<fs::path> find_above(const fs::path& model, const std::string& name, int most) {
   std::error_code ignored;
   fs::path folder = fs::absolute(model).lexically_normal();
-  for (int up = 0; up < 3; ++up) {
+  for (int up = 0; up <= most; ++up) {
     folder = folder.parent_path();
     const fs::path file = folder / name;
     if (!fs::is_regular_file(file, ignored)) continue;

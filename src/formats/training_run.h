@@ -23,9 +23,11 @@ struct TrainingRun {
 
 constexpr const char* exposures_name = "exposure.json";
 
-/// The file `name` that belongs to a model's file: in its folder, or one or two above, the nearest. There
-/// INRIA's point_cloud/iteration_N/, gsplat's ply/ and nerfstudio's exports/splat/ have their run's files.
-std::optional<std::filesystem::path> find_above(const std::filesystem::path& model, const std::string& name);
+/// The file `name` that belongs to a model's file: in its folder, or in one of `most` above, the nearest. Up
+/// to two above INRIA's point_cloud/iteration_N/, gsplat's ply/ and nerfstudio's exports/splat/ have their
+/// run's files.
+std::optional<std::filesystem::path> find_above(const std::filesystem::path& model, const std::string& name,
+                                                int most = 2);
 
 /// The run of a model's file, of the nearest of gsplat's cfg.yml, nerfstudio's config.yml, INRIA's cfg_args,
 /// LichtFeld Studio's training_config.json and 3DGRUT's parsed.yaml (find_above). A file that is called so

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
 #include <utility>
 
@@ -34,9 +33,7 @@ class Frame {
   }
 
   std::optional<JsonValue> value(const char* key) const {
-    if (frame_.has(key)) return frame_.at(key);
-    if (root_.has(key)) return root_.at(key);
-    return std::nullopt;
+    return frame_.has(key) ? frame_.at(key) : root_.find(key);
   }
 
  private:
@@ -48,8 +45,8 @@ class Frame {
   void read_size(Camera& camera) const {
     const auto width = value("w"), height = value("h");
     if (width && height) {
-      camera.width = static_cast<int>(width->whole(std::numeric_limits<int>::max()));
-      camera.height = static_cast<int>(height->whole(std::numeric_limits<int>::max()));
+      camera.width = width->pixels();
+      camera.height = height->pixels();
       return;
     }
     const auto photo = find_view_photo(path_.parent_path(), camera);
