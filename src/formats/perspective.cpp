@@ -1,11 +1,11 @@
 #include "formats/perspective.h"
 
 #include <array>
-#include <optional>
 #include <string_view>
 #include <utility>
 
 #include "base/log.h"
+#include "base/text.h"
 
 namespace binosplat {
 
@@ -38,24 +38,18 @@ std::vector<std::pair<std::string, std::string>> words_of_perspective(const Pers
 
 }  // namespace
 
-Perspective read_perspective(const JsonValue& holder, const Perspective& unless_said) {
-  Perspective read = unless_said;
-  if (holder.has(order_key))
-    read.order = number_of(order_key, holder.at(order_key).text(), order_words, read.order, holder.source());
-  if (holder.has(projection_key)) {
-    read.projection = number_of(projection_key, holder.at(projection_key).text(), projection_words,
-                                read.projection, holder.source());
-  }
-  return read;
-}
-
 Perspective read_perspective(const std::string& place, const std::string& order,
-                             const std::string& projection) {
-  Perspective read;
+                             const std::string& projection, const Perspective& unless_said) {
+  Perspective read = unless_said;
   if (!order.empty()) read.order = number_of(order_key, order, order_words, read.order, place);
   if (!projection.empty())
     read.projection = number_of(projection_key, projection, projection_words, read.projection, place);
   return read;
+}
+
+Perspective read_perspective(const JsonValue& holder, const Perspective& unless_said) {
+  const auto word = [&](const char* key) { return holder.has(key) ? holder.at(key).text() : ""; };
+  return read_perspective(holder.source(), word(order_key), word(projection_key), unless_said);
 }
 
 void write_perspective(const Perspective& perspective, nlohmann::ordered_json& holder) {
@@ -63,22 +57,17 @@ void write_perspective(const Perspective& perspective, nlohmann::ordered_json& h
 }
 
 Perspective read_perspective(const std::vector<std::string>& comments) {
-  Perspective read;
-  const auto word_after = [](const std::string& comment, std::string_view key) -> std::optional<std::string> {
-    const std::string start = std::string(key) + ": ";
-    const std::size_t at = comment.find_first_not_of(" \t");
-    if (at == std::string::npos || comment.compare(at, start.size(), start) != 0) return std::nullopt;
-    const std::size_t begin = at + start.size();
-    return comment.substr(begin, comment.find_first_of(" \t\r", begin) - begin);
+  // Of several comments that say it the last one counts.
+  const auto word = [&](std::string_view key) {
+    std::string found;
+    for (const std::string& comment : comments) {
+      const std::vector<std::string_view> words = words_of(comment);
+      if (words.size() >= 2 && words[0].ends_with(':') && words[0].substr(0, words[0].size() - 1) == key)
+        found = words[1];
+    }
+    return found;
   };
-  for (const std::string& comment : comments) {
-    if (const auto word = word_after(comment, order_key))
-      read.order = number_of(order_key, *word, order_words, read.order, "a comment of the ply");
-    if (const auto word = word_after(comment, projection_key))
-      read.projection =
-          number_of(projection_key, *word, projection_words, read.projection, "a comment of the ply");
-  }
-  return read;
+  return read_perspective("a comment of the ply", word(order_key), word(projection_key));
 }
 
 std::string perspective_comments(const Perspective& perspective) {

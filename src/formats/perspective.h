@@ -17,7 +17,7 @@ Perspective read_perspective(const JsonValue& holder, const Perspective& unless_
 
 /// The same of two words, "" where a file does not say; `place` is its name.
 Perspective read_perspective(const std::string& place, const std::string& order,
-                             const std::string& projection);
+                             const std::string& projection, const Perspective& unless_said = {});
 
 /// Adds them to an object where they are not 3D-GS's.
 void write_perspective(const Perspective& perspective, nlohmann::ordered_json& holder);

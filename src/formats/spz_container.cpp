@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <functional>
 
 #include "base/error.h"
 #include "base/log.h"
@@ -106,35 +107,21 @@ void warn_of_rest(const std::string& source, bool there) {
   if (there) log_warning("{}: bytes after the last attribute are ignored", source);
 }
 
-SpzContents unpack_plain(const std::string& source, std::span<const std::byte> bytes) {
-  Header header = read_spz_header(source, bytes);
-  SpzContents& contents = header.contents;
-  const std::size_t all = spz_sizes(contents.version, contents.degree).sum();
-  const std::size_t needed = attribute_bytes(source, contents, all, bytes.size());
-  const auto rest = bytes.subspan(spz_header_bytes);
-  if (rest.size() < needed) fail_short(source, contents, needed, rest.size());
-  contents.attributes.assign(rest.begin(), rest.begin() + static_cast<std::ptrdiff_t>(needed));
-  if ((header.flags & extensions_flag) != 0) {
-    read_extensions(source, rest.subspan(needed), contents);
-  } else {
-    warn_of_rest(source, rest.size() > needed);
-  }
-  return std::move(header.contents);
-}
-
-SpzContents unpack_gzip(const std::string& source, std::span<const std::byte> bytes) {
-  GzipReader gzip(source, bytes);
-  Header header = read_spz_header(source, gzip.read(spz_header_bytes));
+/// Of versions 1 to 3, whose bytes `read` hands out one after the other, so many at most.
+SpzContents unpack_attributes(const std::string& source, std::size_t packed,
+                              const std::function<std::vector<std::byte>(std::size_t most)>& read) {
+  Header header = read_spz_header(source, read(spz_header_bytes));
   SpzContents& contents = header.contents;
   if (contents.version == 4)
     fail("{}: spz of version 4 within gzip; that version has none around it", source);
   const std::size_t all = spz_sizes(contents.version, contents.degree).sum();
-  const std::size_t needed = attribute_bytes(source, contents, all, bytes.size());
-  contents.attributes = gzip.read(needed);
+  const std::size_t needed = attribute_bytes(source, contents, all, packed);
+  contents.attributes = read(needed);
   if (contents.attributes.size() < needed) fail_short(source, contents, needed, contents.attributes.size());
-  // The checksum is tested at the end, which this meets unless there is more.
-  const std::vector<std::byte> rest = gzip.read((header.flags & extensions_flag) != 0 ? most_extensions : 1);
-  if ((header.flags & extensions_flag) != 0) {
+  const bool extended = (header.flags & extensions_flag) != 0;
+  // gzip's checksum is tested at the end, which this meets unless there is more.
+  const std::vector<std::byte> rest = read(extended ? most_extensions : 1);
+  if (extended) {
     read_extensions(source, rest, contents);
   } else {
     warn_of_rest(source, !rest.empty());
@@ -229,9 +216,16 @@ std::vector<std::byte> spz_axes_extension(std::string_view axes) {
 }
 
 SpzContents unpack_spz(const std::string& source, std::span<const std::byte> bytes) {
-  if (content_of(bytes) == Content::gzip) return unpack_gzip(source, bytes);
+  if (content_of(bytes) == Content::gzip) {
+    GzipReader gzip(source, bytes);
+    return unpack_attributes(source, bytes.size(), [&](std::size_t most) { return gzip.read(most); });
+  }
   if (bytes.size() >= 8 && load_number<std::uint32_t>(&bytes[4]) == 4) return unpack_4(source, bytes);
-  return unpack_plain(source, bytes);
+  return unpack_attributes(source, bytes.size(), [rest = bytes](std::size_t most) mutable {
+    const auto next = rest.first(std::min(most, rest.size()));
+    rest = rest.subspan(next.size());
+    return std::vector<std::byte>(next.begin(), next.end());
+  });
 }
 
 }  // namespace binosplat
