@@ -205,6 +205,21 @@ void SogLevels::sort(TakenOfFile& taken, std::size_t index) const {
   }
 }
 
+std::vector<SogSource::Range> ranges_of(const SogLevels::TakenOfFile& taken) {
+  std::vector<SogSource::Range> ranges;
+  for (const SogLevels::Taken& of_leaf : taken) ranges.push_back(of_leaf.range);
+  return ranges;
+}
+
+void check_leaves(const fs::path& path, const std::vector<LodChunk>& leaves) {
+  if (std::ranges::all_of(leaves, [](const LodChunk& leaf) { return leaf.levels.empty(); }))
+    fail("{}: none of its levels of detail is there: fetch one", path.string());
+}
+
+std::string format_of_chosen(const SogLevels& levels) {
+  return fmt::format("streamed SOG, levels chosen of {}", levels.count());
+}
+
 void check_taken(const std::filesystem::path& lod_meta, const std::filesystem::path& file,
                  const SogSource& source, std::span<const SogLevels::Taken> taken) {
   const SogSource::Range& last = taken.back().range;

@@ -86,6 +86,17 @@ class SogLevels {
   std::vector<std::vector<Place>> leaves_;
 };
 
+/// In place of the number of a level (SogLevels::taken).
+inline constexpr int no_level = -1;
+
+std::vector<SogSource::Range> ranges_of(const SogLevels::TakenOfFile& taken);
+
+/// Throws Error if no leaf has a level that is there.
+void check_leaves(const std::filesystem::path& path, const std::vector<LodChunk>& leaves);
+
+/// The format of a model whose levels are chosen.
+std::string format_of_chosen(const SogLevels& levels);
+
 /// Throws Error unless what is taken of a file, which is something, is in it.
 void check_taken(const std::filesystem::path& lod_meta, const std::filesystem::path& file,
                  const SogSource& source, std::span<const SogLevels::Taken> taken);

@@ -92,6 +92,9 @@ class SogSource {
   std::vector<std::uint8_t> palette_texels_;
 };
 
+/// A SOG by its meta.json or its archive, told by content.
+SogSource open_part(const std::filesystem::path& path);
+
 /// The SOG of a meta.json, whose pictures lie in its folder.
 SogSource sog_in_folder(const std::filesystem::path& meta, const nlohmann::json& root);
 

@@ -14,7 +14,7 @@
 #include "base/progress.h"
 #include "formats/content.h"
 #include "formats/json_file.h"
-#include "formats/sog_parts.h"
+#include "formats/sog_levels.h"
 #include "scene/reduce.h"
 
 namespace binosplat {

@@ -7,7 +7,7 @@
 
 #include "base/error.h"
 #include "base/log.h"
-#include "formats/sog_parts.h"
+#include "formats/sog_levels.h"
 #include "formats/streamed_sog.h"
 #include "stream/chooser.h"
 

@@ -9,7 +9,7 @@
 #include "base/memory.h"
 #include "base/parallel.h"
 #include "formats/sog_cache.h"
-#include "formats/sog_parts.h"
+#include "formats/sog_levels.h"
 #include "formats/sog_source.h"
 #include "formats/streamed_sog.h"
 
