@@ -180,8 +180,7 @@ void print_info(const Model& model, const Trained& trained, const ModelSummary& 
                  ? fmt::format(" ({} more left out: values not finite, scales above 1e13, or no rotation)",
                                model.left_out)
                  : "");
-  fmt::print("{:<14} degree {}{}\n", "harmonics", model.degree,
-             model.cut_db ? fmt::format(" of 4, which costs about {}", cut_in_words(model)) : "");
+  fmt::print("{:<14} degree {}{}\n", "harmonics", model.degree, model.lacks_degree_4 ? " of 4" : "");
   fmt::print("{:<14} {} ({})\n", "axes", model.axes.letters, axes_in_words(model));
   if (const auto units = trained.units_per_metre)
     fmt::print("{:<14} {:.6g} make a metre, says its metersPerUnit\n", "units", *units);

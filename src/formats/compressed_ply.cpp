@@ -9,6 +9,8 @@
 #include "formats/bytes.h"
 #include "formats/perspective.h"
 #include "formats/ply_layout.h"
+#include "formats/ply_rows.h"
+#include "formats/smallest_three.h"
 
 namespace binosplat {
 
@@ -33,19 +35,10 @@ glm::dvec3 fractions(std::uint32_t word) {
 
 /// The largest of w, x, y, z is left out (the highest two bits say which), the others have 10 bits each.
 glm::vec4 rotation_of(std::uint32_t word) {
-  const int largest = static_cast<int>(bit_field(word, 30, 2));
-  glm::vec4 rotation(0.0f);
-  double rest = 1.0;
-  int low = 20;
-  for (int c = 0; c < 4; ++c) {
-    if (c == largest) continue;
-    const double v = (bit_field(word, low, 10) / 1023.0 - 0.5) * std::sqrt(2.0);
-    low -= 10;
-    rotation[c] = static_cast<float>(v);
-    rest -= v * v;
-  }
-  rotation[largest] = static_cast<float>(std::sqrt(std::max(rest, 0.0)));
-  return rotation;
+  SmallestThree three{static_cast<int>(bit_field(word, 30, 2))};
+  for (int k = 0; k < 3; ++k)
+    three.others[k] = (bit_field(word, 20 - 10 * k, 10) / 1023.0 - 0.5) * std::sqrt(2.0);
+  return three.quaternion();
 }
 
 /// A byte of the harmonics: the middle of its step, but for the two ends.
@@ -91,18 +84,11 @@ class CompressedPlyReader {
         fail("{}: element '{}' of a compressed ply has a list; expected numbers only", path_.string(),
              element.name);
       }
-      const std::size_t row = element.row_bytes(), left = bytes_.size() - at;
-      if (row > 0 && element.count > left / row) {
-        fail(
-            "{} is cut short: element '{}' needs {} rows of {} bytes from byte {} on, but {} bytes are "
-            "there; fetch "
-            "or export it again",
-            path_.string(), element.name, element.count, row, at, left);
-      }
+      const std::size_t end = end_of_rows(path_, bytes_, element, at);
       if (element.name == "chunk") take_chunks(element, at);
       if (element.name == "vertex") take_vertices(element, at);
       if (element.name == "sh") take_harmonics(element, at);
-      at += row * element.count;
+      at = end;
     }
     if (vertices_.offsets.empty()) fail("{}: a compressed ply without element 'vertex'", path_.string());
     if (count_ == 0) fail("{} holds no Gaussians: its header says 'element vertex 0'", path_.string());
@@ -117,32 +103,20 @@ class CompressedPlyReader {
       log_warning("{}: {} bytes after the last element are ignored", path_.string(), bytes_.size() - at);
   }
 
-  /// The offset of a property that must be there and of one type.
-  std::size_t offset_of(const PlyElement& element, const std::string& name, PlyType type) const {
-    std::size_t offset = 0;
-    for (const PlyProperty& property : element.properties) {
-      if (property.name == name && property.type == type) return offset;
-      if (property.name == name)
-        fail("{}: property '{}' of element '{}' has the wrong type", path_.string(), name, element.name);
-      offset += size_of(property.type);
-    }
-    fail("{}: element '{}' has no property '{}'", path_.string(), element.name, name);
-  }
-
   void take_chunks(const PlyElement& element, std::size_t at) {
     chunks_ = {at, element.row_bytes(), {}};
     chunks_count_ = element.count;
     coloured_ = element.properties.size() > plain_fields;
     const std::size_t fields = coloured_ ? std::size(packed_chunk_fields) : plain_fields;
     for (std::size_t i = 0; i < fields; ++i)
-      chunks_.offsets.push_back(offset_of(element, packed_chunk_fields[i], PlyType::float32));
+      chunks_.offsets.push_back(offset_in_row(path_, element, packed_chunk_fields[i], PlyType::float32));
   }
 
   void take_vertices(const PlyElement& element, std::size_t at) {
     vertices_ = {at, element.row_bytes(), {}};
     count_ = element.count;
     for (const char* name : vertex_fields)
-      vertices_.offsets.push_back(offset_of(element, name, PlyType::uint32));
+      vertices_.offsets.push_back(offset_in_row(path_, element, name, PlyType::uint32));
   }
 
   void take_harmonics(const PlyElement& element, std::size_t at) {
@@ -159,7 +133,7 @@ class CompressedPlyReader {
     for (std::size_t k = 0; k < values / 3; ++k) {
       for (std::size_t c = 0; c < 3; ++c) {
         harmonics_.offsets.push_back(
-            offset_of(element, fmt::format("f_rest_{}", c * values / 3 + k), PlyType::uint8));
+            offset_in_row(path_, element, fmt::format("f_rest_{}", c * values / 3 + k), PlyType::uint8));
       }
     }
   }

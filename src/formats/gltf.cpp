@@ -12,7 +12,6 @@
 #include "base/numbers.h"
 #include "formats/gltf_document.h"
 #include "formats/gltf_nodes.h"
-#include "formats/harmonics_cut.h"
 #include "formats/join.h"
 #include "formats/perspective.h"
 #include "formats/plausible.h"
@@ -92,18 +91,6 @@ void undo_logarithms(const std::filesystem::path& path, std::vector<float>& scal
   log_warning("{}: its scales are taken for logarithms, as they were in drafts: {} are below 0",
               path.string(), below);
   for (float& s : scales) s = std::exp(s);
-}
-
-/// Of each of `count` Gaussians, whose coefficients are three numbers of each list.
-std::vector<float> square_sums(const std::vector<std::vector<float>>& coefficients, std::size_t count) {
-  std::vector<float> sums(count);
-  for (std::size_t i = 0; i < count; ++i) {
-    std::array<float, cut_values> of_one{};
-    for (std::size_t k = 0; k < coefficients.size(); ++k)
-      std::copy_n(&coefficients[k][3 * i], 3, &of_one[3 * k]);
-    sums[i] = square_sum(of_one);
-  }
-  return sums;
 }
 
 /// Splits colours with alpha into base coefficients and opacities.
@@ -262,7 +249,7 @@ class GltfReader {
     std::vector<float> scales = attribute(attributes, name("SCALE"), 3, n);
     undo_logarithms(path_, scales);
     std::vector<float> opacities;
-    std::vector<std::vector<float>> harmonics, cut;  // cut: of degree 4, which the format does not define
+    std::vector<std::vector<float>> harmonics;
     Model model;
     const auto coefficient = [&](int degree, int m) {
       return name(fmt::format("SH_DEGREE_{}_COEF_{}", degree, m));
@@ -285,8 +272,7 @@ class GltfReader {
       for (int m = 0; m <= 2 * degree; ++m)
         harmonics.push_back(attribute(attributes, coefficient(degree, m), 3, n));
     }
-    for (int m = 0; m <= 8 && attributes.has(coefficient(4, 0)); ++m)
-      cut.push_back(attribute(attributes, coefficient(4, m), 3, n));
+    model.lacks_degree_4 = attributes.has(coefficient(4, 0));  // which the format does not define
     model.resize(n);
     std::vector<std::uint8_t> kept(n);
     std::array<float, 3 * sh_count(3)> sh{};
@@ -300,7 +286,6 @@ class GltfReader {
                        opacities[i],
                        sh.data()});
     }
-    if (!cut.empty()) model.cut_db = cut_harmonics_db(model, square_sums(cut, n));
     keep_only(model, kept);
     return model;
   }

@@ -31,7 +31,7 @@ void join(Model& all, Model&& part) {
   add(all.opacity, part.opacity);
   add(all.sh, part.sh);
   all.left_out += part.left_out;
-  if (part.cut_db) all.cut_db = std::min(*part.cut_db, all.cut_db.value_or(*part.cut_db));
+  all.lacks_degree_4 = all.lacks_degree_4 || part.lacks_degree_4;
   all.antialiased = all.antialiased || part.antialiased;
   if (all.perspective != part.perspective)
     log_warning("{}: its parts are sorted or projected differently; all are drawn as the first is", all.name);

@@ -146,10 +146,6 @@ fs::path file_of(const fs::path& path) {
       path.string(), found.size(), names);
 }
 
-std::string cut_in_words(const Model& model) {
-  return fmt::format("{:.1f} dB (estimated by the coefficients left out)", *model.cut_db);
-}
-
 Model load_model_alone(const fs::path& path, const ModelOptions& options) {
   const fs::path file = file_of(path);
   Model model = load_content(file, options);
@@ -165,10 +161,7 @@ Model load_model_alone(const fs::path& path, const ModelOptions& options) {
         "quaternions",
         file.string(), model.left_out);
   }
-  if (model.cut_db) {
-    log_warning("{}: harmonics of degree 4 are drawn up to degree 3, which costs about {}", file.string(),
-                cut_in_words(model));
-  }
+  if (model.lacks_degree_4) log_warning("{}: harmonics of degree 4 are drawn up to degree 3", file.string());
   if (model.left_out > 0) {
     log_warning(
         "{}: {} of {} Gaussians left out (values not finite or out of range, a scale above 1e13, or a zero "

@@ -39,7 +39,4 @@ void follow(const TrainingRun& run, const std::filesystem::path& file, Model& mo
 /// The exposure.json of that training (formats/exposures.h), for a model's file or a folder with one.
 std::optional<std::filesystem::path> find_exposures(const std::filesystem::path& path);
 
-/// Model::cut_db for people: "38.1 dB (...)".
-std::string cut_in_words(const Model& model);
-
 }  // namespace binosplat

@@ -8,6 +8,7 @@
 #include "base/error.h"
 #include "formats/model_output.h"
 #include "formats/ply_layout.h"
+#include "formats/smallest_three.h"
 #include "formats/zip_file.h"
 
 namespace binosplat {
@@ -27,24 +28,6 @@ Losses sog_losses(const Model& model);
 /// The nearest whole number from 0 to `most`.
 inline std::uint32_t nearest_step(double v, std::uint32_t most) {
   return static_cast<std::uint32_t>(std::clamp(std::floor(v + 0.5), 0.0, static_cast<double>(most)));
-}
-
-/// A unit quaternion by its three smallest components, the largest made positive, which then follows from
-/// them.
-struct SmallestThree {
-  int largest = 0;       // index of the one left out
-  glm::dvec3 others{0};  // the others in ascending order, each within +-sqrt(1/2)
-};
-template <typename Quaternion>
-SmallestThree smallest_three(const Quaternion& q) {
-  SmallestThree out;
-  for (int c = 1; c < 4; ++c) {
-    if (std::abs(q[c]) > std::abs(q[out.largest])) out.largest = c;
-  }
-  for (int c = 0, k = 0; c < 4; ++c) {
-    if (c != out.largest) out.others[k++] = q[out.largest] < 0 ? -q[c] : q[c];
-  }
-  return out;
 }
 
 /// Adds a line to `losses` if there are Gaussians for which `lost` is true.

@@ -15,6 +15,7 @@
 #include "formats/perspective.h"
 #include "formats/ply_layout.h"
 #include "formats/ply_numbers.h"
+#include "formats/ply_rows.h"
 
 namespace binosplat {
 
@@ -22,26 +23,17 @@ namespace {
 
 constexpr std::size_t progress_block = 65536;  // Gaussians between two reports of progress
 
-/// The lines of a text file's elements, one each.
+/// The rows of a text file's elements as numbers.
 class PlyText {
  public:
   PlyText(const std::filesystem::path& path, std::string_view text, const PlyHeader& header)
-      : path_(path), text_(text), at_(header.data), line_(header.lines) {}
+      : path_(path), lines_(path, text, header) {}
 
   /// Bytes that are not read yet.
-  std::size_t left() const { return text_.size() - at_; }
+  std::size_t left() const { return lines_.left(); }
 
-  /// The next line that is not blank.
   std::string_view next_line(const PlyElement& element, std::uint64_t row) {
-    while (at_ < text_.size()) {
-      const std::size_t end = std::min(text_.find('\n', at_), text_.size());
-      const std::string_view line = text_.substr(at_, end - at_);
-      at_ = std::min(end + 1, text_.size());
-      ++line_;
-      if (line.find_first_not_of(blanks) != std::string_view::npos) return line;
-    }
-    fail("{} is cut short: it ends at line {} with {} of {} lines of element '{}'; fetch or export it again",
-         path_.string(), line_, row, element.count, element.name);
+    return lines_.next(element, row);
   }
 
   /// One value a property; of lists the length.
@@ -54,15 +46,15 @@ class PlyText {
       values.push_back(value);
       if (property.count_type) {
         if (value < 0 || value != std::floor(value)) {
-          fail("{}, line {}: list '{}' of element '{}' {} has length {}", path_.string(), line_,
+          fail("{}, line {}: list '{}' of element '{}' {} has length {}", path_.string(), lines_.number(),
                property.name, element.name, row, value);
         }
         for (double k = 0; k < value; ++k) parse_value(element, row, property, rest);
       }
     }
     if (rest.find_first_not_of(blanks) != std::string_view::npos) {
-      fail("{}, line {}: element '{}' {} has more values than its {} properties", path_.string(), line_,
-           element.name, row, element.properties.size());
+      fail("{}, line {}: element '{}' {} has more values than its {} properties", path_.string(),
+           lines_.number(), element.name, row, element.properties.size());
     }
   }
 
@@ -74,7 +66,7 @@ class PlyText {
     if (value >= 0.0 && value <= 65535.0 && value == std::floor(value))
       return half_of(static_cast<std::uint16_t>(value));
     fail("{}, line {}: property '{}' of type ushort is {}; expected the bits of a half, 0 to 65535",
-         path_.string(), line_, layout.vertices->properties[source.property].name, value);
+         path_.string(), lines_.number(), layout.vertices->properties[source.property].name, value);
   }
 
  private:
@@ -85,25 +77,23 @@ class PlyText {
     std::string_view word = rest.substr(begin, end - begin);
     rest.remove_prefix(end);
     if (word.empty()) {
-      fail("{}, line {}: element '{}' {} ends before property '{}'", path_.string(), line_, element.name, row,
-           property.name);
+      fail("{}, line {}: element '{}' {} ends before property '{}'", path_.string(), lines_.number(),
+           element.name, row, property.name);
     }
     const std::string_view digits = word.starts_with('+') ? word.substr(1) : word;
     double value = 0;
     const auto [stop, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
     if (error != std::errc() || stop != digits.data() + digits.size()) {
-      fail("{}, line {}: {} is no number (property '{}' of element '{}' {})", path_.string(), line_,
+      fail("{}, line {}: {} is no number (property '{}' of element '{}' {})", path_.string(), lines_.number(),
            quoted(word), property.name, element.name, row);
     }
     return value;
   }
 
-  static constexpr std::string_view blanks = " \t\r";
+  static constexpr std::string_view blanks = PlyLines::blanks;
 
   const std::filesystem::path& path_;
-  std::string_view text_;
-  std::size_t at_;    // byte where the next line begins
-  std::size_t line_;  // lines read so far
+  PlyLines lines_;
 };
 
 /// Base colours that are no bytes were read as 0 to 1. Some programs write 0 to 255: the largest decides.
@@ -161,7 +151,7 @@ class PlyReader {
                path_.string());
     }
     if (layout_.rgb && !layout_.rgb_bytes) settle_colours(path_, kept_, model_);
-    model_.cut_db = cut_harmonics_db(model_, cut_);
+    model_.lacks_degree_4 = layout_.lacks_degree_4;
     keep_only(model_, kept_);
     if (layout_.wide) {
       std::size_t i = 0;
@@ -176,7 +166,6 @@ class PlyReader {
   void make_room() {
     model_.resize(layout_.vertices->count);
     kept_.assign(layout_.vertices->count, 0);
-    if (layout_.cut_at > 0) cut_.assign(layout_.vertices->count, 0.0f);
     if (layout_.wide) places_.resize(layout_.vertices->count);
   }
 
@@ -190,8 +179,6 @@ class PlyReader {
       if (layout_.wide && k < 3) places_[i][static_cast<glm::length_t>(k)] = value;
     }
     kept_[i] = decode(layout_, model_, i, raw) ? 1 : 0;
-    if (layout_.cut_at > 0)
-      cut_[i] = square_sum(std::span<const float, cut_values>(&raw[layout_.cut_at], cut_values));
   }
 
   [[noreturn]] void fail_cut(const PlyElement& element, std::uint64_t row) const {
@@ -203,10 +190,7 @@ class PlyReader {
 
   /// Binary rows of one size.
   void read_fixed(const PlyElement& element, bool gaussians) {
-    const std::size_t row = element.row_bytes();
-    const std::size_t left = bytes_.size() - at_;
-    if (row == 0) return;
-    if (element.count > left / row) fail_too_short(element, row);
+    const std::size_t row = element.row_bytes(), behind = end_of_rows(path_, bytes_, element, at_);
     if (gaussians) {
       make_room();
       std::vector<std::size_t> offsets;
@@ -220,21 +204,7 @@ class PlyReader {
         progress_.update(end);
       }
     }
-    at_ += element.count * row;
-  }
-
-  [[noreturn]] void fail_too_short(const PlyElement& element, std::size_t row) const {
-    const std::size_t left = bytes_.size() - at_;
-    std::uint64_t needed = 0;
-    if (__builtin_mul_overflow(element.count, row, &needed)) {
-      fail("{}: its header promises {} of element '{}', more than any file can hold; the header is damaged",
-           path_.string(), element.count, element.name);
-    }
-    fail(
-        "{} is cut short: element '{}' needs {} x {} = {} bytes from byte {} on, but {} are there; the file "
-        "ends within "
-        "number {} of {}, counted from 0. Fetch or export it again",
-        path_.string(), element.name, element.count, row, needed, at_, left, left / row, element.count);
+    at_ = behind;
   }
 
   /// Binary rows with lists, whose sizes only a walk can tell.
@@ -310,7 +280,6 @@ class PlyReader {
   Model model_;
   std::vector<std::uint8_t> kept_;
   std::vector<glm::dvec3> places_;  // where layout_.wide
-  std::vector<float> cut_;          // square sums of degree 4, where there is one
 };
 
 }  // namespace

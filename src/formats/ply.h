@@ -3,10 +3,10 @@
 //
 // Vertex properties are found by name: x y z, f_dc_0..2, f_rest_*, opacity (logit), scale_0..2 (logarithms),
 // rot_0..3 (quaternion w x y z of any length). The number of f_rest gives the degree of the spherical
-// harmonics: 0, 9, 24 or 45 for degrees 0 to 3; of 72 (degree 4) degree 3 is read, and Model::cut_db is set.
-// They are channel-major in the file, f_rest[c * K + k], and coefficient-major in Model::sh. Text and binary
-// of either byte order, any scalar type, any order of properties, CRLF in the header, other elements and
-// properties: all are read or skipped as ply defines.
+// harmonics: 0, 9, 24 or 45 for degrees 0 to 3; of 72 (degree 4) degree 3 is read, and Model::lacks_degree_4
+// is set. They are channel-major in the file, f_rest[c * K + k], and coefficient-major in Model::sh. Text and
+// binary of either byte order, any scalar type, any order of properties, CRLF in the header, other elements
+// and properties: all are read or skipped as ply defines.
 //
 // A number of a Gaussian that is declared as ushort is a half (IEEE 754 binary16), of which ply has no type:
 // some exporters write them so, and other viewers read them so. In text it is the whole number of its bits.

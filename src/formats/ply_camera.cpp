@@ -8,10 +8,11 @@
 
 #include "base/error.h"
 #include "base/mapped_file.h"
+#include "base/text.h"
 #include "formats/content.h"
 #include "formats/lens.h"
-#include "formats/ply_header.h"
 #include "formats/ply_numbers.h"
+#include "formats/ply_rows.h"
 
 namespace binosplat {
 
@@ -50,13 +51,10 @@ class CameraRows {
     for (const PlyElement& element : header_.elements) {
       if (&element == &wanted) break;
       if (element.has_list()) fail(wanted, "expected before it elements without lists");
-      const std::size_t row = element.row_bytes();
-      if (row != 0 && element.count > (bytes_.size() - at) / row)
-        fail(wanted, "the file is cut short before it");
-      at += element.count * row;
+      at = end_of_rows(path_, bytes_, element, at);
     }
     const PlyType type = wanted.properties[0].type;
-    if (wanted.count > (bytes_.size() - at) / size_of(type)) fail(wanted, "the file is cut short within it");
+    end_of_rows(path_, bytes_, wanted, at);
     Numbers numbers;
     for (std::size_t i = 0; i < wanted.count; ++i)
       numbers.push_back(load_ply_number(type, &bytes_[at + i * size_of(type)], is_swapped(header_.format)));
@@ -64,30 +62,17 @@ class CameraRows {
   }
 
   Numbers read_text(const PlyElement& wanted) const {
-    const std::string_view text = as_text(bytes_);
-    std::size_t at = header_.data;
-    // The next line that is not blank.
-    const auto next = [&] {
-      while (at < text.size()) {
-        const std::size_t end = std::min(text.find('\n', at), text.size());
-        const std::string_view line = text.substr(at, end - at);
-        at = end + 1;
-        const std::size_t first = line.find_first_not_of(" \t\r");
-        if (first != std::string_view::npos)
-          return line.substr(first, line.find_last_not_of(" \t\r") + 1 - first);
-      }
-      fail(wanted, "the file is cut short before its end");
-    };
+    PlyLines lines(path_, as_text(bytes_), header_);
     for (const PlyElement& element : header_.elements) {
       if (&element == &wanted) break;
-      for (std::uint64_t i = 0; i < element.count && !element.properties.empty(); ++i) next();
+      for (std::uint64_t i = 0; i < element.count && !element.properties.empty(); ++i) lines.next(element, i);
     }
     Numbers numbers;
     for (std::uint64_t i = 0; i < wanted.count; ++i) {
-      const std::string_view word = next();
-      const auto [end, error] =
-          std::from_chars(word.data(), word.data() + word.size(), numbers.emplace_back());
-      if (error != std::errc() || end != word.data() + word.size())
+      const std::vector<std::string_view> words = words_of(lines.next(wanted, i));
+      const char* const end = words[0].data() + words[0].size();
+      const auto [stop, error] = std::from_chars(words[0].data(), end, numbers.emplace_back());
+      if (words.size() != 1 || error != std::errc() || stop != end)
         fail(wanted, "expected rows of one number");
     }
     return numbers;

@@ -152,11 +152,7 @@ PlyLayout find_layout(const std::filesystem::path& path, const PlyHeader& header
   }
   layout.filter_3d = layout.vertices->find("filter_3D") != nullptr;
   if (layout.filter_3d) finder.add("filter_3D");
-  if (in_file > higher) layout.cut_at = layout.sources.size();
-  for (std::size_t k = higher; k < in_file; ++k) {
-    for (std::size_t channel = 0; channel < 3; ++channel)
-      finder.add(fmt::format("f_rest_{}", channel * in_file + k));
-  }
+  layout.lacks_degree_4 = in_file > higher;
   const std::optional<bool> said = said_antialiased(header);
   layout.antialiased = said.value_or(layout.filter_3d);
   layout.antialiased_by = said ? by_comment : layout.filter_3d ? "its filter_3D" : "";

@@ -7,15 +7,14 @@
 #include <string>
 #include <vector>
 
-#include "formats/harmonics_cut.h"
 #include "formats/ply_header.h"
 #include "scene/model.h"
 
 namespace binosplat {
 
 /// The numbers of one Gaussian as stored: position, log-scales, quaternion, opacity logit, then the
-/// coefficients in the order of Model::sh, then filter_3D where there is one, then coefficients of degree 4.
-using RawGaussian = std::array<float, 11 + 3 * sh_count(3) + 1 + cut_values>;
+/// coefficients in the order of Model::sh, then filter_3D where there is one.
+using RawGaussian = std::array<float, 11 + 3 * sh_count(3) + 1>;
 
 struct PlyLayout {
   /// Where a number of a RawGaussian comes from.
@@ -33,9 +32,9 @@ struct PlyLayout {
   bool rgb_bytes = false;       // of 0 to 255 (Nerfstudio)
   bool filter_3d = false;       // the last number is Mip-Splatting's filter (world units)
   bool antialiased = false;
-  std::string antialiased_by;  // as Model has it
-  bool flat = false;           // a Gaussian has two scales (2D Gaussian Splatting)
-  std::size_t cut_at = 0;      // where the coefficients of degree 4 begin; 0: there are none
+  std::string antialiased_by;   // as Model has it
+  bool flat = false;            // a Gaussian has two scales (2D Gaussian Splatting)
+  bool lacks_degree_4 = false;  // the file has more coefficients than are read
 };
 
 /// The low-pass that Mip-Splatting trains with, px^2; a ply with filter_3D is drawn with it.

@@ -9,7 +9,7 @@
 #include "base/error.h"
 #include "base/mapped_file.h"
 #include "base/parallel.h"
-#include "formats/ply_header.h"
+#include "formats/ply_rows.h"
 
 namespace binosplat {
 
@@ -67,27 +67,11 @@ class AnchorReader {
     layout_.row = vertices_->row_bytes();
     if (vertices_->count == 0)
       fail("{} holds no anchors: its header says 'element vertex 0'", path_.string());
-    const std::size_t left = bytes_.size() - header_.data;
-    if (vertices_->count > left / layout_.row) {
-      fail(
-          "{} is cut short: {} anchors of {} bytes from byte {} on, but {} bytes are there. Fetch or export "
-          "it "
-          "again",
-          path_.string(), vertices_->count, layout_.row, header_.data, left);
-    }
+    end_of_rows(path_, bytes_, *vertices_, header_.data);
   }
 
   std::size_t column(const std::string& name) const {
-    std::size_t at = 0;
-    for (const PlyProperty& property : vertices_->properties) {
-      if (property.name == name) {
-        if (property.type == PlyType::float32) return at;
-        fail("{}: property '{}' is not of type float, as Scaffold-GS writes it", path_.string(), name);
-      }
-      at += size_of(property.type);
-    }
-    fail("{}: element 'vertex' has no property '{}', which the anchors of Scaffold-GS have", path_.string(),
-         name);
+    return offset_in_row(path_, *vertices_, name, PlyType::float32);
   }
 
   // The columns NAME0, NAME1, ... in the order of their numbers, whatever the file's.

@@ -7,6 +7,7 @@
 #include "base/parallel.h"
 #include "formats/perspective.h"
 #include "formats/plausible.h"
+#include "formats/smallest_three.h"
 #include "formats/sog.h"
 #include "formats/webp.h"
 #include "formats/zip_file.h"
@@ -190,14 +191,9 @@ bool SogSource::decode_one(const Textures& textures, std::size_t i, Model& model
   // The largest of w, x, y, z is left out; the fourth byte says which.
   glm::vec4 rotation(1, 0, 0, 0);
   if (three[3] >= 252) {
-    double rest = 1.0;
-    for (int c = 0, from = 0; c < 4; ++c) {
-      if (c == three[3] - 252) continue;
-      const double v = (three[from++] / 255.0 - 0.5) * std::sqrt(2.0);
-      rotation[c] = static_cast<float>(v);
-      rest -= v * v;
-    }
-    rotation[three[3] - 252] = static_cast<float>(std::sqrt(std::max(rest, 0.0)));
+    SmallestThree smallest{three[3] - 252};
+    for (int k = 0; k < 3; ++k) smallest.others[k] = (three[k] / 255.0 - 0.5) * std::sqrt(2.0);
+    rotation = smallest.quaternion();
   }
   if (degree_ > 0) {
     const std::uint8_t* label = texel(labels);

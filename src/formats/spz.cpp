@@ -8,7 +8,7 @@
 #include <fmt/core.h>
 #include "base/parallel.h"
 #include "formats/bytes.h"
-#include "formats/harmonics_cut.h"
+#include "formats/smallest_three.h"
 #include "formats/spz_container.h"
 
 namespace binosplat {
@@ -42,13 +42,6 @@ class SpzDecoder {
     return place(model, i, {position(i), scale, rotation(i), opacity, sh.data()});
   }
 
-  /// Of a file of degree 4.
-  float cut_square_sum(std::size_t i) const {
-    std::array<float, cut_values> cut;
-    for (std::size_t k = 0; k < cut_values; ++k) cut[k] = harmonic(i, 3 * (sh_count(3) - 1) + k);
-    return square_sum(cut);
-  }
-
  private:
   float harmonic(std::size_t i, std::size_t k) const {
     return static_cast<float>(byte(harmonics_, sizes_.harmonics * i + k) - 128) / 128.0f;
@@ -71,24 +64,20 @@ class SpzDecoder {
   /// As w, x, y, z; stored are x, y, z and, from version 3 on, the three smallest of x, y, z, w.
   glm::vec4 rotation(std::size_t i) const {
     const std::byte* at = rotations_ + sizes_.rotation * i;
-    std::array<double, 4> xyzw{};
-    int left_out = 3;
-    if (contents_.version < 3) {
-      for (std::size_t c = 0; c < 3; ++c) xyzw[c] = byte(at, c) / 127.5 - 1.0;
-    } else {
+    SmallestThree three{3};
+    for (int c = 0; c < 3 && contents_.version < 3; ++c)
+      three.others[c] = byte(at, static_cast<std::size_t>(c)) / 127.5 - 1.0;
+    if (contents_.version >= 3) {
       const auto word = load_number<std::uint32_t>(at);
-      left_out = static_cast<int>(bit_field(word, 30, 2));
-      for (int c = 0, low = 20; c < 4; ++c) {
-        if (c == left_out) continue;
+      three.largest = static_cast<int>(bit_field(word, 30, 2));
+      for (int k = 0; k < 3; ++k) {
+        const int low = 20 - 10 * k;
         const double magnitude = bit_field(word, low, 9) / 511.0 * std::sqrt(0.5);
-        xyzw[static_cast<std::size_t>(c)] = bit_field(word, low + 9, 1) != 0 ? -magnitude : magnitude;
-        low -= 10;
+        three.others[k] = bit_field(word, low + 9, 1) != 0 ? -magnitude : magnitude;
       }
     }
-    double rest = 1.0;
-    for (const double v : xyzw) rest -= v * v;
-    xyzw[static_cast<std::size_t>(left_out)] = std::sqrt(std::max(rest, 0.0));
-    return glm::vec4(glm::dvec4(xyzw[3], xyzw[0], xyzw[1], xyzw[2]));
+    const glm::dvec4 xyzw = three.quaternion();
+    return {glm::dvec4(xyzw.w, xyzw.x, xyzw.y, xyzw.z)};
   }
 
   const SpzContents& contents_;
@@ -110,11 +99,7 @@ Model load_spz(const std::string& source, std::span<const std::byte> bytes) {
   std::vector<std::uint8_t> kept(contents.count);
   parallel_for(
       contents.count, [&](std::size_t i) { kept[i] = decoder.decode(model, i) ? 1 : 0; }, 2048);
-  if (contents.degree == 4) {
-    std::vector<float> cut(contents.count);
-    for (std::size_t i = 0; i < cut.size(); ++i) cut[i] = decoder.cut_square_sum(i);
-    model.cut_db = cut_harmonics_db(model, cut);
-  }
+  model.lacks_degree_4 = contents.degree == 4;
   keep_only(model, kept);
   return model;
 }

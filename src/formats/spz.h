@@ -16,8 +16,8 @@ namespace binosplat {
 inline constexpr std::string_view axes_not_said = ", axes not said";
 
 /// Decodes a file's bytes; `source` names it in errors. Of harmonics of degree 4 degree 3 is
-/// read, and Model::cut_db is set. Throws Error for damaged or cut files, for unknown versions, and for
-/// headers that promise more than the bytes can unfold to; nothing is unpacked beyond what the header
+/// read, and Model::lacks_degree_4 is set. Throws Error for damaged or cut files, for unknown versions, and
+/// for headers that promise more than the bytes can unfold to; nothing is unpacked beyond what the header
 /// promises.
 Model load_spz(const std::string& source, std::span<const std::byte> bytes);
 

@@ -11,7 +11,6 @@
 #include "base/mapped_file.h"
 #include "base/text.h"
 #include "formats/content.h"
-#include "formats/harmonics_cut.h"
 #include "formats/join.h"
 #include "formats/perspective.h"
 #include "formats/plausible.h"
@@ -202,7 +201,6 @@ class UsdReader {
     model.resize(n);
     std::vector<std::uint8_t> kept(n);
     const std::array<float, 3> grey{};
-    std::vector<float> cut;  // of degree 4
     for (std::size_t i = 0; i < n; ++i) {
       glm::vec3 scale = scales.empty() ? glm::vec3(1.0f) : glm::make_vec3(&scales[3 * i]);
       if (flat) scale.z = 0.0f;
@@ -211,11 +209,8 @@ class UsdReader {
                        rotations.empty() ? glm::vec4(1, 0, 0, 0) : glm::make_vec4(&rotations[4 * i]),
                        opacities.empty() ? 1.0f : opacities[i],
                        harmonics.empty() ? grey.data() : &harmonics[3 * in_file * i]});
-      if (said == 4.0 && !harmonics.empty())
-        cut.push_back(square_sum(
-            std::span<const float, cut_values>(&harmonics[3 * (in_file * i + sh_count(3))], cut_values)));
     }
-    model.cut_db = cut_harmonics_db(model, cut);
+    model.lacks_degree_4 = said == 4.0 && !harmonics.empty();
     keep_only(model, kept);
     return model;
   }

@@ -56,10 +56,9 @@ struct Model {
   std::size_t left_out = 0;         // Gaussians of the source with values not finite or a zero quaternion
   double kernel_px2 = KERNEL_PX2;   // variance of the low-pass it was trained with, px^2
   bool antialiased = false;  // trained with the opacity that the low-pass takes away (Mip-Splatting, Yu 2024)
-  std::string antialiased_by;  // what says so, or that it was not; empty: nothing does
-  Perspective perspective;     // that it was trained with
-  /// What harmonics beyond degree 3 that its file has are worth, an estimate in dB (formats/harmonics_cut.h).
-  std::optional<double> cut_db;
+  std::string antialiased_by;   // what says so, or that it was not; empty: nothing does
+  Perspective perspective;      // that it was trained with
+  bool lacks_degree_4 = false;  // its file has harmonics of degree 4, too, which nothing here draws
   ModelAxes axes;
   /// Gaussians that it may come to have while it is drawn (scene/model_chunks.h): whoever draws it makes room
   /// for all of them at once, since no frame should wait for that.

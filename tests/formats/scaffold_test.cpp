@@ -263,11 +263,11 @@ TEST_F(BrokenScaffold, Anchors) {
   };
   const std::string bytes = to_bytes(file);
   test::write_text(folder / "point_cloud.ply", bytes.substr(0, bytes.size() - 1));
-  EXPECT_TRUE(refused({"point_cloud.ply is cut short", "40 anchors of 316 bytes"}));
+  EXPECT_TRUE(refused({"point_cloud.ply is cut short", "element 'vertex' needs 40 x 316 = "}));
   with([](test::PlyFile& f) { f.format = "ascii"; });
   EXPECT_TRUE(refused({"point_cloud.ply", "Scaffold-GS", "binary_little_endian"}));
   with([](test::PlyFile& f) { f.type = "double"; });
-  EXPECT_TRUE(refused({"point_cloud.ply", "property 'x' is not of type float"}));
+  EXPECT_TRUE(refused({"point_cloud.ply", "property 'x' of element 'vertex' is not of type float"}));
   with([](test::PlyFile& f) { f.rows.clear(); });
   EXPECT_TRUE(refused({"holds no anchors"}));
   rename("f_offset_7", "other");

@@ -190,8 +190,7 @@ TEST(Spz, SaysWhatItIs) {
   EXPECT_TRUE(model.antialiased);
   EXPECT_FALSE(load_model(folder / "spz/adobe-train-v3-sh3-rdf2rub.spz").antialiased);
   const std::string said = said_of(test::read_text(folder / "spz/adobe-v4-sh4.spz"));
-  EXPECT_NE(said.find("harmonics of degree 4 are drawn up to degree 3, which costs about"), std::string::npos)
-      << said;
+  EXPECT_NE(said.find("harmonics of degree 4 are drawn up to degree 3"), std::string::npos) << said;
 }
 
 }  // namespace

@@ -1,0 +1,40 @@
+#pragma once
+// Unit quaternions by their three smallest components, as packed formats store them.
+
+#include <algorithm>
+#include <cmath>
+#include <glm/glm.hpp>
+
+namespace binosplat {
+
+/// The largest component, made positive, follows from the others.
+struct SmallestThree {
+  int largest = 0;       // index of the one left out
+  glm::dvec3 others{0};  // in ascending order of their indices, each within +-sqrt(1/2)
+
+  glm::dvec4 quaternion() const {
+    glm::dvec4 q(0.0);
+    double rest = 1.0;
+    for (int c = 0, k = 0; c < 4; ++c) {
+      if (c == largest) continue;
+      q[c] = others[k++];
+      rest -= q[c] * q[c];
+    }
+    q[largest] = std::sqrt(std::max(rest, 0.0));
+    return q;
+  }
+};
+
+template <typename Quaternion>
+SmallestThree smallest_three(const Quaternion& q) {
+  SmallestThree out;
+  for (int c = 1; c < 4; ++c) {
+    if (std::abs(q[c]) > std::abs(q[out.largest])) out.largest = c;
+  }
+  for (int c = 0, k = 0; c < 4; ++c) {
+    if (c != out.largest) out.others[k++] = q[out.largest] < 0 ? -q[c] : q[c];
+  }
+  return out;
+}
+
+}  // namespace binosplat
