@@ -1,8 +1,10 @@
 #include "formats/gzip.h"
 
+#include <libdeflate.h>
 #include <zlib.h>
 
 #include <algorithm>
+#include <new>
 
 #include "base/error.h"
 
@@ -51,34 +53,14 @@ std::vector<std::byte> GzipReader::read(std::size_t most) {
   return out;
 }
 
-GzipWriter::GzipWriter(Sink sink)
-    : sink_(std::move(sink)), stream_(std::make_unique<z_stream>()), out_(std::size_t{1} << 18) {
-  *stream_ = {};
-  constexpr int usual_memory = 8;
-  if (deflateInit2(stream_.get(), Z_DEFAULT_COMPRESSION, Z_DEFLATED, with_gzip_header, usual_memory,
-                   Z_DEFAULT_STRATEGY) != Z_OK)
-    throw std::bad_alloc();
-}
-
-GzipWriter::~GzipWriter() { deflateEnd(stream_.get()); }
-
-void GzipWriter::write(std::span<const std::byte> bytes) {
-  for (; !bytes.empty(); bytes = bytes.subspan(std::min(bytes.size(), most_at_once)))
-    deflate(bytes.first(std::min(bytes.size(), most_at_once)), Z_NO_FLUSH);
-}
-
-void GzipWriter::finish() { deflate({}, Z_FINISH); }
-
-void GzipWriter::deflate(std::span<const std::byte> bytes, int flush) {
-  // zlib does not write to what it reads.
-  stream_->next_in = reinterpret_cast<Bytef*>(const_cast<std::byte*>(bytes.data()));
-  stream_->avail_in = static_cast<uInt>(bytes.size());
-  do {
-    stream_->next_out = reinterpret_cast<Bytef*>(out_.data());
-    stream_->avail_out = static_cast<uInt>(out_.size());
-    ::deflate(stream_.get(), flush);
-    sink_({out_.data(), out_.size() - stream_->avail_out});
-  } while (stream_->avail_out == 0);
+std::vector<std::byte> gzip_of(std::span<const std::byte> bytes) {
+  constexpr int usual_level = 6;
+  const std::unique_ptr<libdeflate_compressor, void (*)(libdeflate_compressor*)> compressor(
+      libdeflate_alloc_compressor(usual_level), libdeflate_free_compressor);
+  if (compressor == nullptr) throw std::bad_alloc();
+  std::vector<std::byte> out(libdeflate_gzip_compress_bound(compressor.get(), bytes.size()));
+  out.resize(libdeflate_gzip_compress(compressor.get(), bytes.data(), bytes.size(), out.data(), out.size()));
+  return out;
 }
 
 }  // namespace binosplat

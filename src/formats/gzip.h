@@ -1,9 +1,7 @@
 #pragma once
-// gzip: read in pieces whose sizes the reader knows beforehand, so that nothing unfolds beyond them, and
-// written piece by piece.
+// gzip: read in pieces whose sizes the reader knows beforehand, so that nothing unfolds beyond them.
 
 #include <cstddef>
-#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -34,25 +32,7 @@ class GzipReader {
   bool ended_ = false;
 };
 
-class GzipWriter {
- public:
-  using Sink = std::function<void(std::span<const std::byte>)>;
-
-  /// What is compressed goes to `sink`. The same bytes give the same file: it has no time in it.
-  explicit GzipWriter(Sink sink);
-  ~GzipWriter();
-  GzipWriter(const GzipWriter&) = delete;
-  GzipWriter& operator=(const GzipWriter&) = delete;
-
-  void write(std::span<const std::byte> bytes);
-  void finish();  // writes what is left; nothing may come after
-
- private:
-  void deflate(std::span<const std::byte> bytes, int flush);
-
-  Sink sink_;
-  std::unique_ptr<z_stream_s> stream_;
-  std::vector<std::byte> out_;
-};
+/// The bytes as gzip has them; always the same for the same ones: it has no time in it.
+std::vector<std::byte> gzip_of(std::span<const std::byte> bytes);
 
 }  // namespace binosplat

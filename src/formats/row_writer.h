@@ -1,5 +1,5 @@
 #pragma once
-// Rows of one size, made on all cores and written in blocks, so that no file is in memory as a whole.
+// Rows of one size, made on all cores and handed on in blocks.
 
 #include <algorithm>
 #include <cstddef>

@@ -125,13 +125,14 @@ Losses losses_of(const Model& model, int bits, int harmonic_bits) {
 
 Losses write_spz(OutputFile& file, const Model& model, int harmonic_bits) {
   const int bits = fraction_bits(model);
-  GzipWriter gzip([&](std::span<const std::byte> bytes) { file.write(bytes); });
-  gzip.write(spz_header(version, model.count(), model.degree, bits, model.antialiased));
-  RowWriter rows([&](std::span<const std::byte> bytes) { gzip.write(bytes); },
-                 (model.degree > 0 ? 6 : 5) * model.count());
+  std::vector<std::byte> bytes = spz_header(version, model.count(), model.degree, bits, model.antialiased);
+  const auto append = [&](std::span<const std::byte> more) {
+    bytes.insert(bytes.end(), more.begin(), more.end());
+  };
+  RowWriter rows(append, (model.degree > 0 ? 6 : 5) * model.count());
   write_rows(rows, model, bits, harmonic_bits);
-  gzip.write(spz_axes_extension(model.axes.letters));
-  gzip.finish();
+  append(spz_axes_extension(model.axes.letters));
+  file.write(gzip_of(bytes));
   return losses_of(model, bits, harmonic_bits);
 }
 
