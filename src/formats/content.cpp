@@ -13,7 +13,8 @@ using namespace std::string_view_literals;
 /// What a content is, for people, and how it begins; empty where that tells nothing.
 struct Kind {
   Content content;
-  std::string_view words, start = "";
+  std::string_view words;
+  std::string_view start{};
 };
 
 constexpr Kind kinds[] = {

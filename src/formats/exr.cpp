@@ -230,20 +230,27 @@ bool is_display(const Imf::Header& header) {
   return encoding != nullptr && encoding->value() == "display";
 }
 
-/// What is read of a file, with OpenEXR's errors in the place of which ours name it.
-template <typename Read>
-auto read_file(const std::filesystem::path& path, const Read& read) {
+/// What `work` returns, with errors that begin with `what` in the place of OpenEXR's own, which name no file.
+template <typename Work>
+auto with_errors(const std::string& what, const Work& work) {
   use_all_cores();
   try {
-    Imf::InputFile file(path.c_str());
-    return read(file);
+    return work();
   } catch (const Error&) {
     throw;
   } catch (const std::bad_alloc&) {
     throw;
   } catch (const std::exception& error) {
-    fail("{}: broken OpenEXR: {}", path.string(), error.what());
+    fail("{}: {}", what, error.what());
   }
+}
+
+template <typename Read>
+auto read_file(const std::filesystem::path& path, const Read& read) {
+  return with_errors(path.string() + ": broken OpenEXR", [&] {
+    Imf::InputFile file(path.c_str());
+    return read(file);
+  });
 }
 
 }  // namespace
@@ -265,23 +272,16 @@ namespace {
 /// Of one picture, or of a default view and those that are named.
 std::string bytes_of(const std::filesystem::path& path, const std::vector<const Picture*>& pictures,
                      const Imf::StringVector& views, const ExrOptions& options) {
-  MemoryStream stream(path.c_str());
-  use_all_cores();
-  try {
+  return with_errors("cannot write " + path.string(), [&] {
+    MemoryStream stream(path.c_str());
     std::vector<Plane> planes;
     for (std::size_t k = 0; k < pictures.size(); ++k) {
       std::vector<Plane> more = planes_of(*pictures[k], k == 0 ? "" : views[k] + ".", options);
       std::move(more.begin(), more.end(), std::back_inserter(planes));
     }
     write_planes(stream, pictures[0]->width, pictures[0]->height, planes, views, options);
-  } catch (const Error&) {
-    throw;
-  } catch (const std::bad_alloc&) {
-    throw;
-  } catch (const std::exception& error) {
-    fail("cannot write {}: {}", path.string(), error.what());
-  }
-  return stream.take();
+    return stream.take();
+  });
 }
 
 }  // namespace

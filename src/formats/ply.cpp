@@ -24,17 +24,9 @@ namespace {
 constexpr std::size_t progress_block = 65536;  // Gaussians between two reports of progress
 
 /// The rows of a text file's elements as numbers.
-class PlyText {
+class PlyText : public PlyLines {
  public:
-  PlyText(const std::filesystem::path& path, std::string_view text, const PlyHeader& header)
-      : path_(path), lines_(path, text, header) {}
-
-  /// Bytes that are not read yet.
-  std::size_t left() const { return lines_.left(); }
-
-  std::string_view next_line(const PlyElement& element, std::uint64_t row) {
-    return lines_.next(element, row);
-  }
+  using PlyLines::PlyLines;
 
   /// One value a property; of lists the length.
   void parse_row(const PlyElement& element, std::uint64_t row, std::string_view line,
@@ -46,15 +38,15 @@ class PlyText {
       values.push_back(value);
       if (property.count_type) {
         if (value < 0 || value != std::floor(value)) {
-          fail("{}, line {}: list '{}' of element '{}' {} has length {}", path_.string(), lines_.number(),
+          fail("{}, line {}: list '{}' of element '{}' {} has length {}", path_.string(), number(),
                property.name, element.name, row, value);
         }
         for (double k = 0; k < value; ++k) parse_value(element, row, property, rest);
       }
     }
     if (rest.find_first_not_of(blanks) != std::string_view::npos) {
-      fail("{}, line {}: element '{}' {} has more values than its {} properties", path_.string(),
-           lines_.number(), element.name, row, element.properties.size());
+      fail("{}, line {}: element '{}' {} has more values than its {} properties", path_.string(), number(),
+           element.name, row, element.properties.size());
     }
   }
 
@@ -66,7 +58,7 @@ class PlyText {
     if (value >= 0.0 && value <= 65535.0 && value == std::floor(value))
       return half_of(static_cast<std::uint16_t>(value));
     fail("{}, line {}: property '{}' of type ushort is {}; expected the bits of a half, 0 to 65535",
-         path_.string(), lines_.number(), layout.vertices->properties[source.property].name, value);
+         path_.string(), number(), layout.vertices->properties[source.property].name, value);
   }
 
  private:
@@ -77,23 +69,18 @@ class PlyText {
     std::string_view word = rest.substr(begin, end - begin);
     rest.remove_prefix(end);
     if (word.empty()) {
-      fail("{}, line {}: element '{}' {} ends before property '{}'", path_.string(), lines_.number(),
-           element.name, row, property.name);
+      fail("{}, line {}: element '{}' {} ends before property '{}'", path_.string(), number(), element.name,
+           row, property.name);
     }
     const std::string_view digits = word.starts_with('+') ? word.substr(1) : word;
     double value = 0;
     const auto [stop, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
     if (error != std::errc() || stop != digits.data() + digits.size()) {
-      fail("{}, line {}: {} is no number (property '{}' of element '{}' {})", path_.string(), lines_.number(),
+      fail("{}, line {}: {} is no number (property '{}' of element '{}' {})", path_.string(), number(),
            quoted(word), property.name, element.name, row);
     }
     return value;
   }
-
-  static constexpr std::string_view blanks = PlyLines::blanks;
-
-  const std::filesystem::path& path_;
-  PlyLines lines_;
 };
 
 /// Base colours that are no bytes were read as 0 to 1. Some programs write 0 to 255: the largest decides.
@@ -261,7 +248,7 @@ class PlyReader {
     if (gaussians) make_room();
     std::vector<double> values;
     for (std::uint64_t i = 0; i < element.count; ++i) {
-      const std::string_view line = text_.next_line(element, i);
+      const std::string_view line = text_.next(element, i);
       if (!gaussians) continue;
       text_.parse_row(element, i, line, values);
       keep(i, [&](const PlyLayout::Source& source) { return text_.value_of(layout_, source, values); });

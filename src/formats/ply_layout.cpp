@@ -69,27 +69,17 @@ std::size_t count_rest(const std::filesystem::path& path, const PlyElement& vert
   return count;
 }
 
-/// Collects the sources of a layout one by one.
-class Finder {
- public:
-  Finder(const std::filesystem::path& path, PlyLayout& layout) : path_(path), layout_(layout) {}
-
-  void add(const std::string& name) {
-    const PlyProperty* property = layout_.vertices->find(name);
-    if (property == nullptr) fail("{}: element 'vertex' has no property '{}'", path_.string(), name);
-    if (property->count_type) {
-      fail("{}: property '{}' of element 'vertex' is a list; expected one number", path_.string(), name);
-    }
-    // ply has no halves. Exporters declare them as ushort, and no whole numbers describe a Gaussian.
-    const bool halves = property->type == PlyType::uint16;
-    layout_.sources.push_back({static_cast<std::size_t>(property - layout_.vertices->properties.data()),
-                               halves ? PlyType::float16 : property->type, halves});
-  }
-
- private:
-  const std::filesystem::path& path_;
-  PlyLayout& layout_;
-};
+/// Adds the source of a number.
+void add_source(const std::filesystem::path& path, PlyLayout& layout, const std::string& name) {
+  const PlyProperty* property = layout.vertices->find(name);
+  if (property == nullptr) fail("{}: element 'vertex' has no property '{}'", path.string(), name);
+  if (property->count_type)
+    fail("{}: property '{}' of element 'vertex' is a list; expected one number", path.string(), name);
+  // ply has no halves. Exporters declare them as ushort, and no whole numbers describe a Gaussian.
+  const bool halves = property->type == PlyType::uint16;
+  layout.sources.push_back({static_cast<std::size_t>(property - layout.vertices->properties.data()),
+                            halves ? PlyType::float16 : property->type, halves});
+}
 
 /// Finds out whether there are base colours in the place of coefficients, and of which type.
 void find_rgb(const std::filesystem::path& path, PlyLayout& layout) {
@@ -127,7 +117,7 @@ PlyLayout find_layout(const std::filesystem::path& path, const PlyHeader& header
   const std::size_t higher = std::min<std::size_t>(in_file, 15);
   layout.degree = static_cast<int>(std::lround(std::sqrt(static_cast<double>(higher + 1)))) - 1;
 
-  Finder finder(path, layout);
+  const auto add = [&](const std::string& name) { add_source(path, layout, name); };
   layout.flat =
       (layout.vertices->find("scale_1") != nullptr && layout.vertices->find("scale_2") == nullptr) ||
       std::ranges::any_of(header.comments, [](const std::string& comment) {
@@ -136,7 +126,7 @@ PlyLayout find_layout(const std::filesystem::path& path, const PlyHeader& header
   // The third scale of a flat one is the second until decode() knows better.
   for (const char* name : {"x", "y", "z", "scale_0", "scale_1", layout.flat ? "scale_1" : "scale_2", "rot_0",
                            "rot_1", "rot_2", "rot_3", "opacity"}) {
-    finder.add(name);
+    add(name);
   }
   layout.wide = header.format == PlyFormat::ascii ||
                 std::ranges::any_of(layout.sources.begin(), layout.sources.begin() + 3,
@@ -144,14 +134,14 @@ PlyLayout find_layout(const std::filesystem::path& path, const PlyHeader& header
   find_rgb(path, layout);
   for (const char* name :
        layout.rgb ? std::array{"red", "green", "blue"} : std::array{"f_dc_0", "f_dc_1", "f_dc_2"}) {
-    finder.add(name);
+    add(name);
   }
   for (std::size_t k = 0; k < higher; ++k) {
     for (std::size_t channel = 0; channel < 3; ++channel)
-      finder.add(fmt::format("f_rest_{}", channel * in_file + k));
+      add(fmt::format("f_rest_{}", channel * in_file + k));
   }
   layout.filter_3d = layout.vertices->find("filter_3D") != nullptr;
-  if (layout.filter_3d) finder.add("filter_3D");
+  if (layout.filter_3d) add("filter_3D");
   layout.lacks_degree_4 = in_file > higher;
   const std::optional<bool> said = said_antialiased(header);
   layout.antialiased = said.value_or(layout.filter_3d);

@@ -36,8 +36,10 @@ class PlyLines {
 
   static constexpr std::string_view blanks = " \t\r";
 
- private:
+ protected:
   const std::filesystem::path& path_;
+
+ private:
   std::string_view text_;
   std::size_t at_;
   std::size_t number_;
