@@ -26,7 +26,7 @@ def callables():
 def test_every_argument_and_result_has_a_type():
     assert Path(binosplat.__file__).with_name("py.typed").exists()
     for name, function in callables():
-        for argument in list(inspect.signature(function).parameters.values()):
+        for argument in inspect.signature(function).parameters.values():
             assert argument.name == "self" or argument.annotation is not argument.empty, (name, argument)
         if not name.startswith(("Picture.", "Comparison.")):  # which dataclass() makes
             assert inspect.signature(function).return_annotation is not inspect.Signature.empty, name
@@ -39,7 +39,7 @@ def test_everything_has_documentation_and_every_argument_is_in_it():
         owner = getattr(binosplat, name.removesuffix(".__init__")) if name.endswith("__init__") else function
         text = inspect.getdoc(owner)
         assert text, name
-        if "\nParameters\n----------\n" not in text or name == "Exposures.__init__":
+        if "\nParameters\n----------\n" not in text:
             continue
         told = text.split("\nParameters\n----------\n")[1]
         for argument in inspect.signature(function).parameters:
