@@ -5,7 +5,6 @@
 
 #include "base/error.h"
 #include "base/statistics.h"
-#include "scene/curve.h"
 
 namespace binosplat {
 
@@ -40,6 +39,17 @@ template <typename T, typename Between>
 T cubic(const T& a, const T& b, const T& c, const T& d, double u, const Between& between) {
   const T ab = between(a, b, u), bc = between(b, c, u), cd = between(c, d, u);
   return between(between(ab, bc, u), between(bc, cd, u), u);
+}
+
+/// Catmull-Rom's slope at a knot from the slopes of the chords into it and out of it, which take the times
+/// `before` and `after`. Where one of them is much slower than the other (a turn on the spot, a walk straight
+/// ahead) it is bounded so that no way overshoots.
+template <typename V>
+V slope_between(const V& in, const V& out, double before, double after) {
+  const V slope = (after * in + before * out) / (before + after);
+  const double steepest = 3.0 * std::min(glm::length(in), glm::length(out));
+  const double steep = glm::length(slope);
+  return steep > steepest ? slope * (steepest / steep) : slope;
 }
 
 // The cubic from a to b that leaves and arrives with these slopes.
@@ -155,14 +165,14 @@ Camera KeyPath::at(double seconds) const {
   return camera;
 }
 
-std::vector<Camera> frames_of(const KeyPath& path, double frames_per_second) {
-  // The last key is a frame, too, however its time was rounded.
-  const double count = std::floor(path.seconds() * frames_per_second + 1e-6) + 1.0;
+std::vector<Camera> frames_of(const KeyPath& path, double frames_per_second, double seconds) {
+  constexpr double rounded = 1e-6;  // of a frame, which decides nothing
+  const double count = std::min(std::floor(path.seconds() * frames_per_second + rounded) + 1.0,
+                                std::max(1.0, std::ceil(seconds * frames_per_second - rounded)));
   if (!(count <= key_path_frames_most)) {
     fail(
         "a path of {:.4g} s at {} frames a second: {:.3g} frames are too many: {:.0e} fit, of fewer "
-        "--seconds or "
-        "a lower --fps",
+        "--seconds, a lower --fps or a faster --tour",
         path.seconds(), frames_per_second, count, key_path_frames_most);
   }
   std::vector<Camera> frames;

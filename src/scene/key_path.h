@@ -2,6 +2,7 @@
 // A smooth way through cameras that somebody set as keys: for videos, and for playing them in a window.
 
 #include <glm/gtc/quaternion.hpp>
+#include <limits>
 #include <optional>
 #include <span>
 #include <vector>
@@ -49,8 +50,9 @@ class KeyPath {
   std::vector<Knot> knots_;
 };
 
-/// The cameras of a path, `frames_per_second` from its first key to its last, called path_00000 and so on.
-/// Throws Error for more than a million.
-std::vector<Camera> frames_of(const KeyPath& path, double frames_per_second);
+/// The cameras of a path, `frames_per_second` from its first key to its last or before `seconds`, called
+/// path_00000 and so on. Throws Error for more than a million.
+std::vector<Camera> frames_of(const KeyPath& path, double frames_per_second,
+                              double seconds = std::numeric_limits<double>::infinity());
 
 }  // namespace binosplat

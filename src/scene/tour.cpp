@@ -4,12 +4,14 @@
 #include <cmath>
 #include <glm/gtc/quaternion.hpp>
 #include <map>
+#include <numeric>
+#include <optional>
 #include <string_view>
 #include <tuple>
 
 #include "base/error.h"
 #include "base/statistics.h"
-#include "scene/curve.h"
+#include "scene/key_path.h"
 
 namespace binosplat {
 
@@ -23,28 +25,11 @@ constexpr double metres_a_radian = 0.5;
 constexpr double same_metres = 0.01, same_degrees = 1.0;
 /// Two places nearer than this share of all cameras' extent are one that was rounded.
 constexpr double rounding = 1e-6;
-/// Samples of a way between stops: one in so many seconds, and no fewer than so many. Between them the head
-/// goes straight on, so that speeds are exact, and bends are too slight to be seen.
-constexpr double seconds_a_sample = 0.0025;
-constexpr double samples_least = 64.0;
 /// No change of velocity is quicker than from rest to full speed in this time, which bounds what a frame
-/// differs from the last where the curve turns back. Other bends do not feel it.
-constexpr double seconds_to_full_speed = 0.25;
-/// More would hardly fit in memory.
-constexpr double tour_frames_most = 1e6;
-constexpr double tour_seconds_most = 1e12;  // of which a step is still a number of 64 bits apart
-
-/// Where the head stops by, in metres.
-struct Stop {
-  glm::dvec3 place{0.0};
-  glm::dquat turned{1, 0, 0, 0};  // the camera's axes in the world
-};
-
-/// The angle between two orientations in radians; by the chord, which is exact for small angles, too.
-double turn_between(const glm::dquat& a, const glm::dquat& b) {
-  const double chord = std::min(glm::length(a - b), glm::length(a + b));
-  return 4.0 * std::asin(std::min(1.0, 0.5 * chord));
-}
+/// differs from the last where the way turns back.
+constexpr double seconds_to_full_speed = 0.15;
+/// In longer tours the times of keys that are near each other would be rounded.
+constexpr double tour_seconds_most = 1e9;
 
 /// The camera between the eyes of a pair.
 Camera head_of(const Camera& left, const Camera& right) {
@@ -57,22 +42,32 @@ Camera head_of(const Camera& left, const Camera& right) {
   return head;
 }
 
-/// The heads that are worth a stop: the first, then the others in an order that the list's does not change.
-std::vector<Stop> stops_of(const std::vector<Camera>& heads, double units_per_metre) {
-  std::vector<Stop> all;
-  for (const Camera& head : heads)
-    all.push_back({head.position / units_per_metre, glm::normalize(glm::quat_cast(head.rotation))});
-  const auto rank = [](const Stop& stop) {
-    const glm::dvec3& p = stop.place;
-    const glm::dquat& q = stop.turned;
-    return std::tuple(p.x, p.y, p.z, q.x, q.y, q.z, q.w);
+/// The angle between two orientations in radians; by the chord, which is exact for small angles, too.
+double turn_between(const Camera& a, const Camera& b) {
+  const glm::dmat3 apart = a.rotation - b.rotation;
+  const double square =
+      glm::dot(apart[0], apart[0]) + glm::dot(apart[1], apart[1]) + glm::dot(apart[2], apart[2]);
+  return 2.0 * std::asin(std::min(1.0, std::sqrt(square / 8.0)));
+}
+
+/// The heads that are worth a stop, with the first one's lens and places in metres: the first, then the
+/// others in an order that the list's does not change.
+std::vector<Camera> stops_of(const std::vector<Camera>& heads, double units_per_metre) {
+  std::vector<Camera> all(heads.size(), heads[0]);
+  for (std::size_t k = 0; k < heads.size(); ++k) {
+    all[k].position = heads[k].position / units_per_metre;
+    all[k].rotation = heads[k].rotation;
+  }
+  const auto rank = [](const Camera& stop) {
+    const glm::dvec3 &p = stop.position, &x = stop.rotation[0], &z = stop.rotation[2];
+    return std::tuple(p.x, p.y, p.z, x.x, x.y, x.z, z.x, z.y, z.z);
   };
-  std::sort(all.begin() + 1, all.end(), [&](const Stop& a, const Stop& b) { return rank(a) < rank(b); });
-  std::vector<Stop> stops;
-  for (const Stop& stop : all) {
-    const bool known = std::any_of(stops.begin(), stops.end(), [&](const Stop& other) {
-      return glm::distance(stop.place, other.place) < same_metres &&
-             turn_between(stop.turned, other.turned) < glm::radians(same_degrees);
+  std::sort(all.begin() + 1, all.end(), [&](const Camera& a, const Camera& b) { return rank(a) < rank(b); });
+  std::vector<Camera> stops;
+  for (const Camera& stop : all) {
+    const bool known = std::any_of(stops.begin(), stops.end(), [&](const Camera& other) {
+      return glm::distance(stop.position, other.position) < same_metres &&
+             turn_between(stop, other) < glm::radians(same_degrees);
     });
     if (!known) stops.push_back(stop);
   }
@@ -80,29 +75,13 @@ std::vector<Stop> stops_of(const std::vector<Camera>& heads, double units_per_me
 }
 
 /// How far it is from one stop to another, in metres.
-double way_between(const Stop& a, const Stop& b) {
-  return glm::distance(a.place, b.place) + metres_a_radian * turn_between(a.turned, b.turned);
-}
-
-/// From the first on each next the nearest that is left.
-void order_greedily(std::vector<Stop>& stops) {
-  for (std::size_t k = 1; k + 1 < stops.size(); ++k) {
-    std::size_t best = k;
-    double least = way_between(stops[k - 1], stops[k]);
-    for (std::size_t i = k + 1; i < stops.size(); ++i) {
-      const double way = way_between(stops[k - 1], stops[i]);
-      if (way < least) {
-        best = i;
-        least = way;
-      }
-    }
-    std::swap(stops[k], stops[best]);
-  }
+double way_between(const Camera& a, const Camera& b) {
+  return glm::distance(a.position, b.position) + metres_a_radian * turn_between(a, b);
 }
 
 /// 2-opt: parts of the tour are gone through backwards for as long as that makes it shorter; the first stop
 /// stays, the last need not.
-void shorten(std::vector<Stop>& stops) {
+void shorten(std::vector<Camera>& stops) {
   constexpr double worth = 1e-9;  // m
   for (bool shorter = true; shorter;) {
     shorter = false;
@@ -123,189 +102,96 @@ void shorten(std::vector<Stop>& stops) {
   }
 }
 
-/// A stop as a knot of the curve: positions and quaternions are cubics between knots.
-struct Knot {
-  double at = 0.0;
-  glm::dvec3 place{0.0}, place_slope{0.0};
-  glm::dvec4 turned{0.0}, turned_slope{0.0};
-};
-
-/// Centripetal knots, which are apart by the root of the way: no loops and no cusps within a way.
-std::vector<Knot> knots_of(const std::vector<Stop>& stops) {
-  std::vector<Knot> knots;
-  for (const Stop& stop : stops) {
-    const glm::dquat& q = stop.turned;
-    Knot knot{0.0, stop.place, {}, {q.x, q.y, q.z, q.w}, {}};
-    if (!knots.empty()) {
-      // q and -q are one orientation: the nearer one, or the head would go the long way round.
-      if (glm::dot(knot.turned, knots.back().turned) < 0.0) knot.turned = -knot.turned;
-      knot.at = knots.back().at + std::sqrt(way_between(stops[knots.size() - 1], stop));
-    }
-    knots.push_back(knot);
-  }
-  const auto chord = [](const Knot& a, const Knot& b, Knot& into) {
-    into.place_slope = (b.place - a.place) / (b.at - a.at);
-    into.turned_slope = (b.turned - a.turned) / (b.at - a.at);
-  };
-  chord(knots[0], knots[1], knots[0]);
-  chord(knots[knots.size() - 2], knots.back(), knots.back());
-  for (std::size_t k = 1; k + 1 < knots.size(); ++k) {
-    const Knot &a = knots[k - 1], &c = knots[k + 1];
-    Knot& b = knots[k];
-    const double before = b.at - a.at, after = c.at - b.at;
-    b.place_slope = slope_between((b.place - a.place) / before, (c.place - b.place) / after, before, after);
-    b.turned_slope =
-        slope_between((b.turned - a.turned) / before, (c.turned - b.turned) / after, before, after);
-  }
-  return knots;
-}
-
-template <typename V>
-V hermite(const V& a, const V& slope_a, const V& b, const V& slope_b, double apart, double u) {
-  const double v = 1.0 - u;
-  return v * v * (1.0 + 2.0 * u) * a + u * u * (1.0 + 2.0 * v) * b +
-         apart * u * v * (v * slope_a - u * slope_b);
-}
-
-/// A place along the curve.
-struct Sample {
-  Stop stop;
-  double at = 0.0;            // s from the start at full speed
-  double rate_squared = 1.0;  // of the full speed
-  double time = 0.0;          // s from the start
-};
-
-/// How long it takes from one stop to another at full speed, in seconds.
-double time_between(const Stop& a, const Stop& b, const Motion& motion) {
-  return std::max(glm::distance(a.place, b.place) / motion.metres_per_second,
-                  turn_between(a.turned, b.turned) / glm::radians(motion.degrees_per_second));
-}
-
-/// The curve as places so near to each other that the ways between are straight, with `at`; at least as far
-/// as the head gets in so many seconds, and so much farther that what comes after has no say in them.
-std::vector<Sample> samples_of(const std::vector<Knot>& knots, const Motion& motion, double seconds) {
-  constexpr double too_near = 1e-9;  // s: the direction would be noise
-  const double enough = seconds + 2.0 * seconds_to_full_speed;
-  const auto stop_at = [](const glm::dvec3& place, const glm::dvec4& turned) {
-    const glm::dvec4 q = glm::normalize(turned);
-    return Stop{place, glm::dquat(q.w, q.x, q.y, q.z)};
-  };
-  std::vector<Sample> samples = {{stop_at(knots[0].place, knots[0].turned)}};
-  for (std::size_t k = 1; k < knots.size(); ++k) {
-    const Knot &a = knots[k - 1], &b = knots[k];
-    const double apart = b.at - a.at;
-    const double straight = time_between(stop_at(a.place, a.turned), stop_at(b.place, b.turned), motion);
-    const double count = std::max(samples_least, std::ceil(straight / seconds_a_sample));
-    for (double n = 1.0; n <= count && samples.back().at < enough; ++n) {
-      const Stop stop =
-          stop_at(hermite(a.place, a.place_slope, b.place, b.place_slope, apart, n / count),
-                  hermite(a.turned, a.turned_slope, b.turned, b.turned_slope, apart, n / count));
-      const double step = time_between(samples.back().stop, stop, motion);
-      if (step > too_near) samples.push_back({stop, samples.back().at + step});
-    }
-  }
-  return samples;
-}
-
-/// How the head goes and turns from one sample to the next at full speed, as shares of what is allowed.
+/// How the head goes and turns from one pose to another, as shares of what is allowed.
 struct Velocity {
   glm::dvec3 going, turning;
 };
 
-Velocity velocity(const Sample& a, const Sample& b, const Motion& motion) {
-  const glm::dquat turn = b.stop.turned * glm::conjugate(a.stop.turned);
-  const double step = b.at - a.at;
-  return {(b.stop.place - a.stop.place) / (motion.metres_per_second * step),
-          2.0 * glm::dvec3(turn.x, turn.y, turn.z) / (glm::radians(motion.degrees_per_second) * step)};
+Velocity velocity(const Camera& a, const Camera& b, const Motion& motion) {
+  glm::dquat turn = glm::quat_cast(b.rotation * glm::transpose(a.rotation));
+  if (turn.w < 0.0) turn = -turn;
+  const double seconds = *b.time - *a.time;
+  return {(b.position - a.position) / (motion.metres_per_second * seconds),
+          2.0 * glm::dvec3(turn.x, turn.y, turn.z) / (glm::radians(motion.degrees_per_second) * seconds)};
 }
 
-/// Fills in rates and times: full speed, but slower where the curve bends more sharply than
-/// seconds_to_full_speed allows, and before and after.
-void time_samples(std::vector<Sample>& samples, const Motion& motion) {
-  for (std::size_t k = 1; k + 1 < samples.size(); ++k) {
-    const Velocity in = velocity(samples[k - 1], samples[k], motion);
-    const Velocity out = velocity(samples[k], samples[k + 1], motion);
-    const double change =
-        std::hypot(glm::distance(in.going, out.going), glm::distance(in.turning, out.turning));
-    const double step = 0.5 * (samples[k + 1].at - samples[k - 1].at);
-    // The velocity's change in time is change / step * rate^2.
-    if (change * seconds_to_full_speed > step)
-      samples[k].rate_squared = step / (change * seconds_to_full_speed);
+/// By how much a path must be slower from one time to another, so that neither speed nor the change of
+/// velocity is more than allowed; below 1 where it may be faster.
+double haste(const KeyPath& path, double begin, double end, const Motion& motion) {
+  constexpr int samples = 16;
+  const double step = (end - begin) / samples;
+  double most = 0.0;
+  Camera last = path.at(begin);
+  std::optional<Velocity> before;
+  for (int n = 1; n <= samples; ++n) {
+    const Camera next = path.at(begin + n * step);
+    const Velocity now = velocity(last, next, motion);
+    most = std::max({most, glm::length(now.going), glm::length(now.turning)});
+    if (before) {
+      const double change =
+          std::hypot(glm::distance(now.going, before->going), glm::distance(now.turning, before->turning));
+      most = std::max(most, std::sqrt(seconds_to_full_speed * change / step));
+    }
+    last = next;
+    before = now;
   }
-  // At the same acceleration the rate's square changes evenly along the way.
-  const auto bound = [](Sample& sample, const Sample& beside) {
-    const double gain = 2.0 * std::abs(sample.at - beside.at) / seconds_to_full_speed;
-    sample.rate_squared = std::min(sample.rate_squared, beside.rate_squared + gain);
-  };
-  for (std::size_t k = 1; k < samples.size(); ++k) bound(samples[k], samples[k - 1]);
-  for (std::size_t k = samples.size() - 1; k > 0; --k) bound(samples[k - 1], samples[k]);
-  for (std::size_t k = 1; k < samples.size(); ++k) {
-    const Sample& last = samples[k - 1];
-    samples[k].time = last.time + 2.0 * (samples[k].at - last.at) /
-                                      (std::sqrt(last.rate_squared) + std::sqrt(samples[k].rate_squared));
-  }
+  return most;
 }
 
-/// Where the head is at a time between those of two samples.
-Stop between(const Sample& a, const Sample& b, double time) {
-  const double since = time - a.time, rate = std::sqrt(a.rate_squared);
-  const double gain = (std::sqrt(b.rate_squared) - rate) / (b.time - a.time);
-  const double share = std::clamp((rate * since + 0.5 * gain * since * since) / (b.at - a.at), 0.0, 1.0);
-  return {glm::mix(a.stop.place, b.stop.place, share), glm::slerp(a.stop.turned, b.stop.turned, share)};
+/// How long it takes at full speed from each camera to the next, in seconds.
+std::vector<double> seconds_between(std::span<const Camera> cameras, const Motion& motion) {
+  std::vector<double> seconds;
+  for (std::size_t k = 1; k < cameras.size(); ++k) {
+    const Camera &a = cameras[k - 1], &b = cameras[k];
+    seconds.push_back(std::max(glm::distance(a.position, b.position) / motion.metres_per_second,
+                               turn_between(a, b) / glm::radians(motion.degrees_per_second)));
+  }
+  return seconds;
 }
 
-void check(const TourSettings& settings) {
-  const auto good = [](double value) { return value > 0.0 && std::isfinite(value); };
-  const Motion& motion = settings.motion;
-  if (!good(motion.metres_per_second) || !good(motion.degrees_per_second)) {
-    fail("a tour at {} m and {} degrees a second: expected speeds above 0", motion.metres_per_second,
-         motion.degrees_per_second);
-  }
-  if (!(settings.seconds > 0.0)) fail("a tour of {} seconds: expected more than 0", settings.seconds);
-  if (!good(settings.frames_per_second) || !good(settings.units_per_metre)) {
-    fail("a tour of {} frames a second and {} units a metre: expected numbers above 0",
-         settings.frames_per_second, settings.units_per_metre);
-  }
-}
-
-/// The stops in the order of the tour.
-std::vector<Stop> ordered_stops(const std::vector<Camera>& heads, double units_per_metre) {
-  if (heads.size() < 2) {
-    fail(
-        "a tour goes through two cameras or more, and there is {}: name a file of more with --cameras, or go "
-        "around the model with --orbit",
-        heads.size());
-  }
-  std::vector<Stop> stops = stops_of(heads, units_per_metre);
-  if (stops.size() < 2) {
-    fail(
-        "a tour goes through cameras that lie apart: all {} are within {} m and {} degrees, at {} world "
-        "units "
-        "a metre; name others with --cameras, or another scale with --units-per-metre",
-        heads.size(), same_metres, same_degrees, units_per_metre);
-  }
-  order_greedily(stops);
-  shorten(stops);
-  return stops;
-}
-
-/// Before the long work: straight ways are the shortest.
-void check_length(const std::vector<Stop>& stops, const TourSettings& settings) {
-  double least = 0.0;  // s
-  for (std::size_t k = 1; k < stops.size(); ++k)
-    least += time_between(stops[k - 1], stops[k], settings.motion);
-  if (least > tour_seconds_most) {
+/// The way through the stops as keys: they, and where one is far from the next, up to seven between them,
+/// half a second apart. The way is a path with centripetal times, which are apart by the root of what a way
+/// is long: it has no loops or cusps.
+std::vector<Camera> keys_through(std::vector<Camera> stops, const Motion& motion) {
+  constexpr double seconds_a_key = 0.5, keys_most = 8.0;
+  const std::vector<double> seconds = seconds_between(stops, motion);
+  if (const double all = std::accumulate(seconds.begin(), seconds.end(), 0.0); !(all < tour_seconds_most)) {
     fail("a tour of {:.2g} s, and {:.0e} fit: go faster (--tour), or name another scale (--units-per-metre)",
-         least, tour_seconds_most);
+         all, tour_seconds_most);
   }
-  // Between frames that are far apart there are samples, too.
-  const double rate = std::max(settings.frames_per_second, 10.0);
-  const double frames = std::min(least, settings.seconds) * rate;
-  if (frames < tour_frames_most) return;
-  fail(
-      "a tour of {:.2g} frames or more, and {:.0e} fit: go faster (--tour), for less time (--seconds, at "
-      "most {:.4g}) or at fewer frames a second (--fps)",
-      frames, tour_frames_most, tour_frames_most / rate);
+  stops[0].time = 0.0;
+  for (std::size_t k = 1; k < stops.size(); ++k)
+    stops[k].time = *stops[k - 1].time + std::sqrt(way_between(stops[k - 1], stops[k]));
+  const KeyPath way(stops);
+  std::vector<Camera> keys = {stops[0]};
+  for (std::size_t k = 1; k < stops.size(); ++k) {
+    const double count = std::clamp(std::ceil(seconds[k - 1] / seconds_a_key), 1.0, keys_most);
+    for (double n = 1.0; n <= count; ++n)
+      keys.push_back(way.at(glm::mix(*stops[k - 1].time, *stops[k].time, n / count)));
+  }
+  return keys;
+}
+
+/// Gives keys their times: from one to the next it takes as little as neither speed nor change of velocity
+/// being more than allowed lets it.
+void give_times(std::vector<Camera>& keys, const Motion& motion) {
+  constexpr int rounds = 16;      // how fast one way is gone changes those beside it
+  constexpr double least = 1e-6;  // s
+  std::vector<double> seconds = seconds_between(keys, motion);
+  for (int round = 0; round <= rounds; ++round) {
+    keys[0].time = 0.0;
+    for (std::size_t k = 1; k < keys.size(); ++k)
+      keys[k].time = *keys[k - 1].time + std::max(least, seconds[k - 1]);
+    const KeyPath path(keys);
+    double most = 1.0;
+    for (std::size_t k = 1; k < keys.size(); ++k) {
+      const double factor = haste(path, *keys[k - 1].time, *keys[k].time, motion);
+      seconds[k - 1] *= factor;
+      most = std::max(most, factor);
+    }
+    if (round < rounds) continue;
+    for (Camera& key : keys) *key.time *= most;
+  }
 }
 
 }  // namespace
@@ -356,27 +242,30 @@ double metre_of(std::span<const Camera> cameras) {
 }
 
 std::vector<Camera> tour(std::span<const Camera> cameras, const TourSettings& settings) {
-  check(settings);
   const std::vector<Camera> heads = heads_of(cameras);
-  const std::vector<Stop> stops = ordered_stops(heads, settings.units_per_metre);
-  check_length(stops, settings);
-  std::vector<Sample> samples = samples_of(knots_of(stops), settings.motion, settings.seconds);
-  time_samples(samples, settings.motion);
-  std::vector<Camera> out;
-  std::size_t next = 1;
-  for (std::size_t n = 0;; ++n) {
-    const double time = static_cast<double>(n) / settings.frames_per_second;
-    // A frame that begins with the last moment is no part of so many seconds.
-    if (n > 0 && (time > samples.back().time || time > settings.seconds - 1e-9)) break;
-    while (next + 1 < samples.size() && samples[next].time < time) ++next;
-    const Stop stop = between(samples[next - 1], samples[next], time);
-    Camera& camera = out.emplace_back(heads[0]);
-    camera.name = fmt::format("tour_{:05}", n);
-    camera.position = stop.place * settings.units_per_metre;
-    camera.rotation = glm::mat3_cast(stop.turned);
-    camera.time = time;
+  if (heads.size() < 2) {
+    fail(
+        "a tour goes through two cameras or more, and there is {}: name a file of more with --cameras, or go "
+        "around the model with --orbit",
+        heads.size());
   }
-  return out;
+  std::vector<Camera> stops = stops_of(heads, settings.units_per_metre);
+  if (stops.size() < 2) {
+    fail(
+        "a tour goes through cameras that lie apart: all {} are within {} m and {} degrees, at {} world "
+        "units "
+        "a metre; name others with --cameras, or another scale with --units-per-metre",
+        heads.size(), same_metres, same_degrees, settings.units_per_metre);
+  }
+  shorten(stops);
+  std::vector<Camera> keys = keys_through(std::move(stops), settings.motion);
+  give_times(keys, settings.motion);
+  std::vector<Camera> frames = frames_of(KeyPath(keys), settings.frames_per_second, settings.seconds);
+  for (std::size_t n = 0; n < frames.size(); ++n) {
+    frames[n].name = fmt::format("tour_{:05}", n);
+    frames[n].position *= settings.units_per_metre;
+  }
+  return frames;
 }
 
 }  // namespace binosplat

@@ -14,8 +14,8 @@ namespace binosplat {
 /// them, in the place of the first of the two.
 std::vector<Camera> heads_of(std::span<const Camera> cameras);
 
-/// How fast a head goes and how fast it turns at most: at each moment as fast as both allow. Only where its
-/// way turns back does it slow down, to go from rest to full speed, or to turn so, in 0.25 s.
+/// How fast a head goes and how fast it turns at most. From rest to full speed, or to turn so, it takes 0.15
+/// s at least, and no other change of its velocity is quicker.
 struct Motion {
   std::string name;
   double metres_per_second = 0.0;
@@ -38,12 +38,14 @@ struct TourSettings {
   double seconds = std::numeric_limits<double>::infinity();  // the tour is cut off there
 };
 
-/// The cameras of a head that goes through all of `cameras`, from the first on, each next the nearest that is
-/// left as far as that is short, along a smooth curve through their places, turning smoothly from one to the
-/// next; one a frame, with `time`. The way depends neither on the order of the others nor on the motion.
-/// Cameras within 1 cm and 1 degree of another are left out. All have the first camera's lens and size.
-/// Throws Error(bad_input) for fewer than two cameras, all of one pose, speeds that are not above 0, or more
-/// than a million frames.
+/// The cameras of a head that goes through all of `cameras`, one a frame, with `time`. It begins with the
+/// first; of the others' order it is known that no part of it would be shorter backwards, and it depends
+/// neither on that of the list nor on the motion. The head follows the path (scene/key_path.h) through keys
+/// on a smooth way through the cameras, among them the cameras themselves, and goes from each key to the next
+/// as fast as the motion allows: never more than one per cent faster. Cameras within 1 cm and 1 degree of
+/// another are left out. All have the first camera's lens and size. Speeds, frames a second, units and
+/// seconds must be above 0. Throws Error for fewer than two cameras, all of one pose, tours of 1e9 s or more,
+/// and more than a million frames.
 std::vector<Camera> tour(std::span<const Camera> cameras, const TourSettings& settings);
 
 }  // namespace binosplat

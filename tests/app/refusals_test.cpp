@@ -190,7 +190,7 @@ TEST_F(Refusals, ToursAndPaths) {
       {{"--tour", "walk", "--frames", "2"}, "--tour with --frames"},
       {{"--tour", "walk", "--mono", "--photos", folder.path()}, "--tour with --photos"},
       {{"--tour", "walk", "--up", "0,0,1"}, "--up and --fov are for cameras that are made up"},
-      {{"--tour", "1e-9,1e-9"}, "go faster"},
+      {{"--tour", "1e-9,1e-9"}, "a faster --tour"},
       {{"--tour", "walk", "--units-per-metre", "1e6"}, "another scale with --units"},
       {{"--tour", "walk", "-o", png}, "name a folder"},
       {{"--path", cameras, "--fps", "30"}, "has frames, each drawn as it is"},

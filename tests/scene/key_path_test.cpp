@@ -108,6 +108,14 @@ TEST(KeyPath, GoesNoFartherThanItsKeys) {
   EXPECT_EQ(path.at(7.0).position, set[3].position);
 }
 
+TEST(KeyPath, NeverTurnsTheLongWayRound) {
+  Cameras set;  // quaternions of these change sign between 170 and 190 degrees
+  for (int k = 0; k < 40; ++k) set.push_back(key({k, 0, 0}, 20.0 * k, 50, k));
+  const Cameras frames = frames_of(KeyPath(set), 10.0);
+  for (std::size_t k = 1; k < frames.size(); ++k)
+    EXPECT_NEAR(glm::length(turn_between(frames[k - 1], frames[k])), glm::radians(2.0), 1e-3) << k;
+}
+
 TEST(KeyPath, AnEvenPaceDoesNotGoByTheTimes) {
   Cameras set;
   for (int k = 0; k < 6; ++k) set.push_back(key({k * k, 0, 0}, 0, 50, k));
@@ -166,6 +174,7 @@ TEST(KeyPath, FramesReachTheLastKey) {
   EXPECT_EQ(frames[225].name, "path_00225");
   EXPECT_LT(glm::distance(frames[225].position, keys()[5].position), 1e-9);
   EXPECT_NEAR(*frames[30].time, 1.0, 1e-12);
+  EXPECT_EQ(frames_of(KeyPath(keys()), 30.0, 0.5).size(), 15u);
 }
 
 TEST(KeyPath, KeysAreNoFrames) {
