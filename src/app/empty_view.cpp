@@ -4,7 +4,6 @@
 
 #include "base/text.h"
 #include "scene/axes.h"
-#include "scene/point_seen.h"
 #include "scene/summary.h"
 
 namespace binosplat::app {

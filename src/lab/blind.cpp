@@ -9,7 +9,6 @@
 #include "base/progress.h"
 #include "render/frame.h"
 #include "scene/axes.h"
-#include "scene/point_seen.h"
 
 namespace binosplat::lab {
 

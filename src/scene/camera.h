@@ -37,6 +37,26 @@ shared::View make_view(const Camera& camera, const glm::vec3& anchor, double nea
 /// The same for a camera by itself: anchored at its own position.
 shared::View make_view(const Camera& camera, double near_plane = near_default);
 
+/// A point as a camera sees it.
+struct PointSeen {
+  double ahead = 0.0;    // how far along the camera's axis, world units; below 0 behind it
+  glm::dvec2 at{0.0};    // px from the picture's upper left corner, where it lies ahead
+  glm::dvec2 size{0.0};  // the picture's, px
+
+  /// Whether it lies in the picture, at least `margin` px from its sides.
+  bool is_within(double margin) const {
+    return at.x >= margin && at.x < size.x - margin && at.y >= margin && at.y < size.y - margin;
+  }
+};
+
+/// Where a camera sees a point of its frame.
+inline PointSeen see(const Camera& camera, const glm::vec3& point) {
+  const glm::dvec3 v = glm::transpose(camera.rotation) * (glm::dvec3(point) - camera.position);
+  return {v.z,
+          {camera.fx * v.x / v.z + camera.cx, camera.fy * v.y / v.z + camera.cy},
+          {camera.width, camera.height}};
+}
+
 /// The camera at another size: the vertical field of view is kept and pixels stay as square as they were; a
 /// principal point off the centre stays off by the same angle.
 Camera resized(const Camera& camera, int width, int height);

@@ -1,12 +1,11 @@
 #include "scene/detected_axes.h"
 
 #include <algorithm>
-#include <cmath>
+#include <numeric>
 
 #include "base/parallel.h"
 #include "scene/axes.h"
 #include "scene/framing.h"
-#include "scene/point_seen.h"
 
 namespace binosplat {
 
@@ -22,37 +21,20 @@ constexpr double clearly = 2.0;
 /// The cosine of the cameras' up and the model's that says something.
 constexpr double along = 0.5;
 
-/// The share of the Gaussians that a camera in the model's frame has in its picture.
-double share_in_view(const Model& model, const Camera& camera) {
-  std::size_t looked_at = 0, seen = 0;
-  for (std::size_t i = 0; i < model.count(); i += model.count() / most_gaussians + 1) {
-    const PointSeen middle = see(camera, model.position[i]);
-    ++looked_at;
-    if (middle.ahead > 0.0 && middle.is_within(0.0)) ++seen;
-  }
-  return static_cast<double>(seen) / static_cast<double>(looked_at);
-}
-
+/// The share of the Gaussians that cameras have in their pictures, in the mean.
 double mean_in_view(const Model& model, std::span<const Camera> cameras, const ModelAxes& axes) {
   std::vector<double> shares(cameras.size());
-  parallel_for(cameras.size(),
-               [&](std::size_t i) { shares[i] = share_in_view(model, into_axes(cameras[i], axes)); });
-  double sum = 0.0;
-  for (const double share : shares) sum += share;
-  return sum / static_cast<double>(shares.size());
-}
-
-/// How far the model's up is that of the cameras, -1 to 1, in each of both frames; 0 where either has none.
-struct Upright {
-  double usual = 0.0, other = 0.0;
-};
-Upright upright(const Model& model, const std::string& others, std::span<const Camera> cameras) {
-  const auto capture = capture_of(cameras);
-  if (!capture) return {};
-  const auto ground = find_ground(CoredModel(model));
-  if (!ground) return {};
-  const glm::dvec3 up = glm::transpose(world_from_axes(model.axes.letters)) * ground->up;
-  return {glm::dot(ground->up, capture->up), glm::dot(world_from_axes(others) * up, capture->up)};
+  parallel_for(cameras.size(), [&](std::size_t k) {
+    const Camera camera = into_axes(cameras[k], axes);
+    std::size_t looked_at = 0, seen = 0;
+    for (std::size_t i = 0; i < model.count(); i += model.count() / most_gaussians + 1) {
+      const PointSeen middle = see(camera, model.position[i]);
+      ++looked_at;
+      if (middle.ahead > 0.0 && middle.is_within(0.0)) ++seen;
+    }
+    shares[k] = static_cast<double>(seen) / static_cast<double>(looked_at);
+  });
+  return std::accumulate(shares.begin(), shares.end(), 0.0) / static_cast<double>(shares.size());
 }
 
 }  // namespace
@@ -71,9 +53,15 @@ std::optional<DetectedAxes> detect_axes(const Model& model, const std::string& o
   if (usual.seen >= clearly * other.seen) return usual;
   if (other.seen >= clearly * usual.seen) return other;
   usual.by_ground = other.by_ground = true;
-  const Upright up = upright(model, others, cameras);
-  if (std::max(up.usual, up.other) < along || std::min(up.usual, up.other) > 0.0) return std::nullopt;
-  return up.usual > up.other ? usual : other;
+  const auto capture = capture_of(cameras);
+  const auto ground = capture ? find_ground(CoredModel(model)) : std::nullopt;
+  if (!ground) return std::nullopt;
+  // How far the model's up is that of the cameras, -1 to 1, in each of both frames.
+  const glm::dvec3 up = glm::transpose(world_from_axes(usual.axes)) * ground->up;
+  const double in_usual = glm::dot(ground->up, capture->up);
+  const double in_other = glm::dot(world_from_axes(others) * up, capture->up);
+  if (std::max(in_usual, in_other) < along || std::min(in_usual, in_other) > 0.0) return std::nullopt;
+  return in_usual > in_other ? usual : other;
 }
 
 }  // namespace binosplat

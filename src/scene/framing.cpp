@@ -10,7 +10,6 @@
 #include "base/parallel.h"
 #include "base/statistics.h"
 #include "scene/axes.h"
-#include "scene/open_space.h"
 
 namespace binosplat {
 
@@ -21,27 +20,19 @@ constexpr double elevation_degrees = 15.0;
 /// A sample of so many Gaussians is enough to find what stands in the way.
 constexpr std::size_t framing_sample = 200000;
 
-/// The place on the circle around the core where a camera at `turn` radians stands.
+/// The circle around the core, or around what a scene was captured around, in the model's frame.
 struct Ring {
   Core core;
   const ModelAxes& axes;
-  glm::dvec3 up, ahead, aside;
+  glm::dvec3 up;
+  std::array<glm::dvec3, 2> level;
   double distance = 0.0;
   double elevation = glm::radians(elevation_degrees);
 
   Ring(const CoredModel& cored, int width, int height, double fov_degrees, const glm::dvec3& wanted_up,
        const std::optional<Capture::Around>& around)
-      : core(cored.core), axes(cored.model.axes) {
-    const glm::dvec3 up_there = glm::normalize(wanted_up);
-    // Any direction that is not up will do to start the circle; z, unless up is along it, is where COLMAP's
-    // first camera looks.
-    const glm::dvec3 start = std::abs(up_there.z) < 0.9 ? glm::dvec3(0, 0, 1) : glm::dvec3(1, 0, 0);
-    const glm::dvec3 aside_there = glm::normalize(glm::cross(start, up_there));
-    // The world's directions in the model's frame.
-    const glm::dmat3 into = glm::transpose(world_from_axes(axes.letters));
-    up = into * up_there;
-    aside = into * aside_there;
-    ahead = into * glm::cross(up_there, aside_there);
+      : core(cored.core), axes(cored.model.axes), up(glm::normalize(wanted_up)), level(level_directions(up)) {
+    for (glm::dvec3* direction : {&up, &level[0], &level[1]}) *direction = from_world(*direction);
     const double tan_y = std::tan(0.5 * glm::radians(fov_degrees));
     const double half_angle = std::atan(std::min(tan_y, tan_y * width / height));
     distance = core.radius / std::sin(half_angle);
@@ -51,15 +42,21 @@ struct Ring {
     elevation = around->elevation;
   }
 
-  /// Where a point of the world lies, seen from the middle in the direction `away`.
-  double turn_to(const glm::dvec3& away) const {
-    const glm::dvec3 there = glm::transpose(world_from_axes(axes.letters)) * away;
-    return std::atan2(-glm::dot(there, aside), -glm::dot(there, ahead));
+  glm::dvec3 from_world(const glm::dvec3& direction) const {
+    return glm::transpose(world_from_axes(axes.letters)) * direction;
   }
 
+  /// Where a point of the world lies, seen from the middle in the direction `away`, in radians.
+  double turn_to(const glm::dvec3& away) const {
+    const glm::dvec3 there = from_world(away);
+    return std::atan2(glm::dot(there, level[0]), glm::dot(there, level[1]));
+  }
+
+  /// Where a camera at `turn` radians stands.
   glm::dvec3 eye(double turn) const {
-    return core.middle + distance * (std::sin(elevation) * up -
-                                     std::cos(elevation) * (std::cos(turn) * ahead + std::sin(turn) * aside));
+    return core.middle +
+           distance * (std::sin(elevation) * up +
+                       std::cos(elevation) * (std::cos(turn) * level[1] + std::sin(turn) * level[0]));
   }
 };
 

@@ -42,6 +42,12 @@ std::optional<Capture> capture_of(std::span<const Camera> cameras, const std::op
 /// is empty.
 Capture capture_of(const CoredModel& cored, const Ground& ground, double eyes);
 
+/// Room to stand in, where what a model is about is rooms or streets and not one thing in the middle: a
+/// circle to stand on around the middle of the widest open space near the middle of the model, with the eyes
+/// `eyes` world units above the ground, which must have a height. Its first place is where one sees farthest
+/// across the space. Nothing where there is no floor with room for a person.
+std::optional<Capture::Around> open_space(const CoredModel& cored, const Ground& ground, double eyes);
+
 /// A camera that looks at the densest part of the model from slightly above, so far away that the part fills
 /// the picture, and from the side where the least stands in the way. A few far outliers change nothing.
 /// Or, where there is something `around` which to look, from there. Throws Error if the model is empty.

@@ -13,6 +13,7 @@
 #include "formats/cameras_file.h"
 #include "formats/model_file.h"
 #include "scene/framing.h"
+#include "scene/transform.h"
 #include "support/scenes.h"
 
 namespace binosplat {
@@ -23,18 +24,10 @@ const std::array<glm::dquat, 3> turns = {glm::dquat(1, 0, 0, 0),
                                          glm::angleAxis(-glm::half_pi<double>(), glm::dvec3(1, 0, 0)),
                                          glm::angleAxis(1.0, glm::normalize(glm::dvec3(1, 2, 3)))};
 
-/// Without the spherical harmonics, which say nothing here.
-Model turned(const Model& model, const glm::dquat& by) {
-  Model out;
-  out.opacity = model.opacity;
-  out.scale = model.scale;
-  for (std::size_t i = 0; i < model.count(); ++i) {
-    const glm::vec4& q = model.rotation[i];
-    const glm::dquat t = by * glm::dquat(q.x, q.y, q.z, q.w);
-    out.position.emplace_back(by * glm::dvec3(model.position[i]));
-    out.rotation.emplace_back(t.w, t.x, t.y, t.z);
-  }
-  return out;
+Model turned(Model model, const glm::dquat& by) {
+  std::vector<glm::dvec3> places;
+  EXPECT_TRUE(transform(model, glm::mat4_cast(by), places));
+  return model;
 }
 
 /// Degrees between the up that is found and the right one, turned.

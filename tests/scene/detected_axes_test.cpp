@@ -12,11 +12,7 @@ namespace binosplat {
 namespace {
 
 void add_flat(Model& model, const glm::vec3& place, const glm::vec3& scale) {
-  model.position.push_back(place);
-  model.scale.push_back(scale);
-  model.rotation.emplace_back(1, 0, 0, 0);
-  model.opacity.push_back(0.95f);
-  for (int i = 0; i < 3; ++i) model.sh.push_back(0.5f);
+  test::add(model, place, scale, 0.95f);
 }
 
 /// Around a point of the world.

@@ -12,7 +12,9 @@
 #include "base/error.h"
 #include "scene/axes.h"
 #include "scene/framing.h"
-#include "scene/open_space.h"
+#include "scene/reduce.h"
+#include "scene/transform.h"
+#include "support/models.h"
 
 namespace binosplat {
 namespace {
@@ -32,11 +34,8 @@ struct Surfaces {
       const glm::dvec3 n = glm::normalize(normal + 0.1 * glm::dvec3(next(-1, 1), next(-1, 1), next(-1, 1)));
       // The shortest axis, z, along the normal.
       const glm::dquat q = glm::rotation(glm::dvec3(0, 0, 1), n);
-      model.position.emplace_back(corner + next(0, 1) * across + next(0, 1) * along);
-      model.scale.emplace_back(0.1f, 0.1f, 0.1f * thick);
-      model.rotation.emplace_back(q.w, q.x, q.y, q.z);
-      model.opacity.push_back(0.9f);
-      model.sh.insert(model.sh.end(), 3, 0.0f);
+      const glm::dvec3 place = corner + next(0, 1) * across + next(0, 1) * along;
+      test::add(model, place, {0.1f, 0.1f, 0.1f * thick}, 0.9f, glm::vec3(0.5f), {q.w, q.x, q.y, q.z});
     }
   }
 };
@@ -89,15 +88,10 @@ double degrees_between(const glm::dvec3& a, const glm::dvec3& b) {
   return glm::degrees(std::acos(std::clamp(glm::dot(a, b), -1.0, 1.0)));
 }
 
-Model turned(const Model& model, const glm::dquat& by) {
-  Model out = model;
-  for (std::size_t i = 0; i < out.count(); ++i) {
-    const glm::vec4& q = out.rotation[i];
-    const glm::dquat t = by * glm::dquat(q.x, q.y, q.z, q.w);
-    out.position[i] = by * glm::dvec3(out.position[i]);
-    out.rotation[i] = {t.w, t.x, t.y, t.z};
-  }
-  return out;
+Model turned(Model model, const glm::dquat& by) {
+  std::vector<glm::dvec3> places;
+  EXPECT_TRUE(transform(model, glm::mat4_cast(by), places));
+  return model;
 }
 
 const glm::dvec3 z_up(0, 0, 1);
@@ -112,6 +106,10 @@ TEST(Ground, IsWhereMostSurfacesFaceAndTheModelBegins) {
     ASSERT_TRUE(found->height);
     EXPECT_NEAR(*found->height, 0.0, 0.05);
   }
+  const auto of_a_room = find_ground(furnished_room({5, 5, 5}));
+  ASSERT_TRUE(of_a_room && of_a_room->height);
+  EXPECT_LT(degrees_between(of_a_room->up, z_up), 1.0);
+  EXPECT_NEAR(*of_a_room->height, 5.0, 0.05);
 }
 
 TEST(Ground, IsTheWorldsWhateverTheModelsAxes) {
@@ -120,14 +118,6 @@ TEST(Ground, IsTheWorldsWhateverTheModelsAxes) {
   const auto found = find_ground(model);
   ASSERT_TRUE(found);
   EXPECT_LT(degrees_between(found->up, {0, -1, 0}), 1.0);
-}
-
-TEST(Ground, OfARoomIsTheFloor) {
-  const auto found = find_ground(furnished_room({5, 5, 5}));
-  ASSERT_TRUE(found);
-  EXPECT_LT(degrees_between(found->up, z_up), 1.0);
-  ASSERT_TRUE(found->height);
-  EXPECT_NEAR(*found->height, 5.0, 0.05);
 }
 
 TEST(Ground, WallsAloneTellUpButNoFloor) {
@@ -143,6 +133,9 @@ TEST(Ground, WallsAloneTellUpButNoFloor) {
 TEST(Ground, WhereNothingTellsThereIsNone) {
   EXPECT_FALSE(find_ground(garden(1.0f))) << "round Gaussians face nowhere";
   EXPECT_THROW(find_ground(Model{}), Error);
+  Model points = garden();
+  for (glm::vec3& s : points.scale) s = glm::vec3(0.0f);  // of logarithms like -110
+  EXPECT_FALSE(find_ground(points)) << "they have no area";
   Surfaces few;
   few.add({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 100);
   EXPECT_FALSE(find_ground(few.model));
@@ -154,12 +147,6 @@ TEST(Ground, WhereDirectionsTieThereIsNone) {
   const auto low = find_ground(box(3.0));
   ASSERT_TRUE(low) << "more floor than wall";
   EXPECT_LT(degrees_between(low->up, z_up), 2.0);
-}
-
-TEST(Ground, PiecesWithoutAnAreaSayNothing) {
-  Model points = garden();
-  for (glm::vec3& s : points.scale) s = glm::vec3(0.0f);  // of logarithms like -110
-  EXPECT_FALSE(find_ground(points));
 }
 
 TEST(Ground, UpThatIsKnownIsTaken) {
@@ -187,11 +174,7 @@ TEST(Standing, IsInARoomAndNotInItsWalls) {
   Model model = furnished_room();
   for (const double x : {6.0, 12.0, 18.0}) {
     const Model other = furnished_room({x, 0, 0});
-    model.position.insert(model.position.end(), other.position.begin(), other.position.end());
-    model.scale.insert(model.scale.end(), other.scale.begin(), other.scale.end());
-    model.rotation.insert(model.rotation.end(), other.rotation.begin(), other.rotation.end());
-    model.opacity.insert(model.opacity.end(), other.opacity.begin(), other.opacity.end());
-    model.sh.insert(model.sh.end(), other.sh.begin(), other.sh.end());
+    append(model, other, 0, other.count());
   }
   const auto ground = find_ground(model);
   ASSERT_TRUE(ground && ground->height);
