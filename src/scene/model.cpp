@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 #include "scene/core.h"
+#include "scene/reduce.h"
 
 namespace binosplat {
 
@@ -79,17 +80,10 @@ void check_opacities(const std::string& source, std::span<const float> opacities
 }
 
 void keep_only(Model& model, const std::vector<std::uint8_t>& kept) {
-  const std::size_t values = 3 * static_cast<std::size_t>(sh_count(model.degree));
   std::size_t to = 0;
   for (std::size_t i = 0; i < kept.size(); ++i) {
     if (kept[i] == 0) continue;
-    if (to != i) {
-      model.position[to] = model.position[i];
-      model.scale[to] = model.scale[i];
-      model.rotation[to] = model.rotation[i];
-      model.opacity[to] = model.opacity[i];
-      std::copy_n(&model.sh[i * values], values, &model.sh[to * values]);
-    }
+    if (to != i) copy(model, i, 1, model, to);
     ++to;
   }
   model.left_out += kept.size() - to;
@@ -147,12 +141,6 @@ Bounds core_bounds(const Model& model) {
     bounds.low[i] = model.axes.origin[i] + percentile(0.02);
     bounds.high[i] = model.axes.origin[i] + percentile(0.98);
   }
-  return bounds;
-}
-
-Bounds all_bounds(const Model& model) {
-  Bounds bounds{model.position[0], model.position[0]};
-  for (const glm::dvec3 p : model.position) bounds = {glm::min(bounds.low, p), glm::max(bounds.high, p)};
   return bounds;
 }
 

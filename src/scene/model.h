@@ -111,9 +111,6 @@ double move_origin(Model& model, const glm::dvec3& origin);
 /// positions per axis, of Gaussians that are not wholly transparent, unless all are.
 Bounds core_bounds(const Model& model);
 
-/// Box around all positions, from the origin, far outliers included; the model must not be empty.
-Bounds all_bounds(const Model& model);
-
 /// A box that is empty at first.
 struct Box {
   glm::dvec3 low{INFINITY}, high{-INFINITY};

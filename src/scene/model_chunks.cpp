@@ -1,7 +1,6 @@
 #include "scene/model_chunks.h"
 
 #include <algorithm>
-#include <bit>
 #include <utility>
 
 #include "base/job_queue.h"
@@ -23,8 +22,7 @@ void hide(Model& model, std::size_t first, std::size_t count) {
 // The first that is free, so that they stay side by side. Places that are made for later, too, lie where
 // something is, which makes no box larger.
 std::size_t ModelChunks::take_block(Model& model, const glm::vec3& where) {
-  while (none_before_ < free_.size() && free_[none_before_] == 0) ++none_before_;
-  if (none_before_ == free_.size()) {
+  if (free_.empty()) {
     const std::size_t before = owners_.size();
     const std::size_t more = std::clamp<std::size_t>(before / 8, 1, blocks_at_once);
     const std::size_t in_room = std::max(model.room / block, before) - before;
@@ -35,23 +33,15 @@ std::size_t ModelChunks::take_block(Model& model, const glm::vec3& where) {
     }
     model.resize(owners_.size() * block);
     changes_.resize(owners_.size());
-    for (std::size_t b = before; b < owners_.size(); ++b) set_free(b);
+    for (std::size_t b = before; b < owners_.size(); ++b) free_.push(b);
     hide(model, before * block, (owners_.size() - before) * block);
     const auto at = static_cast<std::ptrdiff_t>(before * block);
     std::fill(model.rotation.begin() + at, model.rotation.end(), glm::vec4(1, 0, 0, 0));
     std::fill(model.position.begin() + at, model.position.end(), where);
   }
-  std::uint64_t& word = free_[none_before_];
-  const auto bit = static_cast<std::size_t>(std::countr_zero(word));
-  word &= word - 1;
-  return none_before_ * 64 + bit;
-}
-
-void ModelChunks::set_free(std::size_t b) {
-  const std::size_t word = b / 64;
-  if (word >= free_.size()) free_.resize(word + 1);
-  free_[word] |= std::uint64_t{1} << b % 64;
-  none_before_ = std::min(none_before_, word);
+  const std::size_t first = free_.top();
+  free_.pop();
+  return first;
 }
 
 void ModelChunks::note(std::size_t b, Change change) {
@@ -103,7 +93,7 @@ void ModelChunks::replace(Model& model, std::span<const Replacement> all) {
 std::vector<std::size_t> ModelChunks::give_back(std::size_t chunk) {
   for (const std::size_t b : blocks_[chunk]) {
     note(b, Change::emptied);
-    set_free(b);
+    free_.push(b);
   }
   return std::exchange(blocks_[chunk], {});
 }

@@ -3,6 +3,8 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
+#include <queue>
 #include <span>
 #include <vector>
 
@@ -23,8 +25,6 @@ class ModelChunks {
   std::size_t size() const { return counts_.size(); }
   /// How many Gaussians all chunks have.
   std::size_t gaussians() const { return gaussians_; }
-  /// The chunk of a Gaussian, which must belong to one.
-  std::size_t chunk_of(std::size_t gaussian) const { return owners_[gaussian / block]; }
   /// The chunk of each block; for blocks of no chunk it has any number.
   const std::vector<std::uint32_t>& owners() const { return owners_; }
   /// The blocks in which a chunk lies, in the order of its Gaussians.
@@ -59,16 +59,15 @@ class ModelChunks {
   std::vector<std::size_t> give_back(std::size_t chunk);
   void take_place(Model& model, std::size_t chunk, const Model& by);
   std::size_t take_block(Model& model, const glm::vec3& where);
-  void set_free(std::size_t b);
   void note(std::size_t b, Change change);
 
   std::vector<std::vector<std::size_t>> blocks_;  // by chunk
   std::vector<std::size_t> counts_;               // by chunk
   std::vector<std::uint32_t> owners_;             // by block
-  std::vector<std::uint64_t> free_;               // a bit for each block, 1 where it is free
-  std::size_t none_before_ = 0;                   // words of free_ before this one are 0
-  std::vector<Change> changes_;                   // by block, since the last take_changes()
-  std::vector<std::size_t> changed_;              // blocks
+  std::priority_queue<std::size_t, std::vector<std::size_t>, std::greater<>>
+      free_;                          // blocks, the first on top
+  std::vector<Change> changes_;       // by block, since the last take_changes()
+  std::vector<std::size_t> changed_;  // blocks
   std::size_t gaussians_ = 0;
 };
 

@@ -32,15 +32,9 @@ Model without_gaussians(const Model& model) {
 }
 
 void append(Model& model, const Model& from, std::size_t first, std::size_t count) {
-  const auto add = [&](auto& to, const auto& values, std::size_t each) {
-    const auto begin = values.begin() + static_cast<std::ptrdiff_t>(first * each);
-    to.insert(to.end(), begin, begin + static_cast<std::ptrdiff_t>(count * each));
-  };
-  add(model.position, from.position, 1);
-  add(model.scale, from.scale, 1);
-  add(model.rotation, from.rotation, 1);
-  add(model.opacity, from.opacity, 1);
-  add(model.sh, from.sh, static_cast<std::size_t>(values_of(from.degree)));
+  const std::size_t at = model.count();
+  model.resize(at + count);
+  copy(from, first, count, model, at);
 }
 
 void copy(const Model& from, std::size_t first, std::size_t count, Model& to, std::size_t at) {
@@ -57,21 +51,20 @@ void copy(const Model& from, std::size_t first, std::size_t count, Model& to, st
 
 Model with_order(const Model& model, std::span<const std::uint32_t> indices) {
   Model ordered = without_gaussians(model);
-  ordered.reserve(indices.size());
-  for (const std::uint32_t i : indices) append(ordered, model, i, 1);
+  ordered.resize(indices.size());
+  for (std::size_t k = 0; k < indices.size(); ++k) copy(model, indices[k], 1, ordered, k);
   return ordered;
 }
 
-Model with_degree(const Model& model, int degree) {
-  Model lower = model;
-  lower.degree = degree;
-  lower.resize(model.count());
-  for (std::size_t i = 0; i < model.count(); ++i) {
-    const auto at = static_cast<std::ptrdiff_t>(i);
-    std::copy_n(model.sh.begin() + at * values_of(model.degree), values_of(degree),
-                lower.sh.begin() + at * values_of(degree));
-  }
-  return lower;
+int degree_in_use(const Model& model, std::size_t i) {
+  const auto begin = model.sh.begin() + static_cast<std::ptrdiff_t>(i) * values_of(model.degree);
+  int degree = model.degree;
+  const auto unused = [&] {
+    return std::all_of(begin + values_of(degree - 1), begin + values_of(degree),
+                       [](float v) { return v == 0.0f; });
+  };
+  while (degree > 0 && unused()) --degree;
+  return degree;
 }
 
 Model with_degrees(const Model& model, const std::vector<std::uint8_t>& degrees) {
@@ -79,14 +72,17 @@ Model with_degrees(const Model& model, const std::vector<std::uint8_t>& degrees)
   int highest = 0;
   for (std::size_t i = 0; i < model.count(); ++i) {
     const auto begin = lower.sh.begin() + static_cast<std::ptrdiff_t>(i) * values_of(model.degree);
-    const auto end = begin + values_of(model.degree);
-    std::fill(begin + values_of(std::min<int>(degrees[i], model.degree)), end, 0.0f);
-    for (int degree = model.degree; degree > highest; --degree) {
-      const bool used = std::any_of(begin + values_of(degree - 1), end, [](float v) { return v != 0.0f; });
-      if (used) highest = degree;
-    }
+    std::fill(begin + values_of(std::min<int>(degrees[i], model.degree)), begin + values_of(model.degree),
+              0.0f);
+    highest = std::max(highest, degree_in_use(lower, i));
   }
-  return highest < model.degree ? with_degree(lower, highest) : lower;
+  Model packed = lower;
+  packed.degree = highest;
+  packed.resize(model.count());
+  for (std::ptrdiff_t i = 0; i < std::ssize(model.position); ++i)
+    std::copy_n(lower.sh.begin() + i * values_of(model.degree), values_of(highest),
+                packed.sh.begin() + i * values_of(highest));
+  return packed;
 }
 
 }  // namespace binosplat

@@ -26,8 +26,8 @@ void copy(const Model& from, std::size_t first, std::size_t count, Model& to, st
 /// The Gaussians at these indices, in this order.
 Model with_order(const Model& model, std::span<const std::uint32_t> indices);
 
-/// Harmonics up to `degree` only, at most the model's.
-Model with_degree(const Model& model, int degree);
+/// The highest degree of a Gaussian's harmonics with a coefficient that is not 0.
+int degree_in_use(const Model& model, std::size_t i);
 
 /// Sets the coefficients beyond a degree of each Gaussian's own to 0, and lowers the model's degree to the
 /// highest that is then in use.

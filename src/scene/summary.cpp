@@ -5,6 +5,7 @@
 
 #include "base/error.h"
 #include "base/statistics.h"
+#include "scene/reduce.h"
 
 namespace binosplat {
 
@@ -12,19 +13,6 @@ namespace {
 
 constexpr float thin = 0.01f;
 constexpr double far_in_diagonals = 5.0;
-
-/// The highest degree of the harmonics that says anything.
-std::size_t degree_in_use(const Model& model, std::size_t i) {
-  const std::size_t values = 3 * static_cast<std::size_t>(sh_count(model.degree));
-  const float* sh = &model.sh[i * values];
-  for (int degree = model.degree; degree > 0; --degree) {
-    const float* end = sh + 3 * static_cast<std::size_t>(sh_count(degree));
-    if (std::any_of(sh + 3 * static_cast<std::size_t>(sh_count(degree - 1)), end,
-                    [](float v) { return v != 0.0f; }))
-      return static_cast<std::size_t>(degree);
-  }
-  return 0;
-}
 
 void count_scale(ModelSummary& summary, glm::vec3 scale, double diagonal) {
   std::sort(&scale.x, &scale.x + 3);
@@ -44,19 +32,19 @@ ModelSummary summarise(const Model& model) {
   if (model.count() == 0) fail("{}: the model has no Gaussians", model.name);
   ModelSummary summary;
   summary.core = core_bounds(model);
-  const auto [low, high] = all_bounds(model);
-  summary.all = {model.axes.origin + low, model.axes.origin + high};
+  summary.all.low = summary.all.high = model.axes.origin + glm::dvec3(model.position[0]);
   const double diagonal = glm::length(summary.core.high - summary.core.low);
   std::vector<double> opacities, scales;
   for (std::size_t i = 0; i < model.count(); ++i) {
     const glm::dvec3 p = model.axes.origin + glm::dvec3(model.position[i]);
+    summary.all = {glm::min(summary.all.low, p), glm::max(summary.all.high, p)};
     const glm::dvec3 outside = p - glm::clamp(p, summary.core.low, summary.core.high);
     summary.far += glm::length(outside) > far_in_diagonals * diagonal ? 1 : 0;
     const float opacity = model.opacity[i];
     ++summary.opacity[std::min<std::size_t>(9, static_cast<std::size_t>(10.0f * opacity))];
     summary.invisible += opacity < static_cast<float>(ALPHA_MIN) ? 1 : 0;
     count_scale(summary, model.scale[i], diagonal);
-    ++summary.degree[degree_in_use(model, i)];
+    ++summary.degree[static_cast<std::size_t>(degree_in_use(model, i))];
     opacities.push_back(opacity);
     scales.push_back(std::max({model.scale[i].x, model.scale[i].y, model.scale[i].z}));
   }

@@ -39,16 +39,6 @@ TEST(Reduce, PutsGaussiansInAnotherOrder) {
   ASSERT_EQ(ordered.sh.size(), 3u * 12);
 }
 
-TEST(Reduce, EndsHarmonicsWithADegree) {
-  const Model model = numbered(3, 2), lower = with_degree(model, 1);
-  EXPECT_EQ(lower.degree, 1);
-  ASSERT_EQ(lower.sh.size(), 2u * 12);
-  for (std::size_t k = 0; k < 12; ++k) {
-    EXPECT_EQ(lower.sh[k], model.sh[k]);
-    EXPECT_EQ(lower.sh[12 + k], model.sh[48 + k]);
-  }
-}
-
 TEST(Reduce, GaussiansHaveDegreesOfTheirOwn) {
   const Model model = numbered(3, 3);
   const Model lower = with_degrees(model, {0, 2, 1});
