@@ -5,25 +5,15 @@
 #include <array>
 #include <cmath>
 #include <glm/gtc/quaternion.hpp>
+#include <glm/gtc/type_ptr.hpp>
 #include <nanoflann.hpp>
 #include <numbers>
 #include <numeric>
-#include <queue>
-#include <tuple>
 #include <utility>
-#include <vector>
 
 #include "scene/reduce.h"
 
 namespace binosplat {
-
-/// What takes part in merging.
-struct MergedPart {
-  glm::dvec3 mean{0.0};
-  glm::dmat3 covariance{0.0};
-  double weight = 0.0;     // opacity times area
-  glm::dvec3 colour{0.0};  // harmonics of degree 0
-};
 
 namespace {
 
@@ -51,27 +41,6 @@ double seen_area(const Model& model, const glm::dvec3& deviations, double pixel)
 
 double opacity_of(const Model& model, std::uint32_t i) {
   return std::clamp<double>(model.opacity[i], 1e-6, opaque_most);
-}
-
-/// Axes in columns and the standard deviations along them.
-struct Axes {
-  glm::dmat3 turn{1.0};
-  glm::dvec3 deviations{0.0};
-};
-
-Axes axes_of_covariance(const glm::dmat3& covariance) {
-  Eigen::Matrix3d m;
-  for (int r = 0; r < 3; ++r) {
-    for (int c = 0; c < 3; ++c) m(r, c) = covariance[c][r];
-  }
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(m);
-  Axes axes;
-  for (int k = 0; k < 3; ++k) {
-    axes.deviations[k] = std::sqrt(std::max(0.0, solver.eigenvalues()[k]));
-    for (int r = 0; r < 3; ++r) axes.turn[k][r] = solver.eigenvectors()(r, k);
-  }
-  if (glm::determinant(axes.turn) < 0.0) axes.turn[2] = -axes.turn[2];
-  return axes;
 }
 
 /// `area` is that of its shadow.
@@ -134,137 +103,6 @@ using Tree =
 
 }  // namespace
 
-/// Each is named by its first member.
-class Merger::Clusters {
- public:
-  Clusters(const Model& model, double pixel)
-      : model_(model), next_(model.count()), ages_(model.count()), near_(model.count()) {
-    std::iota(next_.begin(), next_.end(), 0u);
-    last_ = into_ = next_;
-    for (const std::uint32_t i : next_)
-      parts_.push_back(part_of(model, i, seen_area(model, model.scale[i], pixel)));
-    left_ = model.count();
-  }
-
-  void bring_to(std::size_t target) {
-    while (left_ > std::max<std::size_t>(target, 1)) {
-      if (cheapest_.empty()) find_neighbours();
-      const Offer offer = cheapest_.top();
-      cheapest_.pop();
-      if (into_[offer.a] != offer.a || ages_[offer.a] != offer.age_a) continue;
-      if (into_[offer.b] != offer.b || ages_[offer.b] != offer.age_b) {
-        make_offer(offer.a);
-      } else {
-        merge(std::min(offer.a, offer.b), std::max(offer.a, offer.b));
-      }
-    }
-  }
-
-  Model result(double pixel) const {
-    Model merged = without_gaussians(model_);
-    merged.reserve(left_);
-    std::vector<std::uint32_t> members;
-    for (const std::uint32_t i : living()) {
-      members.assign(1, i);
-      while (members.back() != last_[i]) members.push_back(next_[members.back()]);
-      append_merged(merged, model_, members, pixel);
-    }
-    return merged;
-  }
-
- private:
-  /// The best of those that `a` may be merged with.
-  struct Offer {
-    double cost;
-    std::uint32_t a, b;
-    std::uint32_t age_a, age_b;                 // when it was made
-    bool operator<(const Offer& other) const {  // the cheapest on top
-      return std::tie(other.cost, other.a, other.b) < std::tie(cost, a, b);
-    }
-  };
-
-  std::vector<std::uint32_t> living() const {
-    std::vector<std::uint32_t> all;
-    for (std::uint32_t i = 0; i < into_.size(); ++i) {
-      if (into_[i] == i) all.push_back(i);
-    }
-    return all;
-  }
-
-  /// Of all that are left: at first, and where islands have become one each.
-  void find_neighbours() {
-    const std::vector<std::uint32_t> all = living();
-    const Means means{parts_, all};
-    const Tree tree(3, means, nanoflann::KDTreeSingleIndexAdaptorParams(16));
-    std::array<std::uint32_t, neighbours + 1> found{};
-    std::array<double, neighbours + 1> distances{};
-    for (const std::uint32_t i : all) {
-      const std::size_t count =
-          tree.knnSearch(&parts_[i].mean[0], found.size(), found.data(), distances.data());
-      for (std::size_t k = 0; k < count; ++k) {
-        if (all[found[k]] != i) near_[i].push_back(all[found[k]]);
-      }
-    }
-    for (const std::uint32_t i : all) {
-      for (std::size_t k = 0; k < std::min(near_[i].size(), neighbours); ++k) {
-        std::vector<std::uint32_t>& others = near_[near_[i][k]];
-        if (std::find(others.begin(), others.end(), i) == others.end()) others.push_back(i);
-      }
-    }
-    for (const std::uint32_t i : all) make_offer(i);
-  }
-
-  void make_offer(std::uint32_t a) {
-    Offer best{INFINITY, a, a, ages_[a], 0};
-    for (std::uint32_t& k : near_[a]) {
-      k = cluster_of(k);
-      if (k == a) continue;
-      const double cost = cost_of(parts_[std::min(a, k)], parts_[std::max(a, k)]);
-      if (std::tie(cost, k) < std::tie(best.cost, best.b)) best = {cost, a, k, ages_[a], ages_[k]};
-    }
-    if (best.b != a) cheapest_.push(best);
-  }
-
-  void merge(std::uint32_t a, std::uint32_t b) {
-    parts_[a] = sum_of(parts_[a], parts_[b]);
-    ++ages_[a];
-    into_[b] = a;
-    next_[last_[a]] = b;
-    last_[a] = last_[b];
-    --left_;
-    // Its neighbours are those of both that are nearest now.
-    std::vector<std::pair<double, std::uint32_t>> all;
-    for (const std::uint32_t of : {a, b}) {
-      for (const std::uint32_t k : near_[of]) {
-        const std::uint32_t now = cluster_of(k);
-        const glm::dvec3 apart = parts_[now].mean - parts_[a].mean;
-        if (now != a) all.emplace_back(glm::dot(apart, apart), now);
-      }
-    }
-    std::sort(all.begin(), all.end());
-    all.erase(std::unique(all.begin(), all.end()), all.end());
-    all.resize(std::min(all.size(), neighbours));
-    near_[a].clear();
-    for (const auto& [distance, k] : all) near_[a].push_back(k);
-    near_[b] = {};
-    make_offer(a);
-  }
-
-  std::uint32_t cluster_of(std::uint32_t k) {
-    while (into_[k] != k) k = into_[k] = into_[into_[k]];
-    return k;
-  }
-
-  const Model& model_;
-  std::vector<MergedPart> parts_;
-  std::vector<std::uint32_t> next_, last_;  // members of a cluster, from its first
-  std::vector<std::uint32_t> into_;         // itself, or what it was merged into
-  std::vector<std::uint32_t> ages_;         // merges so far
-  std::vector<std::vector<std::uint32_t>> near_;
-  std::priority_queue<Offer> cheapest_;
-  std::size_t left_ = 0;
-};
-
 void append_merged(Model& merged, const Model& model, std::span<const std::uint32_t> members, double pixel) {
   const std::size_t values = 3 * static_cast<std::size_t>(sh_count(model.degree));
   if (members.size() == 1) {
@@ -281,20 +119,125 @@ void append_merged(Model& merged, const Model& model, std::span<const std::uint3
     depth -= std::log(1.0 - opacity_of(model, i)) * area;
     for (std::size_t k = 0; k < values; ++k) sh[k] += part.weight * model.sh[i * values + k];
   }
-  const Axes axes = axes_of_covariance(sum.covariance);
-  const double area = seen_area(model, axes.deviations, pixel), square = even_share * area;
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(
+      Eigen::Map<const Eigen::Matrix3d>(&sum.covariance[0][0]));
+  const Eigen::Vector3d along = solver.eigenvalues().cwiseMax(0.0).cwiseSqrt();
+  const glm::dvec3 deviations(along[0], along[1], along[2]);
+  glm::dmat3 axes = glm::make_mat3(solver.eigenvectors().data());
+  if (glm::determinant(axes) < 0.0) axes[2] = -axes[2];
+  const double area = seen_area(model, deviations, pixel), square = even_share * area;
   const double opacity = std::min(sum.weight, square * (1.0 - std::exp(-depth / square))) / area;
-  const glm::dquat turn = glm::normalize(glm::quat_cast(axes.turn));
+  const glm::dquat turn = glm::normalize(glm::quat_cast(axes));
   merged.position.emplace_back(sum.mean);
-  merged.scale.emplace_back(axes.deviations * std::sqrt(std::max(1.0, opacity / opaque_most)));
+  merged.scale.emplace_back(deviations * std::sqrt(std::max(1.0, opacity / opaque_most)));
   merged.rotation.emplace_back(turn.w, turn.x, turn.y, turn.z);
   merged.opacity.push_back(static_cast<float>(std::min(opacity, opaque_most)));
   for (const double value : sh) merged.sh.push_back(static_cast<float>(value / sum.weight));
 }
 
-Merger::Merger(const Model& model, double pixel) : clusters_(std::make_unique<Clusters>(model, pixel)) {}
-Merger::~Merger() = default;
-void Merger::bring_to(std::size_t target) { clusters_->bring_to(target); }
-Model Merger::result(double pixel) const { return clusters_->result(pixel); }
+Merger::Merger(const Model& model, double pixel)
+    : model_(model), next_(model.count()), ages_(model.count()), near_(model.count()), left_(model.count()) {
+  std::iota(next_.begin(), next_.end(), 0u);
+  last_ = into_ = next_;
+  for (const std::uint32_t i : next_)
+    parts_.push_back(part_of(model, i, seen_area(model, model.scale[i], pixel)));
+}
+
+void Merger::bring_to(std::size_t target) {
+  while (left_ > std::max<std::size_t>(target, 1)) {
+    if (cheapest_.empty()) find_neighbours();
+    const Offer offer = cheapest_.top();
+    cheapest_.pop();
+    if (into_[offer.a] != offer.a || ages_[offer.a] != offer.age_a) continue;
+    if (into_[offer.b] != offer.b || ages_[offer.b] != offer.age_b) {
+      make_offer(offer.a);
+    } else {
+      merge(std::min(offer.a, offer.b), std::max(offer.a, offer.b));
+    }
+  }
+}
+
+Model Merger::result(double pixel) const {
+  Model merged = without_gaussians(model_);
+  merged.reserve(left_);
+  std::vector<std::uint32_t> members;
+  for (const std::uint32_t i : living()) {
+    members.assign(1, i);
+    while (members.back() != last_[i]) members.push_back(next_[members.back()]);
+    append_merged(merged, model_, members, pixel);
+  }
+  return merged;
+}
+
+std::vector<std::uint32_t> Merger::living() const {
+  std::vector<std::uint32_t> all;
+  for (std::uint32_t i = 0; i < into_.size(); ++i) {
+    if (into_[i] == i) all.push_back(i);
+  }
+  return all;
+}
+
+void Merger::find_neighbours() {
+  const std::vector<std::uint32_t> all = living();
+  const Means means{parts_, all};
+  const Tree tree(3, means, nanoflann::KDTreeSingleIndexAdaptorParams(16));
+  std::array<std::uint32_t, neighbours + 1> found{};
+  std::array<double, neighbours + 1> distances{};
+  for (const std::uint32_t i : all) {
+    const std::size_t count =
+        tree.knnSearch(&parts_[i].mean[0], found.size(), found.data(), distances.data());
+    for (std::size_t k = 0; k < count; ++k) {
+      if (all[found[k]] != i) near_[i].push_back(all[found[k]]);
+    }
+  }
+  for (const std::uint32_t i : all) {
+    for (std::size_t k = 0; k < std::min(near_[i].size(), neighbours); ++k) {
+      std::vector<std::uint32_t>& others = near_[near_[i][k]];
+      if (std::find(others.begin(), others.end(), i) == others.end()) others.push_back(i);
+    }
+  }
+  for (const std::uint32_t i : all) make_offer(i);
+}
+
+void Merger::make_offer(std::uint32_t a) {
+  Offer best{INFINITY, a, a, ages_[a], 0};
+  for (std::uint32_t& k : near_[a]) {
+    k = cluster_of(k);
+    if (k == a) continue;
+    const double cost = cost_of(parts_[std::min(a, k)], parts_[std::max(a, k)]);
+    if (std::tie(cost, k) < std::tie(best.cost, best.b)) best = {cost, a, k, ages_[a], ages_[k]};
+  }
+  if (best.b != a) cheapest_.push(best);
+}
+
+void Merger::merge(std::uint32_t a, std::uint32_t b) {
+  parts_[a] = sum_of(parts_[a], parts_[b]);
+  ++ages_[a];
+  into_[b] = a;
+  next_[last_[a]] = b;
+  last_[a] = last_[b];
+  --left_;
+  // Its neighbours are those of both that are nearest now.
+  std::vector<std::pair<double, std::uint32_t>> all;
+  for (const std::uint32_t of : {a, b}) {
+    for (const std::uint32_t k : near_[of]) {
+      const std::uint32_t now = cluster_of(k);
+      const glm::dvec3 apart = parts_[now].mean - parts_[a].mean;
+      if (now != a) all.emplace_back(glm::dot(apart, apart), now);
+    }
+  }
+  std::sort(all.begin(), all.end());
+  all.erase(std::unique(all.begin(), all.end()), all.end());
+  all.resize(std::min(all.size(), neighbours));
+  near_[a].clear();
+  for (const auto& [distance, k] : all) near_[a].push_back(k);
+  near_[b] = {};
+  make_offer(a);
+}
+
+std::uint32_t Merger::cluster_of(std::uint32_t k) {
+  while (into_[k] != k) k = into_[k] = into_[into_[k]];
+  return k;
+}
 
 }  // namespace binosplat

@@ -4,8 +4,11 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <memory>
+#include <glm/glm.hpp>
+#include <queue>
 #include <span>
+#include <tuple>
+#include <vector>
 
 #include "scene/model.h"
 
@@ -23,6 +26,14 @@ namespace binosplat {
 /// A single member is appended as it is.
 void append_merged(Model& merged, const Model& model, std::span<const std::uint32_t> members, double pixel);
 
+/// One Gaussian or what some were merged into.
+struct MergedPart {
+  glm::dvec3 mean{0.0};
+  glm::dmat3 covariance{0.0};
+  double weight = 0.0;     // opacity times area
+  glm::dvec3 colour{0.0};  // harmonics of degree 0
+};
+
 /// Merges a model step by step. Of all pairs of near neighbours the one is merged that changes least, again
 /// and again: its Runnalls' bound of what the mixture's shape loses (Runnalls 2007, equation 16), and the
 /// squared difference of the pair's colours, times the area that shows it.
@@ -31,7 +42,6 @@ class Merger {
   /// The model, which outlives this, has one Gaussian at least. Areas are seen where a pixel covers `pixel`
   /// world units.
   Merger(const Model& model, double pixel);
-  ~Merger();
 
   /// Merges until no more than `target` are left, or one.
   void bring_to(std::size_t target);
@@ -41,8 +51,31 @@ class Merger {
   Model result(double pixel) const;
 
  private:
-  class Clusters;
-  std::unique_ptr<Clusters> clusters_;
+  /// The best of those that `a` may be merged with. Clusters are named by their first members.
+  struct Offer {
+    double cost;
+    std::uint32_t a, b;
+    std::uint32_t age_a, age_b;                 // when it was made
+    bool operator<(const Offer& other) const {  // the cheapest on top
+      return std::tie(other.cost, other.a, other.b) < std::tie(cost, a, b);
+    }
+  };
+
+  std::vector<std::uint32_t> living() const;
+  /// Of all that are left: at first, and where islands have become one each.
+  void find_neighbours();
+  void make_offer(std::uint32_t a);
+  void merge(std::uint32_t a, std::uint32_t b);
+  std::uint32_t cluster_of(std::uint32_t k);
+
+  const Model& model_;
+  std::vector<MergedPart> parts_;
+  std::vector<std::uint32_t> next_, last_;  // members of a cluster, from its first
+  std::vector<std::uint32_t> into_;         // itself, or what it was merged into
+  std::vector<std::uint32_t> ages_;         // merges so far
+  std::vector<std::vector<std::uint32_t>> near_;
+  std::priority_queue<Offer> cheapest_;
+  std::size_t left_;
 };
 
 }  // namespace binosplat

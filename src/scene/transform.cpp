@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cmath>
 #include <glm/gtc/quaternion.hpp>
+#include <glm/gtc/type_ptr.hpp>
 #include <optional>
 
 #include "base/parallel.h"
@@ -16,36 +17,15 @@ namespace {
 // Of a map that was written as floats, what is so little is rounding.
 constexpr double even_enough = 1e-6;
 
+/// The same numbers: both keep columns one after the other.
+Eigen::Map<const Eigen::Matrix3d> to_eigen(const glm::dmat3& m) {
+  return Eigen::Map<const Eigen::Matrix3d>(&m[0][0]);
+}
+
+glm::dmat3 from_eigen(const Eigen::Matrix3d& matrix) { return glm::make_mat3(matrix.data()); }
+
 Eigen::JacobiSVD<Eigen::Matrix3d> decomposed(const glm::dmat3& m) {
-  Eigen::Matrix3d matrix;
-  for (int r = 0; r < 3; ++r) {
-    for (int c = 0; c < 3; ++c) matrix(r, c) = m[c][r];
-  }
-  return Eigen::JacobiSVD<Eigen::Matrix3d>(matrix, Eigen::ComputeFullU | Eigen::ComputeFullV);
-}
-
-glm::dmat3 from_eigen(const Eigen::Matrix3d& matrix) {
-  glm::dmat3 m;
-  for (int r = 0; r < 3; ++r) {
-    for (int c = 0; c < 3; ++c) m[c][r] = matrix(r, c);
-  }
-  return m;
-}
-
-double farthest(const glm::dmat3& a, const glm::dmat3& b) {
-  double most = 0.0;
-  for (int c = 0; c < 3; ++c) {
-    for (int r = 0; r < 3; ++r) most = std::max(most, std::abs(a[c][r] - b[c][r]));
-  }
-  return most;
-}
-
-bool all_finite(const glm::dmat3& m) {
-  for (int c = 0; c < 3; ++c) {
-    for (int r = 0; r < 3; ++r)
-      if (!std::isfinite(m[c][r])) return false;
-  }
-  return true;
+  return Eigen::JacobiSVD<Eigen::Matrix3d>(to_eigen(m), Eigen::ComputeFullU | Eigen::ComputeFullV);
 }
 
 glm::dquat quaternion(const glm::vec4& wxyz) { return {wxyz.x, wxyz.y, wxyz.z, wxyz.w}; }
@@ -71,7 +51,7 @@ void map_ellipsoid(const glm::dmat3& linear, glm::vec4& rotation, glm::vec3& sca
 
 bool transform(Model& model, const glm::dmat4& map, std::vector<glm::dvec3>& places) {
   const glm::dmat3 linear(map);
-  if (!all_finite(linear)) return false;
+  if (!to_eigen(linear).allFinite()) return false;
   const auto svd = decomposed(linear);
   const double largest = svd.singularValues()[0], smallest = svd.singularValues()[2];
   glm::dmat3 q = from_eigen(svd.matrixU() * svd.matrixV().transpose());
@@ -79,7 +59,7 @@ bool transform(Model& model, const glm::dmat4& map, std::vector<glm::dvec3>& pla
   if (smallest <= even_enough * largest && glm::determinant(q) < 0.0)
     q = from_eigen(svd.matrixU() * Eigen::Vector3d(1, 1, -1).asDiagonal() * svd.matrixV().transpose());
   const bool even = largest - smallest <= even_enough * largest;
-  const bool turns = farthest(q, glm::dmat3(1.0)) > even_enough;
+  const bool turns = (to_eigen(q) - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff() > even_enough;
   const glm::dquat turn = quaternion_of(q);
   const double size = svd.singularValues()[1];
   std::optional<HarmonicsTurn> harmonics;  // which takes as long as many a small model
