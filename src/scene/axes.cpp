@@ -8,34 +8,13 @@
 
 namespace binosplat {
 
-namespace {
-
-/// A direction in the world; zero for a letter that names none.
-glm::dvec3 direction(char letter) {
-  switch (letter) {
-    case 'R':
-      return {1, 0, 0};
-    case 'L':
-      return {-1, 0, 0};
-    case 'D':
-      return {0, 1, 0};
-    case 'U':
-      return {0, -1, 0};
-    case 'F':
-      return {0, 0, 1};
-    case 'B':
-      return {0, 0, -1};
-    default:
-      return {0, 0, 0};
-  }
-}
-
-}  // namespace
-
 glm::dmat3 world_from_axes(std::string_view letters) {
+  constexpr std::string_view directions = "RDFLUB";  // x, y and z of the world, and against them
   glm::dmat3 matrix(0.0);
-  for (int i = 0; i < 3 && letters.size() == 3; ++i)
-    matrix[i] = direction(letters[static_cast<std::size_t>(i)]);
+  for (int i = 0; i < 3 && letters.size() == 3; ++i) {
+    const auto k = static_cast<int>(directions.find(letters[static_cast<std::size_t>(i)]));
+    if (k >= 0) matrix[i][k % 3] = k < 3 ? 1.0 : -1.0;
+  }
   if (std::abs(glm::determinant(matrix)) != 1.0) {
     fail(
         "axes '{}': expected three letters for x, y and z, of R or L, U or D, F or B, each pair once, as in "

@@ -8,15 +8,6 @@
 
 namespace binosplat {
 
-namespace {
-
-/// First coefficient of a degree, which is how many all lower ones have.
-constexpr std::size_t first_of(int degree) {
-  return static_cast<std::size_t>(degree) * static_cast<std::size_t>(degree);
-}
-
-}  // namespace
-
 std::array<double, 16> sh_basis(const glm::dvec3& d) {
   const double x = d.x, y = d.y, z = d.z, xx = x * x, yy = y * y, zz = z * z;
   return {sh_c0,
@@ -73,7 +64,8 @@ void HarmonicsTurn::apply(float* sh, int degree) const {
   std::array<double, 3 * sh_count(3)> before{};
   std::copy_n(sh, 3 * sh_count(degree), before.begin());
   for (int band = 1; band <= degree; ++band) {
-    const std::size_t begin = first_of(band), end = first_of(band + 1);
+    const auto begin = static_cast<std::size_t>(sh_count(band - 1)),
+               end = static_cast<std::size_t>(sh_count(band));
     for (std::size_t a = begin; a < end; ++a) {
       for (std::size_t c = 0; c < 3; ++c) {
         double sum = 0.0;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <span>
 #include <utility>
 
 #include "base/error.h"
@@ -19,43 +20,37 @@ constexpr std::uint64_t copies_most = std::uint64_t{1} << 31;
 template <typename T>
 void copy_times(std::vector<T>& values, std::size_t times) {
   const std::size_t once = values.size();
-  std::vector<T> all;
-  all.reserve(once * times);
-  for (std::size_t k = 0; k < times; ++k) all.insert(all.end(), values.begin(), values.end());
-  values.swap(all);
+  values.resize(once * times);
+  for (std::size_t k = once; k < values.size(); ++k) values[k] = values[k - once];
 }
 
-/// Where copies go, in the model's own frame.
-struct Grid {
-  int nx, nz;
-  glm::dmat3 into_frame;
-  double spacing;
-
-  std::size_t copies() const { return static_cast<std::size_t>(nx) * static_cast<std::size_t>(nz); }
-
-  /// Puts the copies of `once` positions side by side.
-  void move(std::vector<glm::vec3>& positions, std::size_t once) const {
-    glm::vec3* p = positions.data();
-    for (int i = -((nx - 1) / 2); i <= nx / 2; ++i) {
-      for (int j = -((nz - 1) / 2); j <= nz / 2; ++j) {
-        for (std::size_t k = 0; k < once; ++k, ++p)
-          *p = glm::vec3(glm::dvec3(*p) + into_frame * glm::dvec3(i * spacing, 0.0, j * spacing));
-      }
-    }
+/// Where each copy goes, in the model's own frame.
+std::vector<glm::dvec3> moves_of(int nx, int nz, double spacing, const ModelAxes& axes) {
+  const glm::dmat3 into_frame = glm::transpose(world_from_axes(axes.letters));
+  std::vector<glm::dvec3> moves;
+  for (int i = -((nx - 1) / 2); i <= nx / 2; ++i) {
+    for (int j = -((nz - 1) / 2); j <= nz / 2; ++j)
+      moves.push_back(into_frame * glm::dvec3(i * spacing, 0.0, j * spacing));
   }
-};
+  return moves;
+}
+
+/// Copies of positions side by side.
+void copy_to(std::vector<glm::vec3>& positions, std::span<const glm::dvec3> moves) {
+  const std::size_t once = positions.size();
+  copy_times(positions, moves.size());
+  for (std::size_t k = 0; k < positions.size(); ++k)
+    positions[k] = glm::vec3(glm::dvec3(positions[k]) + moves[k / once]);
+}
 
 /// Copies of the anchors: each copy is seen, and decoded, from where it stands.
-std::shared_ptr<Scaffold> repeat(Scaffold s, const Grid& grid) {
-  const std::size_t copies = grid.copies();
-  const std::size_t once = s.anchor_count();
-  copy_times(s.position, copies);
-  copy_times(s.offset_scale, copies);
-  copy_times(s.scale, copies);
-  copy_times(s.rotation, copies);
-  copy_times(s.offset, copies);
-  copy_times(s.feature, copies);
-  grid.move(s.position, once);
+std::shared_ptr<Scaffold> repeat(Scaffold s, std::span<const glm::dvec3> moves) {
+  copy_to(s.position, moves);
+  copy_times(s.offset_scale, moves.size());
+  copy_times(s.scale, moves.size());
+  copy_times(s.rotation, moves.size());
+  copy_times(s.offset, moves.size());
+  copy_times(s.feature, moves.size());
   return std::make_shared<Scaffold>(std::move(s));
 }
 
@@ -72,9 +67,9 @@ Model repeat(Model model, int nx, int nz, double spacing) {
   if (!std::isfinite(static_cast<float>(farthest))) {
     fail("--spacing {}: expected a distance between copies in world units", spacing);
   }
-  const Grid grid{nx, nz, glm::transpose(world_from_axes(model.axes.letters)), spacing};
+  const std::vector<glm::dvec3> moves = moves_of(nx, nz, spacing, model.axes);
   if (model.scaffold) {
-    Model repeated = stand_in(repeat(*model.scaffold, grid));
+    Model repeated = stand_in(repeat(*model.scaffold, moves));
     repeated.kernel_px2 = model.kernel_px2;
     repeated.antialiased = model.antialiased;
     repeated.antialiased_by = model.antialiased_by;
@@ -82,13 +77,11 @@ Model repeat(Model model, int nx, int nz, double spacing) {
     repeated.axes = model.axes;
     return repeated;
   }
-  const std::size_t once = model.count();
-  copy_times(model.position, copies);
-  copy_times(model.scale, copies);
-  copy_times(model.rotation, copies);
-  copy_times(model.opacity, copies);
-  copy_times(model.sh, copies);
-  grid.move(model.position, once);
+  copy_to(model.position, moves);
+  copy_times(model.scale, moves.size());
+  copy_times(model.rotation, moves.size());
+  copy_times(model.opacity, moves.size());
+  copy_times(model.sh, moves.size());
   return model;
 }
 

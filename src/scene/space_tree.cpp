@@ -10,38 +10,28 @@ namespace binosplat {
 
 namespace {
 
-struct Plane {
-  glm::length_t axis;
-  double at;
-};
+/// Whatever lies far out, a tree is no deeper than this and the halvings that are left: files nest as deep.
+constexpr int deepest_middle = 64;
 
-/// The middle of the longest side.
-Plane middle(std::span<const glm::vec3> positions, std::span<const std::uint32_t> indices) {
-  glm::vec3 low(positions[indices.front()]), high(low);
-  for (const std::uint32_t i : indices) {
+/// Puts those in the first half of the longest side before the others, and says how many they are.
+std::size_t part(std::span<const glm::vec3> positions, std::span<std::uint32_t> chunk, int depth) {
+  glm::vec3 low(positions[chunk.front()]), high(low);
+  for (const std::uint32_t i : chunk) {
     low = glm::min(low, positions[i]);
     high = glm::max(high, positions[i]);
   }
   const glm::dvec3 side = glm::dvec3(high) - glm::dvec3(low);
   const glm::length_t axis = side.x >= side.y && side.x >= side.z ? 0 : side.y >= side.z ? 1 : 2;
-  return {axis, 0.5 * (double{low[axis]} + double{high[axis]})};
-}
-
-/// Whatever lies far out, a tree is no deeper than this and the halvings that are left: files nest as deep.
-constexpr int deepest_middle = 64;
-
-/// Puts those before the plane first, and says how many they are.
-std::size_t split_at(const Plane& plane, std::span<const glm::vec3> positions, std::span<std::uint32_t> chunk,
-                     int depth) {
   const std::size_t half = chunk.size() / 2;
   if (depth > deepest_middle) {
-    const auto place = [&](std::uint32_t i) { return std::pair(positions[i][plane.axis], i); };
+    const auto place = [&](std::uint32_t i) { return std::pair(positions[i][axis], i); };
     std::nth_element(chunk.begin(), chunk.begin() + static_cast<std::ptrdiff_t>(half), chunk.end(),
                      [&](std::uint32_t a, std::uint32_t b) { return place(a) < place(b); });
     return half;
   }
-  const auto beyond = std::stable_partition(
-      chunk.begin(), chunk.end(), [&](std::uint32_t i) { return positions[i][plane.axis] < plane.at; });
+  const double middle = 0.5 * (double{low[axis]} + double{high[axis]});
+  const auto beyond = std::stable_partition(chunk.begin(), chunk.end(),
+                                            [&](std::uint32_t i) { return positions[i][axis] < middle; });
   const auto first = static_cast<std::size_t>(beyond - chunk.begin());
   return first > 0 ? first : half;  // all are at one place, or as near as floats can be
 }
@@ -49,8 +39,7 @@ std::size_t split_at(const Plane& plane, std::span<const glm::vec3> positions, s
 void split(SpaceNode& node, std::span<const glm::vec3> positions, std::span<std::uint32_t> order,
            std::size_t most, int depth) {
   if (node.count <= most) return;
-  const std::span<std::uint32_t> chunk = order.subspan(node.first, node.count);
-  const std::size_t first = split_at(middle(positions, chunk), positions, chunk, depth);
+  const std::size_t first = part(positions, order.subspan(node.first, node.count), depth);
   node.children = {{node.first, first, {}}, {node.first + first, node.count - first, {}}};
   const auto split_child = [&](std::size_t k) { split(node.children[k], positions, order, most, depth + 1); };
   constexpr std::size_t worth_a_thread = 1 << 16;
