@@ -10,7 +10,6 @@ namespace {
 using nlohmann::json;
 using test::ended;
 using test::good;
-using test::has;
 using test::Outcome;
 using test::Words;
 using test::write_text;
@@ -115,15 +114,6 @@ TEST_F(KeysPath, APairOfEyesIsOneKey) {
     for (std::size_t n = 0; n < x.size(); ++n)
       EXPECT_NEAR(x[n], 0.15 * static_cast<double>(n), 1e-6) << "not to one eye and the other";
   }
-}
-
-TEST_F(KeysPath, AVideoHasTheFrames) {
-  if (!have_ffmpeg()) GTEST_SKIP() << "ffmpeg is not installed";
-  save_cameras(0.5);
-  ASSERT_TRUE(good(along({"-o", folder / "a.mkv"})));
-  const std::string facts = facts_of(folder / "a.mkv");
-  EXPECT_TRUE(has(facts, "r_frame_rate=30/1"));
-  EXPECT_TRUE(has(facts, "nb_read_frames=46"));
 }
 
 }  // namespace
