@@ -60,15 +60,10 @@ std::vector<Piece> pieces_of(const CoredModel& cored) {
 
 const double aligned = std::cos(glm::radians(level_degrees)), across = std::sin(glm::radians(level_degrees));
 
-/// How much speaks for a direction.
-double votes_for(const glm::dvec3& direction, std::span<const Piece> pieces) {
-  double votes = 0.0;
-  for (const Piece& piece : pieces) {
-    const double x = std::abs(glm::dot(direction, piece.normal));
-    if (x > aligned) votes += piece.weight;
-    if (x < across) votes += upright_counts * piece.weight;
-  }
-  return votes;
+/// What a piece counts where a direction is up: above 0 if it is level then, below if it is upright.
+double vote(const Piece& piece, const glm::dvec3& up) {
+  const double x = std::abs(glm::dot(up, piece.normal));
+  return x > aligned ? piece.weight : x < across ? -upright_counts * piece.weight : 0.0;
 }
 
 /// The direction, up or down, that the level pieces have for a normal as nearly as the upright ones lie in
@@ -78,8 +73,7 @@ glm::dvec3 refined(glm::dvec3 direction, std::span<const Piece> pieces) {
     glm::dmat3 sum(0.0);
     double upright = 0.0;
     for (const Piece& piece : pieces) {
-      const double x = std::abs(glm::dot(direction, piece.normal));
-      const double weight = x > aligned ? piece.weight : x < across ? -upright_counts * piece.weight : 0.0;
+      const double weight = vote(piece, direction);
       sum += weight * glm::outerProduct(piece.normal, piece.normal);
       upright -= std::min(weight, 0.0);
     }
@@ -99,7 +93,7 @@ std::optional<glm::dvec3> axis_of(std::span<const Piece> pieces) {
     const auto n = static_cast<std::size_t>(k);
     const double z = (k + 0.5) / count, ring = std::sqrt(1.0 - z * z), turn = 2.399963 * k;
     directions[n] = {ring * std::cos(turn), ring * std::sin(turn), z};
-    votes[n] = votes_for(directions[n], pieces);
+    for (const Piece& piece : pieces) votes[n] += std::abs(vote(piece, directions[n]));
   });
   const auto best = static_cast<std::size_t>(std::max_element(votes.begin(), votes.end()) - votes.begin());
   const double far = std::cos(glm::radians(30.0));
