@@ -152,7 +152,8 @@ Camera KeyPath::at(double seconds) const {
   camera.position = cubic_between(a.place, a.going, b.place, b.going, apart, u);
   // Not glm::slerp, which turns back where a way is longer than half a turn: it would jump.
   const auto spherical = [](const glm::dquat& from, const glm::dquat& to, double share) {
-    return glm::mix(from, to, share);
+    // Opposite quaternions are one orientation, and glm::mix would divide by 0.
+    return glm::dot(from, to) <= -1.0 ? from : glm::mix(from, to, share);
   };
   camera.rotation = glm::mat3_cast(
       glm::normalize(cubic(a.turned, a.turned * turn_by(a.turning * (apart / 3.0)),
