@@ -13,6 +13,7 @@
 //
 // examples/embed.cpp, examples/mesh.cpp and examples/openxr.cpp are whole programs.
 
+#include <filesystem>
 #include <glm/glm.hpp>
 #include <memory>
 #include <optional>
@@ -143,6 +144,35 @@ class Renderer {
 
   struct Impl;
   std::unique_ptr<Impl> impl_;
+};
+
+/// AdaGScale: K and the table by depth come from a calibration.
+inline const Settings adagscale{.threshold = Threshold::peripheral, .transmittance = Transmittance::by_depth};
+
+/// A file of `binosplat calibrate`: how much of a model frames may leave out, by AdaGScale or another rule.
+///
+///   const binosplat::Calibration calibration("calibration.json", model);
+///   // Each frame:
+///   renderer.submit(views, placement, calibration.settings(views, placement));
+///
+/// Copies are cheap. Everything here may be called from any thread, and needs no context.
+class Calibration {
+ public:
+  /// Reads the file, and all numbers of the model, to see that it is the one that was calibrated. Throws
+  /// Error(bad_input) for what is no such file, and for another model.
+  Calibration(const std::filesystem::path& path, const SplatModel& model);
+
+  /// `asked` with the file's table, and, where it has neither a tolerance nor a quality, with the file's
+  /// tolerance for its threshold (none: squared) and transmittance, scaled to the first view's focal length.
+  /// Exact where the first eye is farther from the calibrated cameras than twice the largest distance between
+  /// neighbours of them. Throws Error(bad_input) where the file has nothing for that threshold and
+  /// transmittance, or is of another order or projection; and as Renderer::submit() does for views.
+  Settings settings(std::span<const View> views, const Placement& placement,
+                    const Settings& asked = adagscale) const;
+
+ private:
+  struct Impl;
+  std::shared_ptr<const Impl> impl_;
 };
 
 }  // namespace binosplat

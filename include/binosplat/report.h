@@ -46,6 +46,7 @@ struct Report {
   int attempts = 0;                  // times that it was drawn until the quality held
   int redrawn = 0;                   // times that it was drawn again, since a buffer was too small
   int programs_made = 0;             // shaders that were compiled for it, or loaded from the cache
+  bool used_measured = false;        // it used the transmittance that an earlier frame measured
   bool sampled_error = false;        // it drew some tiles exactly, too, to measure its error
   /// With a quality or a measured transmittance: it could not go by earlier frames, as the first one cannot,
   /// nor one after a camera cut.

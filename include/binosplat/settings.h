@@ -28,7 +28,7 @@ enum class Transmittance {
 /// The most light that reaches any Gaussian whose view depth lies in a bin (AdaGScale's T_upper, sections 3.2
 /// and 3.4 of the paper), in equal bins over [0, far) world units; Projection::tangent counts the distance
 /// from the eye. A bin of 0 is one in which no Gaussian was seen: there, and beyond `far`, all light counts.
-/// Calibration reads one from a file (binosplat/calibration.h).
+/// Calibration reads one from a file (binosplat/renderer.h).
 struct DepthTable {
   float far = 0.0f;                // world units
   std::vector<float> bounds = {};  // from 0 to 1, by bin

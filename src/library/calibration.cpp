@@ -1,4 +1,4 @@
-#include <binosplat/calibration.h>
+#include <binosplat/renderer.h>
 
 #include "base/error.h"
 #include "formats/calibration_file.h"

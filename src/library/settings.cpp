@@ -121,6 +121,7 @@ Report report_of(const render::FrameReport& frame) {
   report.wait_ms = frame.cpu.wait;
   report.read_ms = frame.cpu.read;
   report.programs_made = frame.programs_made;
+  report.used_measured = frame.used_measured;
   report.sampled_error = frame.sampled_error;
   report.is_cut = frame.is_cut;
   report.gpu_bytes = frame.gpu_bytes;

@@ -13,6 +13,7 @@
 #include "scene/axes.h"
 #include "scene/framing.h"
 #include "scene/model.h"
+#include "scene/model_rows.h"
 
 namespace binosplat::python {
 
@@ -33,66 +34,27 @@ std::shared_ptr<Model> model_at(const std::filesystem::path& path, const std::op
   return model;
 }
 
-/// The five arrays, all of as many rows; sh of (N, 1, 3), (N, 4, 3), (N, 9, 3) or (N, 16, 3).
-struct Columns {
-  Dense<double> means;
-  Dense<> quats, scales, opacities, sh;
-};
-
-void fail_at(const char* name, std::size_t row, std::string_view why) { fail("{}[{}]: {}", name, row, why); }
-
-/// Why a row is no Gaussian.
-void check_row(const GaussianValues& values, std::size_t row, int coefficients) {
-  const auto finite = [](const auto* of, int count) {
-    for (int k = 0; k < count; ++k) {
-      if (!std::isfinite(static_cast<float>(of[k]))) return false;
-    }
-    return true;
-  };
-  const char* const not_finite = "expected finite numbers";
-  if (!finite(&values.position.x, 3)) fail_at("means", row, not_finite);
-  if (!finite(&values.rotation.x, 4)) fail_at("quats", row, not_finite);
-  if (values.rotation == glm::vec4(0.0f)) fail_at("quats", row, "a quaternion of zeros turns nothing");
-  if (!finite(&values.scale.x, 3)) fail_at("scales", row, not_finite);
-  if (glm::any(glm::lessThan(values.scale, glm::vec3(0.0f))))
-    fail_at("scales", row, "below 0: expected standard deviations, which are exp() of what trainers store");
-  if (!(values.opacity >= 0.0f && values.opacity <= 1.0f))
-    fail_at("opacities", row, "expected 0 to 1, which is the sigmoid of what trainers store");
-  if (!finite(values.sh, coefficients)) fail_at("sh", row, not_finite);
-  fail_at("scales", row, "above 1e13, which cannot be drawn");
-}
-
-void fill_rows(Model& model, const Columns& from) {
-  const std::size_t count = model.count();
-  const int coefficients = 3 * sh_count(model.degree);
-  for (std::size_t i = 0; i < count; ++i) {
-    const double* p = from.means.data() + 3 * i;
-    const float *q = from.quats.data() + 4 * i, *s = from.scales.data() + 3 * i;
-    const GaussianValues values{{p[0], p[1], p[2]},
-                                {s[0], s[1], s[2]},
-                                {q[0], q[1], q[2], q[3]},
-                                from.opacities.data()[i],
-                                from.sh.data() + static_cast<std::size_t>(coefficients) * i};
-    if (!place(model, i, values)) check_row(values, i, coefficients);
-  }
-}
-
+/// Of arrays that all have as many rows; sh of (N, 1, 3), (N, 4, 3), (N, 9, 3) or (N, 16, 3).
 std::shared_ptr<Model> model_of(const Dense<double>& means, const Dense<>& quats, const Dense<>& scales,
                                 const Dense<>& opacities, const Dense<>& sh, const std::string& name,
                                 const std::string& axes, bool antialiased) {
-  const Columns columns{means, quats, scales, opacities, sh};
-  auto model = std::make_shared<Model>();
-  model->name = name;
-  model->format = "arrays";
-  while (sh_count(model->degree) < sh.shape(1)) ++model->degree;
-  model->antialiased = antialiased;
-  world_from_axes(axes);
-  model->axes.letters = axes;
-  if (means.shape(0) == 0) fail("means: no Gaussians: expected one row or more");
-  model->resize(static_cast<std::size_t>(means.shape(0)));
+  int degree = 0;
+  while (sh_count(degree) < sh.shape(1)) ++degree;
+  const auto coefficients = static_cast<std::size_t>(3 * sh_count(degree));
+  const auto row = [&](std::size_t i) {
+    const double* p = means.data() + 3 * i;
+    const float *q = quats.data() + 4 * i, *s = scales.data() + 3 * i;
+    return GaussianValues{{p[0], p[1], p[2]},
+                          {s[0], s[1], s[2]},
+                          {q[0], q[1], q[2], q[3]},
+                          opacities.data()[i],
+                          sh.data() + coefficients * i};
+  };
+  const auto count = static_cast<std::size_t>(means.shape(0));
   const Unlocked unlocked;
-  fill_rows(*model, columns);
-  if (choose_origin(*model)) fill_rows(*model, columns);
+  auto model = std::make_shared<Model>(model_of_rows(count, degree, axes, row));
+  model->name = name;
+  model->antialiased = antialiased;
   return model;
 }
 

@@ -1,6 +1,7 @@
 // Frames as arrays.
 
 #include <cmath>
+#include <filesystem>
 #include <memory>
 #include <utility>
 #include <variant>
@@ -8,6 +9,7 @@
 
 #include "base/choices.h"
 #include "base/error.h"
+#include "formats/calibration_file.h"
 #include "python/module.h"
 #include "python/renderer.h"
 #include "python/unlocked.h"
@@ -29,21 +31,27 @@ std::shared_ptr<Renderer> open(std::shared_ptr<Model> model, const std::string& 
   return std::make_shared<Renderer>(std::move(model), chosen, device.value_or(-1), kept);
 }
 
-void check(const render::FrameSettings& s, bool given, bool scaffold, bool follows) {
+void check(const Settings& settings, const Model& model, bool given) {
+  const render::FrameSettings& s = settings.frame;
   for (int c = 0; c < 3; ++c) {
     if (!(s.background[c] >= 0.0f && s.background[c] <= 1.0f))
       fail("background: expected three numbers from 0 to 1");
   }
-  if (!render::is_exact(s.th) && !given)
-    fail("th {} needs tolerance or quality: what it may cost", th_choices[s.th].name);
-  if (s.transmittance == TRANSMITTANCE_DEPTH)
-    fail("transmittance depth: needs a table of the scene, which `binosplat render` measures");
-  if (s.decode != DECODE_EYES && !scaffold) {
+  const bool calibrated = settings.policy.is_calibrated();
+  if (!render::is_exact(s.th) && !given && !calibrated)
+    fail("th {} needs tolerance, quality or calibration: what it may cost", th_choices[s.th].name);
+  if (s.transmittance == TRANSMITTANCE_DEPTH && !calibrated)
+    fail("transmittance depth: needs calibration, which has the table of the scene");
+  if (calibrated && !render::is_exact(s.th)) {
+    if (!given) settings.policy.check(s);
+    settings.policy.check_perspective(s, model);
+  }
+  if (s.decode != DECODE_EYES && !model.scaffold) {
     fail("decode {}: this is no Scaffold-GS model, whose Gaussians are made for each eye",
          decode_choices[s.decode].name);
   }
   render::check_choice(s);
-  if (s.transmittance == TRANSMITTANCE_LAST && !follows)
+  if (s.transmittance == TRANSMITTANCE_LAST && !settings.follow)
     fail("transmittance last: needs follow=True; it is the light that the frame before measured");
 }
 
@@ -60,11 +68,12 @@ py::dict dict_of(const render::FrameReport& report) {
   py::dict stages;
   for (const gl::StageTime& stage : report.stages) stages[py::str(stage.name)] = stage.ms;
   using namespace py::literals;
-  return py::dict("total_ms"_a = report.total_ms, "stages_ms"_a = stages, "visible"_a = report.visible,
-                  "pairs"_a = report.pairs, "tolerance"_a = report.tolerance, "quality"_a = report.quality,
-                  "quality_is_estimate"_a = report.quality_is_estimate, "submit_ms"_a = report.cpu.submit,
-                  "attempts"_a = report.attempts, "remembered"_a = report.used_measured,
-                  "gpu_bytes"_a = report.gpu_bytes);
+  return py::dict("stages"_a = stages, "gpu_ms"_a = report.total_ms, "submit_ms"_a = report.cpu.submit,
+                  "gpu_bytes"_a = report.gpu_bytes, "visible"_a = report.visible, "pairs"_a = report.pairs,
+                  "tolerance"_a = report.tolerance, "quality"_a = report.quality,
+                  "quality_is_estimate"_a = report.quality_is_estimate, "attempts"_a = report.attempts,
+                  "redrawn"_a = report.redrawn, "used_measured"_a = report.used_measured,
+                  "is_cut"_a = report.is_cut);
 }
 
 /// The number of a choice; nothing for none.
@@ -79,17 +88,20 @@ Settings settings_of(const Renderer& renderer, const std::optional<float>& quali
                      const std::string& transmittance, const std::optional<std::string>& order,
                      const std::optional<std::string>& projection, const std::string& tiles,
                      const std::string& decode, const std::array<float, 3>& background, double near_plane,
-                     const std::string& depth, bool follow) {
+                     const std::string& depth, bool follow,
+                     const std::optional<render::ThresholdPolicy>& calibration) {
   if (!(near_plane > 0.0 && std::isfinite(near_plane)))
     fail("near {}: expected world units above zero", near_plane);
   if (quality && !(*quality >= render::quality_least && *quality <= render::quality_most))
     fail("quality {}: expected decibels from {} to {}", *quality, render::quality_least,
          render::quality_most);
   const bool given = quality || tolerance;
-  render::FrameSettings settings;
+  Settings all{
+      .policy = calibration.value_or(render::ThresholdPolicy()), .near_plane = near_plane, .follow = follow};
+  render::FrameSettings& settings = all.frame;
   settings.quality = quality.value_or(0.0f);
   settings.tolerance = tolerance.value_or(0.0f);
-  settings.th = chosen("th", th, th_choices).value_or(given ? TH_SQUARED : TH_TAU);
+  settings.th = chosen("th", th, th_choices).value_or(given || calibration ? TH_SQUARED : TH_TAU);
   settings.transmittance = find_choice("transmittance", transmittance, transmittance_choices);
   settings.order = chosen("order", order, order_choices);
   settings.projection = chosen("projection", projection, projection_choices);
@@ -97,10 +109,10 @@ Settings settings_of(const Renderer& renderer, const std::optional<float>& quali
   settings.decode = find_choice("decode", decode, decode_choices);
   settings.background = {background[0], background[1], background[2]};
   settings.precision = renderer.precision();
-  check(settings, given, renderer.model().scaffold != nullptr, follow);
+  check(all, renderer.model(), given);
   static constexpr Choice depths[] = {{"mean", ""}, {"median", ""}};
   settings.depth = find_choice("depth", depth, depths) == 0 ? Depth::mean : Depth::median;
-  return {settings, near_plane, follow};
+  return all;
 }
 
 /// The three arrays of each view, and what they have in common.
@@ -164,12 +176,20 @@ void close(const std::shared_ptr<Renderer>& renderer) {
 
 void add_renderer(py::module_& module) {
   const py::class_<Settings> settings(module, "Settings");
+  py::class_<render::ThresholdPolicy>(module, "Calibration")
+      .def(py::init([](const std::filesystem::path& path, const std::shared_ptr<Model>& model) {
+        const Unlocked unlocked;
+        render::ThresholdPolicy policy(path.string(), load_calibration(path));
+        policy.check_model(*model);
+        return policy;
+      }));
   py::class_<Renderer, std::shared_ptr<Renderer>>(module, "Renderer")
       .def(py::init(&open), py::arg("model"), py::arg("backend"), py::arg("device"), py::arg("precision"))
       .def_property_readonly("device", &Renderer::device)
       .def("settings", &settings_of, py::arg("quality"), py::arg("tolerance"), py::arg("th"),
            py::arg("transmittance"), py::arg("order"), py::arg("projection"), py::arg("tiles"),
-           py::arg("decode"), py::arg("background"), py::arg("near"), py::arg("depth"), py::arg("follow"))
+           py::arg("decode"), py::arg("background"), py::arg("near"), py::arg("depth"), py::arg("follow"),
+           py::arg("calibration"))
       .def("draw", &draw, py::arg("view"), py::arg("settings"))
       .def("close", &close);
   py::class_<Frames>(module, "Path")

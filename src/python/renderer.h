@@ -15,6 +15,7 @@
 #include "python/gl_thread.h"
 #include "render/frame.h"
 #include "render/read_back.h"
+#include "render/threshold_policy.h"
 #include "scene/camera.h"
 
 namespace binosplat::python {
@@ -48,9 +49,15 @@ using Views = std::vector<shared::View>;
 /// What a frame is drawn by; `follow`: it goes by what the one before measured.
 struct Settings {
   render::FrameSettings frame;
+  render::ThresholdPolicy policy;
   double near_plane = near_default;  // world units
   bool follow = false;
 };
+
+/// The settings of a frame of these views.
+inline render::FrameSettings frame_of(const Settings& settings, const Views& views, const Model& model) {
+  return settings.policy.settings(settings.frame, views.front(), model.axes);
+}
 
 /// Frames of which the GPU draws the next one while Python has the last one.
 struct Path {
@@ -59,7 +66,7 @@ struct Path {
 
   void submit(const Views& views, const Settings& settings) {
     if (!settings.follow) frame.start_over();
-    frame.submit(views, settings.frame);
+    frame.submit(views, frame_of(settings, views, frame.model()->model()));
   }
 
   render::Frame frame;
@@ -96,7 +103,7 @@ class Renderer {
     return thread_->start([this, views, settings] {
       render::Frame& frame = on_gpu().frame;
       if (!settings.follow) frame.start_over();
-      render::FrameReport report = frame.draw(views, settings.frame);
+      render::FrameReport report = frame.draw(views, frame_of(settings, views, *model_));
       return drawn_of(std::move(report), frame.read_pictures(), settings.frame.background);
     });
   }

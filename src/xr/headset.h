@@ -1,7 +1,6 @@
 #pragma once
 // A model in a headset, until its user has seen enough.
 
-#include <binosplat/calibration.h>
 #include <binosplat/stream.h>
 
 #include <functional>

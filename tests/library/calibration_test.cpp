@@ -1,6 +1,5 @@
 // A calibration's settings are those that the programs draw by, to the bit.
 
-#include <binosplat/calibration.h>
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>

@@ -22,8 +22,8 @@ def test_a_picture_is_three_arrays(renderer, cameras):
     assert seen.any() and not seen.all()
     assert np.isinf(picture.depth[~seen]).all()
     assert (picture.depth[seen] > 2).all() and (picture.depth[seen] < 6).all()
-    assert picture.report["pairs"] > 0 and picture.report["total_ms"] > 0
-    assert "blend" in picture.report["stages_ms"] and 0 < picture.report["submit_ms"] < 60000
+    assert picture.report.pairs > 0 and picture.report.gpu_ms > 0
+    assert "blend" in picture.report.stages and 0 < picture.report.submit_ms < 60000
 
 
 def test_the_median_depth_is_one_that_is_there(renderer, cameras):
@@ -108,12 +108,12 @@ def test_a_picture_depends_on_nothing_drawn_before_but_when_it_follows(model, ca
     fast = {"tolerance": 2, "transmittance": "last"}
     with binosplat.Renderer(model, backend="surfaceless") as renderer:
         first = renderer.draw(cameras["front"], **fast, follow=True)
-        assert not first.report["remembered"]
+        assert not first.report.used_measured
         following = renderer.draw(cameras["front"], **fast, follow=True)
-        assert following.report["remembered"]
+        assert following.report.used_measured
         assert not same(following.colour, first.colour)
         alone = renderer.draw(cameras["front"], tolerance=2)
-        assert not alone.report["remembered"]
+        assert not alone.report.used_measured
         assert same(renderer.draw(cameras["front"], tolerance=2).colour, alone.colour)
 
 
@@ -145,7 +145,7 @@ def test_a_quality_is_what_was_asked_for(renderer, cameras):
     drawn = renderer.draw(cameras["front"], quality=35)
     psnr = binosplat.compare(binosplat.quantised(drawn.colour), exact).psnr
     assert 34.5 < psnr < 40
-    assert abs(drawn.report["quality"] - psnr) < 0.5
+    assert abs(drawn.report.quality - psnr) < 0.5
 
 
 WRONG = [
@@ -153,14 +153,14 @@ WRONG = [
     ({"quality": 4000}, "quality 4000: expected decibels from 10 to 100"),
     ({"quality": float("nan")}, "quality nan: expected decibels from 10 to 100"),
     ({"quality": 40, "tolerance": 1}, "tolerance with quality: each chooses the tolerance"),
-    ({"th": "squared"}, "th squared needs tolerance or quality"),
+    ({"th": "squared"}, "th squared needs tolerance, quality or calibration"),
     ({"th": "tau", "tolerance": 1}, "tolerance has no effect with th tau, which is exact"),
     ({"th": "peripheral", "tolerance": float("nan")}, "tolerance nan: expected zero or more"),
     ({"order": "size"}, "order: 'size' is not one of depth, distance"),
     ({"depth": "mode"}, "depth: 'mode' is not one of mean, median"),
     ({"projection": "flat"}, "projection: 'flat' is not one of affine, tangent"),
     ({"tiles": "round"}, "tiles: 'round' is not one of aabb, ellipse"),
-    ({"transmittance": "depth", "tolerance": 1}, "transmittance depth: needs a table"),
+    ({"transmittance": "depth", "tolerance": 1}, "transmittance depth: needs calibration"),
     ({"transmittance": "last"}, "transmittance has no effect with th tau"),
     ({"transmittance": "last", "tolerance": 1}, "transmittance last: needs follow=True"),
     ({"decode": "cyclopean"}, "decode cyclopean: this is no Scaffold-GS model"),
@@ -236,8 +236,38 @@ def test_a_path_says_what_is_wrong_where_it_is(renderer, cameras, scene):
 def test_a_path_goes_by_what_came_before_only_where_it_follows(renderer, cameras):
     views = [cameras["front"]] * 3
     settings = {"tolerance": 0.5, "transmittance": "last", "follow": True}
-    assert [p.report["remembered"] for p in renderer.draw_all(views, **settings)] == [False, True, True]
+    assert [p.report.used_measured for p in renderer.draw_all(views, **settings)] == [False, True, True]
     with pytest.raises(binosplat.InputError, match="needs follow=True"):
         renderer.draw_all(views, tolerance=0.5, transmittance="last")
-    alone = [p.report["remembered"] for p in renderer.draw_all(views, tolerance=0.5)]
+    alone = [p.report.used_measured for p in renderer.draw_all(views, tolerance=0.5)]
     assert alone == [False, False, False]
+
+
+def test_a_calibration_draws_as_the_program_does(model, cameras, scene, program, tmp_path):
+    file = tmp_path / "calibration.json"
+    program("calibrate", scene / "model.ply", "--quality", "36", "-o", file)
+    calibration = binosplat.Calibration(file, model)
+    with binosplat.Renderer(model, backend="surfaceless") as renderer:
+        picture = renderer.draw(cameras["front"], th="adagscale", calibration=calibration)
+        exact = renderer.draw(cameras["front"])
+        own = renderer.draw(cameras["front"], th="adagscale", tolerance=0.5, calibration=calibration)
+        with pytest.raises(binosplat.InputError, match="needs tolerance, quality or calibration"):
+            renderer.draw(cameras["front"], th="peripheral")
+        with pytest.raises(binosplat.InputError, match="transmittance depth: needs calibration"):
+            renderer.draw(cameras["front"], th="adagscale", tolerance=1)
+        with pytest.raises(binosplat.InputError, match="take peripheral"):
+            renderer.draw(cameras["front"], th="adagscale", transmittance="last", calibration=calibration)
+        with pytest.raises(TypeError, match="a Calibration"):
+            renderer.draw(cameras["front"], th="adagscale", calibration=file)
+    assert not same(picture.colour, exact.colour)
+    assert own.report.tolerance == 0.5
+    program("render", scene / "model.ply", "--mono", "--view", "front", "--th", "adagscale", "--calibration", file,
+            "-o", tmp_path / "picture.png")
+    drawn = binosplat.load_image(tmp_path / "picture.png")
+    assert same(binosplat.quantised(picture.colour), drawn)
+    assert not same(binosplat.quantised(exact.colour), drawn)
+    opacities = model.opacities.copy()
+    opacities[0] *= 0.5
+    other = binosplat.Model(model.means, model.quats, model.scales, opacities, model.sh)
+    with pytest.raises(binosplat.InputError, match="another model"):
+        binosplat.Calibration(file, other)

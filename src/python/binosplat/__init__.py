@@ -24,8 +24,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 __all__ = [
-    "Camera", "Cameras", "Comparison", "Error", "Exposures", "InputError", "Model", "OpenGLError", "OutOfMemory",
-    "Picture", "Renderer", "Rig", "compare", "exposed", "find_cameras", "find_exposures", "find_photo", "find_photos",
+    "Calibration", "Camera", "Cameras", "Comparison", "Error", "Exposures", "InputError", "Model", "OpenGLError", "OutOfMemory",
+    "Picture", "Renderer", "Report", "Rig", "compare", "exposed", "find_cameras", "find_exposures", "find_photo", "find_photos",
     "frame", "load_cameras", "load_exposures", "load_image", "load_model", "look_at", "quantised", "save_png",
 ]
 
@@ -55,7 +55,8 @@ __version__: str = _binosplat.__version__
 
 _Path = str | os.PathLike[str]
 _Floats = NDArray[np.float32]
-_Th = Literal["tau", "squared", "peripheral"]
+_Th = Literal["tau", "squared", "peripheral", "adagscale"]
+_Transmittance = Literal["one", "last", "depth"]
 _Order = Literal["depth", "distance"]
 _Projection = Literal["affine", "tangent"]
 _Tiles = Literal["aabb", "ellipse", "snug", "obb", "all"]
@@ -249,6 +250,77 @@ def load_model(path: _Path, *, lod: int | None = None, appearance: int | None = 
     return model
 
 
+class Calibration:
+    """A file of ``binosplat calibrate``, which says how much of a model frames may leave out.
+
+    ``renderer.draw(camera, th="adagscale", calibration=calibration)`` draws by AdaGScale as the programs do.
+
+    Parameters
+    ----------
+    path
+    model
+        The one that was calibrated.
+
+    Raises
+    ------
+    InputError
+        For what is no such file, and for another model.
+    """
+
+    def __init__(self, path: _Path, model: Model) -> None:
+        _expect(model, Model, "a Model")
+        self._policy = _binosplat.Calibration(path, model._model)
+
+
+@dataclass(frozen=True)
+class Report:
+    """What drawing a frame took.
+
+    Attributes
+    ----------
+    stages
+        GPU time of each stage, ms: decode, project, bin, sort, blend, probe.
+    gpu_ms
+        Their sum.
+    submit_ms
+        CPU time of handing the frame to the driver.
+    gpu_bytes
+        In buffers, the model's included.
+    visible
+        Gaussians drawn, summed over depth orders (one for parallel eyes).
+    pairs
+        Gaussian-tile pairs over all views.
+    tolerance
+        That the frame was drawn with; 0 is exact.
+    quality
+        With a quality: dB that it came to.
+    quality_is_estimate
+        It was not measured on all of this frame.
+    attempts
+        Times that it was drawn until the quality held.
+    redrawn
+        Times that it was drawn again, since a buffer was too small.
+    used_measured
+        It used the transmittance that the frame before measured.
+    is_cut
+        With a quality or transmittance 'last': it could go by no earlier frame.
+    """
+
+    stages: dict[str, float]
+    gpu_ms: float
+    submit_ms: float
+    gpu_bytes: int
+    visible: int
+    pairs: int
+    tolerance: float
+    quality: float
+    quality_is_estimate: bool
+    attempts: int
+    redrawn: int
+    used_measured: bool
+    is_cut: bool
+
+
 @dataclass(frozen=True, eq=False, repr=False)
 class Picture:
     """What draw() makes of a view; rows from the top.
@@ -263,15 +335,13 @@ class Picture:
     depth
         (height, width): along the view's axis, world units, by draw(depth=); inf where alpha is at most 0.5.
     report
-        Of the frame: total_ms and stages_ms (GPU times), submit_ms (CPU time of handing it to the driver), visible,
-        pairs, tolerance and quality (dB) that it came to, attempts, remembered (whether it used what the frame before
-        measured), gpu_bytes.
+        What drawing the frame took.
     """
 
     colour: _Floats
     transmittance: _Floats
     depth: _Floats
-    report: dict[str, Any]
+    report: Report
 
 
 @dataclass(frozen=True, init=False, eq=False, repr=False)
@@ -473,10 +543,11 @@ class Renderer:
         self.device: str = self._renderer.device
 
     def draw(self, view: _View[_Drawn], *, quality: float | None = None, tolerance: float | None = None,
-             th: _Th | None = None, transmittance: Literal["one", "last"] = "one", order: _Order | None = None,
+             th: _Th | None = None, transmittance: _Transmittance = "one", order: _Order | None = None,
              projection: _Projection | None = None, tiles: _Tiles = "ellipse",
              decode: Literal["eyes", "cyclopean"] = "eyes", background: ArrayLike = (0, 0, 0), near: float = 0.2,
-             depth: Literal["mean", "median"] = "mean", follow: bool = False) -> _Drawn:
+             depth: Literal["mean", "median"] = "mean", follow: bool = False,
+             calibration: Calibration | None = None) -> _Drawn:
         """Draws a view. Without settings the picture is exact.
 
         May be called from any thread; pictures of one Renderer are drawn one after the other. Ctrl-C ends the wait.
@@ -489,11 +560,11 @@ class Renderer:
         tolerance
             In place of quality: what leaving a Gaussian out of a tile may cost, in the unit of th.
         th
-            The rule that leaves Gaussians out: 'squared' (where quality or tolerance is given), 'peripheral', or
-            'tau', which is exact.
+            The rule that leaves Gaussians out: 'squared' (where quality, tolerance or calibration is given),
+            'peripheral', 'adagscale', which is that with transmittance 'depth', or 'tau', which is exact.
         transmittance
-            The light that a Gaussian is taken to get: 'one', or 'last', which the frame before measured; that needs
-            follow.
+            The light that a Gaussian is taken to get: 'one'; 'last', which the frame before measured, and which needs
+            follow; or 'depth', the most that reaches its depth by the calibration's table.
         order
             What Gaussians are sorted by, 'depth' or 'distance'; as the model was trained by default.
         projection
@@ -511,37 +582,53 @@ class Renderer:
         follow
             This is the next frame of a path, and uses what the one before measured. Else the picture depends on
             nothing drawn before.
+        calibration
+            Of this model, which gives the table by depth and, where neither quality nor tolerance is given, the
+            tolerance. What is far from the calibrated cameras is drawn exactly.
 
         Returns
         -------
         Picture, or of a Rig a tuple of two, left and right
         """
         _expect(view, _View, "a Camera or a Rig")
-        settings = self._renderer.settings(quality, tolerance, th, transmittance, order, projection, tiles, decode,
-                                           background, near, depth, follow)
+        settings = self._settings(quality, tolerance, th, transmittance, order, projection, tiles, decode, background,
+                                  near, depth, follow, calibration)
         return _pictures(*self._renderer.draw(view, settings))
 
     def draw_all(self, views: Iterable[_View[_Drawn]], *, quality: float | None = None,
-                 tolerance: float | None = None, th: _Th | None = None, transmittance: Literal["one", "last"] = "one",
+                 tolerance: float | None = None, th: _Th | None = None, transmittance: _Transmittance = "one",
                  order: _Order | None = None, projection: _Projection | None = None, tiles: _Tiles = "ellipse",
                  decode: Literal["eyes", "cyclopean"] = "eyes", background: ArrayLike = (0, 0, 0), near: float = 0.2,
-                 depth: Literal["mean", "median"] = "mean", follow: bool = False) -> Iterator[_Drawn]:
+                 depth: Literal["mean", "median"] = "mean", follow: bool = False,
+                 calibration: Calibration | None = None) -> Iterator[_Drawn]:
         """Draws one view after another, each while Python has the picture of the one before.
 
         Parameters
         ----------
         views : iterable of Camera or Rig
             Each is taken when its turn comes, and what is wrong with it raised then.
-        quality, tolerance, th, transmittance, order, projection, tiles, decode, background, near, depth, follow
+        quality, tolerance, th, transmittance, order, projection, tiles, decode, background, near, depth, follow, calibration
             As of draw(), and the same for all; with follow they are the frames of a path.
 
         Returns
         -------
         iterator of what draw() returns
         """
-        settings = self._renderer.settings(quality, tolerance, th, transmittance, order, projection, tiles, decode,
-                                           background, near, depth, follow)
+        settings = self._settings(quality, tolerance, th, transmittance, order, projection, tiles, decode, background,
+                                  near, depth, follow, calibration)
         return _pictures_of_path(_binosplat.Path(self._renderer, settings), iter(views))
+
+    def _settings(self, quality: float | None, tolerance: float | None, th: _Th | None, transmittance: _Transmittance,
+                  *others: Any) -> Any:
+        *others_but_last, calibration = others
+        _expect(calibration, (Calibration, type(None)), "a Calibration")
+        rule: str | None = th
+        if th == "adagscale":
+            if transmittance == "last":
+                raise InputError("th adagscale goes by its table by depth: for transmittance last take peripheral")
+            rule, transmittance = "peripheral", "depth"
+        policy = calibration._policy if calibration else None
+        return self._renderer.settings(quality, tolerance, rule, transmittance, *others_but_last, policy)
 
     def close(self) -> None:
         """Gives the GPU's memory back; it is also given back with the last reference, and by `with`."""
@@ -556,7 +643,8 @@ class Renderer:
 
 def _pictures(arrays: list[tuple[_Floats, _Floats, _Floats]], report: dict[str, Any]) -> Any:
     """A view's picture, or those of both eyes."""
-    pictures = tuple(Picture(*of_view, report) for of_view in arrays)
+    of_frame = Report(**report)
+    pictures = tuple(Picture(*of_view, of_frame) for of_view in arrays)
     return pictures if len(pictures) == 2 else pictures[0]
 
 
