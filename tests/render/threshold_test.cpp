@@ -119,9 +119,8 @@ TEST(DepthTable, EachDepthHasItsTransmittance) {
 TEST(DepthTable, OneThatMakesNoSenseIsNamed) {
   const Model model = test::random_model(96, 10, 0);
   const shared::View view = make_view(test::front_camera(32, 32, 32));
-  for (const DepthTable& table :
-       {DepthTable{}, DepthTable{0.0f, {1.0f}}, DepthTable{5.0f, {0.5f, 1.5f}},
-        DepthTable{5.0f, {std::nanf("")}}}) {
+  for (const DepthTable& table : {DepthTable{}, DepthTable{0.0f, {1.0f}}, DepthTable{5.0f, {0.5f, 1.5f}},
+                                  DepthTable{5.0f, {std::nanf("")}}}) {
     const FrameSettings settings = {
         .th = TH_SQUARED, .transmittance = TRANSMITTANCE_DEPTH, .depth_table = table, .tolerance = 1};
     EXPECT_TRUE(test::fails_saying([&] { test::draw(model, view, settings); }, {"transmittance depth"}));
