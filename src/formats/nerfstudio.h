@@ -31,7 +31,7 @@ constexpr int pose_width = 1280, pose_height = 720;
 /// Reads such poses in file order, camera-to-world with OpenGL's axes; a camera's name is its file_path. The
 /// file says nothing of lenses: pictures have the size of their photos, or pose_width x pose_height, and
 /// are `fov_degrees` high. Throws Error naming the file and the key for what is missing or wrong.
-std::vector<Camera> load_pose_list(const std::filesystem::path& path, const nlohmann::json& root,
+std::vector<Camera> load_pose_list(const std::filesystem::path& path, const nlohmann::json& json,
                                    double fov_degrees);
 
 }  // namespace binosplat

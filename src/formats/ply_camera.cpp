@@ -125,9 +125,9 @@ void set_pose(const CameraRows& rows, Camera& camera) {
   glm::dmat3 axes;
   glm::dvec3 shift;
   for (int row = 0; row < 3; ++row) {
-    const auto at = [&](int column) { return (*extrinsic)[static_cast<std::size_t>(4 * row + column)]; };
-    axes[row] = {at(0), at(1), at(2)};
-    shift[row] = at(3);
+    const double* const values = extrinsic->data() + 4 * static_cast<std::size_t>(row);
+    axes[row] = {values[0], values[1], values[2]};
+    shift[row] = values[3];
   }
   if (first_version) axes = glm::transpose(axes);
   if (const std::string fault = rotation_fault(axes); !fault.empty()) rows.fail("extrinsic", fault);
