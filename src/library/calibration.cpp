@@ -16,8 +16,8 @@ struct Calibration::Impl {
 
 Calibration::Calibration(const std::filesystem::path& path, const SplatModel& model) {
   if (model.model_ == nullptr) fail("model: it was moved from: expected a SplatModel that holds one");
-  impl_ = std::make_shared<const Impl>(model.model_,
-                                       render::ThresholdPolicy(path.string(), load_calibration(path)));
+  impl_ = std::make_shared<const Impl>(
+      Impl{model.model_, render::ThresholdPolicy(path.string(), load_calibration(path))});
   impl_->policy.check_model(*model.model_);
 }
 

@@ -22,25 +22,25 @@ SplatModel::SplatModel(const std::filesystem::path& path, const ModelOptions& op
   model_ = std::make_shared<const Model>(load_model(path, options));
 }
 
-SplatModel::SplatModel(const Gaussians& from, const std::string& name) {
-  const std::size_t count = from.means.size();
+SplatModel::SplatModel(const Gaussians& gaussians, const std::string& name) {
+  const std::size_t count = gaussians.means.size();
   const auto check_length = [&](const char* array, std::size_t length) {
     if (length != count) fail("{}: {} elements for {} means: expected as many", array, length, count);
   };
-  check_length("quats", from.quats.size());
-  check_length("scales", from.scales.size());
-  check_length("opacities", from.opacities.size());
+  check_length("quats", gaussians.quats.size());
+  check_length("scales", gaussians.scales.size());
+  check_length("opacities", gaussians.opacities.size());
   int degree = 0;
-  while (degree < 3 && from.sh.size() != count * static_cast<std::size_t>(sh_count(degree))) ++degree;
+  while (degree < 3 && gaussians.sh.size() != count * static_cast<std::size_t>(sh_count(degree))) ++degree;
   const auto each = static_cast<std::size_t>(sh_count(degree));
-  if (from.sh.size() != count * each)
-    fail("sh: {} elements for {} means: expected 1, 4, 9 or 16 for each", from.sh.size(), count);
-  Model model = model_of_rows(count, degree, from.axes, [&](std::size_t i) {
-    return GaussianValues{from.means[i], from.scales[i], from.quats[i], from.opacities[i],
-                          &from.sh[i * each].x};
+  if (gaussians.sh.size() != count * each)
+    fail("sh: {} elements for {} means: expected 1, 4, 9 or 16 for each", gaussians.sh.size(), count);
+  Model model = model_of_rows(count, degree, gaussians.axes, [&](std::size_t i) {
+    return GaussianValues{gaussians.means[i], gaussians.scales[i], gaussians.quats[i], gaussians.opacities[i],
+                          &gaussians.sh[i * each].x};
   });
   model.name = name;
-  model.antialiased = from.antialiased;
+  model.antialiased = gaussians.antialiased;
   model_ = std::make_shared<const Model>(std::move(model));
 }
 
