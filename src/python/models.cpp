@@ -40,7 +40,7 @@ std::shared_ptr<Model> model_of(const Dense<double>& means, const Dense<>& quats
                                 const std::string& axes, bool antialiased) {
   int degree = 0;
   while (sh_count(degree) < sh.shape(1)) ++degree;
-  const auto coefficients = static_cast<std::size_t>(3 * sh_count(degree));
+  const auto coefficients = 3 * static_cast<std::size_t>(sh_count(degree));
   const auto row = [&](std::size_t i) {
     const double* p = means.data() + 3 * i;
     const float *q = quats.data() + 4 * i, *s = scales.data() + 3 * i;
