@@ -18,7 +18,7 @@ class ThresholdPolicy {
   ThresholdPolicy() = default;
   /// `name` is the calibration's in errors: its file.
   ThresholdPolicy(std::string name, ThresholdCalibration calibration)
-      : name_(std::move(name)), calibration_(std::move(calibration)) {}
+      : name_(std::move(name)), calibration_(std::move(calibration)), reach_(reach_of(*calibration_)) {}
 
   bool is_calibrated() const { return calibration_.has_value(); }
   /// Whether the calibration has a tolerance for the rule and the transmittance of these settings.
@@ -46,6 +46,7 @@ class ThresholdPolicy {
  private:
   std::string name_;
   std::optional<ThresholdCalibration> calibration_;
+  double reach_ = 0.0;  // of the calibration: frames ask for it
 };
 
 }  // namespace binosplat::render

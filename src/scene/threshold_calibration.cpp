@@ -1,8 +1,8 @@
 #include "scene/threshold_calibration.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
-#include <limits>
 
 namespace binosplat {
 
@@ -22,6 +22,16 @@ class Hash {
  private:
   std::uint64_t state_ = 0xcbf29ce484222325ull;
 };
+
+/// From the nearest of the views, but one.
+double distance_to(const ThresholdCalibration& calibration, const glm::dvec3& position,
+                   const CalibratedView* but = nullptr) {
+  double distance = INFINITY;
+  for (const CalibratedView& view : calibration.views) {
+    if (&view != but) distance = std::min(distance, glm::length(view.position - position));
+  }
+  return distance;
+}
 
 }  // namespace
 
@@ -46,18 +56,16 @@ bool is_of(const ThresholdCalibration& calibration, const Model& model) {
   return calibration.gaussians == model.count() && calibration.hash == model_hash(model);
 }
 
-bool covers(const ThresholdCalibration& calibration, const glm::dvec3& position) {
-  const auto nearest = [&](const glm::dvec3& p, const CalibratedView* but) {
-    double distance = std::numeric_limits<double>::infinity();
-    for (const CalibratedView& view : calibration.views) {
-      if (&view != but) distance = std::min(distance, glm::length(view.position - p));
-    }
-    return distance;
-  };
-  if (calibration.views.size() < 2) return true;
+double reach_of(const ThresholdCalibration& calibration) {
+  if (calibration.views.size() < 2) return INFINITY;
   double reach = 0.0;
-  for (const CalibratedView& view : calibration.views) reach = std::max(reach, nearest(view.position, &view));
-  return nearest(position, nullptr) <= 2.0 * reach;
+  for (const CalibratedView& view : calibration.views)
+    reach = std::max(reach, distance_to(calibration, view.position, &view));
+  return 2.0 * reach;
+}
+
+bool covers(const ThresholdCalibration& calibration, const glm::dvec3& position, double reach) {
+  return distance_to(calibration, position) <= reach;
 }
 
 }  // namespace binosplat

@@ -58,8 +58,11 @@ std::uint64_t model_hash(const Model& model);
 /// Whether the model is the one that was calibrated.
 bool is_of(const ThresholdCalibration& calibration, const Model& model);
 
-/// Whether a camera stands where the calibration knows what to expect: within twice the largest distance of a
-/// calibrated view from its nearest neighbour. With one view: everywhere. `position` is in world units.
-bool covers(const ThresholdCalibration& calibration, const glm::dvec3& position);
+/// How far from calibrated views the calibration knows what to expect, world units: twice the largest
+/// distance of one from its nearest neighbour; infinite for fewer than two. Compares all pairs of views.
+double reach_of(const ThresholdCalibration& calibration);
+
+/// Whether a camera at `position`, world units, stands within that reach of a calibrated view.
+bool covers(const ThresholdCalibration& calibration, const glm::dvec3& position, double reach);
 
 }  // namespace binosplat
