@@ -98,17 +98,21 @@ glm::vec3 map_colour(float number) {
   return glm::clamp(colour, 0.0f, 1.0f);
 }
 
-std::vector<Picture> DebugView::exact(std::span<const shared::View> views,
-                                      const render::FrameSettings& settings) {
+void DebugView::draw_exact(std::span<const shared::View> views, const render::FrameSettings& settings) {
   if (!exact_) exact_ = std::make_unique<render::Frame>(model_);
   exact_report_ = exact_->draw(views, render::exact_of(settings));
+}
+
+std::vector<Picture> DebugView::exact(std::span<const shared::View> views,
+                                      const render::FrameSettings& settings) {
+  draw_exact(views, settings);
   return exact_->read_pictures();
 }
 
 std::vector<Image> DebugView::map(int what, const DrawnFrame& drawn, const Background& background) {
   const auto& [frame, views, pictures, settings] = drawn;
   if (what == SHOW_LEFT_OUT) {
-    exact(views, settings);
+    draw_exact(views, settings);
     std::vector<Image> all = exact_->read_debug_view(SHOW_PAIRS);
     const std::vector<Image> drawn_pairs = frame.read_debug_view(SHOW_PAIRS);
     for (std::size_t v = 0; v < all.size(); ++v) {

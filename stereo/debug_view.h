@@ -53,6 +53,7 @@ class DebugView {
   void release() { exact_.reset(); }
 
  private:
+  void draw_exact(std::span<const shared::View> views, const render::FrameSettings& settings);
   std::vector<Image> map(int what, const DrawnFrame& drawn, const Background& background);
 
   std::shared_ptr<render::GpuModel> model_;
