@@ -231,7 +231,9 @@ void Window::measure_depth_table() {
     is_measuring_ = session_->measure_depth_table();
   } catch (const Error& error) {
     if (error.code() == ExitCode::no_gl || error.code() == ExitCode::out_of_memory) throw;
-    tell(error.what(), true);
+    session_->choices.settings.transmittance = TRANSMITTANCE_ONE;  // or it would be tried again and again
+    session_->change();
+    return tell(error.what(), true);
   }
   if (is_measuring_ && !was_under_way)
     tell("measuring how much light reaches each depth, from the cameras: until then all of it counts");
