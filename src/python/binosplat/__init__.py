@@ -24,9 +24,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 __all__ = [
-    "Calibration", "Camera", "Cameras", "Comparison", "Error", "Exposures", "InputError", "Model", "OpenGLError", "OutOfMemory",
-    "Picture", "Renderer", "Report", "Rig", "compare", "exposed", "find_cameras", "find_exposures", "find_photo", "find_photos",
-    "frame", "load_cameras", "load_exposures", "load_image", "load_model", "look_at", "quantised", "save_png",
+    "Calibration", "Camera", "Cameras", "Comparison", "Error", "Exposures", "InputError", "Model", "OpenGLError",
+    "OutOfMemory", "Picture", "Renderer", "Report", "Rig", "compare", "exposed", "find_cameras", "find_exposures",
+    "find_photo", "find_photos", "frame", "load_cameras", "load_exposures", "load_image", "load_model", "look_at",
+    "quantised", "save_png",
 ]
 
 
