@@ -118,8 +118,8 @@ class Renderer {
 
   /// Compiles every shader that frames of these settings may need, with targets such as these, so that no
   /// submit() has to: call it while the user waits anyway. Takes the frames' memory, too, and writes nothing
-  /// into targets. The next frame goes by no earlier ones. What SplatStream::begin_frame() itself needs is
-  /// compiled by its own first calls. Throws as submit() does.
+  /// into targets. The next frame goes by no earlier ones. Of a stream it also compiles what begin_frame()
+  /// needs. Throws as submit() does.
   void prepare(std::span<const View> views, const Placement& placement, const Settings& settings = {});
 
   /// Whether the GPU has blended the frame that was submitted. finish() then returns at once, unless the

@@ -175,6 +175,7 @@ void Renderer::hand_over(std::span<const View> views, const Placement& placement
     } else {
       frame.frame().prepare(head.views, over, {}, of_caller);
     }
+    if (impl_->stream) impl_->stream->stream->prepare(head.views, over);
     return impl_->presenter->prepare(frame.frame(), !to.depths.empty());
   }
   if (to.is_foveated) {

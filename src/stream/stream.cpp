@@ -76,6 +76,15 @@ bool Stream::begin_frame(std::span<const shared::View> views, const render::Fram
   return false;
 }
 
+void Stream::prepare(std::span<const shared::View> views, const render::FrameSettings& settings) {
+  gpu_model_->reload({.filled = {{0, 1}}, .emptied = {}});  // a Gaussian as it is, by the shader for levels
+  if (!db_for(settings.quality)) return;
+  measure(views.first(1), settings);  // as in a pass,
+  measure(views, settings);           // and as where views rest
+  visibility_->keep_picture(views.front(), settings);
+  visibility_->picture_error(views.front(), settings);
+}
+
 bool Stream::settled() const { return has_all() && (is_calibrated_ || !db_for(quality_)); }
 
 bool Stream::has_all() const {
@@ -97,7 +106,6 @@ bool Stream::pass_is_due() const {
 // At one more of the views, each as it is by then.
 void Stream::make_pass(const render::FrameSettings& settings) {
   const TimedSpan span("visibility pass");
-  if (!visibility_) visibility_.emplace(gpu_model_);
   const std::vector<shared::View> ahead = motion_.ahead(lead_s);
   if (pass_.views.empty()) {
     const bool moves = !are_last(ahead);
@@ -107,7 +115,7 @@ void Stream::make_pass(const render::FrameSettings& settings) {
   const std::size_t k = pass_.views.size();
   const shared::View view = k < pass_.here ? views_[k] : ahead[k % ahead.size()];
   pass_.views.push_back(view);
-  pass_.visible.by_view.push_back(std::move(visibility_->measure({&view, 1}, settings, chunks_).front()));
+  pass_.visible.by_view.push_back(std::move(measure({&view, 1}, settings).by_view.front()));
   made_pass_ = true;
   if (pass_.views.size() < pass_.all) return;
   is_due_ = !are_last(pass_.views);
@@ -151,7 +159,6 @@ bool Stream::put_some(double ms) {
 void Stream::calibrate_at_rest(const render::FrameSettings& settings) {
   const TimedSpan span("calibrate levels");
   is_calibrated_ = is_due_ = true;
-  if (!visibility_) visibility_.emplace(gpu_model_);
   chooser_.forget();
   LevelChoice choice = chooser_.choose(views_, request_for(views_), measure(views_, settings));
   calibrate(views_, settings, choice);

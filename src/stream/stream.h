@@ -23,6 +23,9 @@ class Stream : public StreamedModel {
   /// uses. Returns whether the model has changed. Throws what the worker threw, which then reads nothing
   /// more.
   bool begin_frame(std::span<const shared::View> views, const render::FrameSettings& settings, double ms);
+  /// Compiles the shaders that begin_frame() needs for such views, by drawing what it would draw. The model
+  /// stays as it is.
+  void prepare(std::span<const shared::View> views, const render::FrameSettings& settings);
   /// Whether the model has what the views of the last begin_frame() need, and nothing is to be measured
   /// again.
   bool settled() const;

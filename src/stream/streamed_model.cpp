@@ -116,6 +116,7 @@ VisibleChunks StreamedModel::calibrate(std::span<const shared::View> views,
 
 VisibleChunks StreamedModel::measure(std::span<const shared::View> views,
                                      const render::FrameSettings& settings) {
+  if (!visibility_) visibility_.emplace(gpu_model_);
   return {visibility_->measure(views, settings, chunks_), drawn_};
 }
 

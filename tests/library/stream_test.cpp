@@ -8,8 +8,10 @@
 #include <optional>
 
 #include "base/output_file.h"
+#include "base/spans.h"
 #include "formats/model_writers.h"
 #include "library/renderer_fixture.h"
+#include "stream/stream.h"
 #include "support/errors.h"
 #include "support/fixtures.h"
 #include "support/models.h"
@@ -70,6 +72,31 @@ TEST_P(LevelsIn, ComeAsFramesAreDrawn) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Precision, LevelsIn, testing::Values(Precision::full, Precision::half));
+
+TEST_F(Levels, CompileNothingOnceTheyArePrepared) {
+  // Those that frames make until the views have what they need, by whoever makes them.
+  const auto programs_made = [&](bool is_prepared, const Settings& settings, Precision precision) {
+    SplatStream stream(std::make_shared<Stream>(levels(), StreamSettings{.detail = {.db = 45.0}}));
+    Renderer renderer(caller.get_proc_address(), stream, precision);
+    if (is_prepared) renderer.prepare(views(), placement, settings);
+    keep_spans();
+    for (int n = 0; n < 2000 && (n < 2 || !stream.settled()); ++n) {
+      stream.begin_frame(views(), placement, settings, 2.5);
+      renderer.draw(views(), placement, settings);
+    }
+    EXPECT_TRUE(stream.settled());
+    std::vector<std::string> names;
+    for (const Span& span : take_spans())
+      if (span.name.starts_with("compile ") || span.name.starts_with("load ")) names.push_back(span.name);
+    return names;
+  };
+  EXPECT_TRUE(std::ranges::any_of(programs_made(false, over_black, Precision::full), [](const auto& name) {
+    return name.ends_with("parts_seen.comp");
+  })) << "there is nothing to prepare";
+  const std::vector<std::string> none;
+  EXPECT_EQ(programs_made(true, over_black, Precision::full), none);
+  EXPECT_EQ(programs_made(true, {.quality = 40.0f}, Precision::half), none);
+}
 
 TEST_F(Levels, HaveOneRendererAtATimeAndItsContext) {
   std::optional<SplatStream> stream(std::in_place, levels());
