@@ -68,19 +68,23 @@ class Viewer {
  private:
   /// A frame of the runtime's.
   void draw(Session& session, Hands& hands, Projection& projection) {
-    const FrameTime time = session.begin_frame();
-    Drawn frame{.begin = Clock::now(), .period_ms = ms_of(time.period)};
-    const std::vector<XrView> views = time.is_shown ? session.locate(time.display) : std::vector<XrView>();
-    if (time.is_shown && views.empty() && tracked_) log_info("the head is not tracked: nothing is shown");
-    if (time.is_shown) tracked_ = !views.empty();
+    const XrFrameState wanted = session.begin_frame();
+    const XrTime display = wanted.predictedDisplayTime;
+    Drawn frame{.begin = Clock::now(), .period_ms = ms_of(wanted.predictedDisplayPeriod)};
+    std::vector<XrView> views;
+    if (wanted.shouldRender) {
+      views = session.locate(display);
+      if (views.empty() && tracked_) log_info("the head is not tracked: nothing is shown");
+      tracked_ = !views.empty();
+    }
     if (views.empty()) {
       last_.reset();
-      if (shown_) shown_->last = time.display;  // which was not missed: nothing was to be drawn
-      return session.end_frame(time, nullptr);
+      if (shown_) shown_->last = display;  // which was not missed: nothing was to be drawn
+      return session.end_frame(display);
     }
     if (session.take_masks_changed()) projection.take_masks();
-    const Input input = hands.read(time.display);
-    walk(session, input, head_of(views), time.display);
+    const Input input = hands.read(display);
+    walk(session, input, head_of(views), display);
     if (settings_.budget_ms && !budget_)
       budget_.emplace(*settings_.budget_ms > 0.0 ? *settings_.budget_ms : own_share * frame.period_ms);
     const Effort effort = budget_ ? budget_->effort() : Effort{settings_.drawing.quality};
@@ -107,18 +111,18 @@ class Viewer {
     if (budget_) budget_->took(frame.report.gpu_ms, frame.period_ms);
     const View& left = frame.views[instance_.has_insets() ? 1 : 0];
     if (beside_.show) beside_.show(left.target, left.size);
-    session.end_frame(time, projection.end(views, frame.views, placement));
-    tell_drawn(std::move(frame), time);
+    projection.end(display, views, frame.views, placement);
+    tell_drawn(std::move(frame), display);
   }
 
   /// Tells of a frame that the runtime has, and of the times at which it shows frames.
-  void tell_drawn(Drawn frame, const FrameTime& time) {
+  void tell_drawn(Drawn frame, XrTime display) {
     frame.end = Clock::now();
-    if (!shown_) shown_ = {time.display, time.display};
-    const auto periods = std::llround(ms_of(time.display - shown_->last) / std::max(frame.period_ms, 1e-6));
-    frame.display_ms = ms_of(time.display - shown_->first);
+    if (!shown_) shown_ = {display, display};
+    const auto periods = std::llround(ms_of(display - shown_->last) / std::max(frame.period_ms, 1e-6));
+    frame.display_ms = ms_of(display - shown_->first);
     frame.missed = static_cast<int>(std::max(periods - 1, 0LL));
-    shown_->last = time.display;
+    shown_->last = display;
     beside_.drawn(std::move(frame));
   }
 

@@ -142,18 +142,20 @@ std::uint32_t Swapchain::acquire() const {
 
 Projection::Projection(const Session& session, double scale, bool composed)
     : session_(session), composed_(composed) {
-  formats_ = all_of<std::int64_t>({}, [&](auto room, auto* count, auto* all) {
+  const auto formats = all_of<std::int64_t>({}, [&](auto room, auto* count, auto* all) {
     XR(EnumerateSwapchainFormats, session.handle(), room, count, all);
   });
-  make_colours(scale);
+  make_colours(scale, formats);
   masks_.resize(colours_.size());
-  if (!composed && session.instance().has(XR_KHR_COMPOSITION_LAYER_DEPTH_EXTENSION_NAME)) make_depths();
+  if (!composed && session.instance().has(XR_KHR_COMPOSITION_LAYER_DEPTH_EXTENSION_NAME))
+    make_depths(formats);
   take_masks();
 }
 
-void Projection::make_colours(double scale) {
+// Formats are those that the runtime offers.
+void Projection::make_colours(double scale, std::span<const std::int64_t> formats) {
   const Instance& instance = session_.instance();
-  if (std::find(formats_.begin(), formats_.end(), GL_SRGB8_ALPHA8) == formats_.end())
+  if (std::ranges::find(formats, GL_SRGB8_ALPHA8) == formats.end())
     refuse("{} offers no textures of GL_SRGB8_ALPHA8, which is what models' colours are", instance.runtime);
   const auto views = all_of(XrViewConfigurationView{XR_TYPE_VIEW_CONFIGURATION_VIEW},
                             [&](auto room, auto* count, auto* all) {
@@ -184,9 +186,8 @@ void Projection::make_colours(double scale) {
   }
 }
 
-void Projection::make_depths() {
-  const auto* const format =
-      std::find_first_of(depth_formats.begin(), depth_formats.end(), formats_.begin(), formats_.end());
+void Projection::make_depths(std::span<const std::int64_t> formats) {
+  const auto* const format = std::ranges::find_first_of(depth_formats, formats);
   if (format == depth_formats.end()) return;
   for (const Swapchain& colours : colours_)
     depths_.emplace_back(session_, *format, (colours.size + depth_step - 1) / depth_step,
@@ -243,36 +244,33 @@ std::vector<View> Projection::begin(std::span<const XrView> located, const Place
   return views;
 }
 
-const XrCompositionLayerBaseHeader* Projection::end(std::span<const XrView> located,
-                                                    std::span<const View> drawn, const Placement& placement) {
+void Projection::end(XrTime display, std::span<const XrView> located, std::span<const View> drawn,
+                     const Placement& placement) const {
   const std::size_t count = colours_.size();
-  views_.assign(count, {XR_TYPE_COMPOSITION_LAYER_PROJECTION_VIEW});
-  depth_infos_.assign(depths_.size(), {XR_TYPE_COMPOSITION_LAYER_DEPTH_INFO_KHR});
+  std::vector<XrCompositionLayerProjectionView> views(count, {XR_TYPE_COMPOSITION_LAYER_PROJECTION_VIEW});
+  std::vector<XrCompositionLayerDepthInfoKHR> depths(depths_.size());
+  const auto part = [](const Swapchain& of, const glm::ivec2& size) {
+    return XrSwapchainSubImage{of.handle.get(), {{0, 0}, {size.x, size.y}}, 0};
+  };
   for (std::size_t k = 0; k < count; ++k) {
-    const auto part = [](const Swapchain& of, const glm::ivec2& size) {
-      return XrSwapchainSubImage{of.handle.get(), {{0, 0}, {size.x, size.y}}, 0};
-    };
     const View& view = drawn[place_of(k, count)];
-    views_[k].pose = located[k].pose;
-    views_[k].fov = located[k].fov;
-    views_[k].subImage = part(colours_[k], view.size);
+    views[k].pose = located[k].pose;
+    views[k].fov = located[k].fov;
+    views[k].subImage = part(colours_[k], view.size);
     colours_[k].release();
     if (depths_.empty()) continue;
     depths_[k].release();
-    const double upm = placement.units_per_metre;
-    depth_infos_[k] = {XR_TYPE_COMPOSITION_LAYER_DEPTH_INFO_KHR,
-                       nullptr,
-                       part(depths_[k], depths_[k].size),
-                       0.0f,
-                       1.0f,
-                       static_cast<float>(view.depth->near_plane / upm),
-                       static_cast<float>(view.depth->far_plane / upm)};
-    views_[k].next = &depth_infos_[k];
+    depths[k] = {XR_TYPE_COMPOSITION_LAYER_DEPTH_INFO_KHR, nullptr, part(depths_[k], depths_[k].size), 0.0f,
+                 1.0f};
+    depths[k].nearZ = static_cast<float>(view.depth->near_plane / placement.units_per_metre);
+    depths[k].farZ = static_cast<float>(view.depth->far_plane / placement.units_per_metre);
+    views[k].next = &depths[k];
   }
-  layer_.space = session_.space();
-  layer_.viewCount = static_cast<std::uint32_t>(count);
-  layer_.views = views_.data();
-  return reinterpret_cast<const XrCompositionLayerBaseHeader*>(&layer_);
+  XrCompositionLayerProjection layer{XR_TYPE_COMPOSITION_LAYER_PROJECTION};
+  layer.space = session_.space();
+  layer.viewCount = static_cast<std::uint32_t>(count);
+  layer.views = views.data();
+  session_.end_frame(display, &layer);
 }
 
 std::string Projection::description() const {

@@ -46,9 +46,9 @@ class Projection {
   std::vector<View> begin(std::span<const XrView> located, const Placement& placement, double scale,
                           const Settings& settings);
 
-  /// Gives the textures back, drawn. Returns what Session::end_frame takes.
-  const XrCompositionLayerBaseHeader* end(std::span<const XrView> located, std::span<const View> drawn,
-                                          const Placement& placement);
+  /// Gives the textures back, drawn, and ends the session's frame with them.
+  void end(XrTime display, std::span<const XrView> located, std::span<const View> drawn,
+           const Placement& placement) const;
 
   /// Asks the runtime what its lenses show.
   void take_masks();
@@ -57,19 +57,15 @@ class Projection {
   std::string description() const;
 
  private:
-  void make_colours(double scale);
-  void make_depths();
+  void make_colours(double scale, std::span<const std::int64_t> formats);
+  void make_depths(std::span<const std::int64_t> formats);
 
   const Session& session_;
   const bool composed_;
-  std::vector<std::int64_t> formats_;  // that the runtime offers
-  bool in_place_ = true;               // shaders may write into the textures
-  std::vector<Swapchain> colours_;     // by view
-  std::vector<Swapchain> depths_;      // the same, or empty
+  bool in_place_ = true;            // shaders may write into the textures
+  std::vector<Swapchain> colours_;  // by view
+  std::vector<Swapchain> depths_;   // the same, or empty
   std::vector<Mask> masks_;
-  std::vector<XrCompositionLayerDepthInfoKHR> depth_infos_;
-  std::vector<XrCompositionLayerProjectionView> views_;
-  XrCompositionLayerProjection layer_{XR_TYPE_COMPOSITION_LAYER_PROJECTION};
 };
 
 /// The eye as the library takes it.

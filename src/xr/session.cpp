@@ -70,15 +70,10 @@ void Session::make_space() {
   const auto spaces = all_of<XrReferenceSpaceType>({}, [&](auto room, auto* count, auto* all) {
     XR(EnumerateReferenceSpaces, handle(), room, count, all);
   });
-  XrReferenceSpaceCreateInfo info{XR_TYPE_REFERENCE_SPACE_CREATE_INFO, nullptr, XR_REFERENCE_SPACE_TYPE_LOCAL,
-                                  no_move};  // every runtime has it
-  for (const XrReferenceSpaceType type : {local_floor, XR_REFERENCE_SPACE_TYPE_STAGE}) {
-    on_floor_ = std::find(spaces.begin(), spaces.end(), type) != spaces.end();
-    if (!on_floor_) continue;
-    info.referenceSpaceType = type;
-    on_stage_ = type == XR_REFERENCE_SPACE_TYPE_STAGE;
-    break;
+  for (const XrReferenceSpaceType better : {XR_REFERENCE_SPACE_TYPE_STAGE, local_floor}) {
+    if (std::ranges::find(spaces, better) != spaces.end()) space_type_ = better;
   }
+  const XrReferenceSpaceCreateInfo info{XR_TYPE_REFERENCE_SPACE_CREATE_INFO, nullptr, space_type_, no_move};
   space_ = XR_OWNED(Space, CreateReferenceSpace, handle(), &info);
 }
 
@@ -116,11 +111,11 @@ void Session::request_exit() {
   over_ = !running_;
 }
 
-FrameTime Session::begin_frame() {
+XrFrameState Session::begin_frame() const {
   XrFrameState state{XR_TYPE_FRAME_STATE};
   XR(WaitFrame, handle(), nullptr, &state);
   XR(BeginFrame, handle(), nullptr);
-  return {state.predictedDisplayTime, state.predictedDisplayPeriod, state.shouldRender == XR_TRUE};
+  return state;
 }
 
 std::vector<XrView> Session::locate(XrTime display) const {
@@ -143,10 +138,10 @@ std::optional<XrPosef> Session::locate(XrSpace other, XrTime display) const {
   return location.pose;
 }
 
-void Session::end_frame(const FrameTime& frame, const XrCompositionLayerBaseHeader* layer) {
-  const XrFrameEndInfo info{
-      XR_TYPE_FRAME_END_INFO,     nullptr, frame.display, XR_ENVIRONMENT_BLEND_MODE_OPAQUE,
-      layer == nullptr ? 0u : 1u, &layer};
+void Session::end_frame(XrTime display, const XrCompositionLayerProjection* layer) const {
+  const auto* const layers = reinterpret_cast<const XrCompositionLayerBaseHeader*>(layer);
+  const XrFrameEndInfo info{XR_TYPE_FRAME_END_INFO,     nullptr, display, XR_ENVIRONMENT_BLEND_MODE_OPAQUE,
+                            layer == nullptr ? 0u : 1u, &layers};
   XR(EndFrame, handle(), &info);
 }
 

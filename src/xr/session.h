@@ -9,13 +9,6 @@ namespace binosplat::xr {
 
 constexpr XrPosef no_move = {{0.0f, 0.0f, 0.0f, 1.0f}, {0.0f, 0.0f, 0.0f}};
 
-/// What the next frame is for.
-struct FrameTime {
-  XrTime display = 0;     // when it is seen
-  XrDuration period = 0;  // ns, from one frame to the next
-  bool is_shown = false;  // false: nobody looks, nothing need be drawn
-};
-
 /// How the functions of the OpenGL context that is current are found. Throws Error(no_gl) where it is not one
 /// of EGL.
 GetProcAddress get_proc_address();
@@ -30,9 +23,9 @@ class Session {
   XrSession handle() const { return session_.get(); }
   /// x right, y up, z backward, metres. Its origin lies on the floor, or where the head was.
   XrSpace space() const { return space_.get(); }
-  bool on_floor() const { return on_floor_; }
+  bool on_floor() const { return space_type_ != XR_REFERENCE_SPACE_TYPE_LOCAL; }
   /// Whether the space is the room's, whose middle is not where a head is at first.
-  bool on_stage() const { return on_stage_; }
+  bool on_stage() const { return space_type_ == XR_REFERENCE_SPACE_TYPE_STAGE; }
 
   /// Takes the events that have come, and begins and ends the session as they ask. False once it is over.
   /// Throws Lost.
@@ -44,13 +37,14 @@ class Session {
   /// The user wants to leave: the runtime ends the session in its own time.
   void request_exit();
 
-  FrameTime begin_frame();
+  /// Waits until the next frame is to be drawn: when it will be seen, and whether anybody looks.
+  XrFrameState begin_frame() const;
   /// Where the eyes will be; nothing while the head is not tracked.
   std::vector<XrView> locate(XrTime display) const;
   /// Where another space's origin will be; nothing while that is not known.
   std::optional<XrPosef> locate(XrSpace other, XrTime display) const;
   /// Shows a layer, or nothing.
-  void end_frame(const FrameTime& frame, const XrCompositionLayerBaseHeader* layer);
+  void end_frame(XrTime display, const XrCompositionLayerProjection* layer = nullptr) const;
 
  private:
   void make_space();
@@ -58,8 +52,9 @@ class Session {
 
   const Instance& instance_;
   Owned<XrSession> session_;
+  XrReferenceSpaceType space_type_ = XR_REFERENCE_SPACE_TYPE_LOCAL;  // which every runtime has
   Owned<XrSpace> space_;
-  bool on_floor_ = false, on_stage_ = false, running_ = false, over_ = false, masks_changed_ = false;
+  bool running_ = false, over_ = false, masks_changed_ = false;
 };
 
 }  // namespace binosplat::xr
