@@ -1,5 +1,5 @@
 #pragma once
-// How the EGL binding gets past Khronos' validation (xr/egl_layer.cpp).
+// How the EGL binding gets past Khronos' validation: as an Xlib binding (xr/egl_layer.cpp).
 
 #include <EGL/egl.h>
 
@@ -12,14 +12,6 @@
 
 namespace binosplat::xr_test {
 
-/// What the loader says of itself, as its specification has it; no package has its header.
-struct LoaderInfo {
-  std::uint32_t type, version;
-  std::size_t size;
-  std::uint32_t min_interface, max_interface;
-  XrVersion min_api, max_api;
-};
-
 // XrGraphicsBindingOpenGLXlibKHR, without the headers of X, whose macros collide with half of everything.
 struct XlibBinding {
   XrStructureType type;
@@ -30,12 +22,5 @@ struct XlibBinding {
   unsigned long drawable;
   void* context;
 };
-
-constexpr std::uint32_t egl_visual = 0xE61;  // the drawable is the address of an EGL binding
-
-inline XlibBinding as_xlib(const XrGraphicsBindingEGLMNDX& egl) {
-  return {XR_TYPE_GRAPHICS_BINDING_OPENGL_XLIB_KHR, egl.next,   egl.display, egl_visual, egl.config,
-          reinterpret_cast<unsigned long>(&egl),    egl.context};
-}
 
 }  // namespace binosplat::xr_test

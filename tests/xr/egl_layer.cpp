@@ -6,7 +6,6 @@
 
 namespace {
 
-using binosplat::xr_test::LoaderInfo;
 using binosplat::xr_test::XlibBinding;
 
 // As the loader's specification has them.
@@ -44,7 +43,8 @@ XrResult create_session_as_xlib(XrInstance instance, const XrSessionCreateInfo* 
   if (egl == nullptr || egl->type != XR_TYPE_GRAPHICS_BINDING_EGL_MNDX) {
     return next_create_session(instance, info, session);
   }
-  const XlibBinding xlib = binosplat::xr_test::as_xlib(*egl);
+  const XlibBinding xlib{
+      XR_TYPE_GRAPHICS_BINDING_OPENGL_XLIB_KHR, egl->next, egl->display, 0, egl->config, 0, egl->context};
   XrSessionCreateInfo other = *info;
   other.next = &xlib;
   return next_create_session(instance, &other, session);
@@ -71,7 +71,7 @@ XrResult create_instance_below(const XrInstanceCreateInfo* info, const LayerInfo
 
 extern "C" __attribute__((visibility("default"))) XrResult
 xrNegotiateLoaderApiLayerInterface(  // NOLINT(readability-identifier-naming): the loader's own name
-    const LoaderInfo*, const char*, LayerRequest* request) {
+    const void*, const char*, LayerRequest* request) {
   request->interface_version = 1;
   request->api_version = XR_MAKE_VERSION(1, 0, 0);
   request->get = find_above;

@@ -38,40 +38,41 @@ constexpr auto local_floor = static_cast<XrReferenceSpaceType>(1000426000);
 constexpr XrSystemId the_system = 0x5e7;
 constexpr XrTime first_time = 1'000'000'000;
 constexpr int patience = 100;  // frames after the script's: a program that does not stop must not hang
-constexpr const char* gaze_user = "/user/eyes_ext";
 
-#define NAME_OF(name, value) \
-  case name:                 \
-    return #name;
 #define VALUE_OF(name, value) {#name, name},
-std::string name_of(XrResult result) {
-  switch (result) {
-    XR_LIST_ENUM_XrResult(NAME_OF);
-    default:
-      return "unknown";
-  }
-}
-std::string name_of(XrSessionState state) {
-  switch (state) {
-    XR_LIST_ENUM_XrSessionState(NAME_OF);
-    default:
-      return "unknown";
-  }
-}
 const std::map<std::string, XrResult> results = {XR_LIST_ENUM_XrResult(VALUE_OF)};
+const std::map<std::string, XrSessionState> states = {XR_LIST_ENUM_XrSessionState(VALUE_OF)};
+const std::map<std::string, XrObjectType> kinds = {XR_LIST_ENUM_XrObjectType(VALUE_OF)};
 const std::map<std::string, std::int64_t> formats = {{"GL_SRGB8_ALPHA8", GL_SRGB8_ALPHA8},
                                                      {"GL_RGBA8", GL_RGBA8},
                                                      {"GL_DEPTH_COMPONENT24", GL_DEPTH_COMPONENT24},
                                                      {"GL_DEPTH_COMPONENT32F", GL_DEPTH_COMPONENT32F}};
-const std::map<std::string, XrReferenceSpaceType> space_types = {{"view", XR_REFERENCE_SPACE_TYPE_VIEW},
-                                                                 {"local", XR_REFERENCE_SPACE_TYPE_LOCAL},
+const std::map<std::string, XrReferenceSpaceType> space_types = {{"local", XR_REFERENCE_SPACE_TYPE_LOCAL},
                                                                  {"stage", XR_REFERENCE_SPACE_TYPE_STAGE},
                                                                  {"local_floor", local_floor}};
-const std::map<std::string, XrSessionState> states = {{"synchronized", XR_SESSION_STATE_SYNCHRONIZED},
-                                                      {"visible", XR_SESSION_STATE_VISIBLE},
-                                                      {"focused", XR_SESSION_STATE_FOCUSED},
-                                                      {"stopping", XR_SESSION_STATE_STOPPING},
-                                                      {"loss_pending", XR_SESSION_STATE_LOSS_PENDING}};
+
+template <typename Value>
+std::string name_of(const std::map<std::string, Value>& values, Value value) {
+  for (const auto& [name, one] : values) {
+    if (one == value) return name;
+  }
+  return "unknown";
+}
+
+template <typename Handle>
+constexpr XrObjectType kind_of = XR_OBJECT_TYPE_UNKNOWN;  // of what is no handle
+template <>
+constexpr XrObjectType kind_of<XrInstance> = XR_OBJECT_TYPE_INSTANCE;
+template <>
+constexpr XrObjectType kind_of<XrSession> = XR_OBJECT_TYPE_SESSION;
+template <>
+constexpr XrObjectType kind_of<XrSpace> = XR_OBJECT_TYPE_SPACE;
+template <>
+constexpr XrObjectType kind_of<XrSwapchain> = XR_OBJECT_TYPE_SWAPCHAIN;
+template <>
+constexpr XrObjectType kind_of<XrActionSet> = XR_OBJECT_TYPE_ACTION_SET;
+template <>
+constexpr XrObjectType kind_of<XrAction> = XR_OBJECT_TYPE_ACTION;
 
 struct Pose {
   glm::dvec3 position{0.0};
@@ -94,11 +95,6 @@ XrPosef to_xr(const Pose& pose) {
   return {{q.x, q.y, q.z, q.w}, {p.x, p.y, p.z}};
 }
 
-Pose from_xr(const XrPosef& pose) {
-  const auto& [q, p] = pose;
-  return {{p.x, p.y, p.z}, glm::normalize(glm::dquat(q.w, q.x, q.y, q.z))};
-}
-
 Pose pose_from(const Json& json) {
   const auto p = json.value("position", std::array{0.0, 0.0, 0.0});
   const auto q = json.value("orientation", std::array{0.0, 0.0, 0.0, 1.0});
@@ -112,42 +108,58 @@ Json to_json(const XrPosef& pose) {
 
 Json to_json(const XrFovf& fov) { return {fov.angleLeft, fov.angleRight, fov.angleUp, fov.angleDown}; }
 
+Json to_json(const XrRect2Di& rect) {
+  return {rect.offset.x, rect.offset.y, rect.extent.width, rect.extent.height};
+}
+
+/// What an action was at the last sync.
+struct Value {
+  Json now;
+  bool is_active = false, has_changed = false;
+};
+
 /// What a handle stands for: of these members those of its kind are used.
 struct Object {
-  std::string kind;
-  std::uint64_t parent = 0;
+  XrObjectType kind;
+  std::uint64_t parent;
   // swapchain
   XrSwapchainCreateInfo info{};
   bool is_depth = false, waited = false;
   std::vector<GLuint> textures;
   std::size_t next = 0;
-  std::optional<std::size_t> acquired, released;
+  std::optional<std::size_t> acquired, released, view;  // the view whose depths it has
   int released_frame = -1;
   std::vector<std::uint8_t> pixels;  // as released; empty: not kept
   // space
-  std::optional<XrReferenceSpaceType> reference;  // none: of an action
+  std::optional<XrReferenceSpaceType> reference;  // none: of an action of a user's
   std::uint64_t action = 0;
   std::string user;
-  Pose offset;
   // action; its set is its parent
   std::string name;
   XrActionType type = XR_ACTION_TYPE_BOOLEAN_INPUT;
-  std::map<std::string, Strings> bindings;              // by interaction profile
-  std::map<std::string, std::pair<Json, bool>> values;  // by user: at the last sync, and whether it changed
-  std::set<std::string> active;                         // users
+  std::map<std::string, Strings> bindings;  // paths by interaction profile
+  std::map<std::string, Value> values;      // by user
 };
 
 struct Frame {
   int number = 0;
   XrTime time = 0;
-  bool shown = false, begun = false;
+  bool begun = false;
   std::uint64_t space = 0;  // that views were located in
   XrViewStateFlags flags = 0;
   std::vector<XrView> located;
 };
 
+struct Session {
+  std::uint64_t id = 0;  // 0: there is none
+  XrSessionState state = XR_SESSION_STATE_IDLE;
+  bool running = false, lost = false, attached = false;
+  std::string then = "exiting";  // what comes after STOPPING, or "ready"
+  XrViewConfigurationType views = XR_VIEW_CONFIGURATION_TYPE_PRIMARY_STEREO;
+  std::optional<Frame> frame;  // under way
+};
+
 struct Runtime {
-  Runtime();
   ~Runtime();
 
   Json script = Json::object();
@@ -158,31 +170,21 @@ struct Runtime {
   std::uint64_t last_id = 0;
   Strings paths;
   std::deque<XrEventDataBuffer> events;
-  std::set<std::string> extensions, suggested;  // those that are enabled; profiles that have bindings
-  Json input = Json::object();                  // by path, as scripted last
-  std::map<std::size_t, std::uint64_t> depth_of_view;
+  std::set<std::string> extensions;  // that are enabled
+  Json input = Json::object();       // by path, as scripted last
   bool instance_lost = false, asked_requirements = false;
-  // Of the session:
-  std::uint64_t session = 0;
-  void* context = nullptr;
-  XrSessionState state = XR_SESSION_STATE_IDLE;
-  bool running = false, lost = false, attached = false;
-  std::string then = "exiting";  // what comes after STOPPING, or "ready"
-  XrViewConfigurationType views = XR_VIEW_CONFIGURATION_TYPE_PRIMARY_STEREO;
-  std::optional<Frame> frame;  // under way
+  Session session;
   int next_frame = 0, ended_frames = 0, applied = -1;
 
   void log(const Json& line) {
     if (log_file.is_open()) log_file << line.dump() << std::endl;
   }
-  int now() const { return frame ? frame->number : next_frame; }
+  int now() const { return session.frame ? session.frame->number : next_frame; }
   XrDuration period() const { return script.value("period", XrDuration{11'111'111}); }
+  int frames() const { return script.value("frames", 3); }
 };
 
-Runtime& runtime() {
-  static Runtime the_runtime;
-  return the_runtime;
-}
+Runtime runtime;
 
 /// Ends a call with an error: the application's fault, if a text says which.
 struct Refusal {
@@ -195,18 +197,19 @@ void require(bool good, XrResult result, const std::string& text) {
 }
 
 void fault(const std::string& text, XrResult result = XR_SUCCESS) {
-  Runtime& r = runtime();
-  r.log({{"what", "fault"},
-         {"function", r.function},
-         {"frame", r.now()},
-         {"result", name_of(result)},
-         {"text", text}});
+  runtime.log({{"what", "fault"},
+               {"function", runtime.function},
+               {"frame", runtime.now()},
+               {"result", name_of(results, result)},
+               {"text", text}});
 }
 
-/// Whether the runtime is to pretend that the application made this fault in the frame under way.
-bool is_planted(const char* name) {
-  return runtime().script.value("plant", "") == name && runtime().now() >= 1;
+Runtime::~Runtime() {
+  for (const auto& [id, object] : objects) fault(name_of(kinds, object.kind) + " was never destroyed");
 }
+
+/// Whether the runtime is to pretend that the application makes this fault.
+bool is_planted(const char* name) { return runtime.script.value("plant", "") == name; }
 
 template <typename Handle>
 std::uint64_t id_of(Handle handle) {
@@ -214,155 +217,107 @@ std::uint64_t id_of(Handle handle) {
 }
 
 template <typename Handle>
-Object& get(const char* kind, Handle handle, bool even_lost = false) {
-  Runtime& r = runtime();
-  const auto found = r.objects.find(id_of(handle));
-  require(found != r.objects.end() && found->second.kind == kind, XR_ERROR_HANDLE_INVALID,
-          std::string(kind) + " " + std::to_string(id_of(handle)) + " is not there, or was destroyed");
-  require(even_lost || !r.instance_lost, XR_ERROR_INSTANCE_LOST, "");
-  require(even_lost || !r.lost || found->second.kind == "instance", XR_ERROR_SESSION_LOST, "");
+Object& get(Handle handle) {
+  constexpr XrObjectType kind = kind_of<Handle>;
+  const auto found = runtime.objects.find(id_of(handle));
+  require(found != runtime.objects.end() && found->second.kind == kind, XR_ERROR_HANDLE_INVALID,
+          name_of(kinds, kind) + " is not there, or was destroyed");
+  const bool is_destroyed = runtime.function.starts_with("xrDestroy");  // which what is lost can be, too
+  require(is_destroyed || !runtime.instance_lost, XR_ERROR_INSTANCE_LOST, "");
+  require(is_destroyed || !runtime.session.lost || kind == XR_OBJECT_TYPE_INSTANCE, XR_ERROR_SESSION_LOST,
+          "");
   return found->second;
 }
 
-template <typename Handle>
-Object& add(const char* kind, std::uint64_t parent, Handle* out) {
-  Runtime& r = runtime();
-  *out = reinterpret_cast<Handle>(++r.last_id);
-  Object& object = r.objects[r.last_id];
-  object.kind = kind;
-  object.parent = parent;
-  return object;
-}
-
-void erase(std::uint64_t id, Json* alive) {
-  Runtime& r = runtime();
-  const auto is_child = [&](const auto& one) { return one.second.parent == id; };
-  for (auto at = r.objects.begin(); (at = std::find_if(at, r.objects.end(), is_child)) != r.objects.end();) {
-    const std::uint64_t child = at->first;
-    if (alive != nullptr) alive->push_back(r.objects.at(child).kind);
-    erase(child, alive);
-    at = r.objects.begin();
-  }
-  const std::vector<GLuint>& textures = r.objects.at(id).textures;
-  if (!textures.empty()) glDeleteTextures(static_cast<GLsizei>(textures.size()), textures.data());
-  if (id == r.session) {
-    r.session = 0;
-    r.running = r.lost = r.attached = false;
-    r.frame.reset();
-    r.depth_of_view.clear();
-  }
-  r.objects.erase(id);
+template <typename Parent, typename Handle>
+Object& add(Parent parent, Handle* out) {
+  *out = reinterpret_cast<Handle>(++runtime.last_id);
+  return runtime.objects.insert({runtime.last_id, {kind_of<Handle>, id_of(parent)}}).first->second;
 }
 
 template <typename Handle>
-XrResult destroy(const char* kind, Handle handle) {
-  const Object& object = get(kind, handle, true);
-  if (object.acquired) fault("an image was not released");
-  Json alive = Json::array();
-  const bool is_set = object.kind == "action set";  // whose actions go with it, as everybody lets them
-  erase(id_of(handle), is_set ? nullptr : &alive);
-  runtime().log({{"what", "destroyed"}, {"kind", kind}, {"id", id_of(handle)}, {"alive", alive}});
-  return XR_SUCCESS;
+void destroy(Handle handle) {
+  const Object& destroyed = get(handle);
+  if (destroyed.acquired) fault("an image was not released");
+  if (!destroyed.textures.empty()) glDeleteTextures(3, destroyed.textures.data());
+  // Actions go with their set, as everybody lets them.
+  for (const auto& [id, object] : runtime.objects) {
+    if (object.parent == id_of(handle) && object.kind != XR_OBJECT_TYPE_ACTION)
+      fault(name_of(kinds, object.kind) + " was not destroyed before its parent");
+  }
+  std::erase_if(runtime.objects, [&](const auto& one) {
+    return one.first == id_of(handle) || one.second.parent == id_of(handle);
+  });
+  if (id_of(handle) == runtime.session.id) runtime.session = {};
 }
 
 /// The two calls by which OpenXR gives arrays: how many, then what. `put(k)` writes element k.
 template <typename Put>
-XrResult fill(std::size_t count, std::uint32_t capacity, std::uint32_t* count_out, const Put& put) {
+void fill(std::size_t count, std::uint32_t capacity, std::uint32_t* count_out, const Put& put) {
   *count_out = static_cast<std::uint32_t>(count);
-  if (capacity == 0) return XR_SUCCESS;
+  if (capacity == 0) return;
   require(capacity >= count, XR_ERROR_SIZE_INSUFFICIENT,
           "room for " + std::to_string(capacity) + " of " + std::to_string(count));
   for (std::size_t k = 0; k < count; ++k) put(k);
-  return XR_SUCCESS;
 }
 
 // Views, spaces and the session's states.
 
-XrViewStateFlags script_flags() {
-  XrViewStateFlags flags = 15;
-  if (!runtime().script.contains("flags")) return flags;
-  flags = 0;
-  for (const Json& name : runtime().script["flags"])
-    flags |=
-        name == "orientation_valid" ? XR_VIEW_STATE_ORIENTATION_VALID_BIT : XR_VIEW_STATE_POSITION_VALID_BIT;
-  return flags;
+std::vector<XrViewConfigurationType> view_configurations() {
+  if (runtime.script.value("views", Json::object()).contains("quad") &&
+      runtime.extensions.contains("XR_VARJO_quad_views"))
+    return {XR_VIEW_CONFIGURATION_TYPE_PRIMARY_QUAD_VARJO, XR_VIEW_CONFIGURATION_TYPE_PRIMARY_STEREO};
+  return {XR_VIEW_CONFIGURATION_TYPE_PRIMARY_STEREO};
 }
 
-struct ViewSpec {
-  std::uint32_t width = 96, height = 80;
-  XrFovf fov = {-0.855f, 0.646f, 0.7f, -0.7f};
-  Pose pose;  // of the eye in the head
-};
-
-std::vector<ViewSpec> views_of(XrViewConfigurationType type) {
+/// The views in the script's words.
+std::vector<Json> views_of(XrViewConfigurationType type) {
+  const auto offered = view_configurations();
+  require(std::count(offered.begin(), offered.end(), type) != 0, XR_ERROR_VIEW_CONFIGURATION_TYPE_UNSUPPORTED,
+          "a view configuration that is not offered");
   const bool quad = type == XR_VIEW_CONFIGURATION_TYPE_PRIMARY_QUAD_VARJO;
-  const Json all = runtime().script.value("views", Json::object());
-  const char* const name = quad ? "quad" : "stereo";
-  const bool has_quad = all.contains("quad") && runtime().extensions.contains("XR_VARJO_quad_views");
-  require(!quad || has_quad, XR_ERROR_VIEW_CONFIGURATION_TYPE_UNSUPPORTED, "four views are not offered");
-  std::vector<ViewSpec> specs(quad ? 4 : 2);
-  for (std::size_t k = 0; k < specs.size(); ++k) {
-    ViewSpec& spec = specs[k];
-    spec.pose.position.x = k % 2 == 0 ? -0.0315 : 0.0315;
-    if (k % 2 == 1) spec.fov = {-0.646f, 0.855f, 0.7f, -0.7f};
-    if (!all.contains(name)) continue;
-    const Json& view = all[name].at(k);
-    spec.width = view.value("width", spec.width);
-    spec.height = view.value("height", spec.height);
-    if (view.contains("position")) spec.pose = pose_from(view);
-    if (!view.contains("fov")) continue;
-    const auto f = view["fov"].get<std::array<float, 4>>();
-    spec.fov = {f[0], f[1], f[2], f[3]};
+  const Json scripted =
+      runtime.script.value("views", Json::object()).value(quad ? "quad" : "stereo", Json::array());
+  std::vector<Json> views;
+  for (std::size_t k = 0; k < (quad ? 4 : 2); ++k) {
+    Json& view = views.emplace_back(Json{{"width", 96}, {"height", 80}});
+    view["fov"] = k % 2 == 0 ? Json{-0.855, 0.646, 0.7, -0.7} : Json{-0.646, 0.855, 0.7, -0.7};
+    view["position"] = {k % 2 == 0 ? -0.0315 : 0.0315, 0.0, 0.0};
+    if (!scripted.empty()) view.update(scripted.at(k));
   }
-  return specs;
+  return views;
 }
 
 Pose head_in_script(XrTime time) {
-  const Json heads = runtime().script.value("heads", Json{{{"position", {0, 1.6, 0}}}});
-  const auto frame =
-      static_cast<std::size_t>((time - first_time + runtime().period() / 2) / runtime().period());
+  const Json heads = runtime.script.value("heads", Json{{{"position", {0, 1.6, 0}}}});
+  const auto frame = static_cast<std::size_t>((time - first_time + runtime.period() / 2) / runtime.period());
   return pose_from(heads.at(std::min(frame, heads.size() - 1)));
 }
 
-std::string user_of(const std::string& path) {
-  for (const char* user : {"/user/hand/left", "/user/hand/right", gaze_user}) {
-    if (path.rfind(user, 0) == 0) return user;
-  }
-  return "";
-}
-
 /// In the script's world; none where it is not tracked.
-std::optional<Pose> pose_of(const Object& space, XrTime time) {
-  const Json& script = runtime().script;
+std::optional<Pose> pose_of(const Object& space) {
   if (!space.reference) {
-    const auto action = runtime().objects.find(space.action);
-    if (action == runtime().objects.end()) return std::nullopt;
-    const std::string user = space.user.empty() ? gaze_user : space.user;
-    if (!action->second.active.contains(user)) return std::nullopt;
-    if (user == gaze_user) return head_in_script(time) * pose_from(script["gaze"]) * space.offset;
-    const Json& value = action->second.values.at(user).first;
-    return value.is_object() ? std::optional(pose_from(value) * space.offset) : std::nullopt;
+    const Value& value = runtime.objects.at(space.action).values[space.user];
+    return value.is_active && value.now.is_object() ? std::optional(pose_from(value.now)) : std::nullopt;
   }
-  if (*space.reference == XR_REFERENCE_SPACE_TYPE_VIEW) return head_in_script(time) * space.offset;
-  if (*space.reference == XR_REFERENCE_SPACE_TYPE_STAGE) return space.offset;
-  Pose local = pose_from(script.value("recentre", Json{{"position", {0, 1.6, 0}}}));
+  if (*space.reference == XR_REFERENCE_SPACE_TYPE_STAGE) return Pose();
+  Pose local = pose_from(runtime.script.value("recentre", Json{{"position", {0, 1.6, 0}}}));
   if (*space.reference == local_floor) local.position.y = 0.0;
-  return local * space.offset;
+  return local;
 }
 
 template <typename Event>
 void queue(const Event& event) {
   XrEventDataBuffer buffer{XR_TYPE_EVENT_DATA_BUFFER};
   std::memcpy(&buffer, &event, sizeof(event));
-  runtime().events.push_back(buffer);
+  runtime.events.push_back(buffer);
 }
 
 void set_state(XrSessionState state) {
-  Runtime& r = runtime();
-  r.state = state;
-  r.log({{"what", "state"}, {"state", name_of(state)}, {"frame", r.now()}});
+  runtime.session.state = state;
+  runtime.log({{"what", "state"}, {"state", name_of(states, state)}, {"frame", runtime.now()}});
   queue(XrEventDataSessionStateChanged{XR_TYPE_EVENT_DATA_SESSION_STATE_CHANGED, nullptr,
-                                       reinterpret_cast<XrSession>(r.session), state, first_time});
+                                       reinterpret_cast<XrSession>(runtime.session.id), state, first_time});
 }
 
 bool is_synchronized(XrSessionState state) {
@@ -371,39 +326,59 @@ bool is_synchronized(XrSessionState state) {
 
 /// By the states in between, as OpenXR has them follow each other.
 void walk_to(XrSessionState state) {
-  Runtime& r = runtime();
-  if (state == XR_SESSION_STATE_STOPPING && is_synchronized(r.state)) walk_to(XR_SESSION_STATE_SYNCHRONIZED);
+  const XrSessionState& now = runtime.session.state;
+  if (state == XR_SESSION_STATE_STOPPING && is_synchronized(now)) walk_to(XR_SESSION_STATE_SYNCHRONIZED);
   if (!is_synchronized(state)) return set_state(state);
-  while (r.state < state) set_state(static_cast<XrSessionState>(r.state + 1));
-  while (r.state > state) set_state(static_cast<XrSessionState>(r.state - 1));
+  while (now < state) set_state(static_cast<XrSessionState>(now + 1));
+  while (now > state) set_state(static_cast<XrSessionState>(now - 1));
+}
+
+// Words of the script, of which an event may change some, and what else an event may have.
+const std::set<std::string> script_words = {
+    "folder",     "frames", "heads",   "recentre",     "spaces",    "views",          "masks",
+    "extensions", "period", "formats", "sleep",        "late",      "pixels",         "profile",
+    "hands",      "events", "flags",   "not_rendered", "immutable", "unordered_srgb", "plant"};
+const std::set<std::string> event_words = {"frame",         "state", "then",   "input",
+                                           "instance_loss", "fail",  "result", "times"};
+
+void read_script(const std::string& path) {
+  std::ifstream in(path);
+  runtime.script = Json::parse(in);
+  for (const auto& [word, value] : runtime.script.items()) {
+    if (!script_words.contains(word)) throw std::runtime_error(path + ": there is no word " + word);
+  }
+  for (const Json& event : runtime.script.value("events", Json::array())) {
+    for (const auto& [word, value] : event.items()) {
+      if (!script_words.contains(word) && !event_words.contains(word))
+        throw std::runtime_error(path + ": an event has no word " + word);
+    }
+  }
+  runtime.folder = runtime.script.value("folder", "");
+  if (!runtime.folder.empty()) runtime.log_file.open(runtime.folder / "log.jsonl", std::ios::app);
 }
 
 /// Lets happen what the script has for the frames up to this one.
 void apply_events(int frame) {
-  static const std::set<std::string> of_script = {"flags", "gaze", "hands", "profile", "recentre", "masks"};
-  static const std::set<std::string> of_event = {"frame", "then", "fail", "result", "times"};
-  Runtime& r = runtime();
-  while (r.applied < frame) {
-    ++r.applied;
-    for (const Json& event : r.script.value("events", Json::array())) {
-      if (event.value("frame", 0) != r.applied) continue;
-      for (const auto& [key, value] : event.items()) {
-        if (key == "state") {
-          r.then = event.value("then", "exiting");
-          walk_to(states.at(value));
-        } else if (key == "instance_loss") {
+  while (runtime.applied < frame) {
+    ++runtime.applied;
+    for (const Json& event : runtime.script.value("events", Json::array())) {
+      if (event.value("frame", 0) != runtime.applied) continue;
+      for (const auto& [word, value] : event.items()) {
+        if (word == "state") {
+          runtime.session.then = event.value("then", "exiting");
+          walk_to(states.at("XR_SESSION_STATE_" + value.get<std::string>()));
+        } else if (word == "instance_loss") {
           queue(
               XrEventDataInstanceLossPending{XR_TYPE_EVENT_DATA_INSTANCE_LOSS_PENDING, nullptr, first_time});
-        } else if (key == "input") {
-          r.input.update(value);
-        } else if (of_script.contains(key)) {
-          r.script[key] = value;
-        } else if (!of_event.contains(key)) {
-          throw std::runtime_error("an event of the script has an unknown word: " + key);
+        } else if (word == "input") {
+          runtime.input.update(value);
+        } else if (script_words.contains(word)) {
+          runtime.script[word] = value;
         }
-        if (key == "masks")
+        if (word == "masks")
           queue(XrEventDataVisibilityMaskChangedKHR{XR_TYPE_EVENT_DATA_VISIBILITY_MASK_CHANGED_KHR, nullptr,
-                                                    reinterpret_cast<XrSession>(r.session), r.views, 0});
+                                                    reinterpret_cast<XrSession>(runtime.session.id),
+                                                    runtime.session.views, 0});
       }
     }
   }
@@ -411,42 +386,21 @@ void apply_events(int frame) {
 
 /// What an event of the script lets a function return instead of doing its work.
 std::optional<XrResult> scripted_result() {
-  Runtime& r = runtime();
-  if (!r.script.contains("events")) return std::nullopt;
-  for (Json& event : r.script["events"]) {
-    if (event.value("fail", "") != r.function || event.value("frame", 0) > r.now()) continue;
+  if (!runtime.script.contains("events")) return std::nullopt;
+  for (Json& event : runtime.script["events"]) {
+    if (event.value("fail", "") != runtime.function || event.value("frame", 0) > runtime.now()) continue;
     const int times = event.value("times", 1'000'000);
     if (times == 0) continue;
     event["times"] = times - 1;
     const XrResult result = results.at(event.at("result"));
-    r.lost = r.lost || result == XR_ERROR_SESSION_LOST;
-    r.instance_lost = r.instance_lost || result == XR_ERROR_INSTANCE_LOST;
+    runtime.session.lost = runtime.session.lost || result == XR_ERROR_SESSION_LOST;
+    runtime.instance_lost = runtime.instance_lost || result == XR_ERROR_INSTANCE_LOST;
     return result;
   }
   return std::nullopt;
 }
 
-Runtime::Runtime() {
-  static const std::set<std::string> words = {
-      "folder", "frames",   "heads",   "spaces", "views",  "masks",          "extensions", "formats",
-      "system", "period",   "sleep",   "late",   "pixels", "not_rendered",   "immutable",  "flags",
-      "gaze",   "recentre", "profile", "hands",  "events", "unordered_srgb", "plant"};
-  const char* const path = std::getenv("BINOSPLAT_XR_SCRIPT");
-  if (path == nullptr) return;
-  std::ifstream in(path);
-  script = Json::parse(in);
-  for (const auto& [word, value] : script.items()) {
-    if (!words.contains(word)) throw std::runtime_error(std::string(path) + ": there is no word " + word);
-  }
-  folder = script.value("folder", "");
-  if (!folder.empty()) log_file.open(folder / "log.jsonl", std::ios::app);
-}
-
-Runtime::~Runtime() {
-  Json left = Json::array();
-  for (const auto& [id, object] : objects) left.push_back(object.kind);
-  if (!left.empty()) log({{"what", "left"}, {"objects", left}});
-}
+// Layers.
 
 std::vector<std::uint8_t> read_texture(const Object& of, GLuint texture) {
   std::vector<std::uint8_t> bytes(std::size_t{4} * of.info.width * of.info.height);
@@ -461,31 +415,25 @@ std::vector<std::uint8_t> read_texture(const Object& of, GLuint texture) {
   return bytes;
 }
 
-// Layers.
-
-Json to_json(const XrRect2Di& rect) {
-  return {rect.offset.x, rect.offset.y, rect.extent.width, rect.extent.height};
-}
-
 /// What a layer shows: checked, its pixels written, the top row first. The name of their file, or nothing.
-Json check_image(const XrSwapchainSubImage& image, bool is_depth, std::size_t view) {
-  const Runtime& r = runtime();
-  Object& of = get("swapchain", image.swapchain);
-  const std::string name = "view " + std::to_string(view) + (is_depth ? "'s depth" : "");
-  require(of.is_depth == is_depth, XR_ERROR_VALIDATION_FAILURE, name + " is of the other kind of swapchain");
-  require(of.released.has_value(), XR_ERROR_LAYER_INVALID, name + " was never released");
+Json check_image(const XrSwapchainSubImage& image, bool is_depth, std::size_t index) {
+  const Object& of = get(image.swapchain);
+  const std::string view = "view " + std::to_string(index) + (is_depth ? "'s depth" : "");
+  require(of.is_depth == is_depth, XR_ERROR_VALIDATION_FAILURE, view + " is of the other kind of swapchain");
+  require(of.released.has_value(), XR_ERROR_LAYER_INVALID, view + " was never released");
   const auto& [offset, extent] = image.imageRect;
   const bool inside = offset.x >= 0 && offset.y >= 0 && extent.width > 0 && extent.height > 0 &&
                       offset.x + std::int64_t{extent.width} <= of.info.width &&
                       offset.y + std::int64_t{extent.height} <= of.info.height;
-  require(inside, XR_ERROR_SWAPCHAIN_RECT_INVALID, name + " has a rectangle beyond its swapchain");
-  if (of.released_frame != r.now()) fault(name + " is an image of another frame");
+  require(inside, XR_ERROR_SWAPCHAIN_RECT_INVALID, view + " has a rectangle beyond its swapchain");
+  if (of.released_frame != runtime.now()) fault(view + " is an image of another frame");
   if (of.pixels.empty()) return nullptr;
   if (read_texture(of, of.textures[*of.released]) != of.pixels)
-    fault(name + " was written to after its release");
+    fault(view + " was written to after its release");
   char file[64];
-  std::snprintf(file, sizeof(file), "frame%04d_view%zu.%s", r.now(), view, is_depth ? "depth" : "rgba");
-  std::ofstream out(r.folder / file, std::ios::binary);
+  std::snprintf(file, sizeof(file), "frame%04d_view%zu.%s", runtime.now(), index,
+                is_depth ? "depth" : "rgba");
+  std::ofstream out(runtime.folder / file, std::ios::binary);
   for (int row = offset.y + extent.height - 1; row >= offset.y; --row) {
     const std::size_t at =
         std::size_t{4} * (static_cast<std::size_t>(row) * of.info.width + static_cast<std::size_t>(offset.x));
@@ -495,11 +443,10 @@ Json check_image(const XrSwapchainSubImage& image, bool is_depth, std::size_t vi
 }
 
 Json check_depth(const XrCompositionLayerProjectionView& view, std::size_t index) {
-  Runtime& r = runtime();
   if (view.next == nullptr) return nullptr;
   XrCompositionLayerDepthInfoKHR depth = *static_cast<const XrCompositionLayerDepthInfoKHR*>(view.next);
   if (is_planted("planes")) depth.farZ = depth.nearZ;
-  if (!r.extensions.contains(XR_KHR_COMPOSITION_LAYER_DEPTH_EXTENSION_NAME))
+  if (!runtime.extensions.contains(XR_KHR_COMPOSITION_LAYER_DEPTH_EXTENSION_NAME))
     fault("depth without its extension");
   const bool planes = depth.nearZ >= 0 && depth.farZ >= 0 && depth.nearZ != depth.farZ;
   const bool range = depth.minDepth >= 0 && depth.minDepth < depth.maxDepth && depth.maxDepth <= 1;
@@ -511,8 +458,9 @@ Json check_depth(const XrCompositionLayerProjectionView& view, std::size_t index
   if (std::abs(apart) > std::max(colours.width, colours.height))
     fault("depths of another shape than the colours");
   // A view's depths stay that view's.
-  const auto [had, is_new] = r.depth_of_view.try_emplace(index, id_of(depth.subImage.swapchain));
-  if (had->second != id_of(depth.subImage.swapchain)) fault("a view has the depths of another one");
+  std::optional<std::size_t>& shown = get(depth.subImage.swapchain).view;
+  if (shown.value_or(index) != index) fault("a view has the depths of another one");
+  shown = index;
   return {{"rect", to_json(depth.subImage.imageRect)},
           {"near", depth.nearZ},
           {"far", depth.farZ},
@@ -526,13 +474,13 @@ bool same(const T& a, const T& b) {  // bit for bit, NaN included
 
 /// A projection layer: of this frame, of the right eyes, and there?
 Json check_layer(const XrCompositionLayerBaseHeader* header) {
-  const Runtime& r = runtime();
   require(header != nullptr && header->type == XR_TYPE_COMPOSITION_LAYER_PROJECTION, XR_ERROR_LAYER_INVALID,
           "a layer that is no projection");
   const auto& layer = *reinterpret_cast<const XrCompositionLayerProjection*>(header);
-  get("space", layer.space);
-  require(layer.viewCount == views_of(r.views).size(), XR_ERROR_VALIDATION_FAILURE, "a layer of other views");
-  const Frame& frame = *r.frame;
+  get(layer.space);
+  const Frame& frame = *runtime.session.frame;
+  require(layer.viewCount == frame.located.size(), XR_ERROR_VALIDATION_FAILURE,
+          "a layer of other views than were located");
   if (id_of(layer.space) != frame.space) fault("a layer in another space than views were located in");
   if ((frame.flags & 3) != 3) fault("a layer of poses that are not valid");
   std::vector<XrCompositionLayerProjectionView> views(layer.views, layer.views + layer.viewCount);
@@ -540,14 +488,12 @@ Json check_layer(const XrCompositionLayerBaseHeader* header) {
   if (is_planted("fov")) views[1].fov.angleUp += 0.01f;
   if (is_planted("eyes")) std::swap(views[0].pose, views[1].pose);
   if (is_planted("rectangle")) ++views[0].subImage.imageRect.extent.width;
-  if (is_planted("depths")) std::swap(views[0].next, views[1].next);
+  if (is_planted("depths") && frame.number > 0) std::swap(views[0].next, views[1].next);
   Json list = Json::array();
   for (std::size_t k = 0; k < views.size(); ++k) {
     const std::string name = "view " + std::to_string(k);
-    const bool has = k < frame.located.size();
-    if (!has || !same(views[k].pose, frame.located[k].pose))
-      fault(name + " has another pose than was located");
-    if (!has || !same(views[k].fov, frame.located[k].fov)) fault(name + " has another fov than was located");
+    if (!same(views[k].pose, frame.located[k].pose)) fault(name + " has another pose than was located");
+    if (!same(views[k].fov, frame.located[k].fov)) fault(name + " has another fov than was located");
     list.push_back({{"rect", to_json(views[k].subImage.imageRect)},
                     {"colour", check_image(views[k].subImage, false, k)},
                     {"depth", check_depth(views[k], k)}});
@@ -557,343 +503,308 @@ Json check_layer(const XrCompositionLayerBaseHeader* header) {
 
 // Actions.
 
-/// What controllers have, below their hands; "left:" and "right:": of one hand only.
+// Whose inputs there are.
+const Strings users = {"/user/hand/left", "/user/hand/right", "/user/eyes_ext"};
+
+std::string last_of(const std::string& path) { return path.substr(path.rfind('/') + 1); }
+
+/// What interaction profiles have below their users; "left:": of that one only.
 const std::map<std::string, Strings> profiles = {
-    {"khr/simple_controller", {"select/click", "menu/click"}},
-    {"oculus/touch_controller",
-     {"left:x/click", "left:y/click", "left:menu/click", "right:a/click", "right:b/click", "squeeze/value",
-      "trigger/value", "thumbstick", "thumbstick/click"}},
-    {"valve/index_controller",
-     {"a/click", "b/click", "squeeze/value", "squeeze/force", "trigger/click", "trigger/value", "thumbstick",
-      "thumbstick/click", "trackpad"}},
-    {"microsoft/motion_controller",
-     {"menu/click", "squeeze/click", "trigger/value", "thumbstick", "thumbstick/click", "trackpad",
+    {"/interaction_profiles/khr/simple_controller", {"grip/pose", "select/click", "menu/click"}},
+    {"/interaction_profiles/oculus/touch_controller",
+     {"grip/pose", "left:x/click", "left:y/click", "left:menu/click", "right:a/click", "right:b/click",
+      "squeeze/value", "trigger/value", "thumbstick", "thumbstick/click"}},
+    {"/interaction_profiles/valve/index_controller",
+     {"grip/pose", "a/click", "b/click", "squeeze/value", "squeeze/force", "trigger/click", "trigger/value",
+      "thumbstick", "thumbstick/click", "trackpad"}},
+    {"/interaction_profiles/microsoft/motion_controller",
+     {"grip/pose", "menu/click", "squeeze/click", "trigger/value", "thumbstick", "thumbstick/click",
+      "trackpad", "trackpad/click"}},
+    {"/interaction_profiles/htc/vive_controller",
+     {"grip/pose", "squeeze/click", "menu/click", "trigger/click", "trigger/value", "trackpad",
       "trackpad/click"}},
-    {"htc/vive_controller",
-     {"squeeze/click", "menu/click", "trigger/click", "trigger/value", "trackpad", "trackpad/click"}}};
-constexpr const char* gaze_profile = "ext/eye_gaze_interaction";
+    {"/interaction_profiles/ext/eye_gaze_interaction", {"eyes_ext:gaze_ext/pose"}}};
 
 bool has_path(const std::string& profile, const std::string& path) {
-  if (profile == gaze_profile) return path == "/user/eyes_ext/input/gaze_ext/pose";
-  for (const std::string hand : {"left", "right"}) {
-    const std::string start = "/user/hand/" + hand + "/input/";
-    if (path.rfind(start, 0) != 0) continue;
-    const std::string below = path.substr(start.size());
-    if (below == "grip/pose" || below == "aim/pose") return true;
-    for (const std::string& one : profiles.at(profile)) {
-      if (one == below || one == hand + ":" + below) return true;
+  for (const std::string& user : users) {
+    for (const std::string& input : profiles.at(profile)) {
+      const std::size_t colon = input.find(':');
+      const bool is_the_users = colon == std::string::npos || input.substr(0, colon) == last_of(user);
+      if (is_the_users && path == user + "/input/" + input.substr(colon + 1)) return true;
     }
   }
   return false;
 }
 
-bool fits(XrActionType type, const std::string& path) {
-  const std::string last = path.substr(path.rfind('/') + 1);
-  const bool vector = last == "thumbstick" || last == "trackpad";
-  if (type == XR_ACTION_TYPE_POSE_INPUT) return last == "pose";
-  return (type == XR_ACTION_TYPE_VECTOR2F_INPUT) == vector && last != "pose";
+XrActionType type_of(const std::string& path) {
+  const std::string last = last_of(path);
+  if (last == "pose") return XR_ACTION_TYPE_POSE_INPUT;
+  return last == "thumbstick" || last == "trackpad" ? XR_ACTION_TYPE_VECTOR2F_INPUT
+                                                    : XR_ACTION_TYPE_BOOLEAN_INPUT;
 }
 
-/// The interaction profile of a user now; empty: nobody is there, or nothing was bound.
+/// The interaction profile of a user now; empty: nobody is there.
 std::string profile_of(const std::string& user) {
-  const Runtime& r = runtime();
-  const Strings hands = r.script.value("hands", Strings{"left", "right"});
-  std::string profile;
-  if (user == gaze_user) {
-    if (r.script.contains("gaze") && !r.script["gaze"].is_null()) profile = gaze_profile;
-  } else if (std::count(hands.begin(), hands.end(), user.substr(user.rfind('/') + 1)) != 0) {
-    const std::string whole = r.script.value("profile", "/interaction_profiles/khr/simple_controller");
-    profile = whole.substr(std::string("/interaction_profiles/").size());
-  }
-  return r.suggested.contains(profile) ? profile : "";
+  if (user == users[2]) return "/interaction_profiles/ext/eye_gaze_interaction";
+  const Strings hands = runtime.script.value("hands", Strings{"left", "right"});
+  if (std::count(hands.begin(), hands.end(), last_of(user)) == 0) return "";
+  return runtime.script.value("profile", "/interaction_profiles/khr/simple_controller");
 }
 
 void sync(Object& action, bool focused) {
-  const Runtime& r = runtime();
-  action.active.clear();
-  for (const std::string user : {"/user/hand/left", "/user/hand/right", gaze_user}) {
+  for (const std::string& user : users) {
     Json value;
+    bool is_active = false;
     for (const std::string& path : action.bindings[profile_of(user)]) {
-      if (!focused || user_of(path) != user) continue;
-      action.active.insert(user);
-      if (r.input.contains(path)) value = r.input[path];
+      if (!focused || !path.starts_with(user)) continue;
+      is_active = true;
+      if (runtime.input.contains(path)) value = runtime.input[path];
     }
-    auto& [kept, changed] = action.values[user];
-    changed = value != kept;
-    kept = value;
+    action.values[user] = {value, is_active, value != action.values[user].now};
   }
 }
 
 /// What an action read at the last sync. Fills in what the states of all types have.
 template <typename State>
 Json read_action(const XrActionStateGetInfo* info, XrActionType type, State& out) {
-  Object& action = get("action", info->action);
-  require(runtime().attached, XR_ERROR_ACTIONSET_NOT_ATTACHED, "an action whose set is not attached");
+  Object& action = get(info->action);
+  require(runtime.session.attached, XR_ERROR_ACTIONSET_NOT_ATTACHED, "an action whose set is not attached");
   require(action.type == type, XR_ERROR_ACTION_TYPE_MISMATCH, action.name + " is of another type");
-  const std::string user = runtime().paths.at(info->subactionPath - 1);
-  const auto& [value, changed] = action.values[user];
-  out.isActive = action.active.contains(user) ? XR_TRUE : XR_FALSE;
-  out.changedSinceLastSync = changed ? XR_TRUE : XR_FALSE;
-  return value;
+  const Value& value = action.values[runtime.paths.at(info->subactionPath - 1)];
+  out.isActive = value.is_active ? XR_TRUE : XR_FALSE;
+  out.changedSinceLastSync = value.has_changed ? XR_TRUE : XR_FALSE;
+  return value.now;
 }
 
-// OpenXR's functions.
+// OpenXR's functions. Those that return nothing succeed. That their first handle is there was checked before.
 
-XrResult enumerate_extensions(const char*, std::uint32_t capacity, std::uint32_t* count,
-                              XrExtensionProperties* properties) {
+void enumerate_extensions(const char*, std::uint32_t capacity, std::uint32_t* count,
+                          XrExtensionProperties* properties) {
   static const Strings all = {
       "XR_MNDX_egl_enable",     "XR_KHR_opengl_enable",        "XR_KHR_composition_layer_depth",
       "XR_KHR_visibility_mask", "XR_EXT_eye_gaze_interaction", "XR_VARJO_quad_views",
       "XR_EXT_local_floor"};
-  const Strings names = runtime().script.value("extensions", all);
-  return fill(names.size(), capacity, count, [&](std::size_t k) {
+  const Strings names = runtime.script.value("extensions", all);
+  fill(names.size(), capacity, count, [&](std::size_t k) {
     std::strncpy(properties[k].extensionName, names[k].c_str(), XR_MAX_EXTENSION_NAME_SIZE - 1);
     properties[k].extensionVersion = 1;
   });
 }
 
-XrResult create_instance(const XrInstanceCreateInfo* info, XrInstance* out) {
-  Runtime& r = runtime();
-  r.extensions = {info->enabledExtensionNames, info->enabledExtensionNames + info->enabledExtensionCount};
-  add("instance", 0, out);
-  r.log({{"what", "instance"}, {"extensions", r.extensions}});
-  return XR_SUCCESS;
+void create_instance(const XrInstanceCreateInfo* info, XrInstance* out) {
+  runtime.extensions = {info->enabledExtensionNames,
+                        info->enabledExtensionNames + info->enabledExtensionCount};
+  add(XrInstance{}, out);
 }
 
-XrResult destroy_instance(XrInstance handle) { return destroy("instance", handle); }
-
-XrResult get_instance_properties(XrInstance handle, XrInstanceProperties* properties) {
-  get("instance", handle);
+void get_instance_properties(XrInstance, XrInstanceProperties* properties) {
   properties->runtimeVersion = XR_MAKE_VERSION(1, 0, 0);
   std::strcpy(properties->runtimeName, "binosplat's test runtime");
+}
+
+XrResult poll_event(XrInstance, XrEventDataBuffer* event) {
+  if (runtime.events.empty()) return XR_EVENT_UNAVAILABLE;
+  *event = runtime.events.front();
+  runtime.events.pop_front();
   return XR_SUCCESS;
 }
 
-XrResult poll_event(XrInstance handle, XrEventDataBuffer* event) {
-  get("instance", handle);
-  Runtime& r = runtime();
-  if (r.events.empty()) return XR_EVENT_UNAVAILABLE;
-  *event = r.events.front();
-  r.events.pop_front();
-  return XR_SUCCESS;
+void result_to_string(XrInstance, XrResult value, char* buffer) {
+  std::strncpy(buffer, name_of(results, value).c_str(), XR_MAX_RESULT_STRING_SIZE - 1);
 }
 
-XrResult result_to_string(XrInstance, XrResult value, char* buffer) {
-  std::strncpy(buffer, name_of(value).c_str(), XR_MAX_RESULT_STRING_SIZE - 1);
-  return XR_SUCCESS;
-}
-
-XrResult string_to_path(XrInstance handle, const char* text, XrPath* path) {
-  get("instance", handle);
+void string_to_path(XrInstance, const char* text, XrPath* path) {
   const std::string name = text;
   require(name.size() > 1 && name[0] == '/' && name.back() != '/' && name.find("//") == std::string::npos,
           XR_ERROR_PATH_FORMAT_INVALID, "'" + name + "' is no path");
-  Strings& paths = runtime().paths;
+  Strings& paths = runtime.paths;
   auto at = std::find(paths.begin(), paths.end(), name);
   if (at == paths.end()) at = paths.insert(at, name);
   *path = static_cast<XrPath>(at - paths.begin()) + 1;
-  return XR_SUCCESS;
 }
 
-XrResult get_system(XrInstance handle, const XrSystemGetInfo*, XrSystemId* system) {
-  get("instance", handle);
-  *system = the_system;
-  return results.at(runtime().script.value("system", "XR_SUCCESS"));
-}
+void get_system(XrInstance, const XrSystemGetInfo*, XrSystemId* system) { *system = the_system; }
 
-XrResult get_system_properties(XrInstance handle, XrSystemId, XrSystemProperties* properties) {
-  get("instance", handle);
+void get_system_properties(XrInstance, XrSystemId, XrSystemProperties* properties) {
   std::strcpy(properties->systemName, "binosplat's test headset");
-  return XR_SUCCESS;
 }
 
-XrResult enumerate_view_configurations(XrInstance handle, XrSystemId, std::uint32_t capacity,
-                                       std::uint32_t* count, XrViewConfigurationType* types) {
-  get("instance", handle);
-  const Json views = runtime().script.value("views", Json::object());
-  const bool quad = views.contains("quad") && runtime().extensions.contains("XR_VARJO_quad_views");
-  return fill(quad ? 2 : 1, capacity, count, [&](std::size_t k) {
-    types[k] = quad && k == 0 ? XR_VIEW_CONFIGURATION_TYPE_PRIMARY_QUAD_VARJO
-                              : XR_VIEW_CONFIGURATION_TYPE_PRIMARY_STEREO;
+void enumerate_view_configurations(XrInstance, XrSystemId, std::uint32_t capacity, std::uint32_t* count,
+                                   XrViewConfigurationType* types) {
+  const auto all = view_configurations();
+  fill(all.size(), capacity, count, [&](std::size_t k) { types[k] = all[k]; });
+}
+
+void enumerate_view_configuration_views(XrInstance, XrSystemId, XrViewConfigurationType type,
+                                        std::uint32_t capacity, std::uint32_t* count,
+                                        XrViewConfigurationView* views) {
+  const std::vector<Json> all = views_of(type);
+  fill(all.size(), capacity, count, [&](std::size_t k) {
+    views[k] = {
+        XR_TYPE_VIEW_CONFIGURATION_VIEW, nullptr, all[k]["width"], 4096, all[k]["height"], 4096, 1, 1};
   });
 }
 
-XrResult enumerate_view_configuration_views(XrInstance handle, XrSystemId, XrViewConfigurationType type,
-                                            std::uint32_t capacity, std::uint32_t* count,
-                                            XrViewConfigurationView* views) {
-  get("instance", handle);
-  const std::vector<ViewSpec> all = views_of(type);
-  return fill(all.size(), capacity, count, [&](std::size_t k) {
-    views[k] = {XR_TYPE_VIEW_CONFIGURATION_VIEW, nullptr, all[k].width, 4096, all[k].height, 4096, 1, 1};
-  });
-}
-
-XrResult get_requirements(XrInstance handle, XrSystemId, XrGraphicsRequirementsOpenGLKHR* requirements) {
-  get("instance", handle);
+void get_requirements(XrInstance, XrSystemId, XrGraphicsRequirementsOpenGLKHR* requirements) {
   requirements->minApiVersionSupported = XR_MAKE_VERSION(4, 3, 0);
   requirements->maxApiVersionSupported = XR_MAKE_VERSION(4, 6, 0);
-  runtime().asked_requirements = true;
-  return XR_SUCCESS;
+  runtime.asked_requirements = true;
 }
 
-XrResult create_session(XrInstance handle, const XrSessionCreateInfo* info, XrSession* out) {
-  Runtime& r = runtime();
-  get("instance", handle);
-  require(r.session == 0, XR_ERROR_LIMIT_REACHED, "a second session");
-  require(r.asked_requirements, XR_ERROR_GRAPHICS_REQUIREMENTS_CALL_MISSING, "before the requirements' call");
-  const auto* egl = static_cast<const XrGraphicsBindingEGLMNDX*>(info->next);
+void create_session(XrInstance instance, const XrSessionCreateInfo* info, XrSession* out) {
+  require(runtime.session.id == 0, XR_ERROR_LIMIT_REACHED, "a second session");
+  require(runtime.asked_requirements, XR_ERROR_GRAPHICS_REQUIREMENTS_CALL_MISSING,
+          "before the requirements' call");
+  const void* context = nullptr;  // of the binding
+  if (const auto* egl = static_cast<const XrGraphicsBindingEGLMNDX*>(info->next);
+      egl != nullptr && egl->type == XR_TYPE_GRAPHICS_BINDING_EGL_MNDX)
+    context = egl->context;
   if (const auto* xlib = static_cast<const XlibBinding*>(info->next);
-      xlib != nullptr && xlib->visual == egl_visual)
-    egl = reinterpret_cast<const XrGraphicsBindingEGLMNDX*>(xlib->drawable);
-  const bool is_egl = egl != nullptr && egl->type == XR_TYPE_GRAPHICS_BINDING_EGL_MNDX;
-  require(is_egl && egl->context == eglGetCurrentContext() && egl->context != nullptr,
-          XR_ERROR_GRAPHICS_DEVICE_INVALID, "no binding of the context of EGL that is current");
-  r.session = id_of((add("session", id_of(handle), out), *out));
-  r.log({{"what", "session"}});
+      xlib != nullptr && xlib->type == XR_TYPE_GRAPHICS_BINDING_OPENGL_XLIB_KHR)
+    context = xlib->context;
+  require(context != nullptr && context == eglGetCurrentContext(), XR_ERROR_GRAPHICS_DEVICE_INVALID,
+          "no binding of the context of EGL that is current");
+  add(instance, out);
+  runtime.session.id = id_of(*out);
+  runtime.log({{"what", "session"}});
   set_state(XR_SESSION_STATE_IDLE);
   set_state(XR_SESSION_STATE_READY);
-  return XR_SUCCESS;
 }
 
-XrResult destroy_session(XrSession handle) { return destroy("session", handle); }
-
-XrResult begin_session(XrSession handle, const XrSessionBeginInfo* info) {
-  Runtime& r = runtime();
-  get("session", handle);
-  require(!r.running && r.state == XR_SESSION_STATE_READY, XR_ERROR_SESSION_NOT_READY, name_of(r.state));
-  r.views = info->primaryViewConfigurationType;
-  r.running = true;
-  r.log({{"what", "begin"}});
+void begin_session(XrSession, const XrSessionBeginInfo* info) {
+  Session& session = runtime.session;
+  require(!session.running && session.state == XR_SESSION_STATE_READY, XR_ERROR_SESSION_NOT_READY,
+          name_of(states, session.state));
+  session.views = info->primaryViewConfigurationType;
+  session.running = true;
+  runtime.log({{"what", "begin"}});
   walk_to(XR_SESSION_STATE_FOCUSED);
-  apply_events(r.next_frame);
-  return XR_SUCCESS;
+  apply_events(runtime.next_frame);
 }
 
-XrResult end_session(XrSession handle) {
-  Runtime& r = runtime();
-  get("session", handle);
-  require(r.running && r.state == XR_SESSION_STATE_STOPPING, XR_ERROR_SESSION_NOT_STOPPING, name_of(r.state));
-  if (r.frame) fault("a frame was not ended");
-  r.running = false;
-  r.frame.reset();
+void end_session(XrSession) {
+  Session& session = runtime.session;
+  require(session.running && session.state == XR_SESSION_STATE_STOPPING, XR_ERROR_SESSION_NOT_STOPPING,
+          name_of(states, session.state));
+  if (session.frame) fault("a frame was not ended");
+  session.running = false;
+  session.frame.reset();
   set_state(XR_SESSION_STATE_IDLE);
-  set_state(r.then == "ready" ? XR_SESSION_STATE_READY : XR_SESSION_STATE_EXITING);
-  return XR_SUCCESS;
+  set_state(session.then == "ready" ? XR_SESSION_STATE_READY : XR_SESSION_STATE_EXITING);
 }
 
-XrResult request_exit_session(XrSession handle) {
-  get("session", handle);
-  require(runtime().running, XR_ERROR_SESSION_NOT_RUNNING, "the session does not run");
-  runtime().then = "exiting";
-  if (runtime().state != XR_SESSION_STATE_STOPPING) walk_to(XR_SESSION_STATE_STOPPING);
-  return XR_SUCCESS;
+void request_exit_session(XrSession) {
+  require(runtime.session.running, XR_ERROR_SESSION_NOT_RUNNING, "the session does not run");
+  runtime.session.then = "exiting";
+  if (runtime.session.state != XR_SESSION_STATE_STOPPING) walk_to(XR_SESSION_STATE_STOPPING);
 }
 
 std::vector<XrReferenceSpaceType> offered_spaces() {
   std::vector<XrReferenceSpaceType> offered;
-  for (const std::string& name :
-       runtime().script.value("spaces", Strings{"view", "local", "stage", "local_floor"})) {
-    if (name != "local_floor" || runtime().extensions.contains("XR_EXT_local_floor"))
+  for (const std::string& name : runtime.script.value("spaces", Strings{"local", "stage", "local_floor"})) {
+    if (name != "local_floor" || runtime.extensions.contains("XR_EXT_local_floor"))
       offered.push_back(space_types.at(name));
   }
   return offered;
 }
 
-XrResult enumerate_reference_spaces(XrSession handle, std::uint32_t capacity, std::uint32_t* count,
-                                    XrReferenceSpaceType* spaces) {
-  get("session", handle);
+void enumerate_reference_spaces(XrSession, std::uint32_t capacity, std::uint32_t* count,
+                                XrReferenceSpaceType* spaces) {
   const auto all = offered_spaces();
-  return fill(all.size(), capacity, count, [&](std::size_t k) { spaces[k] = all[k]; });
+  fill(all.size(), capacity, count, [&](std::size_t k) { spaces[k] = all[k]; });
 }
 
-XrResult create_reference_space(XrSession handle, const XrReferenceSpaceCreateInfo* info, XrSpace* out) {
-  get("session", handle);
+void require_no_offset(const XrPosef& pose) {
+  constexpr XrPosef none = {{0.0f, 0.0f, 0.0f, 1.0f}, {0.0f, 0.0f, 0.0f}};
+  require(same(pose, none), XR_ERROR_RUNTIME_FAILURE, "this runtime knows no spaces that are moved");
+}
+
+void create_reference_space(XrSession session, const XrReferenceSpaceCreateInfo* info, XrSpace* out) {
   const auto all = offered_spaces();
   require(std::count(all.begin(), all.end(), info->referenceSpaceType) != 0,
           XR_ERROR_REFERENCE_SPACE_UNSUPPORTED, "a reference space that is not offered");
-  Object& space = add("space", id_of(handle), out);
-  space.reference = info->referenceSpaceType;
-  space.offset = from_xr(info->poseInReferenceSpace);
-  return XR_SUCCESS;
+  require_no_offset(info->poseInReferenceSpace);
+  add(session, out).reference = info->referenceSpaceType;
 }
 
-XrResult create_action_space(XrSession handle, const XrActionSpaceCreateInfo* info, XrSpace* out) {
-  get("session", handle);
-  require(get("action", info->action).type == XR_ACTION_TYPE_POSE_INPUT, XR_ERROR_ACTION_TYPE_MISMATCH,
+void create_action_space(XrSession session, const XrActionSpaceCreateInfo* info, XrSpace* out) {
+  require(get(info->action).type == XR_ACTION_TYPE_POSE_INPUT, XR_ERROR_ACTION_TYPE_MISMATCH,
           "a space of an action that is no pose");
-  Object& space = add("space", id_of(handle), out);
+  require_no_offset(info->poseInActionSpace);
+  Object& space = add(session, out);
   space.action = id_of(info->action);
-  if (info->subactionPath != XR_NULL_PATH) space.user = runtime().paths.at(info->subactionPath - 1);
-  space.offset = from_xr(info->poseInActionSpace);
-  return XR_SUCCESS;
+  space.user = info->subactionPath == XR_NULL_PATH ? users[2] : runtime.paths.at(info->subactionPath - 1);
 }
 
-XrResult locate_space(XrSpace handle, XrSpace base, XrTime time, XrSpaceLocation* location) {
-  const auto pose = pose_of(get("space", handle), time), from = pose_of(get("space", base), time);
+void locate_space(XrSpace space, XrSpace base, XrTime time, XrSpaceLocation* location) {
   require(time > 0, XR_ERROR_TIME_INVALID, "a space at no time");
+  const auto pose = pose_of(get(space)), from = pose_of(get(base));
   location->locationFlags = pose && from ? 15 : 0;
   if (pose && from) location->pose = to_xr(inverse(*from) * *pose);
-  return XR_SUCCESS;
 }
 
-XrResult destroy_space(XrSpace handle) { return destroy("space", handle); }
-
-XrResult locate_views(XrSession handle, const XrViewLocateInfo* info, XrViewState* state,
-                      std::uint32_t capacity, std::uint32_t* count, XrView* views) {
-  Runtime& r = runtime();
-  get("session", handle);
-  require(info->viewConfigurationType == r.views, XR_ERROR_VALIDATION_FAILURE, "another view configuration");
-  if (!r.frame || info->displayTime != r.frame->time)
+void locate_views(XrSession, const XrViewLocateInfo* info, XrViewState* state, std::uint32_t capacity,
+                  std::uint32_t* count, XrView* views) {
+  Session& session = runtime.session;
+  require(info->viewConfigurationType == session.views, XR_ERROR_VALIDATION_FAILURE,
+          "another view configuration");
+  if (!session.frame || info->displayTime != session.frame->time)
     fault("views located for another time than the frame's");
-  const auto base = pose_of(get("space", info->space), info->displayTime);
-  state->viewStateFlags = script_flags();
+  state->viewStateFlags = 0;
+  for (const std::string& flag :
+       runtime.script.value("flags", Strings{"orientation_valid", "position_valid"}))
+    state->viewStateFlags |=
+        flag == "orientation_valid" ? XR_VIEW_STATE_ORIENTATION_VALID_BIT : XR_VIEW_STATE_POSITION_VALID_BIT;
+  const auto base = pose_of(get(info->space));
   std::vector<XrView> located;
-  for (const ViewSpec& spec : views_of(r.views)) {
-    XrView& view = located.emplace_back(XrView{XR_TYPE_VIEW, nullptr, {}, spec.fov});
-    view.pose = to_xr(inverse(*base) * head_in_script(info->displayTime) * spec.pose);
+  for (const Json& spec : views_of(session.views)) {
+    const auto fov = spec["fov"].get<std::array<float, 4>>();
+    XrView& view = located.emplace_back(XrView{XR_TYPE_VIEW, nullptr, {}, {fov[0], fov[1], fov[2], fov[3]}});
+    view.pose = to_xr(inverse(*base) * head_in_script(info->displayTime) * pose_from(spec));
     // What is not valid is not to be used: it would be seen at once.
     if ((state->viewStateFlags & XR_VIEW_STATE_ORIENTATION_VALID_BIT) == 0) view.pose.orientation = {};
     if ((state->viewStateFlags & XR_VIEW_STATE_POSITION_VALID_BIT) == 0) view.pose.position.x = NAN;
   }
-  if (capacity > 0 && r.frame) {
-    r.frame->space = id_of(info->space);
-    r.frame->flags = state->viewStateFlags;
-    r.frame->located = located;
-  }
-  return fill(located.size(), capacity, count, [&](std::size_t k) { views[k] = located[k]; });
+  fill(located.size(), capacity, count, [&](std::size_t k) { views[k] = located[k]; });
+  if (capacity == 0 || !session.frame) return;
+  session.frame->space = id_of(info->space);
+  session.frame->flags = state->viewStateFlags;
+  session.frame->located = std::move(located);
 }
 
-XrResult enumerate_swapchain_formats(XrSession handle, std::uint32_t capacity, std::uint32_t* count,
-                                     std::int64_t* out) {
-  get("session", handle);
-  const Strings names = runtime().script.value(
-      "formats", Strings{"GL_SRGB8_ALPHA8", "GL_RGBA8", "GL_DEPTH_COMPONENT32F", "GL_DEPTH_COMPONENT24"});
-  return fill(names.size(), capacity, count, [&](std::size_t k) { out[k] = formats.at(names[k]); });
+std::vector<std::int64_t> offered_formats() {
+  std::vector<std::int64_t> offered;
+  for (const std::string& name : runtime.script.value(
+           "formats",
+           Strings{"GL_SRGB8_ALPHA8", "GL_RGBA8", "GL_DEPTH_COMPONENT32F", "GL_DEPTH_COMPONENT24"}))
+    offered.push_back(formats.at(name));
+  return offered;
 }
 
-XrResult create_swapchain(XrSession handle, const XrSwapchainCreateInfo* info, XrSwapchain* out) {
-  Runtime& r = runtime();
-  get("session", handle);
-  std::uint32_t count = 0;
-  std::array<std::int64_t, 8> offered{};
-  enumerate_swapchain_formats(handle, offered.size(), &count, offered.data());
-  require(std::count(offered.begin(), offered.begin() + count, info->format) != 0,
+void enumerate_swapchain_formats(XrSession, std::uint32_t capacity, std::uint32_t* count, std::int64_t* out) {
+  const auto all = offered_formats();
+  fill(all.size(), capacity, count, [&](std::size_t k) { out[k] = all[k]; });
+}
+
+void create_swapchain(XrSession session, const XrSwapchainCreateInfo* info, XrSwapchain* out) {
+  const auto offered = offered_formats();
+  require(std::count(offered.begin(), offered.end(), info->format) != 0,
           XR_ERROR_SWAPCHAIN_FORMAT_UNSUPPORTED, "format " + std::to_string(info->format));
   require(info->width - 1 < 4096 && info->height - 1 < 4096, XR_ERROR_SWAPCHAIN_RECT_INVALID, "a wrong size");
   require(info->sampleCount == 1 && info->faceCount == 1 && info->arraySize == 1 && info->mipCount == 1,
           XR_ERROR_FEATURE_UNSUPPORTED, "several samples, faces, layers or levels");
   // No fault of the program's: it may ask.
-  if (info->format == GL_SRGB8_ALPHA8 && !r.script.value("unordered_srgb", true) &&
-      (info->usageFlags & XR_SWAPCHAIN_USAGE_UNORDERED_ACCESS_BIT) != 0)
-    return XR_ERROR_FEATURE_UNSUPPORTED;
-  Object& swapchain = add("swapchain", id_of(handle), out);
+  require(info->format != GL_SRGB8_ALPHA8 || runtime.script.value("unordered_srgb", true) ||
+              (info->usageFlags & XR_SWAPCHAIN_USAGE_UNORDERED_ACCESS_BIT) == 0,
+          XR_ERROR_FEATURE_UNSUPPORTED, "");
+  Object& swapchain = add(session, out);
   swapchain.info = *info;
   swapchain.is_depth = info->format != GL_SRGB8_ALPHA8 && info->format != GL_RGBA8;
   const auto width = static_cast<GLsizei>(info->width), height = static_cast<GLsizei>(info->height);
   const auto format = static_cast<GLenum>(info->format);
   for (GLuint& texture : swapchain.textures = std::vector<GLuint>(3)) {
     glCreateTextures(GL_TEXTURE_2D, 1, &texture);
-    if (r.script.value("immutable", true)) {
+    if (runtime.script.value("immutable", true)) {
       glTextureStorage2D(texture, 1, format, width, height);
       continue;
     }
@@ -903,208 +814,168 @@ XrResult create_swapchain(XrSession handle, const XrSwapchainCreateInfo* info, X
     glTextureParameteri(texture, GL_TEXTURE_MAX_LEVEL, 0);
     glBindTexture(GL_TEXTURE_2D, 0);
   }
-  r.log({{"what", "swapchain"}, {"width", info->width}, {"height", info->height}});
-  return XR_SUCCESS;
+  runtime.log({{"what", "swapchain"}, {"width", info->width}, {"height", info->height}});
 }
 
-XrResult destroy_swapchain(XrSwapchain handle) { return destroy("swapchain", handle); }
-
-XrResult enumerate_swapchain_images(XrSwapchain handle, std::uint32_t capacity, std::uint32_t* count,
-                                    XrSwapchainImageBaseHeader* images) {
-  const Object& swapchain = get("swapchain", handle);
+void enumerate_swapchain_images(XrSwapchain handle, std::uint32_t capacity, std::uint32_t* count,
+                                XrSwapchainImageBaseHeader* images) {
+  const std::vector<GLuint>& textures = get(handle).textures;
   auto* out = reinterpret_cast<XrSwapchainImageOpenGLKHR*>(images);
-  return fill(swapchain.textures.size(), capacity, count,
-              [&](std::size_t k) { out[k].image = swapchain.textures[k]; });
+  fill(textures.size(), capacity, count, [&](std::size_t k) { out[k].image = textures[k]; });
 }
 
-XrResult acquire_swapchain_image(XrSwapchain handle, const XrSwapchainImageAcquireInfo*,
-                                 std::uint32_t* index) {
-  Object& swapchain = get("swapchain", handle);
+void acquire_swapchain_image(XrSwapchain handle, const XrSwapchainImageAcquireInfo*, std::uint32_t* index) {
+  Object& swapchain = get(handle);
   require(!swapchain.acquired, XR_ERROR_CALL_ORDER_INVALID, "an image is acquired already");
   swapchain.acquired = swapchain.next;
   swapchain.next = (swapchain.next + 1) % swapchain.textures.size();
   *index = static_cast<std::uint32_t>(*swapchain.acquired);
-  return XR_SUCCESS;
 }
 
-XrResult wait_swapchain_image(XrSwapchain handle, const XrSwapchainImageWaitInfo*) {
-  Object& swapchain = get("swapchain", handle);
+void wait_swapchain_image(XrSwapchain handle, const XrSwapchainImageWaitInfo*) {
+  Object& swapchain = get(handle);
   require(swapchain.acquired && !swapchain.waited, XR_ERROR_CALL_ORDER_INVALID, "no image to wait for");
   swapchain.waited = !is_planted("wait");
-  return XR_SUCCESS;
 }
 
-XrResult release_swapchain_image(XrSwapchain handle, const XrSwapchainImageReleaseInfo*) {
-  Runtime& r = runtime();
-  Object& swapchain = get("swapchain", handle);
+void release_swapchain_image(XrSwapchain handle, const XrSwapchainImageReleaseInfo*) {
+  Object& swapchain = get(handle);
   require(swapchain.acquired.has_value(), XR_ERROR_CALL_ORDER_INVALID, "no image is acquired");
   require(swapchain.waited, XR_ERROR_CALL_ORDER_INVALID, "the image was not waited for");
-  if (is_planted("release")) return XR_SUCCESS;
+  if (is_planted("release")) return;
   swapchain.waited = false;
   swapchain.released = std::exchange(swapchain.acquired, std::nullopt);
-  swapchain.released_frame = is_planted("stale") ? 0 : r.now();
+  swapchain.released_frame = is_planted("stale") ? 0 : runtime.now();
   swapchain.pixels.clear();
-  const Json kept = r.script.value("pixels", Json());
-  if (r.folder.empty() || (!kept.is_null() && std::find(kept.begin(), kept.end(), r.now()) == kept.end()))
-    return XR_SUCCESS;
+  const Json kept = runtime.script.value("pixels", Json());
+  if (runtime.folder.empty() ||
+      (!kept.is_null() && std::find(kept.begin(), kept.end(), runtime.now()) == kept.end()))
+    return;
   swapchain.pixels = read_texture(swapchain, swapchain.textures[*swapchain.released]);
   if (is_planted("written")) swapchain.pixels[0] ^= 1;
-  return XR_SUCCESS;
 }
 
-XrResult wait_frame(XrSession handle, const XrFrameWaitInfo*, XrFrameState* state) {
-  Runtime& r = runtime();
-  get("session", handle);
-  require(r.running, XR_ERROR_SESSION_NOT_RUNNING, "the session does not run");
-  require(!r.frame, XR_ERROR_CALL_ORDER_INVALID, "the frame before was not ended");
-  r.lost = r.lost || r.next_frame >= r.script.value("frames", 3) + patience;
-  require(!r.lost, XR_ERROR_SESSION_LOST, "the program does not stop");
-  apply_events(r.next_frame);
-  Frame frame{.number = r.next_frame++};
-  const auto late = r.script.value("late", std::set<int>()),
-             hidden = r.script.value("not_rendered", std::set<int>());
-  frame.time =
-      first_time + r.period() * (frame.number + std::distance(late.begin(), late.upper_bound(frame.number)));
-  frame.shown = r.state >= XR_SESSION_STATE_VISIBLE && r.state <= XR_SESSION_STATE_FOCUSED &&
-                !hidden.contains(frame.number);
-  state->predictedDisplayTime = frame.time;
-  state->predictedDisplayPeriod = r.period();
-  state->shouldRender = frame.shown ? XR_TRUE : XR_FALSE;
-  r.frame = frame;
-  if (r.script.value("sleep", false)) std::this_thread::sleep_for(std::chrono::nanoseconds(r.period()));
-  return XR_SUCCESS;
+void wait_frame(XrSession, const XrFrameWaitInfo*, XrFrameState* state) {
+  Session& session = runtime.session;
+  require(session.running, XR_ERROR_SESSION_NOT_RUNNING, "the session does not run");
+  require(!session.frame, XR_ERROR_CALL_ORDER_INVALID, "the frame before was not ended");
+  session.lost = session.lost || runtime.next_frame >= runtime.frames() + patience;
+  require(!session.lost, XR_ERROR_SESSION_LOST, "the program does not stop");
+  apply_events(runtime.next_frame);
+  const int number = runtime.next_frame++;
+  const auto late = runtime.script.value("late", std::set<int>()),
+             hidden = runtime.script.value("not_rendered", std::set<int>());
+  const XrTime time =
+      first_time + runtime.period() * (number + std::distance(late.begin(), late.upper_bound(number)));
+  const bool is_shown = session.state >= XR_SESSION_STATE_VISIBLE &&
+                        session.state <= XR_SESSION_STATE_FOCUSED && !hidden.contains(number);
+  state->predictedDisplayTime = time;
+  state->predictedDisplayPeriod = runtime.period();
+  state->shouldRender = is_shown ? XR_TRUE : XR_FALSE;
+  session.frame = {.number = number, .time = time};
+  if (runtime.script.value("sleep", false))
+    std::this_thread::sleep_for(std::chrono::nanoseconds(runtime.period()));
 }
 
-XrResult begin_frame(XrSession handle, const XrFrameBeginInfo*) {
-  get("session", handle);
-  require(runtime().frame.has_value(), XR_ERROR_CALL_ORDER_INVALID, "xrWaitFrame is expected before");
-  runtime().frame->begun = !is_planted("begin");
-  return XR_SUCCESS;
+void begin_frame(XrSession, const XrFrameBeginInfo*) {
+  std::optional<Frame>& frame = runtime.session.frame;
+  require(frame.has_value(), XR_ERROR_CALL_ORDER_INVALID, "xrWaitFrame is expected before");
+  frame->begun = !is_planted("begin");
 }
 
-XrResult end_frame(XrSession handle, const XrFrameEndInfo* info) {
-  Runtime& r = runtime();
-  get("session", handle);
-  require(r.frame && r.frame->begun, XR_ERROR_CALL_ORDER_INVALID, "xrBeginFrame is expected before");
-  const Frame frame = *r.frame;
-  if (info->displayTime != frame.time + (is_planted("time") ? 1 : 0))
+void end_frame(XrSession, const XrFrameEndInfo* info) {
+  std::optional<Frame>& frame = runtime.session.frame;
+  require(frame && frame->begun, XR_ERROR_CALL_ORDER_INVALID, "xrBeginFrame is expected before");
+  if (info->displayTime != frame->time + (is_planted("time") ? 1 : 0))
     fault("another display time than was predicted", XR_ERROR_TIME_INVALID);
   if (info->environmentBlendMode != XR_ENVIRONMENT_BLEND_MODE_OPAQUE)
     fault("another blend mode", XR_ERROR_ENVIRONMENT_BLEND_MODE_UNSUPPORTED);
-  for (const auto& [id, object] : r.objects) {
+  for (const auto& [id, object] : runtime.objects) {
     if (object.acquired) fault("an image was not released");
   }
   Json located = Json::array(), layers = Json::array();
-  for (const XrView& view : frame.located)
+  for (const XrView& view : frame->located)
     located.push_back({{"pose", to_json(view.pose)}, {"fov", to_json(view.fov)}});
   for (std::uint32_t k = 0; k < info->layerCount; ++k) layers.push_back(check_layer(info->layers[k]));
-  r.log({{"what", "frame"}, {"frame", frame.number}, {"located", located}, {"layers", layers}});
-  r.frame.reset();
-  ++r.ended_frames;
-  apply_events(frame.number + 1);
-  if (r.ended_frames >= r.script.value("frames", 3) && r.state < XR_SESSION_STATE_STOPPING) {
-    r.then = "exiting";
+  runtime.log({{"what", "frame"}, {"frame", frame->number}, {"located", located}, {"layers", layers}});
+  frame.reset();
+  ++runtime.ended_frames;
+  apply_events(runtime.next_frame);
+  if (runtime.ended_frames >= runtime.frames() && runtime.session.state < XR_SESSION_STATE_STOPPING) {
+    runtime.session.then = "exiting";
     walk_to(XR_SESSION_STATE_STOPPING);
   }
-  return XR_SUCCESS;
 }
 
-XrResult create_action_set(XrInstance handle, const XrActionSetCreateInfo*, XrActionSet* out) {
-  get("instance", handle);
-  add("action set", id_of(handle), out);
-  return XR_SUCCESS;
+void create_action_set(XrInstance instance, const XrActionSetCreateInfo*, XrActionSet* out) {
+  add(instance, out);
 }
 
-XrResult destroy_action_set(XrActionSet handle) { return destroy("action set", handle); }
-
-XrResult create_action(XrActionSet handle, const XrActionCreateInfo* info, XrAction* out) {
-  get("action set", handle);
-  require(!runtime().attached, XR_ERROR_ACTIONSETS_ALREADY_ATTACHED, "the set is attached already");
-  for (const auto& [id, other] : runtime().objects)
-    require(other.kind != "action" || other.name != info->actionName, XR_ERROR_NAME_DUPLICATED, other.name);
-  Object& action = add("action", id_of(handle), out);
+void create_action(XrActionSet set, const XrActionCreateInfo* info, XrAction* out) {
+  require(!runtime.session.attached, XR_ERROR_ACTIONSETS_ALREADY_ATTACHED, "the set is attached already");
+  for (const auto& [id, other] : runtime.objects)
+    require(other.name != info->actionName, XR_ERROR_NAME_DUPLICATED, other.name);
+  Object& action = add(set, out);
   action.name = info->actionName;
   action.type = info->actionType;
-  return XR_SUCCESS;
 }
 
-XrResult destroy_action(XrAction handle) { return destroy("action", handle); }
-
-XrResult suggest_bindings(XrInstance handle, const XrInteractionProfileSuggestedBinding* info) {
-  Runtime& r = runtime();
-  get("instance", handle);
-  require(!r.attached, XR_ERROR_ACTIONSETS_ALREADY_ATTACHED, "actions are attached already");
-  const std::string whole = r.paths.at(info->interactionProfile - 1), start = "/interaction_profiles/";
-  const std::string profile = whole.substr(std::min(whole.size(), start.size()));
-  require(profiles.contains(profile) || profile == gaze_profile, XR_ERROR_PATH_UNSUPPORTED,
-          "no profile " + whole);
+void suggest_bindings(XrInstance, const XrInteractionProfileSuggestedBinding* info) {
+  require(!runtime.session.attached, XR_ERROR_ACTIONSETS_ALREADY_ATTACHED, "actions are attached already");
+  const std::string profile = runtime.paths.at(info->interactionProfile - 1);
+  require(profiles.contains(profile), XR_ERROR_PATH_UNSUPPORTED, "no profile " + profile);
   for (std::uint32_t k = 0; k < info->countSuggestedBindings; ++k) {
-    Object& action = get("action", info->suggestedBindings[k].action);
-    std::string path = r.paths.at(info->suggestedBindings[k].binding - 1);
-    if (r.script.value("plant", "") == "binding") path += "s";
+    Object& action = get(info->suggestedBindings[k].action);
+    std::string path = runtime.paths.at(info->suggestedBindings[k].binding - 1);
+    if (is_planted("binding")) path += "s";
     require(has_path(profile, path), XR_ERROR_PATH_UNSUPPORTED, profile + " has no " + path);
-    require(fits(action.type, path), XR_ERROR_PATH_UNSUPPORTED,
+    require(action.type == type_of(path), XR_ERROR_PATH_UNSUPPORTED,
             action.name + " is of another type than " + path);
     action.bindings[profile].push_back(path);
   }
-  r.suggested.insert(profile);
-  return XR_SUCCESS;
 }
 
-XrResult attach_action_sets(XrSession handle, const XrSessionActionSetsAttachInfo* info) {
-  get("session", handle);
-  require(!runtime().attached, XR_ERROR_ACTIONSETS_ALREADY_ATTACHED, "a set is attached already");
-  for (std::uint32_t k = 0; k < info->countActionSets; ++k) get("action set", info->actionSets[k]);
-  runtime().attached = true;
-  return XR_SUCCESS;
+void attach_action_sets(XrSession, const XrSessionActionSetsAttachInfo* info) {
+  require(!runtime.session.attached, XR_ERROR_ACTIONSETS_ALREADY_ATTACHED, "a set is attached already");
+  for (std::uint32_t k = 0; k < info->countActionSets; ++k) get(info->actionSets[k]);
+  runtime.session.attached = true;
 }
 
-XrResult sync_actions(XrSession handle, const XrActionsSyncInfo* info) {
-  Runtime& r = runtime();
-  get("session", handle);
-  require(r.attached, XR_ERROR_ACTIONSET_NOT_ATTACHED, "no set is attached");
-  for (std::uint32_t k = 0; k < info->countActiveActionSets; ++k)
-    get("action set", info->activeActionSets[k].actionSet);
-  const bool focused = r.state == XR_SESSION_STATE_FOCUSED;
-  for (auto& [id, object] : r.objects) {
-    if (object.kind == "action") sync(object, focused);
+XrResult sync_actions(XrSession, const XrActionsSyncInfo* info) {
+  require(runtime.session.attached, XR_ERROR_ACTIONSET_NOT_ATTACHED, "no set is attached");
+  for (std::uint32_t k = 0; k < info->countActiveActionSets; ++k) get(info->activeActionSets[k].actionSet);
+  const bool focused = runtime.session.state == XR_SESSION_STATE_FOCUSED;
+  for (auto& [id, object] : runtime.objects) {
+    if (object.kind == XR_OBJECT_TYPE_ACTION) sync(object, focused);
   }
   return focused ? XR_SUCCESS : XR_SESSION_NOT_FOCUSED;
 }
 
-XrResult get_boolean(XrSession handle, const XrActionStateGetInfo* info, XrActionStateBoolean* out) {
-  get("session", handle);
+void get_boolean(XrSession, const XrActionStateGetInfo* info, XrActionStateBoolean* out) {
   const Json value = read_action(info, XR_ACTION_TYPE_BOOLEAN_INPUT, *out);
   const bool is_pushed =
       value.is_boolean() ? value.get<bool>() : value.is_number() && value.get<double>() > 0.5;
   out->currentState = is_pushed ? XR_TRUE : XR_FALSE;
-  return XR_SUCCESS;
 }
 
-XrResult get_vector(XrSession handle, const XrActionStateGetInfo* info, XrActionStateVector2f* out) {
-  get("session", handle);
+void get_vector(XrSession, const XrActionStateGetInfo* info, XrActionStateVector2f* out) {
   const Json value = read_action(info, XR_ACTION_TYPE_VECTOR2F_INPUT, *out);
   if (value.is_array()) out->currentState = {value[0], value[1]};
-  return XR_SUCCESS;
 }
 
-XrResult get_visibility_mask(XrSession handle, XrViewConfigurationType, std::uint32_t view,
-                             XrVisibilityMaskTypeKHR type, XrVisibilityMaskKHR* mask) {
-  get("session", handle);
+void get_visibility_mask(XrSession, XrViewConfigurationType, std::uint32_t view, XrVisibilityMaskTypeKHR type,
+                         XrVisibilityMaskKHR* mask) {
   require(type == XR_VISIBILITY_MASK_TYPE_VISIBLE_TRIANGLE_MESH_KHR, XR_ERROR_VALIDATION_FAILURE,
           "another mask");
-  const Json masks = runtime().script.value("masks", Json::array());
+  const Json masks = runtime.script.value("masks", Json::array());
   const Json mesh = view < masks.size() ? masks[view] : Json::object();
   const auto vertices = mesh.value("vertices", std::vector<std::array<float, 2>>());
   const auto indices = mesh.value("indices", std::vector<std::uint32_t>());
-  mask->vertexCountOutput = static_cast<std::uint32_t>(vertices.size());
-  mask->indexCountOutput = static_cast<std::uint32_t>(indices.size());
-  if (mask->vertexCapacityInput == 0 && mask->indexCapacityInput == 0) return XR_SUCCESS;
-  require(mask->vertexCapacityInput >= vertices.size() && mask->indexCapacityInput >= indices.size(),
-          XR_ERROR_SIZE_INSUFFICIENT, "no room for the mask");
-  for (std::size_t k = 0; k < vertices.size(); ++k) mask->vertices[k] = {vertices[k][0], vertices[k][1]};
-  std::copy(indices.begin(), indices.end(), mask->indices);
-  return XR_SUCCESS;
+  fill(vertices.size(), mask->vertexCapacityInput, &mask->vertexCountOutput, [&](std::size_t k) {
+    mask->vertices[k] = {vertices[k][0], vertices[k][1]};
+  });
+  fill(indices.size(), mask->indexCapacityInput, &mask->indexCountOutput,
+       [&](std::size_t k) { mask->indices[k] = indices[k]; });
 }
 
 // What the loader finds.
@@ -1117,16 +988,24 @@ struct Name {
   char text[N]{};
 };
 
+template <typename First, typename... Others>
+void check_first(First first, Others...) {
+  if constexpr (kind_of<First> != XR_OBJECT_TYPE_UNKNOWN) get(first);
+}
+
 /// A function as the loader calls it, with what a script or an error makes of it.
 template <Name name, auto function>
 struct Entry;
-template <Name name, typename... Arguments, XrResult (*function)(Arguments...)>
+template <Name name, typename Result, typename... Arguments, Result (*function)(Arguments...)>
 struct Entry<name, function> {
   static XrResult XRAPI_CALL call(Arguments... arguments) {
-    runtime().function = name.text;
+    runtime.function = name.text;
     try {
       if (const auto result = scripted_result()) return *result;
-      return function(arguments...);
+      check_first(arguments...);
+      if constexpr (std::is_same_v<Result, XrResult>) return function(arguments...);
+      function(arguments...);
+      return XR_SUCCESS;
     } catch (const Refusal& refusal) {
       if (!refusal.text.empty()) fault(refusal.text, refusal.result);
       return refusal.result;
@@ -1142,7 +1021,7 @@ struct Entry<name, function> {
 const std::map<std::string, PFN_xrVoidFunction> entries = {
     ENTRY(EnumerateInstanceExtensionProperties, enumerate_extensions),
     ENTRY(CreateInstance, create_instance),
-    ENTRY(DestroyInstance, destroy_instance),
+    ENTRY(DestroyInstance, destroy<XrInstance>),
     ENTRY(GetInstanceProperties, get_instance_properties),
     ENTRY(PollEvent, poll_event),
     ENTRY(ResultToString, result_to_string),
@@ -1153,7 +1032,7 @@ const std::map<std::string, PFN_xrVoidFunction> entries = {
     ENTRY(EnumerateViewConfigurationViews, enumerate_view_configuration_views),
     ENTRY(GetOpenGLGraphicsRequirementsKHR, get_requirements),
     ENTRY(CreateSession, create_session),
-    ENTRY(DestroySession, destroy_session),
+    ENTRY(DestroySession, destroy<XrSession>),
     ENTRY(BeginSession, begin_session),
     ENTRY(EndSession, end_session),
     ENTRY(RequestExitSession, request_exit_session),
@@ -1161,11 +1040,11 @@ const std::map<std::string, PFN_xrVoidFunction> entries = {
     ENTRY(CreateReferenceSpace, create_reference_space),
     ENTRY(CreateActionSpace, create_action_space),
     ENTRY(LocateSpace, locate_space),
-    ENTRY(DestroySpace, destroy_space),
+    ENTRY(DestroySpace, destroy<XrSpace>),
     ENTRY(LocateViews, locate_views),
     ENTRY(EnumerateSwapchainFormats, enumerate_swapchain_formats),
     ENTRY(CreateSwapchain, create_swapchain),
-    ENTRY(DestroySwapchain, destroy_swapchain),
+    ENTRY(DestroySwapchain, destroy<XrSwapchain>),
     ENTRY(EnumerateSwapchainImages, enumerate_swapchain_images),
     ENTRY(AcquireSwapchainImage, acquire_swapchain_image),
     ENTRY(WaitSwapchainImage, wait_swapchain_image),
@@ -1174,9 +1053,9 @@ const std::map<std::string, PFN_xrVoidFunction> entries = {
     ENTRY(BeginFrame, begin_frame),
     ENTRY(EndFrame, end_frame),
     ENTRY(CreateActionSet, create_action_set),
-    ENTRY(DestroyActionSet, destroy_action_set),
+    ENTRY(DestroyActionSet, destroy<XrActionSet>),
     ENTRY(CreateAction, create_action),
-    ENTRY(DestroyAction, destroy_action),
+    ENTRY(DestroyAction, destroy<XrAction>),
     ENTRY(SuggestInteractionProfileBindings, suggest_bindings),
     ENTRY(AttachSessionActionSets, attach_action_sets),
     ENTRY(SyncActions, sync_actions),
@@ -1206,9 +1085,9 @@ struct RuntimeRequest {
 
 extern "C" __attribute__((visibility("default"))) XrResult XRAPI_CALL
 xrNegotiateLoaderRuntimeInterface(  // NOLINT(readability-identifier-naming): the loader's own name
-    const binosplat::xr_test::LoaderInfo*, binosplat::xr_test::RuntimeRequest* request) {
+    const void*, binosplat::xr_test::RuntimeRequest* request) {
   try {
-    binosplat::xr_test::runtime();
+    if (const char* const path = std::getenv("BINOSPLAT_XR_SCRIPT")) binosplat::xr_test::read_script(path);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "xr_test_runtime: %s\n", error.what());
     return XR_ERROR_INITIALIZATION_FAILED;

@@ -36,21 +36,19 @@ struct XrLog {
 
   std::vector<Json> frames() const { return all("frame"); }
 
+  /// "x" for each frame that showed something, "-" for one that did not.
+  std::string shown() const {
+    std::string out;
+    for (const Json& frame : frames()) out += frame["layers"].empty() ? '-' : 'x';
+    return out;
+  }
+
   /// "FUNCTION: TEXT (RESULT)" of each; a program that does all right has none.
   std::vector<std::string> faults() const {
     std::vector<std::string> out;
     for (const Json& line : all("fault")) {
       out.push_back(line["function"].get<std::string>() + ": " + line["text"].get<std::string>() + " (" +
                     line["result"].get<std::string>() + ")");
-    }
-    return out;
-  }
-
-  /// The states of the session, as READY, SYNCHRONIZED.
-  std::vector<std::string> states() const {
-    std::vector<std::string> out;
-    for (const Json& line : all("state")) {
-      out.push_back(line["state"].get<std::string>().substr(std::string("XR_SESSION_STATE_").size()));
     }
     return out;
   }
@@ -72,15 +70,6 @@ struct XrLog {
     std::vector<float> out(bytes.size() / sizeof(float));
     std::memcpy(out.data(), bytes.data(), out.size() * sizeof(float));
     return out;
-  }
-
-  /// Whether nothing was left: every object destroyed, children before their parents.
-  bool clean() const {
-    for (const Json& line : all("destroyed")) {
-      if (!line["alive"].empty()) return false;
-    }
-    const auto destroyed = all("destroyed");
-    return all("left").empty() && !destroyed.empty() && destroyed.back()["kind"] == "instance";
   }
 
   /// All lines, for the message of a test that fails.
