@@ -14,6 +14,7 @@
 #include <filesystem>
 #include <fstream>
 #include <glm/glm.hpp>
+#include <glm/gtc/matrix_transform.hpp>
 #include <glm/gtc/quaternion.hpp>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -74,31 +75,18 @@ constexpr XrObjectType kind_of<XrActionSet> = XR_OBJECT_TYPE_ACTION_SET;
 template <>
 constexpr XrObjectType kind_of<XrAction> = XR_OBJECT_TYPE_ACTION;
 
-struct Pose {
-  glm::dvec3 position{0.0};
-  glm::dquat orientation{1.0, 0.0, 0.0, 0.0};
-};
-
-/// b, which is given in a's space, in the space that a is given in.
-Pose operator*(const Pose& a, const Pose& b) {
-  return {a.position + a.orientation * b.position, a.orientation * b.orientation};
-}
-
-Pose inverse(const Pose& pose) {
-  const glm::dquat back = glm::conjugate(pose.orientation);
-  return {back * -pose.position, back};
-}
-
-XrPosef to_xr(const Pose& pose) {
-  const glm::vec3 p(pose.position);
-  const glm::quat q(pose.orientation);
-  return {{q.x, q.y, q.z, q.w}, {p.x, p.y, p.z}};
-}
-
-Pose pose_from(const Json& json) {
+/// A pose as the matrix that takes what is given in its own space to the space that it is given in.
+glm::dmat4 pose_from(const Json& json) {
   const auto p = json.value("position", std::array{0.0, 0.0, 0.0});
   const auto q = json.value("orientation", std::array{0.0, 0.0, 0.0, 1.0});
-  return {{p[0], p[1], p[2]}, glm::normalize(glm::dquat(q[3], q[0], q[1], q[2]))};
+  return glm::translate(glm::dmat4(1.0), glm::dvec3(p[0], p[1], p[2])) *
+         glm::mat4_cast(glm::normalize(glm::dquat(q[3], q[0], q[1], q[2])));
+}
+
+XrPosef to_xr(const glm::dmat4& pose) {
+  const glm::vec3 p(pose[3]);
+  const glm::quat q(glm::quat_cast(glm::dmat3(pose)));
+  return {{q.x, q.y, q.z, q.w}, {p.x, p.y, p.z}};
 }
 
 Json to_json(const XrPosef& pose) {
@@ -238,6 +226,8 @@ Object& add(Parent parent, Handle* out) {
 template <typename Handle>
 void destroy(Handle handle) {
   const Object& destroyed = get(handle);
+  if (destroyed.kind == XR_OBJECT_TYPE_SPACE && is_planted("space")) return;
+  if (destroyed.kind == XR_OBJECT_TYPE_INSTANCE && is_planted("instance")) return;
   if (destroyed.acquired) fault("an image was not released");
   if (!destroyed.textures.empty()) glDeleteTextures(3, destroyed.textures.data());
   // Actions go with their set, as everybody lets them.
@@ -251,14 +241,14 @@ void destroy(Handle handle) {
   if (id_of(handle) == runtime.session.id) runtime.session = {};
 }
 
-/// The two calls by which OpenXR gives arrays: how many, then what. `put(k)` writes element k.
-template <typename Put>
-void fill(std::size_t count, std::uint32_t capacity, std::uint32_t* count_out, const Put& put) {
-  *count_out = static_cast<std::uint32_t>(count);
+/// The two calls by which OpenXR gives arrays: how many, then what.
+template <typename T>
+void give(const std::vector<T>& all, std::uint32_t capacity, std::uint32_t* count, T* out) {
+  *count = static_cast<std::uint32_t>(all.size());
   if (capacity == 0) return;
-  require(capacity >= count, XR_ERROR_SIZE_INSUFFICIENT,
-          "room for " + std::to_string(capacity) + " of " + std::to_string(count));
-  for (std::size_t k = 0; k < count; ++k) put(k);
+  require(capacity >= all.size(), XR_ERROR_SIZE_INSUFFICIENT,
+          "room for " + std::to_string(capacity) + " of " + std::to_string(all.size()));
+  std::ranges::copy(all, out);
 }
 
 // Views, spaces and the session's states.
@@ -288,21 +278,21 @@ std::vector<Json> views_of(XrViewConfigurationType type) {
   return views;
 }
 
-Pose head_in_script(XrTime time) {
+glm::dmat4 head_in_script(XrTime time) {
   const Json heads = runtime.script.value("heads", Json{{{"position", {0, 1.6, 0}}}});
   const auto frame = static_cast<std::size_t>((time - first_time + runtime.period() / 2) / runtime.period());
   return pose_from(heads.at(std::min(frame, heads.size() - 1)));
 }
 
 /// In the script's world; none where it is not tracked.
-std::optional<Pose> pose_of(const Object& space) {
+std::optional<glm::dmat4> pose_of(const Object& space) {
   if (!space.reference) {
     const Value& value = runtime.objects.at(space.action).values[space.user];
     return value.is_active && value.now.is_object() ? std::optional(pose_from(value.now)) : std::nullopt;
   }
-  if (*space.reference == XR_REFERENCE_SPACE_TYPE_STAGE) return Pose();
-  Pose local = pose_from(runtime.script.value("recentre", Json{{"position", {0, 1.6, 0}}}));
-  if (*space.reference == local_floor) local.position.y = 0.0;
+  if (*space.reference == XR_REFERENCE_SPACE_TYPE_STAGE) return glm::dmat4(1.0);
+  glm::dmat4 local = pose_from(runtime.script.value("recentre", Json{{"position", {0, 1.6, 0}}}));
+  if (*space.reference == local_floor) local[3].y = 0.0;
   return local;
 }
 
@@ -584,11 +574,13 @@ void enumerate_extensions(const char*, std::uint32_t capacity, std::uint32_t* co
       "XR_MNDX_egl_enable",     "XR_KHR_opengl_enable",        "XR_KHR_composition_layer_depth",
       "XR_KHR_visibility_mask", "XR_EXT_eye_gaze_interaction", "XR_VARJO_quad_views",
       "XR_EXT_local_floor"};
-  const Strings names = runtime.script.value("extensions", all);
-  fill(names.size(), capacity, count, [&](std::size_t k) {
-    std::strncpy(properties[k].extensionName, names[k].c_str(), XR_MAX_EXTENSION_NAME_SIZE - 1);
-    properties[k].extensionVersion = 1;
-  });
+  std::vector<XrExtensionProperties> offered;
+  for (const std::string& name : runtime.script.value("extensions", all)) {
+    XrExtensionProperties& extension = offered.emplace_back();
+    extension = {XR_TYPE_EXTENSION_PROPERTIES, nullptr, {}, 1};
+    std::strncpy(extension.extensionName, name.c_str(), XR_MAX_EXTENSION_NAME_SIZE - 1);
+  }
+  give(offered, capacity, count, properties);
 }
 
 void create_instance(const XrInstanceCreateInfo* info, XrInstance* out) {
@@ -631,18 +623,17 @@ void get_system_properties(XrInstance, XrSystemId, XrSystemProperties* propertie
 
 void enumerate_view_configurations(XrInstance, XrSystemId, std::uint32_t capacity, std::uint32_t* count,
                                    XrViewConfigurationType* types) {
-  const auto all = view_configurations();
-  fill(all.size(), capacity, count, [&](std::size_t k) { types[k] = all[k]; });
+  give(view_configurations(), capacity, count, types);
 }
 
 void enumerate_view_configuration_views(XrInstance, XrSystemId, XrViewConfigurationType type,
                                         std::uint32_t capacity, std::uint32_t* count,
                                         XrViewConfigurationView* views) {
-  const std::vector<Json> all = views_of(type);
-  fill(all.size(), capacity, count, [&](std::size_t k) {
-    views[k] = {
-        XR_TYPE_VIEW_CONFIGURATION_VIEW, nullptr, all[k]["width"], 4096, all[k]["height"], 4096, 1, 1};
-  });
+  std::vector<XrViewConfigurationView> all;
+  for (const Json& view : views_of(type))
+    all.push_back(
+        {XR_TYPE_VIEW_CONFIGURATION_VIEW, nullptr, view["width"], 4096, view["height"], 4096, 1, 1});
+  give(all, capacity, count, views);
 }
 
 void get_requirements(XrInstance, XrSystemId, XrGraphicsRequirementsOpenGLKHR* requirements) {
@@ -710,8 +701,7 @@ std::vector<XrReferenceSpaceType> offered_spaces() {
 
 void enumerate_reference_spaces(XrSession, std::uint32_t capacity, std::uint32_t* count,
                                 XrReferenceSpaceType* spaces) {
-  const auto all = offered_spaces();
-  fill(all.size(), capacity, count, [&](std::size_t k) { spaces[k] = all[k]; });
+  give(offered_spaces(), capacity, count, spaces);
 }
 
 void require_no_offset(const XrPosef& pose) {
@@ -740,7 +730,7 @@ void locate_space(XrSpace space, XrSpace base, XrTime time, XrSpaceLocation* loc
   require(time > 0, XR_ERROR_TIME_INVALID, "a space at no time");
   const auto pose = pose_of(get(space)), from = pose_of(get(base));
   location->locationFlags = pose && from ? 15 : 0;
-  if (pose && from) location->pose = to_xr(inverse(*from) * *pose);
+  if (pose && from) location->pose = to_xr(glm::inverse(*from) * *pose);
 }
 
 void locate_views(XrSession, const XrViewLocateInfo* info, XrViewState* state, std::uint32_t capacity,
@@ -760,12 +750,12 @@ void locate_views(XrSession, const XrViewLocateInfo* info, XrViewState* state, s
   for (const Json& spec : views_of(session.views)) {
     const auto fov = spec["fov"].get<std::array<float, 4>>();
     XrView& view = located.emplace_back(XrView{XR_TYPE_VIEW, nullptr, {}, {fov[0], fov[1], fov[2], fov[3]}});
-    view.pose = to_xr(inverse(*base) * head_in_script(info->displayTime) * pose_from(spec));
+    view.pose = to_xr(glm::inverse(*base) * head_in_script(info->displayTime) * pose_from(spec));
     // What is not valid is not to be used: it would be seen at once.
     if ((state->viewStateFlags & XR_VIEW_STATE_ORIENTATION_VALID_BIT) == 0) view.pose.orientation = {};
     if ((state->viewStateFlags & XR_VIEW_STATE_POSITION_VALID_BIT) == 0) view.pose.position.x = NAN;
   }
-  fill(located.size(), capacity, count, [&](std::size_t k) { views[k] = located[k]; });
+  give(located, capacity, count, views);
   if (capacity == 0 || !session.frame) return;
   session.frame->space = id_of(info->space);
   session.frame->flags = state->viewStateFlags;
@@ -782,8 +772,7 @@ std::vector<std::int64_t> offered_formats() {
 }
 
 void enumerate_swapchain_formats(XrSession, std::uint32_t capacity, std::uint32_t* count, std::int64_t* out) {
-  const auto all = offered_formats();
-  fill(all.size(), capacity, count, [&](std::size_t k) { out[k] = all[k]; });
+  give(offered_formats(), capacity, count, out);
 }
 
 void create_swapchain(XrSession session, const XrSwapchainCreateInfo* info, XrSwapchain* out) {
@@ -819,9 +808,10 @@ void create_swapchain(XrSession session, const XrSwapchainCreateInfo* info, XrSw
 
 void enumerate_swapchain_images(XrSwapchain handle, std::uint32_t capacity, std::uint32_t* count,
                                 XrSwapchainImageBaseHeader* images) {
-  const std::vector<GLuint>& textures = get(handle).textures;
-  auto* out = reinterpret_cast<XrSwapchainImageOpenGLKHR*>(images);
-  fill(textures.size(), capacity, count, [&](std::size_t k) { out[k].image = textures[k]; });
+  std::vector<XrSwapchainImageOpenGLKHR> all;
+  for (const GLuint texture : get(handle).textures)
+    all.push_back({XR_TYPE_SWAPCHAIN_IMAGE_OPENGL_KHR, nullptr, texture});
+  give(all, capacity, count, reinterpret_cast<XrSwapchainImageOpenGLKHR*>(images));
 }
 
 void acquire_swapchain_image(XrSwapchain handle, const XrSwapchainImageAcquireInfo*, std::uint32_t* index) {
@@ -953,9 +943,7 @@ XrResult sync_actions(XrSession, const XrActionsSyncInfo* info) {
 
 void get_boolean(XrSession, const XrActionStateGetInfo* info, XrActionStateBoolean* out) {
   const Json value = read_action(info, XR_ACTION_TYPE_BOOLEAN_INPUT, *out);
-  const bool is_pushed =
-      value.is_boolean() ? value.get<bool>() : value.is_number() && value.get<double>() > 0.5;
-  out->currentState = is_pushed ? XR_TRUE : XR_FALSE;
+  out->currentState = value.is_boolean() && value.get<bool>() ? XR_TRUE : XR_FALSE;
 }
 
 void get_vector(XrSession, const XrActionStateGetInfo* info, XrActionStateVector2f* out) {
@@ -969,37 +957,27 @@ void get_visibility_mask(XrSession, XrViewConfigurationType, std::uint32_t view,
           "another mask");
   const Json masks = runtime.script.value("masks", Json::array());
   const Json mesh = view < masks.size() ? masks[view] : Json::object();
-  const auto vertices = mesh.value("vertices", std::vector<std::array<float, 2>>());
-  const auto indices = mesh.value("indices", std::vector<std::uint32_t>());
-  fill(vertices.size(), mask->vertexCapacityInput, &mask->vertexCountOutput, [&](std::size_t k) {
-    mask->vertices[k] = {vertices[k][0], vertices[k][1]};
-  });
-  fill(indices.size(), mask->indexCapacityInput, &mask->indexCountOutput,
-       [&](std::size_t k) { mask->indices[k] = indices[k]; });
+  std::vector<XrVector2f> vertices;
+  for (const Json& vertex : mesh.value("vertices", Json::array())) vertices.push_back({vertex[0], vertex[1]});
+  give(vertices, mask->vertexCapacityInput, &mask->vertexCountOutput, mask->vertices);
+  give(mesh.value("indices", std::vector<std::uint32_t>()), mask->indexCapacityInput, &mask->indexCountOutput,
+       mask->indices);
 }
 
 // What the loader finds.
-
-template <std::size_t N>
-struct Name {
-  constexpr Name(const char (&from)[N]) {  // NOLINT(google-explicit-constructor): a literal names a function
-    std::copy(from, from + N, text);
-  }
-  char text[N]{};
-};
 
 template <typename First, typename... Others>
 void check_first(First first, Others...) {
   if constexpr (kind_of<First> != XR_OBJECT_TYPE_UNKNOWN) get(first);
 }
 
-/// A function as the loader calls it, with what a script or an error makes of it.
-template <Name name, auto function>
+/// A function as the loader calls it, with what a script or an error makes of it. GetName is a lambda.
+template <typename GetName, auto function>
 struct Entry;
-template <Name name, typename Result, typename... Arguments, Result (*function)(Arguments...)>
-struct Entry<name, function> {
+template <typename GetName, typename Result, typename... Arguments, Result (*function)(Arguments...)>
+struct Entry<GetName, function> {
   static XrResult XRAPI_CALL call(Arguments... arguments) {
-    runtime.function = name.text;
+    runtime.function = GetName()();
     try {
       if (const auto result = scripted_result()) return *result;
       check_first(arguments...);
@@ -1016,8 +994,11 @@ struct Entry<name, function> {
   }
 };
 
-#define ENTRY(name, function) \
-  { "xr" #name, reinterpret_cast<PFN_xrVoidFunction>(&Entry<Name("xr" #name), &(function)>::call) }
+#define ENTRY(name, function)                                                                                \
+  {                                                                                                          \
+    "xr" #name,                                                                                              \
+        reinterpret_cast<PFN_xrVoidFunction>(&Entry<decltype([] { return "xr" #name; }), &(function)>::call) \
+  }
 const std::map<std::string, PFN_xrVoidFunction> entries = {
     ENTRY(EnumerateInstanceExtensionProperties, enumerate_extensions),
     ENTRY(CreateInstance, create_instance),

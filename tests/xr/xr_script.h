@@ -71,13 +71,6 @@ struct XrLog {
     std::memcpy(out.data(), bytes.data(), out.size() * sizeof(float));
     return out;
   }
-
-  /// All lines, for the message of a test that fails.
-  std::string text() const {
-    std::string out;
-    for (const Json& line : lines) out += line.dump() + "\n";
-    return out;
-  }
 };
 
 /// A script and the folder that its runs leave their log in.
