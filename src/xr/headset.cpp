@@ -32,9 +32,8 @@ Eye head_of(const std::vector<XrView>& views) {
 
 class Viewer {
  public:
-  Viewer(const Instance& instance, Renderer& renderer, SplatStream* stream, const HeadsetSettings& settings,
-         const Beside& beside)
-      : instance_(instance), renderer_(renderer), stream_(stream), settings_(settings), beside_(beside) {}
+  Viewer(const Instance& instance, Renderer& renderer, const HeadsetSettings& settings, const Beside& beside)
+      : instance_(instance), renderer_(renderer), settings_(settings), beside_(beside) {}
 
   /// False where the session was lost.
   bool run_session() try {
@@ -79,7 +78,7 @@ class Viewer {
     }
     if (views.empty()) {
       last_.reset();
-      if (shown_) shown_->last = display;  // which was not missed: nothing was to be drawn
+      last_shown_ = display;  // which was not missed: nothing was to be drawn
       return session.end_frame(display);
     }
     if (session.take_masks_changed()) projection.take_masks();
@@ -97,13 +96,10 @@ class Viewer {
     const Placement& placement = walk_->placement();
     drawing.near_plane *= std::min(1.0, placement.units_per_metre / settings_.start.units_per_metre);
     frame.views = projection.begin(views, placement, effort.scale, drawing);
-    if (stream_ != nullptr) {
+    if (beside_.levels) {
       const TimedSpan span("levels", &frame.levels_ms);
       const double drawn_ms = times_.empty() ? 0.0 : times_.back();
-      Settings asked = drawing;  // levels do not go by a budget
-      asked.quality = settings_.drawing.quality;
-      stream_->begin_frame(frame.views, placement, asked, beside_.levels_ms(frame.period_ms, drawn_ms));
-      if (asked.quality) drawing.quality = beside_.quality(*asked.quality);
+      beside_.levels(frame.views, placement, drawing, frame.period_ms, drawn_ms);
     }
     if (settings_.calibration) drawing = settings_.calibration->settings(frame.views, placement, drawing);
     frame.report = renderer_.draw(frame.views, placement, drawing);
@@ -118,11 +114,11 @@ class Viewer {
   /// Tells of a frame that the runtime has, and of the times at which it shows frames.
   void tell_drawn(Drawn frame, XrTime display) {
     frame.end = Clock::now();
-    if (!shown_) shown_ = {display, display};
-    const auto periods = std::llround(ms_of(display - shown_->last) / std::max(frame.period_ms, 1e-6));
-    frame.display_ms = ms_of(display - shown_->first);
+    if (first_shown_ == 0) first_shown_ = last_shown_ = display;
+    const auto periods = std::llround(ms_of(display - last_shown_) / std::max(frame.period_ms, 1e-6));
+    frame.display_ms = ms_of(display - first_shown_);
     frame.missed = static_cast<int>(std::max(periods - 1, 0LL));
-    shown_->last = display;
+    last_shown_ = display;
     beside_.drawn(std::move(frame));
   }
 
@@ -137,26 +133,20 @@ class Viewer {
 
   const Instance& instance_;
   Renderer& renderer_;
-  SplatStream* const stream_;
   const HeadsetSettings& settings_;
   const Beside& beside_;
   std::optional<Walk> walk_;  // goes on where a session is lost
   std::optional<FrameBudget> budget_;
-  std::optional<XrTime> last_;  // when the last frame was seen
-  /// When the first and the last frame were shown that were drawn.
-  struct Shown {
-    XrTime first = 0, last = 0;
-  };
-  std::optional<Shown> shown_;
-  std::vector<double> times_;  // ms
+  std::optional<XrTime> last_;               // when the last frame was seen
+  XrTime first_shown_ = 0, last_shown_ = 0;  // when frames were shown that were drawn; 0: none was
+  std::vector<double> times_;                // ms
   bool tracked_ = true, leaving_ = false;
 };
 
 }  // namespace
 
-void run(Instance& instance, Renderer& renderer, SplatStream* stream, const HeadsetSettings& settings,
-         const Beside& beside) {
-  Viewer viewer(instance, renderer, stream, settings, beside);
+void run(Instance& instance, Renderer& renderer, const HeadsetSettings& settings, const Beside& beside) {
+  Viewer viewer(instance, renderer, settings, beside);
   std::size_t drawn = 0;
   for (int in_vain = 0; !viewer.run_session();) {
     in_vain = viewer.frames() > drawn ? 0 : in_vain + 1;

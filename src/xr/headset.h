@@ -1,8 +1,6 @@
 #pragma once
 // A model in a headset, until its user has seen enough.
 
-#include <binosplat/stream.h>
-
 #include <functional>
 
 #include "base/clock.h"
@@ -38,20 +36,18 @@ struct Beside {
   std::function<bool()> step;
   /// Shows the left eye's picture, which lies in the lower left corner of the target. May be empty.
   std::function<void(const Target& left, const glm::ivec2& size)> show = {};
-  /// For a stream: the ms that its levels may take of a frame of `period_ms`, of which drawing takes
-  /// `drawn_ms`.
-  std::function<double(double period_ms, double drawn_ms)> levels_ms = {};
-  /// For a stream: the PSNR in dB that a frame itself must keep, where its levels lose a part of a quality.
-  std::function<float(float quality)> quality = {};
+  /// For a model with levels of detail: called before each frame of these views is drawn, of which one is due
+  /// every `period_ms` and the last one took `drawn_ms`. May change how it is drawn. May be empty.
+  std::function<void(std::span<const View> views, const Placement& placement, Settings& drawing,
+                     double period_ms, double drawn_ms)>
+      levels = {};
   /// Takes each frame once it was handed to the runtime.
   std::function<void(Drawn frame)> drawn;
 };
 
-/// Draws in the OpenGL context that is current, the renderer's. Of a stream, which the renderer draws, levels
-/// of detail come before each frame; null: there is none. A session that the runtime loses is followed by
-/// another, if the headset is there again within some seconds. Throws Error(no_gl) for what a runtime refuses
-/// or loses, and as Renderer::submit does.
-void run(Instance& instance, Renderer& renderer, SplatStream* stream, const HeadsetSettings& settings,
-         const Beside& beside);
+/// Draws in the OpenGL context that is current, the renderer's. A session that the runtime loses is followed
+/// by another, if the headset is there again within some seconds. Throws Error(no_gl) for what a runtime
+/// refuses or loses, and as Renderer::submit does.
+void run(Instance& instance, Renderer& renderer, const HeadsetSettings& settings, const Beside& beside);
 
 }  // namespace binosplat::xr

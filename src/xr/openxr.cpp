@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdlib>
+#include <set>
 
 namespace binosplat::xr {
 
@@ -81,10 +82,10 @@ Instance::Instance() {
     if (!offered.contains(name))
       refuse("this OpenXR runtime takes no OpenGL of EGL ({} is missing): choose another, such as Monado",
              name);
-    extensions.insert(name);
+    extensions.push_back(name);
   }
   for (const char* name : optional_extensions) {
-    if (offered.contains(name)) extensions.insert(name);
+    if (offered.contains(name)) extensions.push_back(name);
   }
   try {
     connect();
@@ -94,12 +95,10 @@ Instance::Instance() {
 }
 
 void Instance::connect() {
-  std::vector<const char*> names;
-  for (const std::string& name : extensions) names.push_back(name.c_str());
   XrInstanceCreateInfo info{XR_TYPE_INSTANCE_CREATE_INFO};
   info.applicationInfo = {"binosplat", 1, "binosplat", 1, XR_MAKE_VERSION(1, 0, 0)};
-  info.enabledExtensionCount = static_cast<std::uint32_t>(names.size());
-  info.enabledExtensionNames = names.data();
+  info.enabledExtensionCount = static_cast<std::uint32_t>(extensions.size());
+  info.enabledExtensionNames = extensions.data();
   XrInstance made = XR_NULL_HANDLE;
   const XrResult result = XR_CALL(CreateInstance, &info, &made);
   if (XR_FAILED(result)) refuse("the OpenXR runtime does not start ({}). {}", name_of(result), what_to_do);
@@ -119,9 +118,7 @@ void Instance::connect() {
   const auto offered = all_of<XrViewConfigurationType>({}, [&](auto room, auto* count, auto* all) {
     XR(EnumerateViewConfigurations, made, system, room, count, all);
   });
-  const auto offers = [&](XrViewConfigurationType type) {
-    return std::find(offered.begin(), offered.end(), type) != offered.end();
-  };
+  const auto offers = [&](auto type) { return std::ranges::find(offered, type) != offered.end(); };
   if (has(XR_VARJO_QUAD_VIEWS_EXTENSION_NAME) && offers(XR_VIEW_CONFIGURATION_TYPE_PRIMARY_QUAD_VARJO))
     views = XR_VIEW_CONFIGURATION_TYPE_PRIMARY_QUAD_VARJO;
   else if (!offers(views))

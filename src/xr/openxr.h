@@ -10,9 +10,10 @@
 #include <openxr/openxr.h>
 #include <openxr/openxr_platform.h>
 
+#include <algorithm>
 #include <memory>
-#include <set>
 #include <string>
+#include <string_view>
 #include <type_traits>
 #include <vector>
 
@@ -83,7 +84,7 @@ struct Instance {
   /// runtime, a runtime that takes no OpenGL or no EGL, and no headset.
   Instance();
 
-  bool has(const char* extension) const { return extensions.contains(extension); }
+  bool has(std::string_view extension) const { return std::ranges::count(extensions, extension) > 0; }
   /// Whether there are four views, both eyes' wide ones and then both insets, in place of two.
   bool has_insets() const { return views != XR_VIEW_CONFIGURATION_TYPE_PRIMARY_STEREO; }
   XrResult find_headset();  // whether one is there now
@@ -96,7 +97,7 @@ struct Instance {
     return reinterpret_cast<Function>(found);
   }
 
-  std::set<std::string> extensions;  // that are enabled
+  std::vector<const char*> extensions;  // that are enabled
   Owned<XrInstance> handle;
   XrSystemId system = XR_NULL_SYSTEM_ID;
   std::string runtime, headset;  // "Monado 21.0.0", and the headset's name

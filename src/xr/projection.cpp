@@ -115,15 +115,22 @@ std::vector<glm::uvec2> visible_columns(const Mask& mask, const Fov& fov, const 
 }
 
 Swapchain::Swapchain(const Session& session, std::int64_t format, const glm::ivec2& wanted,
-                     XrSwapchainUsageFlags usage)
+                     XrSwapchainUsageFlags usage, XrSwapchainUsageFlags more)
     : size(wanted) {
   XrSwapchainCreateInfo info{XR_TYPE_SWAPCHAIN_CREATE_INFO};
-  info.usageFlags = usage;
+  info.usageFlags = usage | more;
   info.format = format;
   info.sampleCount = info.faceCount = info.arraySize = info.mipCount = 1;
   info.width = static_cast<std::uint32_t>(size.x);
   info.height = static_cast<std::uint32_t>(size.y);
-  handle = XR_OWNED(Swapchain, CreateSwapchain, session.handle(), &info);
+  try {
+    handle = XR_OWNED(Swapchain, CreateSwapchain, session.handle(), &info);
+  } catch (const Error&) {
+    if (more == 0) throw;
+    has_more = false;
+    info.usageFlags = usage;
+    handle = XR_OWNED(Swapchain, CreateSwapchain, session.handle(), &info);
+  }
   const XrSwapchainImageOpenGLKHR empty{XR_TYPE_SWAPCHAIN_IMAGE_OPENGL_KHR};
   for (const auto& image : all_of(empty, [&](auto room, auto*count, auto*all) {
          XR(EnumerateSwapchainImages, handle.get(), room, count,
@@ -142,63 +149,44 @@ std::uint32_t Swapchain::acquire() const {
 
 Projection::Projection(const Session& session, double scale, bool composed)
     : session_(session), composed_(composed) {
+  const Instance& instance = session.instance();
   const auto formats = all_of<std::int64_t>({}, [&](auto room, auto* count, auto* all) {
     XR(EnumerateSwapchainFormats, session.handle(), room, count, all);
   });
-  make_colours(scale, formats);
-  masks_.resize(colours_.size());
-  if (!composed && session.instance().has(XR_KHR_COMPOSITION_LAYER_DEPTH_EXTENSION_NAME))
-    make_depths(formats);
-  take_masks();
-}
-
-// Formats are those that the runtime offers.
-void Projection::make_colours(double scale, std::span<const std::int64_t> formats) {
-  const Instance& instance = session_.instance();
   if (std::ranges::find(formats, GL_SRGB8_ALPHA8) == formats.end())
     refuse("{} offers no textures of GL_SRGB8_ALPHA8, which is what models' colours are", instance.runtime);
+  const auto* const depth_format = std::ranges::find_first_of(depth_formats, formats);
+  const bool has_depths = !composed && depth_format != depth_formats.end() &&
+                          instance.has(XR_KHR_COMPOSITION_LAYER_DEPTH_EXTENSION_NAME);
   const auto views = all_of(XrViewConfigurationView{XR_TYPE_VIEW_CONFIGURATION_VIEW},
                             [&](auto room, auto* count, auto* all) {
                               XR(EnumerateViewConfigurationViews, instance.handle.get(), instance.system,
                                  instance.views, room, count, all);
                             });
-  const auto make = [&](XrSwapchainUsageFlags usage) {
-    colours_.clear();
-    for (const XrViewConfigurationView& view : views) {
-      const auto side = [&](std::uint32_t recommended, std::uint32_t most) {
-        return std::clamp(static_cast<int>(std::lround(recommended * scale)), 1, static_cast<int>(most));
-      };
-      colours_.emplace_back(session_, GL_SRGB8_ALPHA8,
-                            glm::ivec2(side(view.recommendedImageRectWidth, view.maxImageRectWidth),
-                                       side(view.recommendedImageRectHeight, view.maxImageRectHeight)),
-                            usage);
-    }
-  };
-  // Written in place by compute shaders, of sRGB by a view of it; where that is not to be had, through a
-  // copy.
-  constexpr XrSwapchainUsageFlags drawn =
-      XR_SWAPCHAIN_USAGE_COLOR_ATTACHMENT_BIT | XR_SWAPCHAIN_USAGE_SAMPLED_BIT;
-  try {
-    make(drawn | XR_SWAPCHAIN_USAGE_UNORDERED_ACCESS_BIT | XR_SWAPCHAIN_USAGE_MUTABLE_FORMAT_BIT);
-  } catch (const Error&) {
-    in_place_ = false;
-    make(drawn);
+  for (const XrViewConfigurationView& view : views) {
+    const auto side = [&](std::uint32_t recommended, std::uint32_t most) {
+      return std::clamp(static_cast<int>(std::lround(recommended * scale)), 1, static_cast<int>(most));
+    };
+    const glm::ivec2 size(side(view.recommendedImageRectWidth, view.maxImageRectWidth),
+                          side(view.recommendedImageRectHeight, view.maxImageRectHeight));
+    // Written in place by compute shaders, of sRGB by a view of it; where that is not to be had, through a
+    // copy.
+    OfView of{Swapchain(session, GL_SRGB8_ALPHA8, size,
+                        XR_SWAPCHAIN_USAGE_COLOR_ATTACHMENT_BIT | XR_SWAPCHAIN_USAGE_SAMPLED_BIT,
+                        XR_SWAPCHAIN_USAGE_UNORDERED_ACCESS_BIT | XR_SWAPCHAIN_USAGE_MUTABLE_FORMAT_BIT)};
+    if (has_depths)
+      of.depths.emplace(session, *depth_format, (size + depth_step - 1) / depth_step,
+                        XR_SWAPCHAIN_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT);
+    of_views_.push_back(std::move(of));
   }
-}
-
-void Projection::make_depths(std::span<const std::int64_t> formats) {
-  const auto* const format = std::ranges::find_first_of(depth_formats, formats);
-  if (format == depth_formats.end()) return;
-  for (const Swapchain& colours : colours_)
-    depths_.emplace_back(session_, *format, (colours.size + depth_step - 1) / depth_step,
-                         XR_SWAPCHAIN_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT);
+  take_masks();
 }
 
 void Projection::take_masks() {
   const Instance& instance = session_.instance();
   if (composed_ || !instance.has(XR_KHR_VISIBILITY_MASK_EXTENSION_NAME)) return;
   const auto get = instance.function<PFN_xrGetVisibilityMaskKHR>("xrGetVisibilityMaskKHR");
-  for (std::size_t k = 0; k < masks_.size(); ++k) {
+  for (std::size_t k = 0; k < of_views_.size(); ++k) {
     XrVisibilityMaskKHR mask{XR_TYPE_VISIBILITY_MASK_KHR};
     const auto ask = [&] {
       check(get(session_.handle(), instance.views, static_cast<std::uint32_t>(k),
@@ -206,7 +194,7 @@ void Projection::take_masks() {
             "xrGetVisibilityMaskKHR");
     };
     ask();
-    auto& [vertices, indices] = masks_[k];
+    auto& [vertices, indices] = of_views_[k].mask;
     vertices.resize(mask.vertexCountOutput);
     indices.resize(mask.indexCountOutput);
     mask.vertexCapacityInput = mask.vertexCountOutput;
@@ -215,25 +203,26 @@ void Projection::take_masks() {
     mask.indices = indices.data();
     if (!indices.empty()) ask();
     // A mask that makes no sense hides nothing.
-    const auto is_none = [&](std::uint32_t index) { return index >= masks_[k].vertices.size(); };
+    const auto is_none = [&](std::uint32_t index) { return index >= of_views_[k].mask.vertices.size(); };
     if (indices.size() % 3 != 0 || std::any_of(indices.begin(), indices.end(), is_none)) indices.clear();
   }
 }
 
 std::vector<View> Projection::begin(std::span<const XrView> located, const Placement& placement, double scale,
                                     const Settings& settings) {
-  const std::size_t count = colours_.size();
+  const std::size_t count = of_views_.size();
   if (located.size() != count)
     refuse("{} located {} views of {}", session_.instance().runtime, located.size(), count);
   std::vector<View> views(count);
   for (std::size_t k = 0; k < count; ++k) {
+    const OfView& of = of_views_[k];
     View& view = views[place_of(k, count)];
     view.eye = eye_of(located[k].pose, located[k].fov);
-    view.size = glm::max(glm::ivec2(1), glm::ivec2(glm::round(scale * glm::dvec2(colours_[k].size))));
-    view.target = {.texture = colours_[k].acquire(), .in_place = in_place_};
-    view.region.columns = visible_columns(masks_[k], view.eye.fov, view.size);
-    if (depths_.empty()) continue;
-    view.depth = {.texture = depths_[k].acquire(),
+    view.size = glm::max(glm::ivec2(1), glm::ivec2(glm::round(scale * glm::dvec2(of.colours.size))));
+    view.target = {.texture = of.colours.acquire(), .in_place = of.colours.has_more};
+    view.region.columns = visible_columns(of.mask, view.eye.fov, view.size);
+    if (!of.depths) continue;
+    view.depth = {.texture = of.depths->acquire(),
                   .near_plane = settings.near_plane,
                   .far_plane = std::max(far_metres * placement.units_per_metre, 2.0 * settings.near_plane)};
   }
@@ -246,21 +235,22 @@ std::vector<View> Projection::begin(std::span<const XrView> located, const Place
 
 void Projection::end(XrTime display, std::span<const XrView> located, std::span<const View> drawn,
                      const Placement& placement) const {
-  const std::size_t count = colours_.size();
+  const std::size_t count = of_views_.size();
   std::vector<XrCompositionLayerProjectionView> views(count, {XR_TYPE_COMPOSITION_LAYER_PROJECTION_VIEW});
-  std::vector<XrCompositionLayerDepthInfoKHR> depths(depths_.size());
+  std::vector<XrCompositionLayerDepthInfoKHR> depths(count);
   const auto part = [](const Swapchain& of, const glm::ivec2& size) {
     return XrSwapchainSubImage{of.handle.get(), {{0, 0}, {size.x, size.y}}, 0};
   };
   for (std::size_t k = 0; k < count; ++k) {
+    const OfView& of = of_views_[k];
     const View& view = drawn[place_of(k, count)];
     views[k].pose = located[k].pose;
     views[k].fov = located[k].fov;
-    views[k].subImage = part(colours_[k], view.size);
-    colours_[k].release();
-    if (depths_.empty()) continue;
-    depths_[k].release();
-    depths[k] = {XR_TYPE_COMPOSITION_LAYER_DEPTH_INFO_KHR, nullptr, part(depths_[k], depths_[k].size), 0.0f,
+    views[k].subImage = part(of.colours, view.size);
+    of.colours.release();
+    if (!of.depths) continue;
+    of.depths->release();
+    depths[k] = {XR_TYPE_COMPOSITION_LAYER_DEPTH_INFO_KHR, nullptr, part(*of.depths, of.depths->size), 0.0f,
                  1.0f};
     depths[k].nearZ = static_cast<float>(view.depth->near_plane / placement.units_per_metre);
     depths[k].farZ = static_cast<float>(view.depth->far_plane / placement.units_per_metre);
@@ -275,9 +265,9 @@ void Projection::end(XrTime display, std::span<const XrView> located, std::span<
 
 std::string Projection::description() const {
   std::string text;
-  for (const Swapchain& colours : colours_)
-    text += fmt::format("{}{} x {}", text.empty() ? "" : ", ", colours.size.x, colours.size.y);
-  return fmt::format("{} px, GL_SRGB8_ALPHA8{}", text, depths_.empty() ? "" : ", with depths");
+  for (const OfView& view : of_views_)
+    text += fmt::format("{}{} x {}", text.empty() ? "" : ", ", view.colours.size.x, view.colours.size.y);
+  return fmt::format("{} px, GL_SRGB8_ALPHA8{}", text, of_views_[0].depths ? ", with depths" : "");
 }
 
 }  // namespace binosplat::xr

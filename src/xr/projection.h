@@ -10,16 +10,18 @@ namespace binosplat::xr {
 
 /// A ring of the runtime's textures, of which one is drawn into at a time.
 struct Swapchain {
-  /// 2D textures of one sample, of a format that the runtime offers. Throws Error(no_gl) where it makes none.
+  /// 2D textures of one sample, of a format that the runtime offers, for `usage` and, where it lets them, for
+  /// `more`. Throws Error(no_gl) where it makes none.
   Swapchain(const Session& session, std::int64_t format, const glm::ivec2& wanted,
-            XrSwapchainUsageFlags usage);
+            XrSwapchainUsageFlags usage, XrSwapchainUsageFlags more = 0);
 
   /// Waits until the runtime has read a texture, and returns its name. Call release() before the frame ends.
   std::uint32_t acquire() const;
   void release() const { XR(ReleaseSwapchainImage, handle.get(), nullptr); }
 
   Owned<XrSwapchain> handle;
-  glm::ivec2 size;  // px
+  glm::ivec2 size;       // px
+  bool has_more = true;  // uses
   std::vector<std::uint32_t> textures;
 };
 
@@ -57,15 +59,15 @@ class Projection {
   std::string description() const;
 
  private:
-  void make_colours(double scale, std::span<const std::int64_t> formats);
-  void make_depths(std::span<const std::int64_t> formats);
-
+  /// What belongs to a view of the runtime's.
+  struct OfView {
+    Swapchain colours;
+    std::optional<Swapchain> depths = {};
+    Mask mask = {};
+  };
   const Session& session_;
   const bool composed_;
-  bool in_place_ = true;            // shaders may write into the textures
-  std::vector<Swapchain> colours_;  // by view
-  std::vector<Swapchain> depths_;   // the same, or empty
-  std::vector<Mask> masks_;
+  std::vector<OfView> of_views_;
 };
 
 /// The eye as the library takes it.

@@ -1,5 +1,7 @@
 #include "app/viewer/headset.h"
 
+#include <binosplat/stream.h>
+
 #include <cerrno>
 #include <csignal>
 #include <filesystem>
@@ -206,14 +208,21 @@ void view_in_headset(const RenderOptions& o, const preview::Opened& scene, previ
     const std::size_t uploaded = levels ? levels->take_times().put : 0;
     recording.add(record_of(std::move(frame), gaussians(), uploaded), period_ms);
   };
-  beside.levels_ms = time_for_levels;
-  beside.quality = [&](float quality) { return static_cast<float>(levels->quality_left(quality)); };
   if (mirror) beside.show = [&](const Target& left, const glm::ivec2& size) { mirror->show(left, size); };
   std::optional<SplatStream> stream;
-  if (levels) stream.emplace(levels);
+  if (levels) {
+    stream.emplace(levels);
+    beside.levels = [&](std::span<const View> views, const Placement& placement, Settings& drawing,
+                        double period_ms, double drawn_ms) {
+      Settings asked = drawing;  // levels do not go by a budget
+      asked.quality = settings.drawing.quality;
+      stream->begin_frame(views, placement, asked, time_for_levels(period_ms, drawn_ms));
+      if (asked.quality) drawing.quality = static_cast<float>(levels->quality_left(*asked.quality));
+    };
+  }
   Renderer renderer = stream ? Renderer(xr::get_proc_address(), *stream, precision)
                              : Renderer(xr::get_proc_address(), SplatModel(model), precision);
-  xr::run(instance, renderer, stream ? &*stream : nullptr, settings, beside);
+  xr::run(instance, renderer, settings, beside);
 }
 
 }  // namespace binosplat::app
