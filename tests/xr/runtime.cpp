@@ -451,10 +451,7 @@ Json check_depth(const XrCompositionLayerProjectionView& view, std::size_t index
   std::optional<std::size_t>& shown = get(depth.subImage.swapchain).view;
   if (shown.value_or(index) != index) fault("a view has the depths of another one");
   shown = index;
-  return {{"rect", to_json(depth.subImage.imageRect)},
-          {"near", depth.nearZ},
-          {"far", depth.farZ},
-          {"file", check_image(depth.subImage, true, index)}};
+  return {{"near", depth.nearZ}, {"far", depth.farZ}, {"file", check_image(depth.subImage, true, index)}};
 }
 
 template <typename T>
@@ -690,13 +687,21 @@ void request_exit_session(XrSession) {
   if (runtime.session.state != XR_SESSION_STATE_STOPPING) walk_to(XR_SESSION_STATE_STOPPING);
 }
 
-std::vector<XrReferenceSpaceType> offered_spaces() {
-  std::vector<XrReferenceSpaceType> offered;
-  for (const std::string& name : runtime.script.value("spaces", Strings{"local", "stage", "local_floor"})) {
-    if (name != "local_floor" || runtime.extensions.contains("XR_EXT_local_floor"))
-      offered.push_back(space_types.at(name));
+/// Of those that are known, those that the script's word names: all without it.
+template <typename Value>
+std::vector<Value> offered(const char* word, const std::map<std::string, Value>& known) {
+  std::vector<Value> values;
+  for (const auto& [name, value] : known) {
+    const Json names = runtime.script.value(word, Json::array({name}));
+    if (std::count(names.begin(), names.end(), name) != 0) values.push_back(value);
   }
-  return offered;
+  return values;
+}
+
+std::vector<XrReferenceSpaceType> offered_spaces() {
+  std::vector<XrReferenceSpaceType> spaces = offered("spaces", space_types);
+  if (!runtime.extensions.contains("XR_EXT_local_floor")) std::erase(spaces, local_floor);
+  return spaces;
 }
 
 void enumerate_reference_spaces(XrSession, std::uint32_t capacity, std::uint32_t* count,
@@ -762,23 +767,14 @@ void locate_views(XrSession, const XrViewLocateInfo* info, XrViewState* state, s
   session.frame->located = std::move(located);
 }
 
-std::vector<std::int64_t> offered_formats() {
-  std::vector<std::int64_t> offered;
-  for (const std::string& name : runtime.script.value(
-           "formats",
-           Strings{"GL_SRGB8_ALPHA8", "GL_RGBA8", "GL_DEPTH_COMPONENT32F", "GL_DEPTH_COMPONENT24"}))
-    offered.push_back(formats.at(name));
-  return offered;
-}
-
 void enumerate_swapchain_formats(XrSession, std::uint32_t capacity, std::uint32_t* count, std::int64_t* out) {
-  give(offered_formats(), capacity, count, out);
+  give(offered("formats", formats), capacity, count, out);
 }
 
 void create_swapchain(XrSession session, const XrSwapchainCreateInfo* info, XrSwapchain* out) {
-  const auto offered = offered_formats();
-  require(std::count(offered.begin(), offered.end(), info->format) != 0,
-          XR_ERROR_SWAPCHAIN_FORMAT_UNSUPPORTED, "format " + std::to_string(info->format));
+  const auto all = offered("formats", formats);
+  require(std::count(all.begin(), all.end(), info->format) != 0, XR_ERROR_SWAPCHAIN_FORMAT_UNSUPPORTED,
+          "format " + std::to_string(info->format));
   require(info->width - 1 < 4096 && info->height - 1 < 4096, XR_ERROR_SWAPCHAIN_RECT_INVALID, "a wrong size");
   require(info->sampleCount == 1 && info->faceCount == 1 && info->arraySize == 1 && info->mipCount == 1,
           XR_ERROR_FEATURE_UNSUPPORTED, "several samples, faces, layers or levels");

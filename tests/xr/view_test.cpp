@@ -66,7 +66,7 @@ struct XrView : testing::Test {
     words.insert(words.end(), more.begin(), more.end());
     std::map<std::string, std::string> all = stage.variables();
     for (const auto& [name, value] : variables) all[name] = value;
-    return run_program(words, {.variables = all});
+    return run_program(words, {.folder = folder.path(), .variables = all});
   }
 
   /// Runs the program, which must do all right: what the runtime saw.
@@ -194,17 +194,10 @@ TEST_F(XrView, DepthIsTheMedian) {
 
 TEST_F(XrView, RecordsFramesAndTheDisplaysThatTheyMissed) {
   stage.script = {{"frames", 12}, {"late", {5}}, {"not_rendered", {8}}, {"pixels", Json::array()}};
-  const Outcome outcome = run_program(
-      [&] {
-        Strings words = plain_words;
-        words.insert(words.end(), {"--record", "60"});
-        return words;
-      }(),
-      {.folder = folder.path(), .variables = stage.variables()});
-  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  run({"--record", "60"});
   const std::filesystem::path recorded = folder.path() / "out" / folder.path().filename() / "profile_001";
-  ASSERT_TRUE(std::filesystem::exists(recorded / "report.html")) << outcome.err;
-  EXPECT_NE(outcome.err.find("frames of 2 x 96 x 80 px"), std::string::npos) << outcome.err;
+  ASSERT_TRUE(std::filesystem::exists(recorded / "report.html")) << said;
+  EXPECT_NE(said.find("frames of 2 x 96 x 80 px"), std::string::npos) << said;
   const lab::Table frames = lab::read_csv(read_text(recorded / "frames.csv"), "frames.csv");
   const auto column = [&](const std::string& name) {
     const auto at = std::ranges::find(frames.columns, name) - frames.columns.begin();
