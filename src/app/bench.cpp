@@ -1,4 +1,4 @@
-// binosplat bench: the chart of speed against accuracy.
+// binosplat bench: the chart of speed against accuracy, over views, along frames, turns and levels of detail.
 
 #include <fmt/ranges.h>
 
@@ -10,71 +10,21 @@
 #include <numeric>
 
 #include "app/bench_plan.h"
-#include "app/blind.h"
 #include "app/command.h"
-#include "app/load_scene.h"
 #include "app/option_checks.h"
 #include "app/output_options.h"
 #include "app/photos.h"
+#include "app/report.h"
+#include "app/tour.h"
 #include "base/log.h"
 #include "base/progress.h"
 #include "lab/bench.h"
-#include "lab/bench_compare.h"
 
 namespace binosplat::app {
 
 namespace fs = std::filesystem;
 
 namespace {
-
-/// The shots of a case: as many as the axes want, evenly spread, or all that --view names. Where photos can
-/// be compared, only shots that have one count.
-std::vector<Shot> choose_shots(const BenchOptions& options, std::size_t wanted, bool photos,
-                               std::vector<Shot> shots) {
-  if (photos) {
-    std::erase_if(shots,
-                  [&](const Shot& shot) { return !find_view_photo(options.photos, shot.eyes[0].camera); });
-    if (shots.empty()) fail("--photos {}: there is no photo of any view", options.photos);
-  }
-  if (!options.camera.views.empty()) return shots;
-  std::vector<Shot> chosen;
-  for (const std::size_t i : lab::spread_evenly(shots.size(), wanted)) chosen.push_back(shots[i]);
-  return chosen;
-}
-
-/// The views of a case, and a small one to compare with the reference.
-lab::Bench open_case(gl::Context& context, const BenchOptions& options, const BenchPlan& plan,
-                     const BenchCase& which, const Model& model, const std::optional<lab::Peaks>& peaks) {
-  const BenchScene& scene = plan.scenes[which.scene];
-  const CameraList list = scene.list.listed
-                              ? scene.list
-                              : made_up_cameras(scene.options, options.camera, scene.list.known, model);
-  const double near_plane = near_plane_of(options.camera, list);
-  const bool photos = !options.photos.empty() && which.eyes == 1 && which.size == "own";
-  std::vector<Shot> shots = choose_shots(options, static_cast<std::size_t>(plan.axes.views), photos,
-                                         make_shots(views_or_all(options.camera.views), lens_of(which),
-                                                    rig_of(which), list, near_plane, model.axes));
-  leave_out_blind("bench", context, model, near_plane, shots);
-  std::vector<lab::BenchView> views;
-  for (const Shot& shot : shots) {
-    lab::BenchView& view = views.emplace_back(lab::BenchView{shot.name, views_of(shot), {}});
-    if (!photos) continue;
-    const Camera& of = shot.eyes.front().camera;
-    view.photo = load_view_photo(*find_view_photo(options.photos, of), of);
-    view.exposure = exposure_of(plan.photos.exposures, shot.name);
-  }
-  const Camera& camera = shots.front().eyes.front().camera;
-  const bool foveated = std::ranges::any_of(
-      plan.axes.settings, [](const lab::BenchSettings& settings) { return settings.foveation.has_value(); });
-  constexpr int small_width = 160;
-  const int width = std::min(small_width, camera.width);
-  const int height = std::max(1, static_cast<int>(std::int64_t{camera.height} * width / camera.width));
-  return {context,
-          model,
-          std::move(views),
-          make_view(resized(camera, width, height), near_plane),
-          {plan.axes.frames, plan.axes.repeats, options.ppd, peaks, foveated, options.far}};
-}
 
 /// Where the CPU draws: how long that takes, before it does.
 void tell_work(double seconds) {
@@ -100,102 +50,93 @@ void measure_all(const BenchOptions& options, const BenchPlan& plan, const Bench
   if (missing.empty()) return;
   const auto context = open_context(options.context);
 
-  std::optional<lab::Peaks> peaks;
-  if (options.profile) {
-    peaks = lab::measure_peaks(*context);
-    log_info("at best {:.4g} TB/s, {:.4g} T alphas/s, {:.4g} T multiply-adds/s", 1e-12 * peaks->bytes,
-             1e-12 * peaks->alphas, 1e-12 * peaks->fmas);
+  lab::BenchEffort effort{
+      .frames = plan.axes.frames, .repeats = plan.axes.repeats, .ppd = options.ppd, .peaks = {}};
+  effort.seen = std::ranges::any_of(
+      plan.axes.settings, [](const lab::BenchSettings& settings) { return settings.foveation.has_value(); });
+  if (options.floors) {
+    effort.peaks = lab::measure_peaks(*context);
+    log_info("at best {:.4g} TB/s, {:.4g} T alphas/s, {:.4g} T multiply-adds/s", 1e-12 * effort.peaks->bytes,
+             1e-12 * effort.peaks->alphas, 1e-12 * effort.peaks->fmas);
   }
 
   Progress progress("measuring", missing.size());
-  std::optional<Model> model;
-  std::optional<std::size_t> loaded;
-  std::size_t done = 0;
-  for (const BenchCase& which : plan.cases) {
-    std::optional<lab::Bench> bench;
-    for (std::size_t s = 0; s < plan.axes.settings.size(); ++s) {
-      if (done == missing.size() || missing[done] != which.first + s) continue;
-      if (loaded != which.scene) {
-        bench.reset();
-        model.reset();
-        model = load_scene(plan.scenes[which.scene].options, {}, plan.scenes[which.scene].list.cameras);
-        loaded = which.scene;
+  std::unique_ptr<MeasuredScene> scene;
+  std::size_t of_scene = 0, done = 0;
+  for (const CasePlan& which : plan.cases) {
+    std::unique_ptr<lab::Bench> bench;
+    for (std::size_t point = which.first; point < which.first + which.count; ++point) {
+      if (done == missing.size() || missing[done] != point) continue;
+      if (!scene || of_scene != which.scene) {
+        scene.reset();
+        scene = std::make_unique<MeasuredScene>(*context, options, plan, of_scene = which.scene);
       }
-      if (!bench) bench.emplace(open_case(*context, options, plan, which, *model, peaks));
-      if (done == 0 && context->software())
-        tell_work(1e-3 * bench->work_ms(plan.axes.settings[s], missing.size()));
-      folder.save(missing[done], bench->measure(plan.axes.settings[s]));
+      if (!bench) {
+        effort.popping = which.along == "sideways";
+        bench = std::make_unique<lab::Bench>(
+            *context, [&]() -> const Model& { return scene->model(); }, scene->open(which), effort);
+      }
+      const lab::BenchSettings* settings = plan.settings_of(which, point);
+      if (done == 0 && settings != nullptr && context->software())
+        tell_work(1e-3 * bench->work_ms(*settings, missing.size()));
+      folder.save(point, settings != nullptr ? bench->measure(*settings) : bench->contributions());
       progress.update(++done);
     }
   }
 }
 
-void print_profile(const std::vector<lab::StageFloor>& stages) {
-  for (const lab::StageFloor& stage : stages) {
-    if (std::isnan(stage.share)) continue;
-    fmt::print("      {:<30}{:>11.3f}  {:.1f} MB{}; floor {:.3f} ms, {:.0f} %\n", stage.stage, stage.ms,
-               1e-6 * stage.bytes,
-               std::isnan(stage.operations)
-                   ? ""
-                   : fmt::format(", {:.1f} million operations", 1e-6 * stage.operations),
-               stage.floor_ms, 100.0 * stage.share);
+/// Some of what was measured, as columns for a terminal.
+void print_points(const std::vector<lab::Point>& points) {
+  std::vector<std::string> charts;
+  for (const lab::Point& point : points) {
+    if (std::ranges::find(charts, point.chart()) == charts.end()) charts.push_back(point.chart());
   }
-}
-
-void print_points(const std::vector<lab::BenchPoint>& points) {
-  const std::vector<bool> front = lab::pareto_front(points);
-  const bool is_seen =
-      std::ranges::any_of(points, [](const lab::BenchPoint& p) { return p.seen.has_value(); });
-  std::string chart;
-  for (std::size_t i = 0; i < front.size(); ++i) {
-    const lab::BenchPoint& p = points[i];
-    if (p.chart() != chart)
-      fmt::print("\n{}\n{:<36}{:>11}{:>9}{:>9}{:>9}{:>12}{}\n", p.chart(), "  (* on the Pareto front)",
-                 "frame ms", "PSNR dB", "SSIM", "FLIP", "pairs", is_seen ? "   seen %" : "");
-    chart = p.chart();
-    const std::string setting = fmt::format("{} {}", front[i] ? "*" : " ", p.name);
-    if (!p.measured()) {
-      fmt::print("{:<36}  {}\n", setting, p.problem.empty() ? "not measured yet" : p.problem);
-      continue;
+  for (const std::string& chart : charts) {
+    std::vector<lab::Row> rows;
+    std::vector<std::string> others;
+    for (const lab::Point& point : points) {
+      if (point.chart() != chart || lab::text(point.row, "name") == "contributions") continue;
+      const std::string problem = lab::text(point.row, "problem");
+      if (point.measured()) {
+        rows.push_back(point.row);
+      } else {
+        others.push_back(fmt::format("{}: {}", lab::text(point.row, "name"),
+                                     problem.empty() ? "not measured yet" : problem));
+      }
     }
-    const auto number = [](double value, int digits, const char* none) {
-      return std::isnan(value) ? none : fmt::format("{:.{}f}", value, digits);
-    };
-    fmt::print("{:<36}{:>11.3f}{:>9}{:>9}{:>9}{:>12.0f}{}\n", setting, p.frame_ms,
-               number(p.exact.psnr_db, 2, "equal"), number(p.exact.ssim, 4, "-"),
-               number(p.exact.flip, 4, "-"), p.pairs,
-               p.seen ? fmt::format("{:>9.2f}", 100.0 * p.seen->visible) : "");
-    if (p.profile) print_profile(*p.profile);
+    fmt::print("\n{}\n", chart);
+    print_table(
+        lab::table_of(rows, {"name", "pareto", "frame_ms", "speed", "psnr_db", "worst_psnr_db", "drop_db",
+                             "reported_db", "ssim", "flip", "seen", "popping_1_db", "popping_7_db",
+                             "found_tolerance", "gaussians", "pairs", "pairs_removed"}));
+    for (const std::string& other : others) fmt::print("{}\n", other);
+    for (const lab::Point& point : points) {
+      std::vector<lab::Row> floors;
+      std::ranges::copy_if(point.details, std::back_inserter(floors),
+                           [](const lab::Row& row) { return lab::text(row, "of") == "floor"; });
+      if (floors.empty() || point.chart() != chart) continue;
+      fmt::print("{}\n", lab::text(point.row, "name"));
+      print_table(
+          lab::table_of(floors, {"stage", "frame_ms", "bytes", "operations", "floor_ms", "floor_share"}));
+    }
   }
 }
 
-void compare_with_older(const BenchOptions& options, const lab::BenchResults& results) {
-  const lab::BenchComparison found = lab::compare_results(load_points(options.compare), results.points);
-  fmt::print("\nSince {}:\n{}\n", options.compare, fmt::join(found.lines, "\n"));
-  if (!options.fail_if_slower) return;
-  if (found.matched == 0)
-    fail("--fail-if-slower: no point of this run is in {}: compare runs of the same scenes and axes",
-         options.compare);
-  if (found.slower_percent > *options.fail_if_slower) {
-    throw Error(ExitCode::fell_short,
-                fmt::format("{} is {:.1f} % slower than in {}, more than --fail-if-slower {:g}",
-                            found.slowest, found.slower_percent, options.compare, *options.fail_if_slower));
-  }
-  if (found.timed < found.matched) {
-    throw Error(ExitCode::fell_short,
-                fmt::format("--fail-if-slower: the times of {} of {} points could not be compared with {}",
-                            found.matched - found.timed, found.matched, options.compare));
-  }
+void compare_with_older(const BenchOptions& options, const lab::Results& results) {
+  std::vector<lab::Row> now;
+  for (const lab::Point& point : results.points) now.push_back(point.row);
+  print_comparison(options.compare, lab::compare_runs(load_rows(options.compare), now),
+                   options.fail_if_slower);
 }
 
 ExitCode finish(const BenchOptions& options, const BenchFolder& folder) {
-  const lab::BenchResults results = folder.results();
+  const lab::Results results = folder.results();
   folder.save_results(results);
   print_points(results.points);
-  fmt::print("\n{}: report.html, results.csv, results.json\n", folder.path().string());
+  fmt::print("\n{}: report.html, results.csv, details.csv, results.json\n", folder.path().string());
   if (!options.compare.empty()) compare_with_older(options, results);
-  const auto problems = std::count_if(results.points.begin(), results.points.end(),
-                                      [](const lab::BenchPoint& p) { return !p.problem.empty(); });
+  const auto problems = std::ranges::count_if(
+      results.points, [](const lab::Point& point) { return point.row.contains("problem"); });
   if (problems > 0)
     throw Error(ExitCode::fell_short, fmt::format("{} of {} points failed verification and were not timed",
                                                   problems, results.points.size()));
@@ -218,37 +159,28 @@ BenchFolder merge(const BenchOptions& options) {
   return into;
 }
 
-void check_bench(const BenchOptions& options) {
-  if (options.merge.empty() == options.scenes.empty())
+void check_bench(const BenchOptions& o) {
+  if (o.merge.empty() == o.scenes.empty())
     fail("bench needs scenes to measure, or --merge and the folders of shards");
-  if (!options.merge.empty() && !options.shard.all())
-    fail("--shard measures and --merge does not: choose one");
-  if (options.scenes.size() > 1 &&
-      (!options.camera.file.empty() || !options.photos.empty() || !options.calibration.empty()))
-    fail("--cameras, --photos and --calibration are of one scene: bench the scenes one by one");
-  if (options.fail_if_slower && options.compare.empty())
+  if (!o.merge.empty() && !o.shard.all()) fail("--shard measures and --merge does not: choose one");
+  if (o.scenes.size() > 1 && ((!o.photos.empty() && o.photos != photos_beside) || !o.calibration.empty()))
+    fail("--photos DIR and --calibration are of one scene: bench the scenes one by one");
+  const int along =
+      int{!o.camera.path.empty()} + int{o.camera.tour.has_value()} + int{!o.motions.empty()} + int{o.turn};
+  if (along > 1)
+    fail("--path, --tour, --motion and --turn are measured one by one: choose one, or write --axes");
+  if (o.fail_if_slower && o.compare.empty())
     fail("--fail-if-slower goes with --compare: name the results.json of the run that it is to keep up with");
-  check(options.context, "auto");
-}
-
-/// Photos are of single views in their own size.
-void check_photos_of(const BenchPlan& plan, const BenchOptions& options) {
-  const ViewChoice choice{options.camera.views, static_cast<std::size_t>(plan.axes.views)};
-  for (const BenchCase& which : plan.cases) {
-    const CameraList& list = plan.scenes[which.scene].list;
-    check_cameras_of(options.photos, list);
-    if (!options.photos.empty() && which.eyes == 1 && which.size == "own" && list.listed)
-      check_photos(options.photos, photographed_cameras(choice, options.photos, {}, list));
-  }
+  check(o.context, "auto");
 }
 
 ExitCode bench(const BenchOptions& options) {
   check_bench(options);
   check_output(fs::path(options.output) / "results.json");
-  if (!options.compare.empty()) load_points(options.compare);  // while nothing is lost
+  if (!options.compare.empty()) load_rows(options.compare);  // while nothing is lost
   if (!options.merge.empty()) return finish(options, merge(options));
   const BenchPlan plan = make_plan(options);
-  check_photos_of(plan, options);
+  check_cases(plan, options);
   const BenchFolder folder(options.output, plan.json);
   measure_all(options, plan, folder);
   return finish(options, folder);
@@ -259,41 +191,63 @@ ExitCode bench(const BenchOptions& options) {
 void add_bench(CLI::App& program, Command& command) {
   CLI::App* sub = program.add_subcommand("bench", "Chart speed against accuracy on this GPU");
   const auto o = std::make_shared<BenchOptions>();
-  std::string presets;
-  for (const std::string& name : lab::axes_presets()) presets += (presets.empty() ? "" : ", ") + name;
-  sub->add_option("SCENE", o->scenes, "Models (.ply), demo:room or demo:city");
-  sub->add_option("-o,--output", o->output, "Folder for report.html, results.csv and .json (out/bench)")
+  sub->add_option("SCENE", o->scenes, "Models, demo:room or demo:city");
+  sub->add_option("-o,--output", o->output,
+                  "Folder for report.html, results.csv, details.csv and results.json\n(out/bench)")
       ->type_name("DIR");
-  sub->add_option("--axes", o->axes,
-                  "What is measured: " + presets + ", or a file like those in\nsrc/lab/presets (quick)")
+  sub->add_option(
+         "--axes", o->axes,
+         fmt::format("What is measured: {}, or a\nfile like those in src/lab/presets (quick; of the next "
+                     "options motion, turn or levels)",
+                     fmt::join(lab::axes_presets(), ", ")))
       ->type_name("NAME|FILE");
+  add_names_option(*sub, "--motion", o->motions,
+                   "Along frames of a moving head, 90 a second: still, calm, walk, fast or\nsideways",
+                   "NAME,...");
+  sub->add_option("--path", o->camera.path, "Along the cameras of this file, through keys 90 frames a second")
+      ->type_name("FILE");
+  add_tour_option(*sub, o->camera);
+  sub->add_flag("--turn", o->turn,
+                "What turning the head changes along the same rays, by order and projection");
+  sub->add_option("--detail", o->details,
+                  "What these levels of detail lose and take, as `render --detail` names them")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->type_name("PX|DB,...");
+  add_rule_option(*sub, o->rules);
   sub->add_option("--calibration", o->calibration,
                   "Measure the settings of a file of binosplat calibrate, too")
       ->type_name("FILE");
   sub->add_option("--cameras", o->camera.file, "Cameras, where they are not beside the model")
       ->type_name("FILE");
   add_names_option(*sub, "--view", o->camera.views, "Views by name, instead of the axes' number of them");
-  add_photos_options(*sub, *o, "Compare with DIR/NAME.jpg or .png as well");
-  add_value(
-      *sub, "--far", "DEPTH", o->far, positive,
-      "Where the table of --transmittance depth ends, world units; AdaGScale's\nis 100 (fits the scene)");
+  add_names_option(*sub, "--test", o->test, "Where others are for training: views to measure, by name");
+  add_hold_out_option(*sub, o->hold_out);
+  add_photos_options(*sub, *o, "Compare with DIR/NAME.jpg or .png as well", true);
+  add_value(*sub, "--frames", "N", o->frames, range(1, 100000),
+            "Timed of a view and repeat; of a motion's stretch those that move\n(the axes')");
+  sub->add_option("--size", o->size, "Pixels of a view, or preview, headset or own (the axes')")
+      ->type_name("WxH|NAME");
+  sub->add_flag("--mono", o->rig.mono, "The cameras themselves, no pair (the axes')");
+  add_ipd_option(*sub, o->rig);
+  add_value(*sub, "--units-per-metre", "U", o->rig.units_per_metre, positive,
+            "World units that make a metre (1)");
   add_value(*sub, "--ppd", "N", o->ppd, between(1.0, 1000.0, "a number from 1 to 1000"),
             "For FLIP: pixels per degree that the viewer has (67)");
-  sub->add_flag("--profile", o->profile,
+  sub->add_flag("--floors", o->floors,
                 "Set each stage beside what it must move and compute at least, at this GPU's best rates");
   add_measured_options(*sub, *o);
   add_shard_option(*sub, o->shard, "Measure every Nth point from the Ith on: one job of N");
   add_names_option(*sub, "--merge", o->merge, "Join the folders of shards in -o", "DIR");
-  sub->add_option("--compare", o->compare, "Print what changed beyond noise since an older results.json")
-      ->type_name("FILE");
-  add_value(*sub, "--fail-if-slower", "PERCENT", o->fail_if_slower, not_negative,
-            "With --compare: end with exit code 1 if a frame time has risen\nbeyond noise, and by more than "
-            "PERCENT");
+  add_compare_options(*sub, o->compare, o->fail_if_slower);
   sub->footer(
       "A run that was ended goes on where it was when it is started again with the same options.\n"
       "Examples:\n"
       "  binosplat bench fox.ply garden.ply -o out/chart\n"
-      "  binosplat bench garden.ply --axes headset --compare last/results.json -o out/headset\n"
+      "  binosplat bench garden.ply --axes paper --photos images         # AdaGScale's figures and tables\n"
+      "  binosplat bench garden.ply --motion walk --rule squared,one --rule squared,last\n"
+      "  binosplat bench garden.ply --turn --size headset\n"
+      "  binosplat bench garden-levels --detail 30dB,40dB --cameras cameras.json\n"
       "  binosplat bench fox.ply --compare main/results.json --fail-if-slower 3 -o out/ci\n"
       "  binosplat bench fox.ply --axes paper --shard $I/8 -o out/shard$I     # on 8 machines\n"
       "  binosplat bench --merge out/shard1,out/shard2 -o out/chart");

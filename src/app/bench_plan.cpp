@@ -1,6 +1,6 @@
 #include "app/bench_plan.h"
 
-#include <fmt/core.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <set>
@@ -8,15 +8,16 @@
 #include "app/command.h"
 #include "app/content_key.h"
 #include "app/load_scene.h"
+#include "app/option_checks.h"
+#include "app/output_options.h"
 #include "app/report.h"
 #include "base/error.h"
-#include "base/numbers.h"
+#include "base/log.h"
 #include "base/output_file.h"
 #include "formats/calibration_file.h"
 #include "formats/image_file.h"
 #include "formats/whole.h"
 #include "lab/fields.h"
-#include "lab/settings.h"
 
 namespace binosplat::app {
 
@@ -28,45 +29,108 @@ namespace {
 BenchScene open_bench_scene(const BenchOptions& options, const std::string& file) {
   BenchScene scene{is_built_in(file) ? file : fs::path(file).stem().string(), options.scene, {}};
   scene.options.name = file;
-  scene.list = listed_cameras(scene.options, options.camera);
+  scene.list = listed_cameras(scene.options, options.camera, options.rig);
+  const std::string folder =
+      options.photos == photos_beside ? photos_folder(options.photos, scene.list) : options.photos;
+  scene.photos = photo_source(file, folder, options.exposure);
   return scene;
-}
-
-void add_cases(BenchPlan& plan, std::size_t scene) {
-  for (const int eyes : plan.axes.eyes) {
-    for (const std::string& size : plan.axes.sizes) {
-      plan.cases.push_back({scene, eyes, size, plan.points.size()});
-      for (const lab::BenchSettings& settings : plan.axes.settings) {
-        lab::BenchPoint& point = plan.points.emplace_back();
-        point.scene = plan.scenes[scene].name;
-        point.eyes = eyes;
-        point.size = size;
-        point.name = lab::describe(settings);
-        point.family = lab::describe_family(settings);
-        point.settings = lab::named(settings);
-      }
-    }
-  }
 }
 
 /// A calibration's ways to draw, with the tolerances as they are, after the axes' own.
 void add_calibrated(const std::string& file, lab::Axes& axes) {
-  std::set<lab::NamedSettings> known;
-  for (const lab::BenchSettings& settings : axes.settings) known.insert(lab::named(settings));
+  std::set<std::string> known;
+  for (const lab::BenchSettings& settings : axes.settings) known.insert(lab::named(settings).dump());
   for (const CalibrationEntry& entry : load_calibration(file).entries) {
     lab::BenchSettings settings;
     settings.th = entry.th;
     settings.transmittance = entry.transmittance;
     settings.tolerance = static_cast<float>(entry.tolerance);
     lab::check(file, settings);
-    if (known.insert(lab::named(settings)).second) axes.settings.push_back(settings);
+    if (known.insert(lab::named(settings).dump()).second) axes.settings.push_back(settings);
+  }
+}
+
+std::vector<std::string> motions_of(const std::vector<std::string>& texts) {
+  std::vector<std::string> choices = lab::along_choices();
+  std::erase_if(choices, [](const std::string& name) { return name == "views" || name == "turn"; });
+  const std::vector<std::string> names = separated(texts, [](const std::string&) { return false; });
+  for (const std::string& name : names) {
+    if (std::ranges::find(choices, name) == choices.end())
+      fail("--motion {}: expected of {}", name, fmt::join(choices, ", "));
+  }
+  return names;
+}
+
+/// The axes that options choose, or name, with what they say in the place of that.
+lab::Axes axes_of(const BenchOptions& o) {
+  const bool along_frames = !o.motions.empty() || !o.camera.path.empty() || o.camera.tour;
+  const char* const fitting = along_frames        ? "motion"
+                              : o.turn            ? "turn"
+                              : o.details.empty() ? "quick"
+                                                  : "levels";
+  lab::Axes axes = lab::load_axes(o.axes.empty() ? fitting : o.axes);
+  if (!o.motions.empty()) axes.along = motions_of(o.motions);
+  if (!o.camera.path.empty()) axes.along = {along_path};
+  if (o.camera.tour) axes.along = {along_tour};
+  if (o.turn && !o.axes.empty()) axes.along = {"turn"};
+  if (!o.details.empty()) {
+    std::erase_if(axes.settings, [](const lab::BenchSettings& s) { return s.detail.has_value(); });
+    for (const std::string& text : o.details) {
+      lab::BenchSettings& settings = axes.settings.emplace_back();
+      settings.detail = lab::parse_detail(text);
+    }
+  }
+  if (!o.rules.empty()) {
+    const std::vector<lab::Rule> rules = rules_of(o.rules);
+    std::erase_if(axes.settings, [&](const lab::BenchSettings& s) {
+      return !render::is_exact(s.th) && std::ranges::none_of(rules, [&](const lab::Rule& rule) {
+        return rule.th == s.th && rule.transmittance == s.transmittance;
+      });
+    });
+  }
+  if (o.frames) axes.frames = *o.frames;
+  if (!o.size.empty() && !lab::is_size(o.size))
+    fail("--size {}: expected own, WxH in px, preview or headset", o.size);
+  if (!o.size.empty()) axes.sizes = {o.size};
+  if (o.rig.mono) axes.eyes = {1};
+  if (!o.calibration.empty()) add_calibrated(o.calibration, axes);
+  // Where there are photos a drop against them is what a tolerance may cost.
+  const bool drops = !o.photos.empty() && std::ranges::any_of(axes.settings, [](const lab::BenchSettings& s) {
+    return s.max_drop.has_value();
+  });
+  const std::size_t erased = std::erase_if(axes.settings, [&](const lab::BenchSettings& s) {
+    return drops ? s.min_psnr.has_value() : s.max_drop.has_value();
+  });
+  if (axes.settings.empty() && erased > 0)
+    fail("{}: 'max_drop' is lost against photos: name them with --photos", axes.name);
+  return axes;
+}
+
+void add_cases(BenchPlan& plan, std::size_t scene) {
+  for (const std::string& along : plan.axes.along) {
+    for (const int eyes : plan.axes.eyes) {
+      for (const std::string& size : plan.axes.sizes) {
+        CasePlan& which = plan.cases.emplace_back(CasePlan{scene, eyes, size, along, plan.points.size()});
+        const lab::Row start =
+            lab::row_of("scene", plan.scenes[scene].name, "eyes", eyes, "size", size, "along", along);
+        for (const lab::BenchSettings& settings : plan.axes.settings) {
+          lab::Row& row = plan.points.emplace_back(start);
+          row.update(lab::named(settings));
+          lab::put(row, "name", lab::describe(settings), "family", lab::describe_family(settings));
+        }
+        if (plan.axes.contributions && along == "views" && eyes == 1) {
+          plan.points.push_back(start);
+          lab::put(plan.points.back(), "name", "contributions", "family", "contributions");
+        }
+        which.count = plan.points.size() - which.first;
+      }
+    }
   }
 }
 
 }  // namespace
 
-ordered_json scene_identity(const MeasuredOptions& options, const Exposures& exposures,
-                            const BenchScene& scene) {
+ordered_json scene_identity(const MeasuredOptions& options, const BenchScene& scene) {
   ordered_json json = {{"name", scene.name}};
   if (scene.name == demo_city_name) {
     json["count"] = city_settings(scene.options).count;
@@ -79,51 +143,31 @@ ordered_json scene_identity(const MeasuredOptions& options, const Exposures& exp
   if (!options.camera.views.empty()) json["views"] = options.camera.views;
   if (!scene.list.cameras.empty()) json["poses"] = content_key(scene.list.cameras);
   if (options.camera.near_plane) json["near"] = *options.camera.near_plane;
-  json["photos"] = !options.photos.empty();
-  if (!options.photos.empty()) json["photos_content"] = pictures_key(options.photos);
-  if (exposures.change_any()) json["exposures_content"] = file_key(exposures.file());
+  json["photos"] = !scene.photos.folder.empty();
+  if (!scene.photos.folder.empty()) json["photos_content"] = pictures_key(scene.photos.folder);
+  if (scene.photos.exposures.change_any())
+    json["exposures_content"] = file_key(scene.photos.exposures.file());
   return json;
-}
-
-RigOptions rig_of(const BenchCase& which) { return {.mono = which.eyes == 1}; }
-
-Lens lens_of(const BenchCase& which) {
-  if (which.size == "own") return {};
-  if (const auto size = two_numbers(which.size, 'x')) return {.size = glm::ivec2(size->first, size->second)};
-  return {.preset = which.size};
 }
 
 BenchPlan make_plan(const BenchOptions& options) {
   BenchPlan plan;
-  plan.axes = lab::load_axes(options.axes);
-  if (!options.calibration.empty()) add_calibrated(options.calibration, plan.axes);
+  plan.axes = axes_of(options);
   ordered_json scenes = ordered_json::array();
   std::set<std::string> names;
   for (const std::string& file : options.scenes) {
     const BenchScene& scene = plan.scenes.emplace_back(open_bench_scene(options, file));
     if (!names.insert(scene.name).second) fail("two scenes are called {}: bench them one by one", scene.name);
-    plan.photos = photo_source(scene.options.name, options.photos, options.exposure);
-    scenes.push_back(scene_identity(options, plan.photos.exposures, scene));
+    scenes.push_back(scene_identity(options, scene));
     add_cases(plan, plan.scenes.size() - 1);
   }
-  plan.json = std::make_shared<ordered_json>(
-      lab::object("format", "binosplat bench plan", "version", 1, "program", BINOSPLAT_VERSION, "axes_name",
-                  plan.axes.name, "axes", lab::to_json(plan.axes), "ppd", options.ppd, "profile",
-                  options.profile, "far", options.far, "scenes", scenes, "points", plan.points));
+  plan.json = std::make_shared<ordered_json>(lab::object(
+      "format", "binosplat bench plan", "version", 2, "program", BINOSPLAT_VERSION, "axes_name",
+      plan.axes.name, "axes", lab::to_json(plan.axes), "ppd", options.ppd, "floors", options.floors, "path",
+      options.camera.path, "tour", options.camera.tour ? options.camera.tour->name : "", "seconds",
+      options.camera.seconds, "ipd", options.rig.ipd, "units_per_metre", options.rig.units_per_metre, "test",
+      options.test, "hold_out", options.hold_out, "scenes", scenes, "points", plan.points));
   return plan;
-}
-
-std::vector<lab::BenchPoint> load_points(const fs::path& path) {
-  try {
-    const ordered_json points = load_json(path).at("points");
-    for (const ordered_json& point : points) {
-      point.at("scene");
-      point.at("settings");
-    }
-    return points.get<std::vector<lab::BenchPoint>>();
-  } catch (const ordered_json::exception& error) {
-    fail("--compare {}: not the results.json of a bench run: {}", path.string(), error.what());
-  }
 }
 
 BenchFolder::BenchFolder(fs::path folder, std::shared_ptr<const ordered_json> plan)
@@ -134,7 +178,7 @@ BenchFolder::BenchFolder(fs::path folder, std::shared_ptr<const ordered_json> pl
 BenchFolder::BenchFolder(fs::path folder) : folder_(std::move(folder)) {
   const ordered_json& plan = *(plan_ = std::make_shared<ordered_json>(load_json(folder_ / "plan.json")));
   if (!plan.is_object() || plan.value("format", "") != "binosplat bench plan" ||
-      plan.value("version", 0) != 1 || !plan.contains("points") || !plan["points"].is_array())
+      plan.value("version", 0) != 2 || !plan.contains("points") || !plan["points"].is_array())
     fail("{}: not the plan of a bench run of this version", (folder_ / "plan.json").string());
 }
 
@@ -150,41 +194,41 @@ bool BenchFolder::has(std::size_t point) const {
   return is_whole(file(point)) && (!fs::exists(picture) || is_whole(picture));
 }
 
-lab::BenchNumbers BenchFolder::load(std::size_t point) const {
-  const ordered_json measured = load_json(file(point));
+lab::Point BenchFolder::load(std::size_t point) const {
+  const ordered_json json = load_json(file(point));
+  const bool good = json.is_object() && json.contains("row") && json["row"].is_object() &&
+                    json["row"].contains("device") && json.contains("details") && json["details"].is_array();
+  if (!good) fail("{}: not a point of bench: remove it, and it is measured again", file(point).string());
+  lab::Point measured{json["row"], json["details"]};
   const fs::path picture = fs::path(file(point)).replace_extension(".png");
-  const bool good = measured.is_object() && (measured.contains("frame_ms") || measured.contains("problem"));
-  constexpr auto wrong = "{}: not a point of bench: remove it, and it is measured again";
-  if (!good) fail(wrong, file(point).string());
-  try {
-    lab::BenchNumbers numbers = measured;
-    if (fs::exists(picture)) numbers.picture = load_image(picture);
-    return numbers;
-  } catch (const ordered_json::exception&) {
-    fail(wrong, file(point).string());
-  }
+  if (fs::exists(picture)) measured.picture = load_image(picture);
+  return measured;
 }
 
-void BenchFolder::save(std::size_t point, const lab::BenchNumbers& measured) const {
+void BenchFolder::save(std::size_t point, const lab::Point& measured) const {
   if (measured.picture) save_png(fs::path(file(point)).replace_extension(".png"), *measured.picture);
-  save_json(file(point), measured);
+  save_json(file(point), {{"row", measured.row}, {"details", measured.details}});
 }
 
-lab::BenchResults BenchFolder::results() const {
-  lab::BenchResults results{plan_->value("axes_name", ""), plan_->value("program", ""),
-                            plan_->at("points").get<std::vector<lab::BenchPoint>>()};
-  for (std::size_t i = 0; i < results.points.size(); ++i) {
-    if (has(i)) static_cast<lab::BenchNumbers&>(results.points[i]) = load(i);
+lab::Results BenchFolder::results() const {
+  lab::Results results{plan_->value("axes_name", ""), plan_->value("program", ""), {}};
+  for (std::size_t i = 0; i < size(); ++i) {
+    lab::Point& point = results.points.emplace_back(lab::Point{plan_->at("points")[i]});
+    if (!has(i)) continue;
+    lab::Point measured = load(i);
+    point.row.update(measured.row);
+    point.details = std::move(measured.details);
+    point.picture = std::move(measured.picture);
   }
+  lab::put_beside_others(results.points);
+  lab::add_means(results.points);
   return results;
 }
 
-void BenchFolder::save_results(const lab::BenchResults& results) const {
-  ordered_json json = {{"format", "binosplat bench"}, {"version", 1}, {"plan", *plan_}};
-  json["plan"].erase("points");
-  json["points"] = results.points;
-  save_report(folder_, "results.json", json, lab::bench_page(results));
+void BenchFolder::save_results(const lab::Results& results) const {
+  save_report(folder_, "results.json", to_json(results, *plan_), lab::results_page(results));
   write_file(folder_ / "results.csv", lab::csv(results.points));
+  write_file(folder_ / "details.csv", lab::details_csv(results.points));
 }
 
 }  // namespace binosplat::app

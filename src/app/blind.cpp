@@ -8,7 +8,7 @@
 #include "app/empty_view.h"
 #include "base/error.h"
 #include "base/log.h"
-#include "lab/bench.h"
+#include "lab/bench_case.h"
 #include "lab/blind.h"
 
 namespace binosplat::app {

@@ -20,7 +20,6 @@ using Command = std::function<ExitCode()>;
 void add_render(CLI::App& program, Command& command);
 void add_compare(CLI::App& program, Command& command);
 void add_devices(CLI::App& program, Command& command);
-void add_study(CLI::App& program, Command& command);
 void add_bench(CLI::App& program, Command& command);
 void add_profile(CLI::App& program, Command& command);
 void add_calibrate(CLI::App& program, Command& command);

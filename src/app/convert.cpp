@@ -18,7 +18,7 @@
 #include "base/log.h"
 #include "base/progress.h"
 #include "formats/model_file.h"
-#include "lab/bench.h"
+#include "lab/bench_case.h"
 #include "lab/fields.h"
 #include "measure/metrics.h"
 #include "render/frame.h"

@@ -74,7 +74,6 @@ int run(int argc, char** argv) {
   binosplat::app::add_trim(program, command);
   binosplat::app::add_refit(program, command);
   binosplat::app::add_devices(program, command);
-  binosplat::app::add_study(program, command);
   binosplat::app::add_profile(program, command);
   binosplat::app::add_bench(program, command);
   binosplat::app::add_calibrate(program, command);

@@ -11,7 +11,7 @@
 #include "formats/cameras_file.h"
 #include "formats/image_file.h"
 #include "formats/model_file.h"
-#include "lab/bench.h"
+#include "lab/bench_case.h"
 #include "measure/comparison.h"
 
 namespace binosplat::app {

@@ -1,4 +1,4 @@
-// binosplat profile: every frame of a way through a scene, what it waited for, and why some took longer.
+// binosplat profile: every frame of a path through a scene, what it waited for, and why some took longer.
 
 #include "app/profile.h"
 
@@ -14,15 +14,13 @@
 #include "app/foveate_options.h"
 #include "app/load_scene.h"
 #include "app/option_checks.h"
+#include "app/report.h"
 #include "app/shots.h"
 #include "app/together.h"
 #include "app/tour.h"
 #include "base/log.h"
-#include "base/mapped_file.h"
 #include "base/memory.h"
 #include "base/progress.h"
-#include "formats/content.h"
-#include "lab/csv.h"
 #include "lab/profile_run.h"
 #include "lab/settings.h"
 #include "measure/depth_table.h"
@@ -40,11 +38,12 @@ constexpr double quality_to_try = 40.0;                    // dB: an error that 
 struct ProfileOptions : RenderOptions {
   double fps = headset_fps;  // 0: as fast as possible
   std::string folder = "out/profile";
-  std::string compare;  // frames.csv of an older run
+  std::string compare;                   // results.json of an older run
+  std::optional<double> fail_if_slower;  // percent
   bool asks_clock = true;
 };
 
-/// What only `render` does, or what is no way through a scene.
+/// What only `render` does, or what is no path through a scene.
 constexpr std::array not_profiled = {"--orbit", "--keys", "--frames", "--reference-until"};
 
 void check(const ProfileOptions& o) {
@@ -60,7 +59,7 @@ double pose_rate(const ProfileOptions& o) { return o.fps > 0.0 ? o.fps : headset
 
 /// The cameras that the head goes through, one a frame, and what that is called. A scene whose cameras nobody
 /// named is toured if it has two or more.
-std::string choose_way(ProfileOptions& o, CameraList& list) {
+std::string choose_path(ProfileOptions& o, CameraList& list) {
   const bool stands = !o.camera.views.empty() || o.camera.eye || !list.listed;
   if (!o.camera.path.empty()) {
     list = go_along_path(o.camera, pose_rate(o), true, std::move(list));
@@ -124,7 +123,7 @@ Profiled open_profiled(ProfileOptions o) {
   if (o.camera.views == all_views || view_names(o.camera.views, list).size() > 1)
     fail("profile: --view stands at one camera: name one");
   Profiled all;
-  std::string way = choose_way(o, list);
+  std::string along = choose_path(o, list);
   all.context = open_context(o.context);
   render::FrameSettings settings = settings_of(o.drawing);
   all.stream = open_for_frames(o.scene, settings);
@@ -135,14 +134,14 @@ Profiled open_profiled(ProfileOptions o) {
   std::vector<Shot> shots =
       make_shots(o.camera.views, o.camera.lens, o.rig, list, near_plane, all.model().axes);
   if (!o.camera.along_path()) shots.resize(1);
-  if (way.empty()) way = "standing at " + shots.front().name;
+  if (along.empty()) along = "standing at " + shots.front().name;
   policy.check_perspective(settings, all.model());
   policy.check_model(all.model());
   settings = settings_of(policy, shots.front(), settings, all.model().axes);
   if (settings.transmittance == TRANSMITTANCE_DEPTH && !policy.is_calibrated())
     all.table_views = views_of_depth_table(o.camera.lens, list, near_plane, all.model().axes);
   all.run = {frames_to_profile(o, shots), settings, o.foveate, o.fps, o.asks_clock};
-  all.profile.facts = {o.scene.name, way, drawing_of(o, settings), lab::device_text(*all.context),
+  all.profile.facts = {o.scene.name, along, drawing_of(o, settings), lab::device_text(*all.context),
                        all.context->software()};
   return all;
 }
@@ -155,9 +154,8 @@ void tell_how_long(double frame_ms, std::size_t frames) {
              spoken_time(seconds));
 }
 
-lab::Profile record(const ProfileOptions& o, const std::optional<lab::Table>& before) {
+lab::Profile record(const ProfileOptions& o) {
   Profiled all = open_profiled(o);
-  if (before) lab::check_comparable(*before, all.run.frames.size(), o.compare);
   const auto model =
       all.stream ? all.stream->gpu_model(*all.context, all.run.settings.precision)
                  : std::make_shared<render::GpuModel>(*all.context, all.loaded, all.run.settings.precision);
@@ -173,6 +171,7 @@ lab::Profile record(const ProfileOptions& o, const std::optional<lab::Table>& be
     Progress progress("profiling", all.run.frames.size(), "frames");
     all.profile.recording = drawer.record([&](std::size_t done) { progress.update(done); });
   }
+  all.profile.cpu_ms = drawer.cpu_ms();
   const lab::ProfileSummary summary = lab::summary_of(all.profile);
   for (const std::size_t n : summary.worst) all.profile.pictures.emplace_back(drawer.picture(n));
   if (!all.stream)
@@ -183,28 +182,27 @@ lab::Profile record(const ProfileOptions& o, const std::optional<lab::Table>& be
 ExitCode profile(const ProfileOptions& o) {
   check(o);
   for (const char* const name : profile_files) check_output(fs::path(o.folder) / name);
-  std::optional<lab::Table> before;
-  if (!o.compare.empty()) before = lab::read_csv(as_text(MappedFile(o.compare).bytes()), o.compare);
-  const lab::Profile profile = record(o, before);
+  if (o.fail_if_slower && o.compare.empty())
+    fail("--fail-if-slower goes with --compare: name the results.json of the run that it is to keep up with");
+  std::vector<lab::Row> before;
+  if (!o.compare.empty()) before = load_rows(o.compare);
+  const lab::Profile profile = record(o);
   const lab::ProfileSummary summary = lab::summary_of(profile);
-  std::vector<std::string> changes;
-  try {
-    if (before) changes = lab::compare_frames(*before, lab::frames_table(profile.recording));
-  } catch (...) {  // a comparison that fails loses no recording
-    save_profile(o.folder, profile, {});
-    throw;
-  }
-  save_profile(o.folder, profile, changes);
+  lab::RunComparison found;
+  if (!o.compare.empty()) found = lab::compare_runs(before, {lab::profile_point(profile, summary).row});
+  save_profile(o.folder, profile, found.lines);
   for (const std::string& line : lab::lines_of(profile, summary)) fmt::print("{}\n", line);
-  if (before) fmt::print("\nSince {}:\n{}\n", o.compare, fmt::join(changes, "\n"));
-  fmt::print("{}: report.html, trace.json (for ui.perfetto.dev), frames.csv, profile.json\n", o.folder);
+  fmt::print("{}: report.html, trace.json (for ui.perfetto.dev), frames.csv, results.json, results.csv\n",
+             o.folder);
+  if (!o.compare.empty()) print_comparison(o.compare, found, o.fail_if_slower);
   return ExitCode::done;
 }
 
 }  // namespace
 
 void add_profile(CLI::App& program, Command& command) {
-  CLI::App* sub = program.add_subcommand("profile", "Time every frame on a way, and say why some are slow");
+  CLI::App* sub =
+      program.add_subcommand("profile", "Time every frame along a path, and say why some are slow");
   const auto options = std::make_shared<ProfileOptions>();
   ProfileOptions& o = *options;
   add_picture_options(*sub, o);
@@ -224,13 +222,11 @@ void add_profile(CLI::App& program, Command& command) {
   add_value(*sub, "--fps", "N", o.fps, between(0.0, 1000.0, "frames a second from 0 to 1000"),
             "Frames begin so often a second, as in a headset of 72, 90 or 120;\n0: as soon as the last "
             "one is drawn (90)");
-  sub->add_option("-o,--output", o.folder,
-                  "Folder for report.html, trace.json, frames.csv and profile.json\n(out/profile)")
+  sub->add_option(
+         "-o,--output", o.folder,
+         "Folder for report.html, trace.json, frames.csv, results.json and\nresults.csv (out/profile)")
       ->type_name("DIR");
-  sub->add_option("--compare", o.compare,
-                  "Say what changed beyond noise since an older frames.csv of the\nsame frames")
-      ->type_name("FILE")
-      ->check(CLI::ExistingFile.description(""));
+  add_compare_options(*sub, o.compare, o.fail_if_slower);
   sub->add_flag_callback(
       "--no-clock", [&o] { o.asks_clock = false; },
       "Do not ask the driver for the GPU's clock meanwhile, which it may take\ntime for");
@@ -240,7 +236,7 @@ void add_profile(CLI::App& program, Command& command) {
       "Examples:\n"
       "  binosplat profile garden.ply -o out/profile\n"
       "  binosplat profile garden.ply --tour calm --seconds 5 --quality 40 --fps 72\n"
-      "  binosplat profile garden.ply --view DSC07956 --fps 0 --compare out/profile/frames.csv -o out/new\n"
+      "  binosplat profile garden.ply --view DSC07956 --fps 0 --compare out/profile/results.json -o out/new\n"
       "  binosplat profile demo:room --size 320x180 --seconds 2");
   sub->callback([options, sub, &command] {
     check_together(*sub);

@@ -11,9 +11,10 @@
 
 namespace binosplat::app {
 
-inline constexpr std::array profile_files = {"report.html", "trace.json", "frames.csv", "profile.json"};
+inline constexpr std::array profile_files = {"report.html", "trace.json", "frames.csv", "results.json",
+                                             "results.csv"};
 
-/// Writes them, all or none; `changes` as lab::compare_frames() has it, empty for no comparison. Throws Error
+/// Writes them, all or none; `changes` as RunComparison has its lines, empty for no comparison. Throws Error
 /// where that fails, and for a recording without frames.
 void save_profile(const std::filesystem::path& folder, const lab::Profile& profile,
                   const std::vector<std::string>& changes);

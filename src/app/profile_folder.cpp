@@ -14,7 +14,9 @@ namespace binosplat::app {
 void save_profile(const std::filesystem::path& folder, const lab::Profile& profile,
                   const std::vector<std::string>& changes) {
   const lab::ProfileSummary summary = lab::summary_of(profile);
-  const nlohmann::ordered_json json = lab::profile_json(profile, summary);
+  lab::Results results{"profile", BINOSPLAT_VERSION, {lab::profile_point(profile, summary)}};
+  const nlohmann::ordered_json json =
+      to_json(results, {{"axes_name", "profile"}, {"program", BINOSPLAT_VERSION}});
   std::deque<OutputFile> files;
   const auto next_file = [&]() -> lab::Write {
     OutputFile& file = files.emplace_back(folder / profile_files[files.size()]);
@@ -24,6 +26,7 @@ void save_profile(const std::filesystem::path& folder, const lab::Profile& profi
   lab::write_trace(profile, next_file());
   lab::write_frames(profile.recording, next_file());
   next_file()(json_text(json));
+  next_file()(lab::csv(results.points));
   // None gets its name before all are on the disk.
   for (OutputFile& file : files) file.flush();
   for (OutputFile& file : files) file.commit();

@@ -15,13 +15,16 @@
 #include "app/split.h"
 #include "base/log.h"
 #include "lab/fields.h"
-#include "lab/perspectives.h"
 #include "lab/refit.h"
 #include "scene/axes.h"
 
 namespace binosplat::app {
 
 namespace {
+
+std::string name_of(const Perspective& seen) {
+  return fmt::format("{}, {}", order_choices[seen.order].name, projection_choices[seen.projection].name);
+}
 
 using lab::Calibrator;
 using nlohmann::ordered_json;
@@ -151,8 +154,8 @@ ExitCode refit(const RefitOptions& o) {
   Judge judge(*context, model, views, o.photos.empty() ? TargetKind::quality : TargetKind::drop);
   std::vector<Step> steps;
   if (fitted.perspective != model.perspective)
-    steps.push_back(judge.step("as it was: " + lab::name_of(model.perspective), model));
-  steps.push_back(judge.step("before: " + lab::name_of(fitted.perspective), fitted));
+    steps.push_back(judge.step("as it was: " + name_of(model.perspective), model));
+  steps.push_back(judge.step("before: " + name_of(fitted.perspective), fitted));
   const double before = steps.back().held_back, before_own = steps.back().held_back_own;
 
   lab::Refitted found = lab::refit(*context, fitted, targets, {.rounds = o.rounds},

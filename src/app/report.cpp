@@ -33,6 +33,68 @@ std::string command_line() {
 
 }  // namespace
 
+namespace {
+
+std::string shown(const lab::Cell& cell, const std::string& column) {
+  if (const auto* const text = std::get_if<std::string>(&cell.value)) return *text;
+  if (const auto* const whole = std::get_if<std::int64_t>(&cell.value)) return fmt::format("{}", *whole);
+  const auto* const number = std::get_if<double>(&cell.value);
+  if (number == nullptr) return "-";
+  if (column == "pairs" || column == "Gaussians") return fmt::format("{:.0f}", *number);
+  const int digits = column.ends_with("dB") ? 2 : column.ends_with("%") ? 1 : column.ends_with("ms") ? 3 : 4;
+  return fmt::format("{:.{}f}", *number, digits);
+}
+
+}  // namespace
+
+void print_table(const lab::Table& table) {
+  std::vector<std::vector<std::string>> lines = {table.columns};
+  for (const std::vector<lab::Cell>& row : table.rows) {
+    std::vector<std::string>& line = lines.emplace_back();
+    for (std::size_t k = 0; k < row.size(); ++k) line.push_back(shown(row[k], table.columns[k]));
+  }
+  std::vector<std::size_t> widths(table.columns.size());
+  for (const std::vector<std::string>& line : lines) {
+    for (std::size_t k = 0; k < line.size(); ++k) widths[k] = std::max(widths[k], line[k].size());
+  }
+  for (const std::vector<std::string>& line : lines) {
+    for (std::size_t k = 0; k < line.size(); ++k)
+      k == 0 ? fmt::print("  {:<{}}", line[k], widths[k]) : fmt::print("  {:>{}}", line[k], widths[k]);
+    fmt::print("\n");
+  }
+}
+
+void add_compare_options(CLI::App& sub, std::string& file, std::optional<double>& fail_if_slower) {
+  sub.add_option("--compare", file, "Print what changed beyond noise since an older results.json")
+      ->type_name("FILE");
+  add_value(
+      sub, "--fail-if-slower", "PERCENT", fail_if_slower, not_negative,
+      "With --compare: end with exit code 1 if a time has risen beyond noise,\nand by more than PERCENT");
+}
+
+std::vector<lab::Row> load_rows(const std::filesystem::path& file) {
+  return lab::rows_of(load_json(file), "--compare " + file.string());
+}
+
+void print_comparison(const std::string& file, const lab::RunComparison& found,
+                      const std::optional<double>& fail_if_slower) {
+  fmt::print("\nSince {}:\n{}\n", file, fmt::join(found.lines, "\n"));
+  if (!fail_if_slower) return;
+  if (found.matched == 0)
+    fail("--fail-if-slower: no point of this run is in {}: compare runs of the same scenes and options",
+         file);
+  if (found.slower_percent > *fail_if_slower) {
+    throw Error(ExitCode::fell_short,
+                fmt::format("{} is {:.1f} % slower than in {}, more than --fail-if-slower {:g}",
+                            found.slowest, found.slower_percent, file, *fail_if_slower));
+  }
+  if (found.timed < found.matched) {
+    throw Error(ExitCode::fell_short,
+                fmt::format("--fail-if-slower: the times of {} of {} points could not be compared with {}",
+                            found.matched - found.timed, found.matched, file));
+  }
+}
+
 lab::Page with_command(lab::Page page) {
   page.facts.emplace_back("command", command_line());
   page.facts.emplace_back("date", fmt::format("{:%Y-%m-%d %H:%M} UTC", fmt::gmtime(std::time(nullptr))));

@@ -105,11 +105,11 @@ void check_alone(const fs::path& folder, const std::optional<ordered_json>& run)
         folder.string());
 }
 
-lab::Keep keep_steps(const fs::path& result, const MeasuredOptions& options, const Exposures& exposures,
+lab::Keep keep_steps(const fs::path& result, const MeasuredOptions& options, const PhotoSource& photos,
                      const CameraList& list, const gl::Context& context) {
   const std::string run =
       json_text(lab::object("program", BINOSPLAT_VERSION, "options", options.given, "scene",
-                            scene_identity(options, exposures, {options.scene.name, options.scene, list}),
+                            scene_identity(options, {options.scene.name, options.scene, list, photos}),
                             "device", lab::device_text(context)));
   return [folder = steps_of(result), run](const std::string& step, const auto& measure) {
     const fs::path file = folder / (text_key(run + step) + ".json");

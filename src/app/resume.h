@@ -9,9 +9,9 @@
 
 #include "app/cli.h"
 #include "app/measured_options.h"
+#include "app/photos.h"
 #include "app/render_options.h"
 #include "app/shots.h"
-#include "formats/exposures.h"
 #include "lab/calibrate.h"
 
 namespace binosplat::app {
@@ -34,7 +34,7 @@ void leave_out_drawn(const std::filesystem::path& folder, const nlohmann::ordere
 /// Keeps what is measured for the file `result` beside it until forget_steps(), for runs of the same kind,
 /// which go on from there when one is ended: of the same options, content of files and device.
 lab::Keep keep_steps(const std::filesystem::path& result, const MeasuredOptions& options,
-                     const Exposures& exposures, const CameraList& list, const gl::Context& context);
+                     const PhotoSource& photos, const CameraList& list, const gl::Context& context);
 void forget_steps(const std::filesystem::path& result);
 
 /// For runs that draw all: what they leave in the folder, if it is one, is not what the file there tells of.

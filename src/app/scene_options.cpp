@@ -8,19 +8,10 @@
 #include "base/numbers.h"
 #include "demo/demo.h"
 #include "formats/registry.h"
+#include "lab/settings.h"
 #include "scene/axes.h"
 
 namespace binosplat::app {
-
-DetailRequest parse_detail(const std::string& text) {
-  std::string_view rest = text;
-  const std::optional<double> number = take_real(rest);
-  std::string unit(rest);
-  for (char& c : unit) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  if (number && std::isfinite(*number) && unit.empty() && *number >= 0.0) return {.apart_px = *number};
-  if (number && unit == "db" && *number >= 20.0 && *number <= 80.0) return {.db = *number};
-  fail("--detail {}: expected pixels as in 5, or decibels from 20 to 80 as in 40dB", text);
-}
 
 void add_scene_options(CLI::App& sub, SceneOptions& o) {
   std::string formats = names_of_formats();
@@ -32,11 +23,12 @@ void add_scene_options(CLI::App& sub, SceneOptions& o) {
       ->required();
   sub.option_defaults()->group("Scene");
   add_lod_option(sub, o, "Level of detail of a streamed SOG, 0 the finest (the finest that\nis there)");
-  add_parsed(sub, "--detail", "PX|DB", o.detail, parse_detail,
-             "Of a streamed SOG instead: for each view levels whose Gaussians are\nseen no farther than PX "
-             "apart, the same for both eyes (render: the\nfinest, always; view: 0); 0: the finest that fit; "
-             "or as in 40dB\n(20dB to 80dB) those that cost so much against the finest, of files\nthat tell "
-             "their levels' errors");
+  add_parsed(
+      sub, "--detail", "PX|DB", o.detail, [](const std::string& text) { return lab::parse_detail(text); },
+      "Of a streamed SOG instead: for each view levels whose Gaussians are\nseen no farther than PX "
+      "apart, the same for both eyes (render: the\nfinest, always; view: 0); 0: the finest that fit; "
+      "or as in 40dB\n(20dB to 80dB) those that cost so much against the finest, of files\nthat tell "
+      "their levels' errors");
   add_value(sub, "--gpu-memory", "MB", o.gpu_memory, positive,
             "Of a streamed SOG: levels, near the eyes the finest, that fit in so\nmany MB; for each view "
             "with --detail, else one choice for all");

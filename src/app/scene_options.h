@@ -33,9 +33,6 @@ struct SceneOptions {
   std::optional<double> kernel_px2;  // px^2, likewise
 };
 
-/// As in --detail: "5", px, or "40dB". Throws Error for anything else.
-DetailRequest parse_detail(const std::string& text);
-
 /// Adds all of them; `options` must outlive the parsing.
 void add_scene_options(CLI::App& sub, SceneOptions& options);
 

@@ -9,7 +9,7 @@
 #include "app/photos.h"
 #include "base/error.h"
 #include "base/log.h"
-#include "lab/bench.h"
+#include "lab/bench_case.h"
 
 namespace binosplat::app {
 

@@ -44,12 +44,17 @@ std::string motions_help() {
 
 }  // namespace
 
+CLI::Option* add_tour_option(CLI::App& sub, CameraOptions& o) {
+  return add_parsed(
+      sub, "--tour", "calm|walk|fast|M,DEG", o.tour, parse_motion,
+      "Go through all of the cameras as a head does, --fps frames a second\n(90; videos: 30), in "
+      "metres of --units-per-metre; M,DEG: at other speeds" +
+          motions_help());
+}
+
 void add_tour_options(CLI::App& sub, CameraOptions& o) {
   sub.option_defaults()->group("Cameras");
-  add_parsed(sub, "--tour", "calm|walk|fast|M,DEG", o.tour, parse_motion,
-             "Go through all of the cameras as a head does, --fps frames a second\n(90; videos: 30), in "
-             "metres of --units-per-metre; M,DEG: at other speeds" +
-                 motions_help());
+  add_tour_option(sub, o);
   sub.add_flag("--keys", o.keys, "Draw the keys of --path alone, and not the way through them");
   add_value(sub, "--seconds", "S", o.seconds, seconds_range,
             "The first S seconds of the tour (all); or go through the keys of\n--path in S seconds, at an "

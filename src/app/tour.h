@@ -1,6 +1,5 @@
 #pragma once
-// render --tour: along the way of a head that goes through a model's cameras; --path, of study, too: along
-// keys.
+// --tour: along the way of a head that goes through a model's cameras; --path: along keys.
 
 #include "app/camera_options.h"
 #include "app/rig_options.h"
@@ -11,6 +10,8 @@ namespace binosplat::app {
 /// Frames a second where nothing says otherwise: of tours, and of what is studied along a way.
 inline constexpr double headset_fps = 90.0;
 
+/// Adds --tour.
+CLI::Option* add_tour_option(CLI::App& sub, CameraOptions& options);
 /// Adds --tour, --keys and --seconds.
 void add_tour_options(CLI::App& sub, CameraOptions& options);
 

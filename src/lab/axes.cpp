@@ -16,6 +16,7 @@
 #include "formats/json_file.h"
 #include "lab/embedded.h"
 #include "lab/fields.h"
+#include "scene/tour.h"
 
 namespace binosplat::lab {
 
@@ -59,6 +60,12 @@ class Block {
     return number;
   }
 
+  bool yes(const std::string& key) const {
+    const nlohmann::json value = object_.contains(key) ? object_.at(key) : nlohmann::json(false);
+    if (!value.is_boolean()) fail("{}: '{}' {}: expected true or false", place_, key, value.dump());
+    return value.get<bool>();
+  }
+
   bool has(const std::string& key) const { return object_.contains(key); }
 
   int choice(const std::string& key, const nlohmann::json& value, std::span<const Choice> choices) const {
@@ -80,6 +87,8 @@ struct Key {
   std::function<void(BenchSettings&, const nlohmann::json&)> set;
 };
 
+constexpr Choice found_on_choices[] = {{"test", "the views that are measured"}, {"training", "others"}};
+
 constexpr std::size_t most_settings = 10000;  // of all blocks; nobody measures that many
 
 /// All combinations of a block's lists, appended; the last key's values follow one another.
@@ -92,25 +101,49 @@ void add_settings(const Block& block, std::vector<BenchSettings>& settings) {
                  s.*member = block.choice(key, v, choices);
                }};
   };
+  const auto chosen = [&block](const char* key, std::optional<int> render::FrameSettings::*member,
+                               std::span<const Choice> choices) {
+    return Key{key, nullptr, [&block, key, member, choices](S& s, const nlohmann::json& v) {
+                 if (!v.is_null()) s.*member = block.choice(key, v, choices);
+               }};
+  };
+  const auto positive = [&block](const char* key, const auto& set) {
+    return Key{key, nullptr, [&block, key, set](S& s, const nlohmann::json& v) {
+                 if (!v.is_null()) set(s, block.number(key, v));
+               }};
+  };
   const Key keys[] = {
       choice("th", &S::th, th_choices),
       choice("transmittance", &S::transmittance, transmittance_choices),
+      positive("far",
+               [](S& s, double v) {
+                 if (s.transmittance == TRANSMITTANCE_DEPTH) s.far = float(v);
+               }),
       choice("tiles", &S::tiles, tiles_choices),
       choice("precision", &S::precision, precision_choices),
       {"tile", TILE_SIZE_DEFAULT,
        [&block](S& s, const nlohmann::json& v) { s.tile_size = block.whole("tile", v, 8, 32); }},
-      {"inset", nullptr,
+      positive("inset", [](S& s, double v) { s.foveation = stereo::Foveation{.inset_degrees = v}; }),
+      positive("context",
+               [](S& s, double v) {
+                 if (s.foveation) s.foveation->context_scale = v;
+               }),
+      chosen("order", &S::order, order_choices),
+      chosen("projection", &S::projection, projection_choices),
+      {"detail", nullptr,
        [&block](S& s, const nlohmann::json& v) {
-         if (block.has("inset")) s.foveation = stereo::Foveation{.inset_degrees = block.number("inset", v)};
+         if (!v.is_null())
+           s.detail =
+               parse_detail(v.is_string() ? v.get<std::string>() : v.dump(), block.place() + ", 'detail'");
        }},
-      {"context", stereo::Foveation{}.context_scale,
+      {"found_on", "test",
        [&block](S& s, const nlohmann::json& v) {
-         if (s.foveation) s.foveation->context_scale = block.number("context", v);
+         s.found_on_training = block.choice("found_on", v, found_on_choices) == 1;
        }},
-      {"tolerance", 0.0,
-       [&block](S& s, const nlohmann::json& v) {
-         s.tolerance = static_cast<float>(block.number("tolerance", v));
-       }},
+      positive("max_drop", [](S& s, double v) { s.max_drop = v; }),
+      positive("min_psnr", [](S& s, double v) { s.min_psnr = v; }),
+      positive("quality", [](S& s, double v) { s.quality = static_cast<float>(v); }),
+      positive("tolerance", [](S& s, double v) { s.tolerance = static_cast<float>(v); }),
   };
   if (block.has("context") && !block.has("inset"))
     fail("{}: 'context' has no effect without 'inset', its degrees", block.place());
@@ -125,22 +158,27 @@ void add_settings(const Block& block, std::vector<BenchSettings>& settings) {
     }
     all = std::move(next);
   }
+  for (S& s : all) s.found_on_training = s.found_on_training && s.finds_tolerance();
   settings.insert(settings.end(), all.begin(), all.end());
 }
 
 void remove_repeated(std::vector<BenchSettings>& settings) {
-  std::set<NamedSettings> seen;
-  std::erase_if(settings, [&](const auto& s) { return !seen.insert(named(s)).second; });
+  std::set<std::string> seen;
+  std::erase_if(settings, [&](const auto& s) { return !seen.insert(named(s).dump()).second; });
+}
+
+std::vector<std::string> along_of(const Block& top) {
+  std::vector<std::string> along;
+  for (const nlohmann::json& value : top.values("along", "views")) {
+    const std::vector<std::string> choices = along_choices();
+    along.push_back(value.is_string() ? value.get<std::string>() : value.dump());
+    if (std::ranges::find(choices, along.back()) == choices.end())
+      fail("{}: 'along' {}: expected one of {}", top.place(), value.dump(), fmt::join(choices, ", "));
+  }
+  return along;
 }
 
 std::vector<std::string> sizes_of(const Block& top) {
-  const auto is_size = [](const std::string& text) {
-    const auto two = two_numbers(text, 'x');
-    const auto side = [](unsigned px) { return px >= 1 && px <= 99999; };
-    if (text.starts_with('0') || text.find("x0") != std::string::npos) return false;
-    return text == "own" || text == "preview" || text == "headset" ||
-           (two && side(two->first) && side(two->second));
-  };
   std::vector<std::string> sizes;
   for (const nlohmann::json& value : top.values("sizes", "own")) {
     if (!value.is_string() || !is_size(value.get<std::string>()))
@@ -152,24 +190,45 @@ std::vector<std::string> sizes_of(const Block& top) {
 
 }  // namespace
 
+bool is_size(const std::string& text) {
+  const auto two = two_numbers(text, 'x');
+  const auto side = [](unsigned px) { return px >= 1 && px <= 99999; };
+  if (text.starts_with('0') || text.find("x0") != std::string::npos) return false;
+  return text == "own" || text == "preview" || text == "headset" ||
+         (two && side(two->first) && side(two->second));
+}
+
+std::vector<std::string> along_choices() {
+  std::vector<std::string> names = {"views", "turn", "still", "sideways"};
+  for (const Motion& motion : head_motions()) names.push_back(motion.name);
+  return names;
+}
+
 Axes parse_axes(const std::string& name, const std::string& text) {
   const nlohmann::json root = parse_json(name, text);
-  const Block top(name, root, {"views", "frames", "repeats", "eyes", "sizes", "settings"});
+  const Block top(
+      name, root,
+      {"views", "training", "frames", "repeats", "contributions", "eyes", "sizes", "along", "settings"});
   Axes axes;
   axes.name = name;
   axes.views = top.one("views", axes.views, 1, 100000);
+  axes.training = top.one("training", axes.training, 0, 100000);
+  axes.contributions = top.yes("contributions");
   axes.frames = top.one("frames", axes.frames, 1, 100000);
   axes.repeats = top.one("repeats", axes.repeats, 1, 1000);
   axes.eyes.clear();
   for (const nlohmann::json& value : top.values("eyes", 1))
     axes.eyes.push_back(top.whole("eyes", value, 1, 2));
   axes.sizes = sizes_of(top);
+  axes.along = along_of(top);
   if (!root.contains("settings") || !root["settings"].is_array() || root["settings"].empty())
     fail("{}: expected a list 'settings' of blocks", name);
   int number = 0;
   for (const nlohmann::json& object : root["settings"]) {
-    const Block block(fmt::format("{}, settings, block {} (counted from 1)", name, ++number), object,
-                      {"tiles", "tile", "th", "precision", "transmittance", "inset", "context", "tolerance"});
+    const Block block(
+        fmt::format("{}, settings, block {} (counted from 1)", name, ++number), object,
+        {"tiles", "tile", "th", "precision", "transmittance", "far", "inset", "context", "order",
+         "projection", "detail", "found_on", "max_drop", "min_psnr", "quality", "tolerance"});
     const std::size_t before = axes.settings.size();
     add_settings(block, axes.settings);
     for (std::size_t i = before; i < axes.settings.size(); ++i) check(block.place(), axes.settings[i]);
@@ -194,10 +253,11 @@ Axes load_axes(const std::string& preset_or_file) {
 }
 
 nlohmann::ordered_json to_json(const Axes& axes) {
-  std::vector<NamedSettings> settings;
+  std::vector<Row> settings;
   for (const BenchSettings& s : axes.settings) settings.push_back(named(s));
-  return object("views", axes.views, "frames", axes.frames, "repeats", axes.repeats, "eyes", axes.eyes,
-                "sizes", axes.sizes, "settings", settings);
+  return object("views", axes.views, "training", axes.training, "frames", axes.frames, "repeats",
+                axes.repeats, "contributions", axes.contributions, "eyes", axes.eyes, "sizes", axes.sizes,
+                "along", axes.along, "settings", settings);
 }
 
 }  // namespace binosplat::lab

@@ -1,16 +1,11 @@
 #pragma once
-// What bench measures, as data: a small JSON file, or one of the presets that come with the program
-// (src/lab/presets).
+// What is measured: which settings, on what. A JSON file, or a preset (src/lab/presets):
 //
-//   {"views": 4, "frames": 30, "repeats": 3, "eyes": [1, 2], "sizes": ["own", "1280x720", "headset"],
-//    "settings": [{"tiles": ["aabb", "ellipse"]},
-//                 {"th": "squared", "transmittance": ["one", "last"], "tolerance": [0.1, 0.2]},
-//                 {"inset": 20, "context": [0.3, 0.4]}]}
+//   {"views": 4, "frames": 30, "repeats": 3, "eyes": [1], "sizes": ["own"], "along": ["views"],
+//    "settings": [{"tiles": ["obb", "ellipse"]}, {"th": "squared", "tolerance": [0.05, 0.1]}]}
 //
-// Every combination of eyes, sizes and each block's lists is measured; a single value stands for a list of
-// one. Blocks have tiles (ellipse), tile (16), th (tau), precision (full), transmittance (one) and tolerance;
-// and, for foveated pictures, inset, degrees, and context (0.4), a share of the pixels along an axis. What is
-// left out is as in brackets, views 4, frames 30, repeats 3, eyes 1, sizes own.
+// Each key of a block of settings (`keys` in axes.cpp) is a value or a list of them; every combination is
+// measured, and what repeats is left out.
 
 #include <nlohmann/json_fwd.hpp>
 #include <string>
@@ -21,14 +16,24 @@
 namespace binosplat::lab {
 
 struct Axes {
-  std::string name;                     // the preset's or the file's
-  int views = 4;                        // of the scene's cameras, spread evenly
-  int frames = 30;                      // timed, a view and repeat
-  int repeats = 3;                      // whose spread is the noise
-  std::vector<int> eyes = {1};          // 1: the camera itself; 2: a pair around it
-  std::vector<std::string> sizes;       // own: the camera's; WxH px; preview or headset (stereo/rig.h)
-  std::vector<BenchSettings> settings;  // without repetition, in the file's order
+  std::string name;             // the preset's or the file's
+  int views = 4;                // of the scene's cameras, spread evenly
+  int training = 0;             // above 0: the views are of those held out, and so many others train
+  int frames = 30;              // timed, a view and repeat; of a motion's stretch those that move
+  int repeats = 3;              // whose spread is the noise
+  bool contributions = false;   // what single Gaussians contribute, too (contributions.h)
+  std::vector<int> eyes = {1};  // 1: the camera itself; 2: a pair around it
+  std::vector<std::string> sizes = {"own"};    // own: the camera's; WxH px; preview or headset (stereo/rig.h)
+  std::vector<std::string> along = {"views"};  // or a motion of along_choices(), or "turn"
+  std::vector<BenchSettings> settings;         // without repetition, in the file's order
 };
+
+/// What is measured along: "views", "turn" (of the head, at one place), "still", the motions of a head
+/// (scene/tour.h), and "sideways", as popping is measured.
+std::vector<std::string> along_choices();
+
+/// Whether a text is one of the sizes.
+bool is_size(const std::string& text);
 
 /// The preset of this name (src/lab/presets), else the file. Throws Error naming the file, the block
 /// and the key for anything that is not as above.

@@ -4,20 +4,21 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <utility>
 
 #include "base/clock.h"
+#include "base/error.h"
 #include "base/statistics.h"
-#include "lab/settings.h"
-#include "lab/timed_rounds.h"
+#include "lab/bench_drawer.h"
+#include "lab/contributions.h"
+#include "lab/times.h"
 #include "measure/comparison.h"
 #include "measure/depth_table.h"
 #include "measure/foveated.h"
 #include "reference/render.h"
 #include "render/frame.h"
+#include "scene/axes.h"
 #include "stereo/disagreement.h"
-#include "stereo/foveate.h"
 
 namespace binosplat::lab {
 
@@ -28,33 +29,13 @@ constexpr double reference_db = 60.0;  // against float64: the bar below which a
 // the search ends; at most half of what the tolerance costs may come from that.
 constexpr double share_db = 3.0;
 
-// The clock has settled when the medians of two successive windows of frames agree.
-constexpr std::size_t window = 10;
-constexpr double agreement = 0.03;
-constexpr double warm_up_ms = 3000.0;
-
 const glm::vec3 black(0.0f);
 
-/// Draws by settings, whole pictures or foveated ones.
-class BenchDrawer {
- public:
-  BenchDrawer(std::shared_ptr<render::GpuModel> model, const BenchSettings& settings)
-      : foveated_(std::move(model)), settings_(settings) {}
+// The float64 analysis of contributions takes seconds a view.
+constexpr std::size_t contribution_views = 3;
+constexpr float paper_far = 100.0f;  // world units: where AdaGScale's table by depth ends
 
-  render::FrameReport draw(std::span<const shared::View> eyes) {
-    return settings_.foveation ? foveated_.draw(eyes, *settings_.foveation, settings_)
-                               : foveated_.frame().draw(eyes, settings_);
-  }
-  std::vector<Picture> read_pictures() {
-    return settings_.foveation ? foveated_.read_pictures() : foveated_.frame().read_pictures();
-  }
-  stereo::FoveatedFrame& foveated() { return foveated_; }
-  render::Frame& frame() { return foveated_.frame(); }
-
- private:
-  stereo::FoveatedFrame foveated_;
-  BenchSettings settings_;
-};
+double capped(double db) { return std::min(db, equal_db); }
 
 bool is_finite(const Picture& picture) {
   return std::all_of(picture.colour.begin(), picture.colour.end(), [](const glm::vec4& v) {
@@ -83,65 +64,36 @@ measure::Gaze gaze_of(const shared::View& eye) {
   return {eye.lens[2], eye.lens[3], glm::degrees(2.0 * std::atan(0.5 * eye.width / eye.lens[0]))};
 }
 
-/// Of pictures of one size, one number each by pixel.
-SeenNumbers pooled(const std::vector<measure::FoveatedComparison>& found) {
-  SeenNumbers seen{.visible = 0.0};
+/// Of pictures of one size, one number each by pixel: of all, and by rings around where the eye looks.
+double pooled(const std::vector<measure::FoveatedComparison>& found, std::vector<Row>& details) {
+  struct OfRing {
+    double to = 0.0, share = 0.0, squared_error = 0.0, visible = 0.0;
+  };
+  std::map<double, OfRing> rings;
+  double visible = 0.0;
   const auto pictures = static_cast<double>(found.size());
-  std::map<double, RingNumbers> rings;
   for (const measure::FoveatedComparison& picture : found) {
-    seen.visible += picture.visible / pictures;
+    visible += picture.visible / pictures;
     for (const measure::Ring& ring : picture.rings) {
-      RingNumbers& of_all =
-          rings.try_emplace(ring.from, RingNumbers{.psnr_db = 0.0, .visible = 0.0}).first->second;
-      of_all.from_degrees = ring.from;
-      of_all.to_degrees = ring.to;
+      OfRing& of_all = rings[ring.from];
+      of_all.to = ring.to;
       of_all.share += ring.share / pictures;
-      of_all.psnr_db += ring.share / pictures * std::pow(10.0, -0.1 * ring.psnr);  // squared errors, for now
+      of_all.squared_error += ring.share / pictures * std::pow(10.0, -0.1 * ring.psnr);
       of_all.visible += ring.share / pictures * ring.visible;
     }
   }
-  for (auto& [from, ring] : rings) {
-    ring.psnr_db = -10.0 * std::log10(ring.psnr_db / ring.share);
-    ring.visible /= ring.share;
-    seen.rings.push_back(ring);
+  for (const auto& [from, ring] : rings) {
+    details.push_back(row_of("of", "ring", "from", from, "to", ring.to, "share", 100.0 * ring.share,
+                             "psnr_db", capped(-10.0 * std::log10(ring.squared_error / ring.share)), "seen",
+                             100.0 * ring.visible / ring.share));
   }
-  return seen;
+  return 100.0 * visible;
 }
 
 double mean_signed(const Image& a, const Image& b) {
   double sum = 0.0;
   for (std::size_t k = 0; k < a.data.size(); ++k) sum += double(a.data[k]) - double(b.data[k]);
   return sum / static_cast<double>(a.data.size());
-}
-
-/// Draws until the GPU's clock has settled. Returns whether it did in time; a software renderer's always has.
-bool warm_up(BenchDrawer& drawer, const BenchView& view, bool software) {
-  const auto start = Clock::now();
-  int drawn = 0;
-  const auto goes_on = [&] {
-    return drawn < render::settling_frames || (!software && ms_since(start) < warm_up_ms);
-  };
-  double last = 0.0;
-  while (goes_on()) {
-    std::vector<double> times;
-    for (; times.size() < window && goes_on(); ++drawn) times.push_back(drawer.draw(view.eyes).total_ms);
-    const double now = quantile(times, 0.5);
-    if (times.size() == window && std::abs(now - last) <= agreement * now) return true;
-    last = now;
-  }
-  return software;
-}
-
-double value(double number) { return number; }
-double value(std::uint64_t number) { return static_cast<double>(number); }
-double value(const std::optional<double>& number) { return number.value_or(NAN); }
-
-/// Mean of a number over the views; not finite where one has none.
-template <typename T>
-double mean_of(const std::vector<ViewNumbers>& views, T ViewNumbers::*number) {
-  double sum = 0.0;
-  for (const ViewNumbers& view : views) sum += value(view.*number);
-  return sum / static_cast<double>(views.size());
 }
 
 /// Mean over the pixels of all eyes.
@@ -169,75 +121,167 @@ void add_work(const render::Frame& frame, const render::FrameReport& report, std
   }
 }
 
-ExactNumbers summary_of_quality(const std::vector<ViewNumbers>& views) {
-  const ViewNumbers& poorest =
-      *std::min_element(views.begin(), views.end(), [](const ViewNumbers& a, const ViewNumbers& b) {
-        return (std::isfinite(a.psnr_db) ? a.psnr_db : INFINITY) <
-               (std::isfinite(b.psnr_db) ? b.psnr_db : INFINITY);
-      });
-  return {mean_of(views, &ViewNumbers::psnr_db),
-          poorest.psnr_db,
-          poorest.name,
-          mean_of(views, &ViewNumbers::ssim),
-          mean_of(views, &ViewNumbers::flip),
-          mean_of(views, &ViewNumbers::signed_mean),
-          mean_of(views, &ViewNumbers::disagreement_db)};
+constexpr const char* quality_numbers[] = {
+    "psnr_db",       "ssim",    "flip",           "signed_error",  "disagreement_db", "pairs",
+    "visible",       "alphas",  "alphas_visible", "pairs_removed", "reported_db",     "gaussians",
+    "photo_psnr_db", "drop_db", "photo_ssim",     "photo_flip",    "attempts"};
+
+/// The means of what was found of views, and the worst of them.
+void put_means(const std::vector<Row>& views, Row& row) {
+  for (const char* name : quality_numbers) put(row, name, mean_number(views, name));
+  const auto psnr = [](const Row& view) {
+    const double db = number(view, "psnr_db");
+    return std::isnan(db) ? INFINITY : db;
+  };
+  const Row& worst = *std::ranges::min_element(views, {}, psnr);
+  if (!worst.contains("psnr_db")) return;
+  put(row, "worst_psnr_db", number(worst, "psnr_db"), "worst_view", text(worst, "view"));
+  const auto photos = std::ranges::count_if(views, [](const Row& v) { return v.contains("photo_psnr_db"); });
+  if (photos > 0) put(row, "photo_views", photos);
+}
+
+/// Draws until the GPU's clock has settled: the medians of two successive windows of frames agree. Returns
+/// whether it did in time; a software renderer's always has.
+bool warm_up(BenchDrawer& drawer, const BenchView& view, bool software) {
+  constexpr std::size_t window = 10;
+  constexpr double agreement = 0.03, at_most_ms = 3000.0;
+  const auto start = Clock::now();
+  int drawn = 0;
+  const auto goes_on = [&] {
+    return drawn < render::settling_frames || (!software && ms_since(start) < at_most_ms);
+  };
+  double last = 0.0;
+  while (goes_on()) {
+    std::vector<double> times;
+    for (; times.size() < window && goes_on(); ++drawn) times.push_back(drawer.draw(view.eyes).total_ms);
+    const double now = quantile(times, 0.5);
+    if (times.size() == window && std::abs(now - last) <= agreement * now) return true;
+    last = now;
+  }
+  return software;
 }
 
 }  // namespace
 
-Bench::Bench(gl::Context& context, const Model& model, std::vector<BenchView> views,
-             const shared::View& small, const BenchEffort& effort)
-    : model_(model),
-      gpu_model_(std::make_shared<render::GpuModel>(context, model)),
-      views_(std::move(views)),
-      small_(small),
-      effort_(effort) {}
+const std::vector<shared::View>& BenchCase::first() const {
+  return views.empty() ? stretches.front().frames.front() : views.front().eyes;
+}
 
-const std::vector<Bench::Exact>& Bench::exact() {
-  if (!exact_.empty()) return exact_;
-  render::Frame frame(gpu_model_);
-  for (const BenchView& view : views_) {
-    frame.draw(view.eyes);
-    Exact& one = exact_.emplace_back();
+Bench::Bench(gl::Context& context, std::function<const Model&()> load, BenchCase what,
+             const BenchEffort& effort)
+    : context_(context), load_(std::move(load)), what_(std::move(what)), effort_(effort) {}
+
+Bench::~Bench() = default;
+
+const std::shared_ptr<render::GpuModel>& Bench::gpu_model() {
+  if (!gpu_model_) gpu_model_ = std::make_shared<render::GpuModel>(context_, load_());
+  return gpu_model_;
+}
+
+bool Bench::has_finest(Row& row) {
+  if (no_finest_.empty()) {
+    try {
+      gpu_model();
+    } catch (const Error& error) {
+      if (!what_.follow || error.code() != ExitCode::out_of_memory) throw;
+      no_finest_ = error.what();
+    } catch (const std::bad_alloc&) {
+      if (!what_.follow) throw;
+      no_finest_ = "out of memory";
+    }
+  }
+  if (!no_finest_.empty()) put(row, "no_exact", "the finest levels cannot be drawn: " + no_finest_);
+  return no_finest_.empty();
+}
+
+BenchDrawer Bench::drawer(const BenchSettings& settings) {
+  if (settings.detail) return {what_.follow(*settings.detail), settings};
+  return {{gpu_model(), {}}, settings};
+}
+
+const std::vector<Bench::Exact>& Bench::exact(const BenchSettings& settings) {
+  std::vector<Exact>& all = exact_[seen_by(settings)];
+  if (!all.empty()) return all;
+  render::Frame frame(gpu_model());
+  for (const BenchView& view : what_.views) {
+    Exact& one = all.emplace_back();
+    one.pairs = static_cast<double>(
+        frame.draw(view.eyes, {.order = settings.order, .projection = settings.projection}).pairs);
     one.pictures = frame.read_pictures();
     for (const Picture& picture : one.pictures) one.eyes.push_back(composite(picture, black));
     if (one.pictures.size() < 2) one.pictures.clear();
     if (view.photo) one.photo_psnr = measure::photo_psnr(one.eyes.front(), view.exposure, *view.photo);
   }
-  return exact_;
+  return all;
 }
 
-const DepthTable& Bench::depth_table() {
-  if (!depth_table_.bounds.empty()) return depth_table_;
-  std::vector<shared::View> views;
-  for (const BenchView& view : views_) views.push_back(view.eyes.front());
-  render::Frame frame(gpu_model_);
-  depth_table_ = measure::measure_depth_table(frame, views, {.far = effort_.far});
-  return depth_table_;
+const DepthTable& Bench::depth_table(const std::optional<float>& far) {
+  DepthTable& table = tables_[far];
+  if (!table.bounds.empty()) return table;
+  std::vector<shared::View> all, views;
+  for (const CalibrationView& view : what_.training)
+    all.push_back(make_view(into_axes(view.camera, load_().axes), what_.near_plane));
+  if (all.empty()) {
+    for (const BenchView& view : what_.views) all.push_back(view.eyes.front());
+    for (const Stretch& stretch : what_.stretches) {
+      for (const auto* of : {&stretch.frames.front(), &stretch.frames.back()})
+        all.insert(all.end(), of->begin(), of->end());
+    }
+  }
+  for (const std::size_t k : spread_evenly(all.size(), measure::depth_table_views)) views.push_back(all[k]);
+  render::Frame frame(gpu_model());
+  return table = measure::measure_depth_table(frame, views, {.far = far});
+}
+
+Calibrator& Bench::calibrator(bool training, bool drop) {
+  std::unique_ptr<Calibrator>& found = calibrators_[{training, drop}];
+  using Kind = CalibrationTarget::Kind;
+  if (!found)
+    found = std::make_unique<Calibrator>(context_, load_(), training ? what_.training : what_.tested,
+                                         what_.near_plane, drop ? Kind::drop : Kind::quality);
+  return *found;
+}
+
+void Bench::find_tolerance(BenchSettings& settings, Row& row) {
+  settings.tolerance = static_cast<float>(render::threshold_rules[settings.th].careful_tolerance);
+  const CalibrationEntry found =
+      calibrator(settings.found_on_training, settings.max_drop.has_value())
+          .find(settings, settings.max_drop ? *settings.max_drop : *settings.min_psnr);
+  settings.tolerance = static_cast<float>(found.tolerance);
+  put(row, "found_tolerance", found.tolerance, "found_db", found.reached_db);
 }
 
 double Bench::work_ms(const BenchSettings& settings, std::size_t points) {
-  BenchDrawer drawer(gpu_model_, settings);
+  if (what_.turned) return 0.0;
+  BenchSettings first = settings;
+  first.transmittance = first.transmittance == TRANSMITTANCE_DEPTH ? TRANSMITTANCE_ONE : first.transmittance;
+  BenchDrawer drawer = this->drawer(first);
   double ms = 0.0;
   for (int n = 0; n < 2; ++n) {  // in the first one drivers compile their programs
     const auto start = Clock::now();
-    drawer.draw(views_.front().eyes);
+    drawer.draw(what_.first());
     ms = ms_since(start);
   }
-  const int frames = effort_.repeats * (effort_.frames + render::settling_frames) + render::settling_frames;
-  return ms * frames * static_cast<double>(views_.size() * points);
+  double frames = 0.0;
+  for (const Stretch& stretch : what_.stretches)
+    frames += static_cast<double>(stretch.frames.size()) * (effort_.repeats + 1);
+  if (what_.stretches.empty())
+    frames = static_cast<double>(what_.views.size()) *
+             (effort_.repeats * (effort_.frames + render::settling_frames) + render::settling_frames);
+  return ms * frames * static_cast<double>(points);
 }
 
 // What a threshold by measurements draws has no reference; that the frame's other stages are right is seen
-// with all others.
+// with all others. Levels of detail are compared with the finest.
 std::string Bench::verify(const BenchSettings& settings) {
-  render::Frame frame(gpu_model_);
-  if (settings.transmittance == TRANSMITTANCE_ONE) {
-    frame.draw(std::span(&small_, 1), settings);
+  const bool by_reference = settings.transmittance == TRANSMITTANCE_ONE && settings.quality == 0.0f &&
+                            !settings.detail && !settings.order && !settings.projection;
+  if (by_reference) {
+    render::Frame frame(gpu_model());
+    frame.draw(std::span(&what_.small, 1), settings);
     const Image drawn = composite(frame.read_pictures().front(), black);
     const auto judge = [&](const reference::Settings& by) {
-      return composite(reference::render(model_, small_, by), black);
+      return composite(reference::render(load_(), what_.small, by), black);
     };
     const Image judged = judge({settings.tiles, settings.tile_size, settings.th, settings.tolerance, {}});
     const double db = measure::psnr(drawn, judged);
@@ -246,10 +290,12 @@ std::string Bench::verify(const BenchSettings& settings) {
       needed = std::min(needed, measure::psnr(judged, judge({})) + share_db);
     if (!(db >= needed))
       return fmt::format("{} x {} px differ from the float64 reference: {:.1f} dB, expected {:.1f} or more",
-                         small_.width, small_.height, db, needed);
+                         what_.small.width, what_.small.height, db, needed);
   }
-  const BenchView& view = views_.front();
-  BenchDrawer drawer(gpu_model_, settings);
+  if (what_.views.empty()) return "";
+  const BenchView& view = what_.views.front();
+  BenchDrawer drawer = this->drawer(settings);
+  drawer.bring(view.eyes);
   drawer.draw(view.eyes);
   const std::vector<Picture> pictures = drawer.read_pictures();
   for (const Picture& picture : pictures) {
@@ -261,130 +307,146 @@ std::string Bench::verify(const BenchSettings& settings) {
   of_inset.th = TH_TAU;
   for (std::size_t eye = 0; settings.foveation && is_exact(of_inset) && eye < pictures.size(); ++eye) {
     const stereo::FoveatedEye& parts = drawer.foveated().parts()[eye];
-    if (!same_inset(composite(pictures[eye], black), exact().front().eyes[eye], parts))
+    if (!same_inset(composite(pictures[eye], black), exact(settings).front().eyes[eye], parts))
       return view.name + ": the inset is not the exact picture's";
   }
-  if (settings.transmittance != TRANSMITTANCE_ONE) return "";
+  if (settings.transmittance != TRANSMITTANCE_ONE || settings.quality > 0.0f) return "";
   drawer.draw(view.eyes);
   return same_bits(drawer.read_pictures(), pictures) ? "" : view.name + ": two frames differ";
 }
 
-ViewNumbers Bench::compare(const BenchView& view, const Exact& exact,
-                           const std::vector<Picture>& drawn) const {
-  ViewNumbers v{view.name, 0.0, 0.0, 0.0, 0.0};
+Row Bench::compare(const BenchView& view, const Exact& exact, const std::vector<Picture>& drawn) const {
+  double squared_error = 0.0, ssim = 0.0, flip = 0.0, signed_error = 0.0;
   const auto eyes = static_cast<double>(drawn.size());
   for (std::size_t eye = 0; eye < drawn.size(); ++eye) {
     const Image image = composite(drawn[eye], black);
-    v.psnr_db += measure::psnr(image, exact.eyes[eye]) / eyes;
-    v.ssim += measure::ssim(image, exact.eyes[eye]) / eyes;
-    v.flip += measure::flip(image, exact.eyes[eye], effort_.ppd) / eyes;
-    v.signed_mean += mean_signed(image, exact.eyes[eye]) / eyes;
+    squared_error += std::pow(10.0, -0.1 * measure::psnr(image, exact.eyes[eye])) / eyes;
+    ssim += measure::ssim(image, exact.eyes[eye]) / eyes;
+    flip += measure::flip(image, exact.eyes[eye], effort_.ppd) / eyes;
+    signed_error += mean_signed(image, exact.eyes[eye]) / eyes;
   }
+  Row row = row_of("psnr_db", capped(-10.0 * std::log10(squared_error)), "ssim", ssim, "flip", flip,
+                   "signed_error", signed_error);
   if (!exact.pictures.empty()) {
-    const std::array<shared::View, 2> eyes_of_view = {view.eyes[0], view.eyes[1]};
-    v.disagreement_db = stereo::disagreement(eyes_of_view, exact.pictures, drawn).db;
+    const std::array<shared::View, 2> both = {view.eyes[0], view.eyes[1]};
+    put(row, "disagreement_db", capped(stereo::disagreement(both, exact.pictures, drawn).db));
   }
   if (view.photo) {
     const Image image = exposed(composite(drawn.front(), black), view.exposure);
-    v.photo_psnr_db = measure::psnr(quantised(image), quantised(*view.photo));
-    v.drop_db = *exact.photo_psnr - *v.photo_psnr_db;
-    v.photo_ssim = measure::ssim(quantised(image), quantised(*view.photo));
-    v.photo_flip = measure::flip(image, *view.photo, effort_.ppd);
+    const double db = measure::psnr(quantised(image), quantised(*view.photo));
+    put(row, "photo_psnr_db", db, "drop_db", *exact.photo_psnr - db, "photo_ssim",
+        measure::ssim(quantised(image), quantised(*view.photo)), "photo_flip",
+        measure::flip(image, *view.photo, effort_.ppd));
   }
-  return v;
+  return row;
 }
 
-void Bench::time(const BenchSettings& settings, BenchNumbers& point) {
-  BenchDrawer drawer(gpu_model_, settings);
-  std::vector<Timed> all;
+void Bench::time_views(BenchDrawer& drawer, Row& row) {
+  const bool software = context_.software();
   bool settled = true;
   render::FrameReport last;
-  for (const BenchView& view : views_) {
-    const auto begin = [&](int repeat) {
-      if (repeat == 0) settled = warm_up(drawer, view, gpu_model_->context().software()) && settled;
-      for (int n = 0; repeat > 0 && n < render::settling_frames; ++n) drawer.draw(view.eyes);
-    };
-    all.push_back({effort_.frames, begin, [&](int) { return last = drawer.draw(view.eyes); }});
-  }
-  const auto rounds = timed_rounds(gpu_model_->context(), effort_.repeats, all, [] {});
-  std::vector<double> repeats, frame_ms, submit_ms;  // repeats: means over the views
+  std::vector<double> repeats, cpu_repeats, all_ms, submit_ms;  // repeats: means over the views
   std::vector<Typical> turns;
-  for (std::size_t repeat = 0; repeat < rounds.front().size(); ++repeat) {
+  for (int repeat = 0; repeat < effort_.repeats; ++repeat) {
     std::vector<Typical> of_views;
-    for (const auto& of_view : rounds) {
-      of_views.push_back(typical_of(of_view[repeat]));
-      for (const render::FrameReport& report : of_view[repeat]) {
-        frame_ms.push_back(report.total_ms);
+    double cpu = 0.0;
+    for (const BenchView& view : what_.views) {
+      drawer.bring(view.eyes);
+      if (repeat == 0) settled = warm_up(drawer, view, software) && settled;
+      for (int n = 0; repeat > 0 && n < render::settling_frames; ++n) drawer.draw(view.eyes);
+      Reports frames;
+      const double cpu_before = process_ms();
+      for (int n = 0; n < effort_.frames; ++n) frames.push_back(last = drawer.draw(view.eyes));
+      cpu += (process_ms() - cpu_before) / static_cast<double>(frames.size() * what_.views.size());
+      of_views.push_back(typical_of(frames));
+      for (const render::FrameReport& report : frames) {
+        all_ms.push_back(report.total_ms);
         submit_ms.push_back(report.cpu.submit);
       }
     }
     repeats.push_back(mean_of(of_views).frame_ms);
+    cpu_repeats.push_back(cpu);
     turns.insert(turns.end(), of_views.begin(), of_views.end());
   }
-  const auto [least, most] = std::minmax_element(repeats.begin(), repeats.end());
-  point.frame_ms = mean(repeats);
-  point.p99_ms = quantile(frame_ms, 0.99);
-  point.repeats_ms = repeats;
-  if (effort_.repeats > 1) point.noise_ms = (*most - *least) / 2;
-  point.settled = settled;
-  point.frames = frame_ms.size();
-  point.gpu_bytes = last.gpu_bytes;
-  point.submit_ms = quantile(submit_ms, 0.5);
-  point.stages = mean_of(turns).stages;
+  put(row, "settled", settled, "gpu_bytes", last.gpu_bytes, "submit_ms", quantile(submit_ms, 0.5));
+  put_times(repeats, software ? cpu_repeats : std::vector<double>(), all_ms, row);
+  for (const gl::StageTime& stage : mean_of(turns).stages) put(row, stage_column(stage.name), stage.ms);
 }
 
-void Bench::judge(const BenchSettings& settings, BenchNumbers& point) {
-  BenchDrawer drawer(gpu_model_, settings);
-  std::vector<ViewNumbers> photographed;
+void Bench::judge_views(const BenchSettings& settings, BenchDrawer& drawer, Point& point) {
+  std::vector<Row> views;
   std::vector<measure::FoveatedComparison> seen;
   FrameWork work{.precision = settings.precision};
-  for (std::size_t v = 0; v < views_.size(); ++v) {
+  const bool finest = has_finest(point.row);
+  for (std::size_t v = 0; v < what_.views.size(); ++v) {
+    const BenchView& view = what_.views[v];
+    const LevelsBrought levels = drawer.bring(view.eyes);
     render::FrameReport report;
-    for (int n = 0; n < render::settling_frames; ++n) report = drawer.draw(views_[v].eyes);
+    for (int n = 0; n < render::settling_frames; ++n) report = drawer.draw(view.eyes);
     const std::vector<Picture> drawn = drawer.read_pictures();
-    ViewNumbers& view = point.views.emplace_back(compare(views_[v], exact()[v], drawn));
-    for (std::size_t eye = 0; effort_.seen && eye < drawn.size(); ++eye) {
-      seen.push_back(measure::compare_foveated(composite(drawn[eye], black), exact()[v].eyes[eye],
-                                               gaze_of(views_[v].eyes[eye])));
+    Row& row = views.emplace_back(row_of("of", "view", "view", view.name));
+    if (finest) {
+      const Exact& exact = this->exact(settings)[v];
+      row.update(compare(view, exact, drawn));
+      put(row, "pairs_removed", 100.0 * (1.0 - static_cast<double>(report.pairs) / exact.pairs));
+      for (std::size_t eye = 0; effort_.seen && eye < drawn.size(); ++eye)
+        seen.push_back(measure::compare_foveated(composite(drawn[eye], black), exact.eyes[eye],
+                                                 gaze_of(view.eyes[eye])));
     }
-    view.pairs = report.pairs;
-    view.visible = report.visible;
+    put(row, "pairs", report.pairs, "visible", report.visible, "gaussians", levels.gaussians, "reported_db",
+        levels.predicted_db);
+    if (settings.quality > 0.0f) put(row, "reported_db", capped(report.quality), "attempts", report.attempts);
     if (v == 0) point.picture = for_page(composite(drawn.front(), black));
-    if (!settings.foveation) {  // whose pixels are of two pictures
-      add_work(drawer.frame(), report, views_.size(), work);
-      view.alphas = mean_of(drawer.frame().read_debug_view(SHOW_ALPHAS));
-      view.alphas_visible = mean_of(drawer.frame().read_debug_view(SHOW_VISIBLE));
-    }
-    if (views_[v].photo) photographed.push_back(view);
+    if (settings.foveation) continue;  // whose pixels are of two pictures
+    add_work(drawer.frame(), report, what_.views.size(), work);
+    put(row, "alphas", mean_of(drawer.frame().read_debug_view(SHOW_ALPHAS)), "alphas_visible",
+        mean_of(drawer.frame().read_debug_view(SHOW_VISIBLE)));
   }
-  point.pairs = mean_of(point.views, &ViewNumbers::pairs);
-  point.visible = mean_of(point.views, &ViewNumbers::visible);
-  point.alphas = mean_of(point.views, &ViewNumbers::alphas);
-  point.alphas_visible = mean_of(point.views, &ViewNumbers::alphas_visible);
-  if (!seen.empty()) point.seen = pooled(seen);
-  if (effort_.peaks && !settings.foveation) {
-    work.gaussians = static_cast<double>(model_.count());
-    work.degree = model_.degree;
-    work.alphas = point.alphas * work.pixels;
-    work.stages = point.stages;
-    point.profile = profile(work, *effort_.peaks);
+  put_means(views, point.row);
+  point.details = std::move(views);
+  if (!seen.empty()) put(point.row, "seen", pooled(seen, point.details));
+  if (!effort_.peaks || settings.foveation) return;
+  work.gaussians = static_cast<double>(load_().count());
+  work.degree = load_().degree;
+  work.alphas = number(point.row, "alphas") * work.pixels;
+  for (const auto& [name, ms] : point.row.items()) {
+    if (const auto stage = stage_of(name)) work.stages.push_back({*stage, ms.get<double>()});
   }
-  point.exact = summary_of_quality(point.views);
-  if (!photographed.empty()) {
-    point.photos = {photographed.size(), mean_of(photographed, &ViewNumbers::photo_psnr_db),
-                    mean_of(photographed, &ViewNumbers::drop_db),
-                    mean_of(photographed, &ViewNumbers::photo_ssim),
-                    mean_of(photographed, &ViewNumbers::photo_flip)};
+  for (const StageFloor& floor : profile(work, *effort_.peaks)) {
+    Row& row = point.details.emplace_back(row_of("of", "floor", "stage", floor.stage, "frame_ms", floor.ms));
+    put(row, "bytes", floor.bytes, "operations", floor.operations, "floor_ms", floor.floor_ms, "floor_share",
+        100.0 * floor.share);
   }
 }
 
-BenchNumbers Bench::measure(BenchSettings settings) {
-  if (settings.transmittance == TRANSMITTANCE_DEPTH) settings.depth_table = depth_table();
-  BenchNumbers point{.device = device_text(gpu_model_->context()), .problem = verify(settings)};
-  if (!point.problem.empty()) return point;
-  time(settings, point);
-  judge(settings, point);
+Point Bench::measure(BenchSettings settings) {
+  Point point{row_of("device", device_text(context_))};
+  if (settings.transmittance == TRANSMITTANCE_DEPTH) settings.depth_table = depth_table(settings.far);
+  if (settings.finds_tolerance()) find_tolerance(settings, point.row);
+  if (what_.turned) {
+    measure_turns(settings, point);
+    return point;
+  }
+  if (const std::string problem = verify(settings); !problem.empty()) {
+    put(point.row, "problem", problem);
+    return point;
+  }
+  BenchDrawer drawer = this->drawer(settings);
+  if (!what_.stretches.empty()) {
+    measure_frames(settings, drawer, point);
+  } else {
+    time_views(drawer, point.row);
+    judge_views(settings, drawer, point);
+  }
   return point;
+}
+
+Point Bench::contributions(const std::function<void()>& progress) {
+  std::vector<BenchView> some;
+  for (const std::size_t v : spread_evenly(what_.views.size(), contribution_views))
+    some.push_back(what_.views[v]);
+  return {row_of("device", device_text(context_)),
+          lab::contributions(load_(), some, depth_table(paper_far), depth_table({}), progress)};
 }
 
 std::vector<std::size_t> spread_evenly(std::size_t all, std::size_t count) {

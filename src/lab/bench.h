@@ -1,80 +1,86 @@
 #pragma once
-// One point of the chart: a way to draw, first verified, then timed, then compared with the exact picture and
-// with the photos.
+// One point of a measurement: a way to draw, first verified, then timed, then compared with exact pictures
+// and with photos.
 
+#include <functional>
+#include <map>
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
-#include "base/image.h"
 #include "gl/context.h"
-#include "lab/bench_results.h"
+#include "lab/bench_case.h"
+#include "lab/exact_frames.h"
+#include "lab/results.h"
 #include "lab/settings.h"
-#include "measure/flip.h"
-#include "render/gpu_model.h"
 #include "scene/model.h"
-#include "shared/types.h"
 
 namespace binosplat::lab {
 
-/// What one frame draws: a camera by itself, or both eyes.
-struct BenchView {
-  std::string name;
-  std::vector<shared::View> eyes;
-  std::optional<Image> photo;  // of the only eye, in its size
-  glm::mat4x3 exposure{1.0f};  // of pictures, before they are compared with it
-};
+class BenchDrawer;
 
-struct BenchEffort {
-  int frames = 30;                               // timed, a view and repeat
-  int repeats = 3;                               // each a pass over all views; their spread is the noise
-  double ppd = measure::flip_pixels_per_degree;  // for FLIP
-  std::optional<Peaks> peaks;                    // of the GPU: whole pictures get a profile
-  bool seen = false;                             // what eyes see that look along their axes
-  std::optional<float> far = {};                 // where the table by depth ends, world units; none: fits
-};
-
-/// The points that share a model, its views and their size. What is exact is drawn once, at first use.
+/// The points that share a model and what they are measured on. What is exact is drawn once, at first use.
 class Bench {
  public:
-  /// `small` is a view of few pixels, in which the GPU is compared with the float64 reference. The context
-  /// and the model must outlive the bench.
-  Bench(gl::Context& context, const Model& model, std::vector<BenchView> views, const shared::View& small,
-        const BenchEffort& effort);
+  /// `load` returns the model, at its finest levels, which outlives the bench; as the context does.
+  Bench(gl::Context& context, std::function<const Model&()> load, BenchCase what, const BenchEffort& effort);
+  ~Bench();
 
   /// About how long so many points will take that are like this one, in ms. Draws two frames.
   double work_ms(const BenchSettings& settings, std::size_t points);
 
   /// A point that fails verification is not timed: it has a problem instead. TRANSMITTANCE_DEPTH goes by a
-  /// table of the bench's own views. Throws Error where the GPU cannot draw the views at all.
-  BenchNumbers measure(BenchSettings settings);
+  /// table of the views for training, or of the bench's own. Throws Error where the GPU cannot draw the views
+  /// at all.
+  Point measure(BenchSettings settings);
+
+  /// What single Gaussians contribute (contributions.h), as details; with bounds of the paper's table.
+  Point contributions(const std::function<void()>& progress = {});
 
  private:
-  /// A view's exact pictures by eye, over black; and what they are worth against the photo.
+  using Seen = std::pair<int, int>;  // order, projection; -1: the model's
+  static Seen seen_by(const BenchSettings& settings) {
+    return {settings.order.value_or(-1), settings.projection.value_or(-1)};
+  }
+
+  /// A view's exact pictures by eye; and what they are worth against the photo.
   struct Exact {
-    std::vector<Image> eyes;
-    std::vector<Picture> pictures;     // of two eyes, for their disagreement
+    std::vector<Picture> pictures;
+    std::vector<Image> eyes;  // the same over black
+    double pairs = 0.0;
     std::optional<double> photo_psnr;  // dB, 8 bits
   };
 
-  const std::vector<Exact>& exact();
-  const DepthTable& depth_table();
+  const std::shared_ptr<render::GpuModel>& gpu_model();
+  /// Whether the finest levels can be drawn; why not goes into the row.
+  bool has_finest(Row& row);
+  /// Of the order and projection that the settings ask for.
+  const std::vector<Exact>& exact(const BenchSettings& settings);
+  ExactFrames& exact_frames(const BenchSettings& settings);
+  const DepthTable& depth_table(const std::optional<float>& far);
+  Calibrator& calibrator(bool training, bool drop);
+  BenchDrawer drawer(const BenchSettings& settings);
+  void find_tolerance(BenchSettings& settings, Row& row);
   std::string verify(const BenchSettings& settings);
-  void time(const BenchSettings& settings, BenchNumbers& point);
-  void judge(const BenchSettings& settings, BenchNumbers& point);
-  ViewNumbers compare(const BenchView& view, const Exact& exact, const std::vector<Picture>& drawn) const;
 
-  const Model& model_;
-  std::shared_ptr<render::GpuModel> gpu_model_;
-  std::vector<BenchView> views_;
-  shared::View small_;
+  void time_views(BenchDrawer& drawer, Row& row);
+  void judge_views(const BenchSettings& settings, BenchDrawer& drawer, Point& point);
+  Row compare(const BenchView& view, const Exact& exact, const std::vector<Picture>& drawn) const;
+  void measure_frames(const BenchSettings& settings, BenchDrawer& drawer, Point& point);
+  void time_frames(BenchDrawer& drawer, Point& point);
+  void measure_turns(const BenchSettings& settings, Point& point);
+
+  gl::Context& context_;
+  std::function<const Model&()> load_;
+  BenchCase what_;
   BenchEffort effort_;
-  std::vector<Exact> exact_;
-  DepthTable depth_table_;  // of the views, at first use
+  std::shared_ptr<render::GpuModel> gpu_model_;
+  std::string no_finest_;  // why the finest levels cannot be drawn
+  std::map<Seen, std::vector<Exact>> exact_;
+  std::unique_ptr<ExactFrames> exact_frames_;
+  Seen exact_frames_seen_ = {-1, -1};
+  std::map<std::optional<float>, DepthTable> tables_;
+  std::map<std::pair<bool, bool>, std::unique_ptr<Calibrator>> calibrators_;  // by calibrator()'s two
 };
-
-/// `count` of `all` things, spread evenly, first and last among them; all where there are no more.
-std::vector<std::size_t> spread_evenly(std::size_t all, std::size_t count);
 
 }  // namespace binosplat::lab

@@ -7,7 +7,7 @@
 #include "base/error.h"
 #include "base/statistics.h"
 #include "lab/fields.h"
-#include "lab/timed_rounds.h"
+#include "lab/times.h"
 #include "measure/search.h"
 #include "render/squared_error.h"
 #include "scene/axes.h"
@@ -80,7 +80,7 @@ Calibrator::Cost Calibrator::cost(const render::FrameSettings& settings) {
   };
   if (!keep_) return measured();
   return keep_(object("views", names_, "drop", kind_ == CalibrationTarget::Kind::drop, "settings",
-                      to_json(BenchSettings(settings)), "table", settings.depth_table.bounds, "far",
+                      named(BenchSettings(settings)), "table", settings.depth_table.bounds, "far",
                       settings.depth_table.far)
                    .dump(-1, ' ', false, ordered_json::error_handler_t::replace),
                measured);

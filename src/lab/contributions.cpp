@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "base/statistics.h"
-#include "lab/settings.h"
 #include "measure/comparison.h"
 #include "reference/render.h"
+#include "reference/skipping.h"
 
 namespace binosplat::lab {
 
@@ -44,14 +44,9 @@ std::array<std::vector<double>, known.size()> bounds_by(const std::vector<refere
   return bounds;
 }
 
-Spread spread(const std::vector<double>& values) {
-  if (values.empty()) return {};
-  return {quantile(values, 0.5), quantile(values, 0.9), quantile(values, 1.0)};
-}
-
-std::vector<DepthBin> bins_by_depth(const std::vector<ShownGaussian>& shown, const DepthTable& table) {
-  std::vector<DepthBin> bins;
-  if (shown.empty()) return bins;
+/// max(T) of the Gaussians in each bin of depth, up to where 95 % of what is drawn lies nearer.
+void add_by_depth(const std::vector<ShownGaussian>& shown, const DepthTable& table, std::vector<Row>& rows) {
+  if (shown.empty()) return;
   std::vector<double> depths;
   for (const ShownGaussian& one : shown) depths.push_back(one.depth);
   const double far = quantile(depths, 0.95), width = far / depth_bins;
@@ -63,56 +58,72 @@ std::vector<DepthBin> bins_by_depth(const std::vector<ShownGaussian>& shown, con
   }
   for (std::size_t b = 0; b < depth_bins; ++b) {
     const double from = width * static_cast<double>(b);
-    bins.push_back({from, from + width, transmittance[b].size(), spread(transmittance[b]),
-                    bound_at(table, from + 0.5 * width)});
+    Row& row =
+        rows.emplace_back(row_of("of", "depth", "from", from, "to", from + width, "gaussians",
+                                 transmittance[b].size(), "upper", bound_at(table, from + 0.5 * width)));
+    if (transmittance[b].empty()) continue;
+    for (const auto& [name, share] : {std::pair{"median", 0.5}, {"p90", 0.9}, {"largest", 1.0}})
+      put(row, name, quantile(transmittance[b], share));
   }
-  return bins;
 }
 
-double capped(double db) { return std::min(db, equal_db); }
+/// What fragments contribute, by their distance from the Gaussian's middle.
+void add_by_distance(std::vector<reference::DistanceBin> bins, std::vector<Row>& rows) {
+  while (!bins.empty() && bins.back().fragments == 0) bins.pop_back();
+  double all = 0.0, nearer = 0.0;
+  for (const reference::DistanceBin& bin : bins) all += bin.sum;
+  for (const reference::DistanceBin& bin : bins) {
+    nearer += bin.sum;
+    rows.push_back(row_of("of", "distance", "from", bin.from, "to", bin.to, "fragments", bin.fragments,
+                          "mean", bin.sum / static_cast<double>(bin.fragments), "largest", bin.largest,
+                          "nearer", 100.0 * nearer / all));
+  }
+}
 
 }  // namespace
 
-Contributions contributions(const Model& model, std::span<const ContributionView> views,
-                            const DepthTable& table, const DepthTable& fitted,
-                            const std::function<void()>& progress) {
-  Contributions found;
-  for (const char* by : known)
-    found.skipping.push_back({by, std::vector<SkippingCurve::Point>(skipped_shares.size())});
+std::vector<Row> contributions(const Model& model, std::span<const BenchView> views, const DepthTable& table,
+                               const DepthTable& fitted, const std::function<void()>& progress) {
+  std::array<std::array<std::vector<Row>, skipped_shares.size()>, known.size()> skipping;  // by view
+  std::vector<reference::DistanceBin> distances;
   std::vector<ShownGaussian> shown;
-  const auto count = static_cast<double>(views.size());
-  const bool photos =
-      std::all_of(views.begin(), views.end(), [](const ContributionView& v) { return v.photo; });
-  for (const ContributionView& one : views) {
-    const auto splats = reference::project_all(model, one.view);
-    const auto lists = reference::make_lists(splats, reference::depth_order(splats), one.view, TILES_ELLIPSE);
-    const auto transmittance = reference::measure_transmittance(splats, lists, one.view);
-    auto by_distance = reference::contributions_by_distance(splats, lists, one.view);
-    if (!found.by_distance.empty()) reference::add(by_distance, found.by_distance);
-    found.by_distance = std::move(by_distance);
+  for (const BenchView& one : views) {
+    const shared::View& view = one.eyes.front();
+    const auto splats = reference::project_all(model, view);
+    const auto lists = reference::make_lists(splats, reference::depth_order(splats), view, TILES_ELLIPSE);
+    const auto transmittance = reference::measure_transmittance(splats, lists, view);
+    auto by_distance = reference::contributions_by_distance(splats, lists, view);
+    if (!distances.empty()) reference::add(by_distance, distances);
+    distances = std::move(by_distance);
     for (std::size_t i = 0; i < splats.size(); ++i) {
       if (transmittance[i] > 0.0) shown.push_back({splats[i].depth, transmittance[i]});
     }
-    const Image exact = on_black(reference::blend(splats, lists, one.view));
+    const Image exact = on_black(reference::blend(splats, lists, view));
     const auto bounds = bounds_by(splats, transmittance, table);
     for (std::size_t by = 0; by < known.size(); ++by) {
-      const auto skipped = reference::skip_lowest(splats, lists, one.view, bounds[by], skipped_shares);
+      const auto skipped = reference::skip_lowest(splats, lists, view, bounds[by], skipped_shares);
       for (std::size_t k = 0; k < skipped_shares.size(); ++k) {
         const Image image = on_black(skipped[k].picture);
-        SkippingCurve::Point& mean = found.skipping[by].points[k];
-        mean.share += skipped[k].share / count;
-        mean.psnr_db += capped(measure::psnr(image, exact)) / count;
-        if (photos)
-          mean.drop_db = mean.drop_db.value_or(0.0) + (measure::photo_psnr(exact, one.exposure, *one.photo) -
-                                                       measure::photo_psnr(image, one.exposure, *one.photo)) /
-                                                          count;
+        Row& row = skipping[by][k].emplace_back(row_of("share", 100.0 * skipped[k].share, "psnr_db",
+                                                       std::min(measure::psnr(image, exact), equal_db)));
+        if (one.photo)
+          put(row, "drop_db",
+              measure::photo_psnr(exact, one.exposure, *one.photo) -
+                  measure::photo_psnr(image, one.exposure, *one.photo));
       }
     }
-    progress();
+    if (progress) progress();
   }
-  while (!found.by_distance.empty() && found.by_distance.back().fragments == 0) found.by_distance.pop_back();
-  found.by_depth = bins_by_depth(shown, fitted);
-  return found;
+  std::vector<Row> rows;
+  for (std::size_t by = 0; by < known.size(); ++by) {
+    for (const std::vector<Row>& of_views : skipping[by]) {
+      Row& row = rows.emplace_back(row_of("of", "skipping", "by", known[by]));
+      for (const char* name : {"share", "psnr_db", "drop_db"}) put(row, name, mean_number(of_views, name));
+    }
+  }
+  add_by_distance(std::move(distances), rows);
+  add_by_depth(shown, fitted, rows);
+  return rows;
 }
 
 }  // namespace binosplat::lab

@@ -1,8 +1,7 @@
 #pragma once
-// Tables as CSV, for spreadsheets and for commands that compare with an earlier run.
+// Tables as CSV, for spreadsheets.
 
 #include <string>
-#include <string_view>
 
 #include "lab/page.h"
 
@@ -13,9 +12,5 @@ std::string csv_field(const Cell& cell);
 
 /// A line of names, if there are any, then a line a row.
 std::string csv(const Table& table);
-
-/// Reads what csv() wrote: cells are numbers, texts or nothing; lines may end as Windows ends them. Throws
-/// Error, naming `place` and the line.
-Table read_csv(std::string_view text, const std::string& place);
 
 }  // namespace binosplat::lab

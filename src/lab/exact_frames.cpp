@@ -1,9 +1,9 @@
 #include "lab/exact_frames.h"
 
-#include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <utility>
+
+#include "base/log.h"
 
 namespace binosplat::lab {
 
@@ -15,51 +15,41 @@ bool equal_views(const std::vector<shared::View>& a, const std::vector<shared::V
 
 }  // namespace
 
-ExactFrames::ExactFrames(std::shared_ptr<render::GpuModel> model, std::int64_t bytes_max)
-    : model_(std::move(model)), bytes_max_(bytes_max), bytes_(model_->context()) {}
-
-gl::Buffer* ExactFrames::room_for(const std::vector<shared::View>& views) {
-  const std::int64_t bytes = BytePictures::bytes(views);
-  if (bytes * static_cast<std::int64_t>(taken_ + 1) > bytes_max_) return nullptr;
-  if (taken_ == buffers_.size())
-    buffers_.push_back(std::make_unique<gl::Buffer>(model_->context(), "exact pictures"));
-  return buffers_[taken_++].get();
-}
-
-void ExactFrames::draw(render::Frame& frame, const MotionPath& path) {
-  segments_.clear();
-  poses_.clear();
-  taken_ = 0;
-  for (const MotionSegment& segment : path.segments) {
-    auto& of_segment = segments_.emplace_back();
-    for (const std::vector<shared::View>& views : segment.frames) {
-      if (of_segment.empty() || !equal_views(poses_.back().views, views)) {
-        Pose& pose = poses_.emplace_back(Pose{views});
-        pose.pairs = static_cast<double>(frame.draw(views).pairs);
-        pose.pictures = room_for(views);
-        if (pose.pictures != nullptr) bytes_.keep(frame, views, *pose.pictures);
+ExactFrames::ExactFrames(std::shared_ptr<render::GpuModel> model, const render::FrameSettings& settings,
+                         std::span<const Stretch> stretches, std::int64_t bytes_max)
+    : settings_{.order = settings.order, .projection = settings.projection},
+      frame_(std::move(model)),
+      bytes_(frame_.model()->context()),
+      again_(frame_.model()->context(), "exact pictures drawn again") {
+  std::int64_t bytes = 0;
+  std::size_t left_out = 0;
+  for (const Stretch& stretch : stretches) {
+    std::vector<std::size_t>& of_stretch = poses_of_.emplace_back();
+    for (const std::vector<shared::View>& views : stretch.frames) {
+      if (of_stretch.empty() || !equal_views(poses_.back().views, views)) {
+        Pose& pose = poses_.emplace_back(Pose{views, 0.0, nullptr});
+        pose.pairs = static_cast<double>(frame_.draw(views, settings_).pairs);
+        bytes += BytePictures::bytes(views);
+        if (bytes <= bytes_max) {
+          pose.pictures = std::make_unique<gl::Buffer>(frame_.model()->context(), "exact pictures");
+          bytes_.keep(frame_, views, *pose.pictures);
+        } else {
+          ++left_out;
+        }
       }
-      of_segment.push_back(poses_.size() - 1);
+      of_stretch.push_back(poses_.size() - 1);
     }
   }
+  if (left_out > 0) log_info("{} exact frames have no room and are drawn again for each setting", left_out);
 }
 
-std::size_t ExactFrames::left_out() const {
-  return static_cast<std::size_t>(
-      std::count_if(poses_.begin(), poses_.end(), [](const Pose& pose) { return pose.pictures == nullptr; }));
-}
-
-std::vector<double> ExactFrames::psnr(const render::Frame& drawn, std::size_t segment, std::size_t n) {
-  const Pose& exact = pose(segment, n);
-  const gl::Buffer* wanted = exact.pictures;
+std::vector<double> ExactFrames::psnr(const render::Frame& drawn, std::size_t stretch, std::size_t n) {
+  const Pose& exact = pose(stretch, n);
+  const gl::Buffer* wanted = exact.pictures.get();
   if (wanted == nullptr) {
-    if (!again_) {
-      again_ = std::make_unique<render::Frame>(model_);
-      again_pictures_ = std::make_unique<gl::Buffer>(model_->context(), "exact pictures drawn again");
-    }
-    again_->draw(exact.views);
-    bytes_.keep(*again_, exact.views, *again_pictures_);
-    wanted = again_pictures_.get();
+    frame_.draw(exact.views, settings_);
+    bytes_.keep(frame_, exact.views, again_);
+    wanted = &again_;
   }
   std::vector<double> db = bytes_.errors(drawn, exact.views, *wanted);
   for (double& value : db) value = -10.0 * std::log10(value);

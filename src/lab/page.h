@@ -1,5 +1,5 @@
 #pragma once
-// The page that bench and study leave: one HTML file that needs nothing but a browser. It carries the results
+// The page that measurements leave: one HTML file that needs nothing but a browser. It carries the results
 // as JSON and draws its plots from them (src/lab/page, with the libraries of third_party), so that a number
 // on the page is the number in the JSON.
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "lab/page.h"
+#include "lab/results.h"
 #include "render/recorder.h"
 
 namespace binosplat::lab {
@@ -32,6 +33,7 @@ struct Profile {
   render::Recording recording;
   std::vector<std::optional<Image>> pictures;  // of the left eye in the worst frames, in their order
   std::optional<Saving> saving;
+  std::vector<double> cpu_ms;  // where the CPU draws: CPU time of all threads, by frame; else empty
 };
 
 struct Quantiles {
@@ -90,19 +92,13 @@ void write_frames(const render::Recording& recording, const Write& write);
 /// thread.
 void write_trace(const Profile& profile, const Write& write);
 
+/// `changes` are the lines of a comparison with an older run; none: there was no such.
 Page profile_page(const Profile& profile, const ProfileSummary& summary,
                   const std::vector<std::string>& changes);
 
-/// What changed beyond noise since an earlier frames.csv of the same frames, a line each; the last one
-/// counts. Frames of a run are compared with the same ones of the other, by stretches, whose differences tell
-/// the noise. The tables must be comparable.
-std::vector<std::string> compare_frames(const Table& before, const Table& now);
-
-/// Throws Error, naming `place`, where the table is no profile's, or of another number of frames than a run
-/// has or will have, or of too few.
-void check_comparable(const Table& before, std::size_t frames, const std::string& place);
-
-/// The facts and the summary as JSON.
-nlohmann::ordered_json profile_json(const Profile& profile, const ProfileSummary& summary);
+/// What the frames come to, as a row that others are compared with (results.h): its repeats are the medians
+/// of up to ten stretches of frames, since frames beside each other share their disturbances. The details are
+/// the worst frames, with their reasons.
+Point profile_point(const Profile& profile, const ProfileSummary& summary);
 
 }  // namespace binosplat::lab

@@ -189,7 +189,7 @@ Page profile_page(const Profile& profile, const ProfileSummary& summary,
   page.facts = {
       {"scene", profile.facts.scene},
       {"Gaussians", recording.frames.back().gaussians},
-      {"way", profile.facts.motion},
+      {"path", profile.facts.motion},
       {"drawn", profile.facts.drawing},
       {"pictures", fmt::format("{} x {} x {} px", views.size(), views.front().width, views.front().height)},
       {"device", profile.facts.device},

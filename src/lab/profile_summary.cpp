@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "lab/fields.h"
+#include "base/statistics.h"
 #include "lab/profile.h"
 
 namespace binosplat::lab {
@@ -35,8 +35,17 @@ std::string clock_of(const Profile& profile, const ProfileSummary& summary) {
                      summary.slow_clock, profile.recording.frames.size(), summary.mhz->most);
 }
 
-nlohmann::ordered_json json_of(const Quantiles& q) {
-  return object("median", q.median, "p90", q.p90, "p99", q.p99, "most", q.most);
+/// The medians of up to ten stretches of frames; of fewer frames than five a stretch, fewer.
+std::vector<double> by_stretch(const std::vector<double>& ms) {
+  constexpr std::size_t stretches = 10, stretch_least = 5;
+  const std::size_t count = std::clamp<std::size_t>(ms.size() / stretch_least, 1, stretches);
+  std::vector<double> medians;
+  for (std::size_t k = 0; k < count; ++k) {
+    const auto first = ms.begin() + static_cast<std::ptrdiff_t>(k * ms.size() / count);
+    const auto last = ms.begin() + static_cast<std::ptrdiff_t>((k + 1) * ms.size() / count);
+    medians.push_back(quantile({first, last}, 0.5));
+  }
+  return medians;
 }
 
 }  // namespace
@@ -109,27 +118,38 @@ std::vector<std::string> lines_of(const Profile& profile, const ProfileSummary& 
   return lines;
 }
 
-nlohmann::ordered_json profile_json(const Profile& profile, const ProfileSummary& summary) {
+Point profile_point(const Profile& profile, const ProfileSummary& summary) {
   const render::Recording& recording = profile.recording;
   const auto& views = recording.frames.front().views;
-  nlohmann::ordered_json stages = nlohmann::ordered_json::object();
-  for (const gl::StageTime& stage : summary.stages) stages[stage.name] = stage.ms;
-  nlohmann::ordered_json worst = nlohmann::ordered_json::array();
-  for (const std::size_t n : summary.worst) {
-    worst.push_back(object("frame", n, "wall_ms", recording.frames[n].wall_ms(), "gpu_ms",
-                           gpu_ms(recording.frames[n]), "reason", reason_of(profile, summary, n)));
+  std::vector<double> wall, gpu, pairs, visible;
+  for (const render::FrameRecord& frame : recording.frames) {
+    wall.push_back(frame.wall_ms());
+    gpu.push_back(gpu_ms(frame));
+    pairs.push_back(static_cast<double>(frame.report.pairs));
+    visible.push_back(static_cast<double>(frame.report.visible));
   }
-  nlohmann::ordered_json json =
-      object("format", "binosplat profile", "version", 1, "scene", profile.facts.scene, "motion",
-             profile.facts.motion, "drawing", profile.facts.drawing, "device", profile.facts.device, "eyes",
-             views.size(), "width", views.front().width, "height", views.front().height, "fps", recording.fps,
-             "frames", recording.frames.size(), "missed", summary.missed, "wall_ms", json_of(summary.wall),
-             "gpu_ms", json_of(summary.gpu), "cpu_ms", json_of(summary.cpu), "stages_ms", stages, "bound",
-             bound_of(profile, summary), "gpu_bound", summary.gpu_bound, "clock", clock_of(profile, summary),
-             "slow_clock", summary.slow_clock, "worst", worst, "advice", advice_of(profile, summary));
-  if (profile.saving)
-    json["saving"] = object("quality_db", profile.saving->quality_db, "share", profile.saving->share);
-  return json;
+  Point point{row_of("scene", profile.facts.scene, "eyes", views.size(), "size",
+                     fmt::format("{}x{}", views.front().width, views.front().height), "along",
+                     profile.facts.motion, "name", profile.facts.drawing, "device", profile.facts.device)};
+  Row& row = point.row;
+  put(row, "frame_ms", mean(gpu), "p99_ms", summary.gpu.p99, "most_ms", summary.gpu.most, "wall_ms",
+      mean(wall), "wall_p99_ms", summary.wall.p99, "wall_most_ms", summary.wall.most, "frames",
+      recording.frames.size(), "missed", summary.missed, "pairs", mean(pairs), "visible", mean(visible),
+      "gaussians", recording.frames.back().gaussians, "gpu_bytes", recording.frames.back().report.gpu_bytes);
+  if (recording.fps > 0.0) put(row, "fps", recording.fps);
+  for (const gl::StageTime& stage : summary.stages) put(row, stage_column(stage.name), stage.ms);
+  if (gpu.front() > 0.0) row["repeats_ms"] = by_stretch(gpu);
+  row["wall_repeats_ms"] = by_stretch(wall);
+  if (!profile.cpu_ms.empty()) {
+    put(row, "cpu_ms", mean(profile.cpu_ms));
+    row["cpu_repeats_ms"] = by_stretch(profile.cpu_ms);
+  }
+  put(row, "bound", bound_of(profile, summary), "clock", clock_of(profile, summary), "try",
+      advice_of(profile, summary));
+  for (const std::size_t n : summary.worst)
+    point.details.push_back(row_of("of", "worst", "frame", n, "wall_ms", wall[n], "frame_ms", gpu[n],
+                                   "reason", reason_of(profile, summary, n)));
+  return point;
 }
 
 }  // namespace binosplat::lab

@@ -3,72 +3,104 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <cctype>
+#include <cmath>
 #include <string>
 #include <vector>
 
 #include "base/error.h"
-#include "lab/fields.h"
+#include "base/numbers.h"
 
 namespace binosplat::lab {
 
-using nlohmann::ordered_json;
+namespace {
 
-NamedSettings named(const BenchSettings& s) {
-  NamedSettings names{.tiles = tiles_choices[s.tiles].name, .tile = s.tile_size, .th = th_choices[s.th].name};
-  if (s.precision != PRECISION_FULL) names.precision = precision_choices[s.precision].name;
-  if (!render::is_exact(s.th)) {
-    names.transmittance = transmittance_choices[s.transmittance].name;
-    names.tolerance = std::stod(fmt::format("{}", s.tolerance));
-  }
-  if (s.foveation) {
-    names.inset = s.foveation->inset_degrees;
-    names.context = s.foveation->context_scale;
-  }
-  return names;
+/// The decimal number that a float was meant to be.
+double as_meant(float number) { return std::stod(fmt::format("{}", number)); }
+
+}  // namespace
+
+DetailRequest parse_detail(const std::string& text, const std::string& option) {
+  std::string_view rest = text;
+  const std::optional<double> number = take_real(rest);
+  std::string unit(rest);
+  for (char& c : unit) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  if (number && std::isfinite(*number) && unit.empty() && *number >= 0.0) return {.apart_px = *number};
+  if (number && unit == "db" && *number >= 20.0 && *number <= 80.0) return {.db = *number};
+  fail("{} {}: expected pixels as in 5, or decibels from 20 to 80 as in 40dB", option, text);
 }
 
-static void fields(const auto& io, Some<NamedSettings> auto& s) {
-  io("tiles", s.tiles, "tile", s.tile, "th", s.th, "precision", s.precision, "transmittance", s.transmittance,
-     "tolerance", s.tolerance, "inset", s.inset, "context", s.context);
+std::string text_of(const DetailRequest& detail) {
+  return detail.db ? fmt::format("{:g}dB", *detail.db) : fmt::format("{:g}px", detail.apart_px);
 }
 
-void to_json(ordered_json& json, const NamedSettings& settings) { fields(FieldWriter{json}, settings); }
-void from_json(const ordered_json& json, NamedSettings& settings) { fields(FieldReader{json}, settings); }
-ordered_json to_json(const BenchSettings& settings) { return named(settings); }
+Row named(const BenchSettings& s) {
+  Row row = row_of("tiles", tiles_choices[s.tiles].name, "tile", s.tile_size);
+  if (s.precision != PRECISION_FULL) put(row, "precision", precision_choices[s.precision].name);
+  put(row, "th", th_choices[s.th].name);
+  if (!render::is_exact(s.th)) put(row, "transmittance", transmittance_choices[s.transmittance].name);
+  if (s.tolerance > 0.0f) put(row, "tolerance", as_meant(s.tolerance));
+  if (s.quality > 0.0f) put(row, "quality", as_meant(s.quality));
+  if (s.far) put(row, "far", as_meant(*s.far));
+  put(row, "max_drop", s.max_drop, "min_psnr", s.min_psnr);
+  if (s.finds_tolerance()) put(row, "found_on", s.found_on_training ? "training" : "test");
+  if (s.foveation) put(row, "inset", s.foveation->inset_degrees, "context", s.foveation->context_scale);
+  if (s.order) put(row, "order", order_choices[*s.order].name);
+  if (s.projection) put(row, "projection", projection_choices[*s.projection].name);
+  if (s.detail) put(row, "detail", text_of(*s.detail));
+  return row;
+}
 
 std::string describe_family(const BenchSettings& s) {
   std::vector<std::string> words;
-  if (s.tiles != TILES_ELLIPSE || render::is_exact(s.th)) words.emplace_back(tiles_choices[s.tiles].name);
-  if (!render::is_exact(s.th)) {
+  const bool exact = render::is_exact(s.th);
+  if (s.tiles != TILES_ELLIPSE || exact) words.emplace_back(tiles_choices[s.tiles].name);
+  if (!exact) {
     words.emplace_back(th_choices[s.th].name);
     if (s.transmittance != TRANSMITTANCE_ONE) words.emplace_back(transmittance_choices[s.transmittance].name);
   }
+  if (s.far) words.push_back(fmt::format("far {:g}", *s.far));
+  if (s.found_on_training) words.emplace_back("found on training views");
   if (s.tile_size != TILE_SIZE_DEFAULT) words.push_back(fmt::format("tile {}", s.tile_size));
   if (s.precision != PRECISION_FULL) words.emplace_back(precision_choices[s.precision].name);
   if (s.foveation) {
     words.push_back(fmt::format("inset {:g}", s.foveation->inset_degrees));
     words.push_back(fmt::format("context {:g}", s.foveation->context_scale));
   }
+  if (s.order) words.push_back(fmt::format("by {}", order_choices[*s.order].name));
+  if (s.projection) words.emplace_back(projection_choices[*s.projection].name);
+  if (s.detail) words.emplace_back("levels");
   return fmt::format("{}", fmt::join(words, ", "));
 }
 
 std::string describe(const BenchSettings& s) {
-  return render::is_exact(s.th) ? describe_family(s)
-                                : fmt::format("{}, {:g}", describe_family(s), s.tolerance);
+  std::string text = describe_family(s);
+  if (s.tolerance > 0.0f) text += fmt::format(", {:g}", s.tolerance);
+  if (s.quality > 0.0f) text += fmt::format(", asked for {:g} dB", s.quality);
+  if (s.max_drop) text += fmt::format(", {:g} dB lost", *s.max_drop);
+  if (s.min_psnr) text += fmt::format(", {:g} dB left", *s.min_psnr);
+  if (s.detail) text += " for " + text_of(*s.detail);
+  return text;
 }
 
 void check(const std::string& place, const BenchSettings& s) {
   try {
-    if (!render::is_exact(s.th) && !(s.tolerance > 0.0f)) fail("th needs a tolerance above 0");
+    const int asked = int{s.tolerance > 0.0f} + int{s.quality > 0.0f} + int{s.max_drop.has_value()} +
+                      int{s.min_psnr.has_value()};
+    if (!render::is_exact(s.th) && asked != 1)
+      fail("th needs one of: a tolerance above 0, a quality, max_drop, min_psnr");
+    if (render::is_exact(s.th) && s.finds_tolerance())
+      fail("max_drop and min_psnr find a tolerance, which {} has not", th_choices[s.th].name);
+    if (s.far && s.transmittance != TRANSMITTANCE_DEPTH) fail("far is of the table of `depth`");
     render::check_choice(s);
     if (s.foveation) stereo::check(*s.foveation);
   } catch (const Error& error) {
-    fail("{}: {}: {}", place, to_json(s).dump(), error.what());
+    fail("{}: {}: {}", place, named(s).dump(), error.what());
   }
 }
 
 bool is_exact(const BenchSettings& s) {
-  return !s.foveation && s.precision == PRECISION_FULL && render::is_exact(s.th) &&
+  return !s.foveation && !s.detail && s.precision == PRECISION_FULL && render::is_exact(s.th) &&
          render::has_every_pair(s.tiles);
 }
 

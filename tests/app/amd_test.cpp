@@ -97,10 +97,10 @@ constexpr AmdRun amd_runs[] = {
     {"trim model.ply --quality 40 --views 1 -o trimmed.ply"},
     {"refit model.ply --against exact --projection tangent --views 1 --rounds 1 -o fitted.ply", 1},
     {"convert model.ply -o model.spz --report 1"},
-    {"study model.ply --turn --rays 4x3 -o turn"},
-    {"study model.ply --motion --motions still --segments 1 --frames 2 --rounds 1 --no-equal -o motion"},
+    {"bench model.ply --turn --size 36x24 -o turn"},
+    {"bench model.ply --motion still --frames 2 --rule squared,one --size 36x24 -o motion"},
     {"bench model.ply --axes axes.json -o bench", 1},
-    {"bench model.ply --axes one.json --profile -o profile", 1},
+    {"bench model.ply --axes one.json --floors -o floors", 1},
 };
 
 // Programs that this driver is never given: those for subgroups of 32 invocations, which AMD's are not as

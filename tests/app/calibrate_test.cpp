@@ -50,9 +50,8 @@ TEST_F(CalibrateTest, ViewsThatSeeNothingHaveNoSay) {
   EXPECT_FALSE(std::filesystem::exists(file));
   for (const std::vector<std::string>& words : std::vector<std::vector<std::string>>{
            {"bench", model, "--axes", "quick", "-o", folder / "chart"},
-           {"study", model, "--size", "36x24", "-o", folder / "page"},
-           {"study", model, "--turn", "--size", "36x24", "--view", "front"},
-           {"study", model, "--motion", "--size", "36x24"},
+           {"bench", model, "--axes", "paper", "--size", "36x24", "-o", folder / "page"},
+           {"bench", model, "--motion", "walk", "--size", "36x24", "-o", folder / "walk"},
        })
     EXPECT_TRUE(ended(test::run_program(words), 2, "sees anything of the model")) << words[0];
   // The file is what convert is for.

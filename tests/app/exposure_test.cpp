@@ -137,7 +137,7 @@ TEST_F(ExposureTest, CountsInBenchesAndBounds) {
     const std::string to = folder / ("bench_" + fs::path(exposure).stem().string());
     EXPECT_TRUE(good(run_program({"bench", model, "--axes", folder / "axes.json", "--photos", photos,
                                   "--exposure", exposure, "-o", to})));
-    return test::load_json(to + "/results.json")["points"][0]["photos"]["psnr_db"];
+    return test::load_json(to + "/results.json")["points"][0]["photo_psnr_db"];
   };
   EXPECT_GT(db(folder / "true.json"), 50.0);
   EXPECT_LT(db("none"), 35.0);

@@ -79,7 +79,6 @@ TEST_F(FirstWords, NamesAreRepeatedOrHaveCommas) {
       ended(run({"render", model, "--view", "front", "side", "-o", out}), 2, "side: one word too many"));
   EXPECT_TRUE(ended(run({"render", "-o", out}), 2, "SCENE is required"));
   EXPECT_TRUE(ended(run({"profile", model, "--view", "front,side", "-o", out}), 2, "name one"));
-  EXPECT_TRUE(ended(run({"study", "--turn", model, "--view", "front,side"}), 2, "of one view"));
 }
 
 TEST_F(FirstWords, LengthsHaveAUnit) {

@@ -108,7 +108,6 @@ TEST_F(Photos, WhatCannotBeReadIsFoundBeforeTheModel) {
         {"calibrate", {"--max-drop", "1", "-o", folder / "c.json"}},
         {"trim", {"--max-drop", "1", "-o", folder / "t.ply"}},
         {"refit", {"-o", folder / "f.ply"}},
-        {"study", {"-o", folder / "new"}},
         {"bench", {"-o", folder / "new"}},
     };
     for (const auto& [command, more] : commands) EXPECT_TRUE(ended(run(command, more), 2, said)) << command;

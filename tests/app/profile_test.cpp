@@ -20,24 +20,27 @@ struct ProfileCommand : test::SceneTest {
     more.insert(more.begin(), {"profile", model, "-o", out});
     return test::run_program(more);
   }
-  lab::Table frames() const { return lab::read_csv(test::read_text(out + "/frames.csv"), "frames.csv"); }
+  /// The run's one row.
+  json row() const { return test::load_json(out + "/results.json").at("points").at(0); }
+  lab::Table frames() const { return test::frames_of(test::read_text(out + "/frames.csv")); }
 };
 
 TEST_F(ProfileCommand, LeavesAReportATraceAndATable) {
   const test::Outcome outcome = profile({"--tour", "calm", "--seconds", "0.2", "--size", "48x32"});
   ASSERT_TRUE(test::good(outcome));
-  EXPECT_EQ(folder.files(), (std::set<std::string>{"cameras.json", "model.ply", "out/frames.csv",
-                                                   "out/profile.json", "out/report.html", "out/trace.json"}));
+  EXPECT_EQ(folder.files(),
+            (std::set<std::string>{"cameras.json", "model.ply", "out/frames.csv", "out/report.html",
+                                   "out/results.csv", "out/results.json", "out/trace.json"}));
   const json trace = json::parse(test::read_text(out + "/trace.json"));
   EXPECT_EQ(test::faults_of_trace(trace), std::vector<std::string>());
   EXPECT_EQ(test::differences_of(trace, frames()), std::vector<std::string>());
   EXPECT_EQ(frames().rows.size(), 18u) << "90 a second";
-  const json numbers = json::parse(test::read_text(out + "/profile.json"));
+  const json numbers = row();
   EXPECT_EQ(numbers["frames"], 18);
   EXPECT_EQ(numbers["eyes"], 2);
-  EXPECT_EQ(numbers["width"], 48);
-  EXPECT_EQ(numbers["motion"], "tour calm");
-  EXPECT_EQ(numbers["worst"].size(), 10u);
+  EXPECT_EQ(numbers["size"], "48x32");
+  EXPECT_EQ(numbers["along"], "tour calm");
+  EXPECT_EQ(numbers["details"].size(), 10u) << "the worst";
   EXPECT_TRUE(test::has(outcome.out, "18 frames of 2 x 48 x 32 px, exact"));
   EXPECT_TRUE(test::has(outcome.out, "missed  "));
   const lab::Table table = frames();
@@ -55,53 +58,50 @@ TEST_F(ProfileCommand, LeavesAReportATraceAndATable) {
 
 TEST_F(ProfileCommand, WalksThroughTheCamerasWhereNothingElseIsAskedFor) {
   ASSERT_TRUE(test::good(profile({"--seconds", "0.1", "--size", "24x16", "--fps", "0", "--no-clock"})));
-  const json numbers = json::parse(test::read_text(out + "/profile.json"));
-  EXPECT_EQ(numbers["motion"], "tour walk");
+  const json numbers = row();
+  EXPECT_EQ(numbers["along"], "tour walk");
   EXPECT_EQ(numbers["frames"], 9) << "poses are 90 a second";
   EXPECT_EQ(numbers["missed"], 0) << "nothing is due";
   std::filesystem::remove(folder / "cameras.json");
   ASSERT_TRUE(test::good(profile({"--seconds", "0.1", "--size", "24x16", "--fps", "20"})));
-  EXPECT_EQ(json::parse(test::read_text(out + "/profile.json"))["frames"], 2) << "without cameras it stands";
+  EXPECT_EQ(row()["frames"], 2) << "without cameras it stands";
   add_row_of_cameras(1);
   ASSERT_TRUE(test::good(profile({"--seconds", "0.1", "--size", "24x16", "--fps", "20"})));
-  EXPECT_EQ(json::parse(test::read_text(out + "/profile.json"))["motion"], "standing at view0");
+  EXPECT_EQ(row()["along"], "standing at view0");
   EXPECT_TRUE(test::ended(profile({"--path", folder / "none.json"}), 2, "none.json"));
   ASSERT_TRUE(test::good(profile({"--path", folder / "cameras.json", "--size", "24x16"})));
-  EXPECT_EQ(json::parse(test::read_text(out + "/profile.json"))["frames"], 1);
+  EXPECT_EQ(row()["frames"], 1);
 }
 
 TEST_F(ProfileCommand, StandsAtAViewAndComparesWithTheRunBefore) {
   const std::vector<std::string> still = {"--view", "view1", "--seconds", "0.4",       "--fps", "0",
                                           "--size", "36x24", "--mono",    "--quality", "40"};
   ASSERT_TRUE(test::good(profile(still)));
-  EXPECT_EQ(json::parse(test::read_text(out + "/profile.json"))["motion"], "standing at view1");
+  EXPECT_EQ(row()["along"], "standing at view1");
   const std::string text = test::read_text(out + "/frames.csv");
   EXPECT_TRUE(text.find("measured its error") != text.npos);
-  const std::string before = folder / "before.csv";
-  test::write_text(before, text);
+  const std::string before = folder / "before.json";
+  std::filesystem::copy(out + "/results.json", before);
   const auto more = [&](std::vector<std::string> words) {
     words.insert(words.begin(), still.begin(), still.end());
     return words;
   };
   const test::Outcome same = profile(more({"--compare", before}));
   ASSERT_TRUE(test::good(same));
-  EXPECT_TRUE(test::has(same.out, "numbers changed beyond noise"));
+  EXPECT_TRUE(test::has(same.out, "numbers of 1 points in both runs changed beyond noise"));
   // The same frames, had they ten times as many pairs: a count, which no load on this machine moves.
-  lab::Table more_pairs = lab::read_csv(text, "before");
-  const auto pairs = std::ranges::find(more_pairs.columns, "pairs") - more_pairs.columns.begin();
-  ASSERT_LT(pairs, std::ssize(more_pairs.columns));
-  for (auto& cells : more_pairs.rows) {
-    lab::Cell& cell = cells[static_cast<std::size_t>(pairs)];
-    cell = 10.0 * std::get<double>(cell.value);
-  }
-  test::write_text(before, lab::csv(more_pairs));
-  EXPECT_TRUE(test::has(profile(more({"--compare", before})).out, "\npairs: median"));
+  json old = test::load_json(before);
+  old["points"][0]["pairs"] = 10.0 * old["points"][0]["pairs"].get<double>();
+  for (auto& ms : old["points"][0]["cpu_repeats_ms"]) ms = 1e-3 * ms.get<double>();
+  test::write_text(before, old.dump());
+  EXPECT_TRUE(test::has(profile(more({"--compare", before})).out, " pairs -> "));
+  EXPECT_TRUE(
+      test::ended(profile(more({"--compare", before, "--fail-if-slower", "50"})), 1, "slower than in"));
 }
 
 TEST_F(ProfileCommand, WhatMakesNoSenseIsNamedAndLeavesNothing) {
   const auto before = folder.files();
-  test::write_text(folder / "old.csv", "frame,wall_ms\n0,x\n");
-  test::write_text(folder / "other.csv", "frame,name\n0,\"x\"\n");
+  const std::string old = folder / "model.ply";  // no JSON
   const std::vector<std::pair<std::vector<std::string>, std::string>> wrong = {
       {{"--tour", "calm", "--view", "view1"}, "--tour with --view"},
       {{"--view", "all"}, "--view stands at one camera: name one"},
@@ -112,21 +112,17 @@ TEST_F(ProfileCommand, WhatMakesNoSenseIsNamedAndLeavesNothing) {
       {{"--fps", "1e-9"}, "--fps 1e-09: expected 0, or 0.01 to 1000"},
       {{"--seconds", "1e18"}, "--seconds: 1e18: expected seconds above zero (0.000001 to 1000000)"},
       {{"--seconds", "1e6", "--view", "view1"}, "fewer --seconds, at most"},
-      {{"--compare", folder / "none.csv"}, "none.csv"},
-      {{"--compare", folder / "old.csv"}, "old.csv:2: expected a number or a text in quotes in column 2"},
-      {{"--compare", folder / "other.csv"}, "no column wall_ms: expected the frames.csv of a profile"},
+      {{"--compare", folder / "none.json"}, "none.json"},
+      {{"--compare", old}, "not JSON"},
+      {{"--fail-if-slower", "3"}, "--fail-if-slower goes with --compare"},
       {{"-o", model}, "model.ply"},
       {{"--eye", "0,0,0"}, "--eye needs --at"}};
-  std::filesystem::remove(folder / "old.csv");
   for (const auto& [options, message] : wrong) {
-    if (message.starts_with("old.csv")) test::write_text(folder / "old.csv", "frame,wall_ms\n0,x\n");
     std::vector<std::string> all = {"profile", model, "--size", "36x24"};
     if (options[0] != "-o") all.insert(all.end(), {"-o", out});
     all.insert(all.end(), options.begin(), options.end());
     EXPECT_TRUE(test::ended(test::run_program(all), 2, message)) << options[0];
-    std::filesystem::remove(folder / "old.csv");
   }
-  std::filesystem::remove(folder / "other.csv");
   EXPECT_EQ(folder.files(), before);
   // The table is small, the page is not: neither is left.
   const test::Outcome full =

@@ -272,9 +272,7 @@ TEST_F(Refusals, Numbers) {
   const std::string to = folder / "to.ply";
   for (Words line : {Words{"render", model, "-o", out, "--quality"},
                      {"trim", model, "-o", to, "--quality"},
-                     {"calibrate", model, "-o", to, "--quality"},
-                     {"study", model, "--motion", "--target"},
-                     {"study", model, "--path", model, "--quality"}}) {
+                     {"calibrate", model, "-o", to, "--quality"}}) {
     line.emplace_back();
     for (const char* number : {"nan", "inf", "4000", "-40", "9.9", "100.1"}) {
       line.back() = number;
@@ -288,8 +286,7 @@ TEST_F(Refusals, Numbers) {
       {{"trim", model, "-o", to}, {"--max-drop"}},
       {{"calibrate", model, "-o", to}, {"--max-drop", "--far"}},
       {{"compare", model, model}, {"--min-psnr", "--ppd", "--max-memory"}},
-      {{"bench", model}, {"--ppd"}},
-      {{"study", model}, {"--ipd", "--units-per-metre"}},
+      {{"bench", model}, {"--ppd", "--ipd", "--units-per-metre"}},
   };
   for (const auto& [line, options] : others) {
     for (const std::string& option : options)

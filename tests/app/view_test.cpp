@@ -288,11 +288,11 @@ TEST_F(ViewOnADisplay, FramesAreRecordedByAKey) {
   ASSERT_TRUE(says(program, "saved " + out + "/profile_001"));
   EXPECT_TRUE(says(program, "model.ply, in the window: "));
   EXPECT_EQ(leave(program).code, 0);
-  for (const char* const name : {"report.html", "trace.json", "frames.csv", "profile.json"})
+  for (const char* const name : {"report.html", "trace.json", "frames.csv", "results.json"})
     EXPECT_TRUE(fs::exists(fs::path(out) / "profile_001" / name)) << name;
   const auto trace = nlohmann::json::parse(test::read_text(out + "/profile_001/trace.json"));
   EXPECT_EQ(test::faults_of_trace(trace), std::vector<std::string>());
-  const lab::Table frames = lab::read_csv(test::read_text(out + "/profile_001/frames.csv"), "frames.csv");
+  const lab::Table frames = test::frames_of(test::read_text(out + "/profile_001/frames.csv"));
   EXPECT_GT(frames.rows.size(), 3u) << "the head was under way for a second";
   EXPECT_EQ(test::differences_of(trace, frames), std::vector<std::string>());
   const std::string page = test::read_text(out + "/profile_001/report.html");

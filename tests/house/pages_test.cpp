@@ -1,10 +1,11 @@
-// Pages are read in a terminal, too: no line of them is over 120 characters.
+// Pages are read in a terminal, too: no line of them is over 120 characters. The tests that they name exist.
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <regex>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -33,19 +34,55 @@ std::vector<std::string> long_lines(const std::string& name, const std::string& 
   return found;
 }
 
-TEST(Pages, HaveLinesThatFitATerminal) {
-  const fs::path root = BINOSPLAT_SOURCE_DIR;
+const fs::path root = BINOSPLAT_SOURCE_DIR;
+
+std::string text_of(const fs::path& file) {
+  std::ifstream in(file);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+std::vector<fs::path> all_pages() {
   std::vector<fs::path> pages = {root / "README.md", root / "CHANGELOG.md"};
   for (const auto& entry : fs::directory_iterator(root / "docs")) {
     if (entry.path().extension() == ".md") pages.push_back(entry.path());
   }
+  return pages;
+}
+
+/// The tests that a page names as `room.Suite.Name`, or `room.Suite.*`, and no file of that room has.
+std::vector<std::string> missing_tests(const std::string& page) {
+  static const std::regex named("`([a-z]+)\\.([A-Z]\\w+)\\.(\\w+|\\*)`");
+  std::vector<std::string> missing;
+  for (std::sregex_iterator at(page.begin(), page.end(), named), end; at != end; ++at) {
+    const fs::path room = root / "tests" / (*at)[1].str();
+    if (!fs::is_directory(room)) continue;
+    const std::string name = (*at)[3] == "*" ? "\\w+" : (*at)[3].str();
+    const std::regex test("TEST(_F|_P)?\\(" + (*at)[2].str() + ",\\s*" + name + "\\)");
+    const bool found =
+        std::ranges::any_of(fs::directory_iterator(room), [&](const fs::directory_entry& entry) {
+          return entry.path().extension() == ".cpp" && std::regex_search(text_of(entry.path()), test);
+        });
+    if (!found) missing.push_back(at->str());
+  }
+  return missing;
+}
+
+TEST(Pages, HaveLinesThatFitATerminal) {
+  const std::vector<fs::path> pages = all_pages();
   EXPECT_GT(pages.size(), 15u) << "the pages were not found";
   for (const fs::path& page : pages) {
-    std::ifstream in(page);
-    const std::string text(std::istreambuf_iterator<char>(in), {});
+    const std::string text = text_of(page);
     EXPECT_FALSE(text.empty()) << page;
     for (const std::string& line : long_lines(fs::relative(page, root).string(), text)) ADD_FAILURE() << line;
   }
+}
+
+TEST(Pages, NameTestsThatExist) {
+  for (const fs::path& page : all_pages())
+    EXPECT_EQ(missing_tests(text_of(page)), std::vector<std::string>()) << page;
+  EXPECT_EQ(missing_tests("`lab.Judge.TellsNothing`, `lab.Traps.*`, `house.Pages.NameTestsThatExist`"),
+            std::vector<std::string>{"`lab.Judge.TellsNothing`"})
+      << "planted";
 }
 
 TEST(Pages, PlantedLongLinesAreCaught) {

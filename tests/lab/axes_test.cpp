@@ -29,7 +29,7 @@ TEST(Axes, AreEveryCombination) {
                                              "peripheral, 0.5", "peripheral, 2", "peripheral, last, 0.5",
                                              "peripheral, last, 2", "squared, 0.5", "squared, 2",
                                              "squared, last, 0.5", "squared, last, 2"}));
-  EXPECT_EQ(to_json(axes.settings.back()).dump(),
+  EXPECT_EQ(named(axes.settings.back()).dump(),
             R"({"tiles":"ellipse","tile":16,"th":"squared","transmittance":"last","tolerance":2.0})");
 }
 
@@ -39,8 +39,7 @@ TEST(Axes, HalfPrecisionIsOneAndNotExact) {
   EXPECT_TRUE(is_exact(axes.settings[0]));
   EXPECT_FALSE(is_exact(axes.settings[1]));
   EXPECT_EQ(describe(axes.settings[1]), "ellipse, half");
-  EXPECT_EQ(to_json(axes.settings[1]).dump(),
-            R"({"tiles":"ellipse","tile":16,"th":"tau","precision":"half"})");
+  EXPECT_EQ(named(axes.settings[1]).dump(), R"({"tiles":"ellipse","tile":16,"precision":"half","th":"tau"})");
 }
 
 TEST(Axes, InsetsAreExactAndTheirPicturesAreNot) {
@@ -53,8 +52,33 @@ TEST(Axes, InsetsAreExactAndTheirPicturesAreNot) {
                        "squared, inset 10, context 0.4, 0.3", "squared, inset 30, context 0.4, 0.3"}));
   EXPECT_TRUE(is_exact(axes.settings[0]));
   EXPECT_FALSE(is_exact(axes.settings[1]));
-  EXPECT_EQ(to_json(axes.settings[1]).dump(),
+  EXPECT_EQ(named(axes.settings[1]).dump(),
             R"({"tiles":"ellipse","tile":16,"th":"tau","inset":20.0,"context":0.25})");
+}
+
+TEST(Axes, QualitiesTargetsLevelsAndPerspectivesAreAxesToo) {
+  const Axes axes = parse_axes("a", R"({"training": 3, "along": ["walk", "turn"], "settings": [
+    {"th": "squared", "transmittance": ["one", "depth"], "far": [100, null], "max_drop": 0.1,
+     "found_on": ["test", "training"]},
+    {"th": "peripheral", "quality": [37, 40]}, {"detail": ["30dB", 2]}, {"order": "distance", "projection": "tangent"}]})");
+  EXPECT_EQ(axes.training, 3);
+  EXPECT_EQ(axes.along, (std::vector<std::string>{"walk", "turn"}));
+  std::vector<std::string> names;
+  for (const BenchSettings& s : axes.settings) names.push_back(describe(s));
+  EXPECT_EQ(names,
+            (std::vector<std::string>{
+                "squared, 0.1 dB lost", "squared, found on training views, 0.1 dB lost",
+                "squared, depth, far 100, 0.1 dB lost",
+                "squared, depth, far 100, found on training views, 0.1 dB lost",
+                "squared, depth, 0.1 dB lost", "squared, depth, found on training views, 0.1 dB lost",
+                "peripheral, asked for 37 dB", "peripheral, asked for 40 dB", "ellipse, levels for 30dB",
+                "ellipse, levels for 2px", "ellipse, by distance, tangent"}));
+  EXPECT_EQ(
+      named(axes.settings[3]).dump(),
+      R"({"tiles":"ellipse","tile":16,"th":"squared","transmittance":"depth","far":100.0,"max_drop":0.1,)"
+      R"("found_on":"training"})");
+  EXPECT_FALSE(is_exact(axes.settings[8]));
+  EXPECT_TRUE(is_exact(axes.settings[10]));
 }
 
 TEST(Axes, OnesThatAreLeftOut) {
@@ -66,9 +90,12 @@ TEST(Axes, OnesThatAreLeftOut) {
 }
 
 TEST(Axes, PresetsAreWellFormed) {
-  EXPECT_EQ(axes_presets(), (std::vector<std::string>{"foveate", "headset", "paper", "quick"}));
-  for (const std::string& name : axes_presets()) EXPECT_GT(load_axes(name).settings.size(), 5) << name;
+  EXPECT_EQ(axes_presets(),
+            (std::vector<std::string>{"foveate", "headset", "levels", "motion", "paper", "quick", "turn"}));
+  for (const std::string& name : axes_presets()) EXPECT_GE(load_axes(name).settings.size(), 4) << name;
   EXPECT_EQ(load_axes("headset").eyes, std::vector{2});
+  EXPECT_EQ(load_axes("motion").along, (std::vector<std::string>{"still", "calm", "walk", "fast"}));
+  EXPECT_TRUE(load_axes("paper").contributions);
 }
 
 TEST(Axes, ErrorsNameThePlace) {
@@ -88,7 +115,8 @@ TEST(Axes, ErrorsNameThePlace) {
       {R"({"settings": [{"tiles": "box"}]})", "'tiles': 'box' is not one of aabb, ellipse"},
       {R"({"settings": [{"tiles": []}]})", "'tiles' is an empty list"},
       {R"({"settings": [{"th": 3}]})", "'th': '3' is not one of tau"},
-      {R"({"settings": [{"th": "squared"}]})", "th needs a tolerance above 0"},
+      {R"({"settings": [{"th": "squared"}]})",
+       "th needs one of: a tolerance above 0, a quality, max_drop, min_psnr"},
       {R"({"settings": [{"tolerance": 1}]})", "tolerance has no effect with th tau"},
       {R"({"settings": [{"transmittance": "last"}]})", "transmittance has no effect with th tau"},
       {R"({"settings": [{"th": "squared", "tolerance": 1, "contrast": "final"}]})",
@@ -98,6 +126,14 @@ TEST(Axes, ErrorsNameThePlace) {
       {R"({"settings": [{"th": "squared", "tolerance": -1}]})",
        "'tolerance' -1: expected a number of 0 or more"},
       {R"({"settings": [{"th": "squared", "tolerance": 1e99}]})", "'tolerance' 1e+99: expected"},
+      {R"({"settings": [{"th": "squared", "tolerance": 1, "quality": 40}]})", "th needs one of"},
+      {R"({"settings": [{"th": "squared", "quality": 1000}]})", "quality 1000: expected decibels"},
+      {R"({"settings": [{"max_drop": 0.1}]})", "find a tolerance, which tau has not"},
+      {R"({"settings": [{"detail": "90dB"}]})", "'detail' 90dB: expected pixels"},
+      {R"({"settings": [{"order": "size"}]})", "'order': 'size' is not one of depth, distance"},
+      {R"({"settings": [{"th": "squared", "min_psnr": 40, "found_on": "photos"}]})", "'found_on': 'photos'"},
+      {R"({"settings": [{}], "along": "crawl"})", "'along' \"crawl\": expected one of views, turn, still"},
+      {R"({"settings": [{}], "contributions": 1})", "'contributions' 1: expected true or false"},
       {R"({"settings": [{"context": 0.5}]})", "'context' has no effect without 'inset'"},
       {R"({"settings": [{"inset": "wide"}]})", "'inset' \"wide\": expected a number"},
       {R"({"settings": [{"inset": 0}]})", "inset 0: expected 1 to 120 degrees"},
@@ -117,7 +153,8 @@ TEST(Axes, ErrorsNameThePlace) {
       EXPECT_NE(std::string(error.what()).find(c.said), std::string::npos) << error.what();
     }
   }
-  EXPECT_TRUE(test::fails_saying([] { load_axes("fovate"); }, {"fovate", "foveate, headset, paper, quick"}));
+  EXPECT_TRUE(test::fails_saying([] { load_axes("fovate"); },
+                                 {"fovate", "foveate, headset, levels, motion, paper, quick, turn"}));
   // Lists whose combinations no memory would hold.
   const nlohmann::json block = {
       {"th", "squared"}, {"tolerance", nlohmann::json(500, 0.5)}, {"tile", nlohmann::json(50, 8)}};

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "base/error.h"
 #include "render/faulty_shaders.h"
 #include "render/frame.h"
 #include "scene/camera.h"
@@ -27,32 +28,44 @@ struct BenchPoint : testing::Test {
   shared::View small = make_view(resized(head, 32, 24));
 
   Bench bench(gl::Context& context, int eyes, bool seen = false) const {
-    BenchView view{"front", {make_view(head)}, {}};
+    BenchCase what{.views = {{"front", {make_view(head)}}}, .small = small};
     if (eyes == 2) {
       const auto rig = stereo::make_rig(head, {});
-      view.eyes = {rig.views[0], rig.views[1]};
+      what.views.front().eyes = {rig.views[0], rig.views[1]};
     }
-    return {context, model, {view}, small, {.frames = 2, .repeats = 2, .seen = seen}};
+    return bench(context, std::move(what), seen);
+  }
+  Bench bench(gl::Context& context, BenchCase what, bool seen = false) const {
+    return {context,
+            [this]() -> const Model& { return model; },
+            std::move(what),
+            {.frames = 2, .repeats = 2, .seen = seen}};
   }
 };
 
 TEST_F(BenchPoint, ExactIsEqualAndAToleranceIsNot) {
   Bench both = bench(test::gl_context(), 2);
-  const BenchNumbers exact = both.measure({});
-  EXPECT_TRUE(std::isinf(exact.exact.psnr_db));
-  EXPECT_TRUE(std::isinf(exact.exact.disagreement_db)) << "the eyes agree";
-  EXPECT_EQ(exact.frames, 4u);
-  EXPECT_EQ(exact.stages.size(), 4u);
+  const Point exact = both.measure({});
+  EXPECT_EQ(number(exact.row, "psnr_db"), equal_db);
+  EXPECT_EQ(number(exact.row, "disagreement_db"), equal_db) << "the eyes agree";
+  EXPECT_EQ(number(exact.row, "frames"), 4);
+  EXPECT_EQ(exact.row["repeats_ms"].size(), 2u);
+  EXPECT_EQ(exact.row["cpu_repeats_ms"].size(), 2u) << "this context draws on the CPU";
+  double stages = 0.0;
+  for (const auto& [name, value] : exact.row.items()) stages += stage_of(name) ? 1.0 : 0.0;
+  EXPECT_EQ(stages, 4.0);
   for (const int transmittance : {TRANSMITTANCE_ONE, TRANSMITTANCE_DEPTH, TRANSMITTANCE_LAST}) {
     render::FrameSettings settings;
     settings.th = TH_SQUARED;
     settings.tolerance = 4.0f;
     settings.transmittance = transmittance;
-    const BenchNumbers point = both.measure(settings);
-    EXPECT_LT(point.exact.psnr_db, 60.0);
-    EXPECT_GT(point.exact.disagreement_db, 3.0);
-    EXPECT_GT(point.exact.flip, 0.0);
-    EXPECT_LT(point.pairs, exact.pairs);
+    const Row row = both.measure(settings).row;
+    EXPECT_LT(number(row, "psnr_db"), 60.0);
+    EXPECT_GT(number(row, "disagreement_db"), 3.0);
+    EXPECT_GT(number(row, "flip"), 0.0);
+    EXPECT_NEAR(number(row, "pairs_removed"),
+                100.0 * (1.0 - number(row, "pairs") / number(exact.row, "pairs")), 1e-9);
+    EXPECT_GT(number(row, "pairs_removed"), 0.0);
   }
 }
 
@@ -60,21 +73,21 @@ TEST_F(BenchPoint, FoveatedIsExactWhereOneLooks) {
   Bench both = bench(test::gl_context(), 2, true);
   BenchSettings foveated;
   foveated.foveation = stereo::Foveation{.inset_degrees = 20.0, .context_scale = 0.3};
-  const BenchNumbers point = both.measure(foveated), exact = both.measure({});
-  ASSERT_EQ(point.problem, "");
-  EXPECT_EQ(point.stages.back().name, "compose");
-  ASSERT_TRUE(point.seen && exact.seen);
-  EXPECT_EQ(exact.seen->visible, 0.0);
-  EXPECT_GT(point.seen->visible, 0.0);
-  EXPECT_LT(point.exact.psnr_db, 60.0);
-  ASSERT_GE(point.seen->rings.size(), 3u);
-  EXPECT_TRUE(std::isinf(point.seen->rings[0].psnr_db)) << "the inset reaches 10 degrees";
-  EXPECT_TRUE(std::isinf(point.seen->rings[1].psnr_db));
-  EXPECT_LT(point.seen->rings[2].psnr_db, 60.0);
-  double share = 0.0;
-  for (const RingNumbers& ring : point.seen->rings) share += ring.share;
-  EXPECT_NEAR(share, 1.0, 1e-9);
-  EXPECT_FALSE(bench(test::gl_context(), 2).measure({}).seen);
+  const Point point = both.measure(foveated), exact = both.measure({});
+  ASSERT_TRUE(point.measured()) << point.row;
+  EXPECT_TRUE(point.row.contains(stage_column("compose")));
+  EXPECT_EQ(number(exact.row, "seen"), 0.0);
+  EXPECT_GT(number(point.row, "seen"), 0.0);
+  EXPECT_LT(number(point.row, "psnr_db"), 60.0);
+  std::vector<Row> rings;
+  std::ranges::copy_if(point.details, std::back_inserter(rings),
+                       [](const Row& row) { return text(row, "of") == "ring"; });
+  ASSERT_GE(rings.size(), 3u);
+  EXPECT_EQ(number(rings[0], "psnr_db"), equal_db) << "the inset reaches 10 degrees";
+  EXPECT_EQ(number(rings[1], "psnr_db"), equal_db);
+  EXPECT_LT(number(rings[2], "psnr_db"), 60.0);
+  EXPECT_NEAR(mean_number(rings, "share") * double(rings.size()), 100.0, 1e-9);
+  EXPECT_FALSE(bench(test::gl_context(), 2).measure({}).row.contains("seen"));
 }
 
 TEST_F(BenchPoint, AWrongInsetIsNotTimed) {
@@ -86,9 +99,9 @@ TEST_F(BenchPoint, AWrongInsetIsNotTimed) {
     foveated.th = TH_SQUARED;
     foveated.tolerance = 0.3f;
     foveated.transmittance = transmittance;
-    EXPECT_NE(
-        bench(test::gl_context(), 1).measure(foveated).problem.find("the inset is not the exact picture's"),
-        std::string::npos);
+    EXPECT_NE(text(bench(test::gl_context(), 1).measure(foveated).row, "problem")
+                  .find("the inset is not the exact picture's"),
+              std::string::npos);
   }
 }
 
@@ -99,16 +112,177 @@ TEST_F(BenchPoint, WrongPicturesAreNotTimed) {
   lossy.th = TH_SQUARED;
   lossy.tolerance = 0.05f;
   for (const auto& settings : {render::FrameSettings{}, lossy})
-    EXPECT_EQ(bench(test::gl_context(), 1).measure(settings).problem, "") << "without a fault it is timed";
+    EXPECT_TRUE(bench(test::gl_context(), 1).measure(settings).measured()) << "without a fault it is timed";
 
   const test::FaultyShaders faulty("pixels.glsl", "inside ? float(TRANSMITTANCE_MIN)", "inside ? 0.05");
-  const BenchNumbers point = bench(test::gl_context(), 1).measure({});
+  const Point point = bench(test::gl_context(), 1).measure({});
   EXPECT_FALSE(point.measured());
-  EXPECT_NE(point.problem.find("differ from the float64 reference"), std::string::npos) << point.problem;
+  EXPECT_NE(text(point.row, "problem").find("differ from the float64 reference"), std::string::npos)
+      << point.row;
   EXPECT_FALSE(bench(test::gl_context(), 1).measure(lossy).measured()) << "a tolerance is no excuse";
   // Nothing in view.
   model.opacity.assign(model.count(), 0.0f);
-  EXPECT_NE(bench(test::gl_context(), 1).measure({}).problem.find("is empty"), std::string::npos);
+  EXPECT_NE(text(bench(test::gl_context(), 1).measure({}).row, "problem").find("is empty"),
+            std::string::npos);
+}
+
+/// A wall before both eyes, brighter by `by` than the finest one.
+Model wall_by(float by) {
+  Model model;
+  for (int x = -8; x <= 8; ++x) {
+    for (int y = -5; y <= 5; ++y)
+      test::add(model, {0.5f * x, 0.5f * y, 4.0f + 0.1f * static_cast<float>(x % 3)}, glm::vec3(0.3f), 0.8f,
+                glm::vec3((x + y) % 2 == 0 ? 0.6f : 0.3f) + by);
+  }
+  return model;
+}
+
+struct BenchLevels : BenchPoint {
+  const Model brighter = wall_by(0.05f);
+  BenchSettings detailed;
+  BenchCase what;
+
+  BenchLevels() {
+    model = wall_by(0.0f);
+    detailed.detail = DetailRequest{.db = 30.0};
+    const auto rig = stereo::make_rig(head, {.ipd = 0.06});
+    what.views = {{"pair", {rig.views[0], rig.views[1]}}};
+    what.small = small;
+    what.follow = [this](const DetailRequest&) {
+      return FollowingModel{std::make_shared<render::GpuModel>(test::gl_context(), brighter),
+                            [](std::span<const shared::View>) {
+                              return LevelsBrought{100, 33.0};
+                            }};
+    };
+  }
+};
+
+TEST_F(BenchLevels, AreComparedWithTheFinest) {
+  Bench both = bench(test::gl_context(), what);
+  const Row row = both.measure(detailed).row;
+  EXPECT_GT(number(row, "psnr_db"), 26.0) << "0.05 times what is seen of the wall";
+  EXPECT_LT(number(row, "psnr_db"), 32.0);
+  EXPECT_GT(number(row, "disagreement_db"), number(row, "psnr_db") + 10.0) << "both eyes see the same error";
+  EXPECT_EQ(number(row, "gaussians"), 100.0);
+  EXPECT_EQ(number(row, "reported_db"), 33.0);
+  EXPECT_GT(number(row, "frame_ms"), 0.0);
+  EXPECT_EQ(number(both.measure({}).row, "psnr_db"), equal_db);
+}
+
+TEST_F(BenchLevels, GoOnWhereTheFinestHaveNoRoom) {
+  int loaded = 0;
+  const auto without = [&](ExitCode code) {
+    return Bench(test::gl_context(),
+                 [&, code]() -> const Model& {
+                   ++loaded;
+                   throw Error(code, "no room for so many Gaussians");
+                 },
+                 what, {.frames = 1, .repeats = 2});
+  };
+  Bench small_gpu = without(ExitCode::out_of_memory);
+  const Row row = small_gpu.measure(detailed).row;
+  EXPECT_EQ(text(row, "no_exact"), "the finest levels cannot be drawn: no room for so many Gaussians");
+  EXPECT_FALSE(row.contains("psnr_db") || row.contains("flip") || row.contains("disagreement_db"));
+  EXPECT_EQ(number(row, "reported_db"), 33.0);
+  EXPECT_GT(number(row, "frame_ms"), 0.0);
+  small_gpu.measure(detailed);
+  EXPECT_EQ(loaded, 1) << "and are not asked for again";
+  EXPECT_THROW(without(ExitCode::bad_input).measure(detailed), Error) << "any other error ends it";
+}
+
+/// Spots, each alone in a tile: what a tolerance leaves out and what that costs follows from their sizes.
+struct Spots : testing::Test {
+  static constexpr int columns = 6, rows = 2, tile = 16;
+  static constexpr double focal = 100.0, depth = 10.0;
+  struct Spot {
+    double variance;  // px^2, low-pass included
+    double opacity;
+    bool left;
+  };
+  std::vector<Spot> spots;
+  Model model;
+  BenchCase what;
+
+  Spots() {
+    Camera camera = test::front_camera(columns * tile, rows * tile, focal);
+    camera.name = "whole";
+    what.training.push_back({camera, {}});
+    for (int n = 0; n < columns * rows; ++n) {
+      const double variance = 1.5 + 0.06 * n, opacity = 0.1 + 0.07 * n;
+      const int column = n % columns, row = n / columns;
+      const double x = (column + 0.5) * tile - 0.5 * camera.width;
+      const double y = (row + 0.5) * tile - 0.5 * camera.height;
+      const auto scale = static_cast<float>(std::sqrt(variance - 0.3) * depth / focal);
+      test::add(model, glm::vec3(x, y, focal) * static_cast<float>(depth / focal),
+                glm::vec3(scale, scale, 1e-6f), static_cast<float>(opacity));
+      spots.push_back({variance, opacity, n % columns < columns / 2});
+    }
+    camera.name = "left";
+    camera.width /= 2;  // the principal point stays: what the left half of the picture shows
+    what.tested.push_back({camera, {}});
+    what.views = {{"left", {make_view(camera)}}};
+    what.small = what.views.front().eyes.front();
+  }
+
+  static double error(const Spot& spot) {
+    return spot.opacity * spot.opacity * M_PI * spot.variance;  // the integral of alpha^2 over the pixels
+  }
+
+  /// What the first spots of a rule's order cost that keep the target in the whole picture: dB there, and of
+  /// the left half.
+  struct Known {
+    double whole_db = equal_db, left_db = equal_db, removed_left = 0.0;
+  };
+  static Known known(const std::vector<Spot>& order, double target) {
+    double all = 0.0, of_left = 0.0;
+    Known k;
+    const double pixels = columns * rows * tile * tile;
+    double removed = 0.0;
+    for (const Spot& spot : order) {
+      all += error(spot);
+      const double db = -10.0 * std::log10(all / pixels);
+      if (db < target) break;
+      of_left += spot.left ? error(spot) : 0.0;
+      removed += spot.left ? 200.0 / (columns * rows) : 0.0;
+      k = {db, of_left > 0.0 ? -10.0 * std::log10(of_left / (0.5 * pixels)) : equal_db, removed};
+    }
+    return k;
+  }
+};
+
+TEST_F(Spots, TolerancesThatAreFoundCostWhatTheSpotsAreWorth) {
+  Bench bench(test::gl_context(), [this]() -> const Model& { return model; }, what,
+              {.frames = 1, .repeats = 2});
+  const auto ordered = [&](auto worth) {
+    std::vector<Spot> order = spots;
+    std::ranges::sort(order, {}, worth);
+    return order;
+  };
+  // Left out whole where Th > sigma (docs/method.md 5).
+  const auto peripheral =
+      ordered([](const Spot& s) { return (s.opacity - 1.0 / 255) * 2 * M_PI * s.variance; });
+  const auto squared = ordered([](const Spot& s) { return s.opacity * s.opacity * M_PI * s.variance; });
+  for (const int th : {TH_PERIPHERAL, TH_SQUARED}) {
+    for (const double target : {30.0, 26.0}) {
+      BenchSettings settings;
+      settings.th = th;
+      settings.transmittance = TRANSMITTANCE_DEPTH;
+      settings.min_psnr = target;
+      settings.found_on_training = true;
+      const Row found = bench.measure(settings).row;
+      const Known k = known(th == TH_PERIPHERAL ? peripheral : squared, target);
+      EXPECT_NEAR(number(found, "found_db"), k.whole_db, 0.01 * k.whole_db) << "in the training view";
+      EXPECT_NEAR(number(found, "psnr_db"), k.left_db, 0.01 * k.left_db) << "in the test view";
+      EXPECT_NEAR(number(found, "pairs_removed"), k.removed_left, 1e-9);
+      EXPECT_GT(k.removed_left, 0.0) << "of nothing this could not fail";
+      settings.found_on_training = false;
+      const Row tuned = bench.measure(settings).row;
+      EXPECT_NEAR(number(tuned, "psnr_db"), number(tuned, "found_db"), 1e-3)
+          << "tuned on the test view itself";
+      EXPECT_GE(number(tuned, "psnr_db"), target);
+      EXPECT_NE(number(tuned, "found_tolerance"), number(found, "found_tolerance"));
+    }
+  }
 }
 
 }  // namespace

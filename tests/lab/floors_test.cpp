@@ -5,7 +5,7 @@
 #include <cmath>
 #include <map>
 
-#include "lab/timed_rounds.h"
+#include "lab/times.h"
 #include "support/gl.h"
 #include "support/models.h"
 
@@ -56,9 +56,6 @@ TEST(Floors, RatesAreMeasuredAndAFramesWorkIsCounted) {
   // The stages of a frame, whose counts are those of the reference elsewhere.
   const Model model = test::random_model(3, 4000, 3);
   const shared::View view = make_view(test::front_camera(96, 96, 96.0));
-  const render::FrameSettings exact;
-  const auto times =
-      time_in_turns(test::gl_context(), model, std::span(&view, 1), std::span(&exact, 1), 2, [] {});
   render::Frame frame(test::gl_context(), model);
   const render::FrameReport report = frame.draw(std::span(&view, 1));
   FrameWork work{
@@ -69,7 +66,7 @@ TEST(Floors, RatesAreMeasuredAndAFramesWorkIsCounted) {
   const std::vector<Image> shown = frame.read_debug_view(SHOW_ALPHAS);
   for (const float alphas : shown.front().data) work.alphas += static_cast<double>(alphas);
   EXPECT_GT(work.alphas, work.pixels);
-  work.stages = times.front().stages;
+  work.stages = report.stages;
   for (const StageFloor& stage : profile(work, peaks)) EXPECT_GT(stage.share, 0.0) << stage.stage;
 }
 

@@ -62,7 +62,7 @@ Page sample_page() {
   return page;
 }
 
-double number(const Table& table, std::size_t row, std::size_t column) {
+double number_at(const Table& table, std::size_t row, std::size_t column) {
   return std::get<double>(table.rows[row][column].value);
 }
 
@@ -140,10 +140,10 @@ TEST_F(ShownPage, EveryNumberIsTheJsons) {
   ASSERT_EQ(rows.size(), speed.rows.size()) << numbers;
   for (std::size_t k = 0; k < rows.size(); ++k) {
     EXPECT_EQ(rows[k][0], std::get<std::string>(speed.rows[k][0].value));
-    EXPECT_EQ(std::stod(rows[k][1].get<std::string>()), number(speed, k, 3));
-    EXPECT_EQ(rows[k][2].is_null(), !std::isfinite(number(speed, k, 4)));
+    EXPECT_EQ(std::stod(rows[k][1].get<std::string>()), number_at(speed, k, 3));
+    EXPECT_EQ(rows[k][2].is_null(), !std::isfinite(number_at(speed, k, 4)));
     if (!rows[k][2].is_null()) {
-      EXPECT_EQ(std::stod(rows[k][2].get<std::string>()), number(speed, k, 4));
+      EXPECT_EQ(std::stod(rows[k][2].get<std::string>()), number_at(speed, k, 4));
     }
   }
 }
@@ -169,8 +169,8 @@ TEST_F(ShownPage, PointsStandWhereTheirNumbersSay) {
   ASSERT_EQ(found[0].size(), 6) << "what is not finite is left out, the rest drawn";
   std::vector<double> x, y, at_x, at_y;
   for (std::size_t i = 0; i < 6; ++i) {
-    x.push_back(std::log(number(*page.sections[0].numbers, i, 3)));
-    y.push_back(number(*page.sections[0].numbers, i, 4));
+    x.push_back(std::log(number_at(*page.sections[0].numbers, i, 3)));
+    y.push_back(number_at(*page.sections[0].numbers, i, 4));
     at_x.push_back(found[0][i][0]);
     at_y.push_back(found[0][i][1]);
   }
@@ -191,7 +191,7 @@ TEST_F(ShownPage, BarsAreAsLongAsTheirNumbers) {
   std::vector<double> values;
   const Table& stages = *page.sections[1].table;
   for (std::size_t column = 1; column < stages.columns.size(); ++column) {
-    for (std::size_t k = 0; k < stages.rows.size(); ++k) values.push_back(number(stages, k, column));
+    for (std::size_t k = 0; k < stages.rows.size(); ++k) values.push_back(number_at(stages, k, column));
   }
   const double px = (found[17].get<double>() + 1) / values[17];
   for (std::size_t i = 0; i < 18; ++i) EXPECT_NEAR(found[i].get<double>() + 1, px * values[i], 0.6) << i;

@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 #include "lab/chromium.h"
+#include "lab/csv.h"
 #include "lab/trace_rules.h"
 #include "support/errors.h"
 #include "support/models.h"
@@ -154,92 +155,34 @@ TEST(Profile, PlantedFaultsOfTracesAreCaught) {
   EXPECT_FALSE(test::differences_of(trace, frames_table(profile.recording)).empty()) << "another sum";
 }
 
-TEST(Profile, FramesAsCsvAreReadAgain) {
-  const Table frames = frames_table(made_up().recording);
-  const std::string text = csv(frames);
-  const Table again = read_csv(text, "frames.csv");
-  EXPECT_EQ(again.columns, frames.columns);
-  ASSERT_EQ(again.rows.size(), 20u);
-  EXPECT_EQ(csv(again), csv(read_csv(csv(again), "again")));
-  EXPECT_EQ(std::get<std::string>(again.rows[3].back().value),
-            "drawn again: once, since a buffer was too small; buffers grew: 2.0 MB");
-  EXPECT_TRUE(test::fails_saying([&] { read_csv("a,b\n1,2\n3\n", "old.csv"); },
-                                 {"old.csv:3: 1 cells under 2 names"}));
-  for (const char* const cell : {"x", "nan", "inf", "-inf", "1e999", "1 2", "\"open"})
-    EXPECT_TRUE(test::fails_saying([&] { read_csv(std::string("a,b\n1,") + cell + "\n", "old.csv"); },
-                                   {"old.csv:2: expected a number or a text in quotes in column 2"}))
-        << cell;
-  std::string of_windows = "\xef\xbb\xbf";
-  for (const char c : text) of_windows += c == '\n' ? std::string("\r\n") : std::string(1, c);
-  EXPECT_EQ(read_csv(of_windows, "windows.csv"), again);
-  // Written in stretches, it is the same.
+TEST(Profile, FramesAreWrittenInPartsAsOneTable) {
   const Profile longer = made_up(2 * rows_at_once + 7);
   std::string written;
   write_frames(longer.recording, [&](std::string_view part) { written += part; });
   EXPECT_EQ(written, csv(frames_table(longer.recording)));
+  EXPECT_NE(written.find("\"drawn again: once, since a buffer was too small; buffers grew: 2.0 MB\"\n"),
+            std::string::npos);
 }
 
-/// The same frames as another run would time them: all times within `noise` of what they are, times `factor`.
-Table timed_again(double noise, double factor, unsigned seed, std::size_t count = 60) {
-  Table table = frames_table(made_up(count).recording);
-  test::Uniform random(seed);
-  for (std::vector<Cell>& cells : table.rows) {
-    for (std::size_t k = 0; k < cells.size(); ++k) {
-      auto* const ms = std::get_if<double>(&cells[k].value);
-      if (ms == nullptr || !table.columns[k].ends_with("_ms")) continue;
-      *ms *= factor * (1.0 + noise * random(-0.5, 0.5));
-    }
-  }
-  return table;
-}
-
-TEST(Profile, ComparesRunsOfTheSameFrames) {
-  int changed = 0;
-  std::string found;
-  for (unsigned pair = 0; pair < 40; ++pair) {
-    const auto lines = compare_frames(timed_again(0.3, 1.0, 2 * pair), timed_again(0.3, 1.0, 2 * pair + 1));
-    changed += lines.size() > 1;
-    if (lines.size() > 1) found += lines.front() + "\n";
-  }
-  EXPECT_LE(changed, 2) << "of 40 pairs in which nothing changed:\n" << found;
-  const std::vector<std::string> slower = compare_frames(timed_again(0.3, 1.0, 1), timed_again(0.3, 1.15, 2));
-  const auto of_wall = std::ranges::find_if(
-      slower, [](const std::string& line) { return line.starts_with("wall_ms: median"); });
-  EXPECT_NE(of_wall, slower.end()) << "15 % slower goes unnoticed";
-  const auto with_peaks = [](Table table, std::size_t each) {
-    for (std::size_t n = 0; n < table.rows.size(); n += each) table.rows[n][3] = 50.0;  // wall_ms
-    return table;
-  };
-  const Table many = timed_again(0.3, 1.0, 1, 1200), other = timed_again(0.3, 1.0, 2, 1200);
-  EXPECT_EQ(compare_frames(many, with_peaks(other, 40)).front(), "wall_ms: p99 6.884 -> 50");
-}
-
-TEST(Profile, SaysBeforehandWhatCannotBeCompared) {
-  const Table old = timed_again(0.0, 1.0, 1);
-  check_comparable(old, 60, "old.csv");
-  EXPECT_TRUE(test::fails_saying([&] { check_comparable(old, 59, "old.csv"); },
-                                 {"--compare old.csv: 60 frames, and this run has 59"}));
-  const Table few{old.columns, {old.rows.begin(), old.rows.begin() + 9}};
-  EXPECT_TRUE(
-      test::fails_saying([&] { check_comparable(few, 9, "old.csv"); }, {"9 frames do not tell noise"}));
-  EXPECT_TRUE(test::fails_saying(
-      [] {
-        check_comparable({{"a"}, std::vector(60, row(1.0))}, 60, "old.csv");
-      },
-      {"no column wall_ms: expected the frames.csv of a profile"}));
-  const auto with = [&](std::size_t column, const Cell& cell) {
-    Table table = old;
-    table.rows[7][column] = cell;
-    return table;
-  };
-  for (const Cell& cell : {Cell("x"), Cell(), Cell(true), Cell(-1.0), Cell(1e300)})
-    EXPECT_TRUE(test::fails_saying([&] { check_comparable(with(3, cell), 60, "old.csv"); },
-                                   {"--compare old.csv:9: wall_ms: expected a number from 0"}));
-  check_comparable(with(1, Cell("begin_ms is not compared")), 60, "old.csv");
-  Table without = old;
-  without.columns[5] = "other";
-  EXPECT_TRUE(
-      test::fails_saying([&] { check_comparable(without, 60, "old.csv"); }, {"old.csv: no column gpu_ms"}));
+TEST(Profile, ARowSaysWhatTheFramesComeTo) {
+  Profile profile = made_up(60);
+  const Point point = profile_point(profile, summary_of(profile));
+  const Row& row = point.row;
+  EXPECT_EQ(text(row, "scene"), "fox.ply");
+  EXPECT_EQ(text(row, "along"), "tour walk");
+  EXPECT_EQ(text(row, "size"), "64x48");
+  EXPECT_NEAR(number(row, "frame_ms"), 5.0 * 61 / 60, 1e-9) << "one of 60 was drawn twice";
+  EXPECT_EQ(number(row, "frames"), 60);
+  EXPECT_EQ(number(row, "missed"), 2);
+  EXPECT_NEAR(number(row, "stage_blend_ms"), 3.0 * 61 / 60, 1e-9);
+  EXPECT_EQ(row["repeats_ms"], std::vector<double>(10, 5.0)) << "medians of ten stretches";
+  EXPECT_EQ(row["wall_repeats_ms"].size(), 10u);
+  EXPECT_FALSE(row.contains("cpu_repeats_ms"));
+  profile.cpu_ms.assign(60, 9.0);
+  EXPECT_EQ(profile_point(profile, summary_of(profile)).row["cpu_repeats_ms"], std::vector<double>(10, 9.0));
+  ASSERT_EQ(point.details.size(), 10u);
+  EXPECT_EQ(number(point.details[0], "frame"), 5);
+  EXPECT_NE(text(point.details[0], "reason").find("program compiled"), std::string::npos);
 }
 
 TEST(Profile, AdviceFitsWhatBoundsTheFrames) {
@@ -284,7 +227,7 @@ TEST(Profile, TenMinutesAreWrittenWithin200MB) {
   std::size_t bytes = 0;
   const Write count = [&](std::string_view part) { bytes += part.size(); };
   const ProfileSummary summary = summary_of(profile);
-  count(html(profile_page(profile, summary, {}), profile_json(profile, summary)));
+  count(html(profile_page(profile, summary, {}), profile_point(profile, summary).row));
   write_trace(profile, count);
   write_frames(profile.recording, count);
   EXPECT_GT(bytes, 100'000'000u);
@@ -313,7 +256,7 @@ TEST(Profile, ThePageHasTheBudgetTheReasonsAndThePictures) {
   EXPECT_EQ(page.sections[7].sentence, advice_of(profile, summary));
   EXPECT_TRUE(page.sentence.ends_with(" Try " + advice_of(profile, summary) + "."));
   EXPECT_NE(page.sections[6].problem.find("nobody asked"), std::string::npos);
-  EXPECT_FALSE(html(page, profile_json(profile, summary)).empty());
+  EXPECT_FALSE(html(page, profile_point(profile, summary).row).empty());
   EXPECT_LE(lines_of(profile, summary).size(), 10u);
   EXPECT_TRUE(test::fails_saying([&] { summary_of(Profile()); }, {"no frame was recorded"}));
 }
@@ -325,7 +268,7 @@ TEST(Profile, IsShownByChromium) {
   Profile profile = made_up();
   profile.pictures.assign(10, Image(4, 3, 3));
   const ProfileSummary summary = summary_of(profile);
-  save_page(folder / "report.html", profile_page(profile, summary, {}), profile_json(profile, summary));
+  save_page(folder / "report.html", profile_page(profile, summary, {}), profile_point(profile, summary).row);
   const test::Chromium chromium;
   const std::string found = chromium.ask(
       folder / "report.html", 1280, false,

@@ -7,6 +7,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -74,6 +75,28 @@ inline std::vector<std::string> faults_of_trace(const nlohmann::json& trace) {
     }
   }
   return faults;
+}
+
+/// The table of a frames.csv: numbers, yes and no, and texts without commas.
+inline lab::Table frames_of(const std::string& csv) {
+  lab::Table table;
+  std::istringstream lines(csv);
+  for (std::string line; std::getline(lines, line);) {
+    std::vector<lab::Cell> cells;
+    std::istringstream in(line + ",");
+    for (std::string text; std::getline(in, text, ',');) {
+      if (table.columns.empty()) continue;
+      const nlohmann::json value = nlohmann::json::parse(text, nullptr, false);
+      cells.push_back(value.is_number() ? lab::Cell(value.get<double>()) : lab::Cell(text));
+    }
+    if (table.columns.empty()) {
+      std::istringstream names(line);
+      for (std::string name; std::getline(names, name, ',');) table.columns.push_back(name);
+    } else {
+      table.rows.push_back(std::move(cells));
+    }
+  }
+  return table;
 }
 
 /// Where the stages of a trace do not sum up to what frames.csv says of them.

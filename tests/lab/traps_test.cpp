@@ -1,4 +1,4 @@
-// Traps of docs/method.md 7 that need frames in a row; docs/stability.md names the tests of the others.
+// Traps of docs/method.md 7 that need frames in a row; docs/measuring.md names the tests of the others.
 
 #include <gtest/gtest.h>
 

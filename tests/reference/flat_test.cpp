@@ -149,7 +149,7 @@ TEST(FlatSplats, FacingTheEyeAreTheSameButForTheLowPass) {
   EXPECT_LT(apart(smaller, model).first, 50.0);
 }
 
-// The numbers of docs/stability.md.
+// The numbers of docs/measuring.md.
 TEST(FlatSplats, OneSplatIsAsNearAsThePageSays) {
   struct Row {
     double tilt;

@@ -21,7 +21,7 @@ using Views = std::vector<shared::View>;
 
 constexpr int walk_width = 96, walk_height = 168, tile = 8;  // px
 constexpr double asked = 40.0;
-constexpr double equal_pictures = 100.0;  // dB, as study has it
+constexpr double equal_pictures = 100.0;  // dB, as bench has it
 
 // One frame after another, each as both eyes see it.
 struct Walk {

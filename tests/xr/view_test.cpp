@@ -198,7 +198,7 @@ TEST_F(XrView, RecordsFramesAndTheDisplaysThatTheyMissed) {
   const std::filesystem::path recorded = folder.path() / "out" / folder.path().filename() / "profile_001";
   ASSERT_TRUE(std::filesystem::exists(recorded / "report.html")) << said;
   EXPECT_NE(said.find("frames of 2 x 96 x 80 px"), std::string::npos) << said;
-  const lab::Table frames = lab::read_csv(read_text(recorded / "frames.csv"), "frames.csv");
+  const lab::Table frames = frames_of(read_text(recorded / "frames.csv"));
   const auto column = [&](const std::string& name) {
     const auto at = std::ranges::find(frames.columns, name) - frames.columns.begin();
     std::vector<double> numbers;

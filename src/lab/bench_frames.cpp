@@ -1,0 +1,192 @@
+// A point along frames that follow one another: the true quality of each, the quality that it reports, and
+// its cost.
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "base/log.h"
+#include "base/statistics.h"
+#include "lab/bench.h"
+#include "lab/bench_drawer.h"
+#include "lab/times.h"
+#include "measure/flip.h"
+#include "stereo/disagreement.h"
+
+namespace binosplat::lab {
+
+namespace {
+
+constexpr std::array apart_frames = {1, 7};
+
+bool is_moving(const Row& frame) { return text(frame, "part") == "moving"; }
+
+std::vector<double> numbers(const std::vector<Row>& rows, const char* name) {
+  std::vector<double> all;
+  for (const Row& row : rows) all.push_back(number(row, name));
+  return all;
+}
+
+/// What the moving frames come to, and those at rest after them.
+void put_summary(const std::vector<Row>& frames, double exact_pairs, Row& row) {
+  std::vector<Row> moving, stop, once;
+  for (const Row& frame : frames) {
+    (is_moving(frame) ? moving : stop).push_back(frame);
+    if (is_moving(frame) && number(frame, "attempts") == 1.0) once.push_back(frame);
+  }
+  const std::vector<double> db = numbers(moving, "psnr_db");
+  const Row& worst = *std::ranges::min_element(moving, {}, [](const Row& f) { return number(f, "psnr_db"); });
+  put(row, "psnr_db", mean(db), "tenth_psnr_db", quantile(db, 0.1), "worst_psnr_db", quantile(db, 0.0),
+      "worst_view",
+      fmt::format("stretch {}, frame {}", worst["stretch"].get<int>(), worst["frame"].get<int>()),
+      "stop_psnr_db", mean_number(stop, "psnr_db"), "equal_frames", std::ranges::count(db, equal_db));
+  if (moving.front().contains("reported_db")) {
+    std::vector<double> beyond;
+    for (const Row& frame : moving) beyond.push_back(number(frame, "reported_db") - number(frame, "psnr_db"));
+    put(row, "reported_db", mean_number(moving, "reported_db"), "reported_minus_true_db", mean(beyond),
+        "reported_farthest_db",
+        *std::ranges::max_element(beyond, [](double a, double b) { return std::abs(a) < std::abs(b); }));
+  }
+  for (const char* name : {"pairs", "visible", "gaussians", "attempts"})
+    put(row, name, mean_number(moving, name));
+  put(row, "pairs_removed", 100.0 * (1.0 - mean_number(moving, "pairs") / exact_pairs), "once_ms",
+      mean_number(once, "frame_ms"));
+}
+
+/// Its depth, in black.
+Picture uncoloured(Picture picture) {
+  for (glm::vec4& colour : picture.colour) colour = {0.0f, 0.0f, 0.0f, colour.a};
+  return picture;
+}
+
+/// How much frames of the first eye change that no motion explains: what one shows, warped to a later one by
+/// the depth that is drawn (stereo/disagreement.h), against what that shows. As StopThePop measures popping
+/// (Radl et al. 2024, section 5), but by depth and poses where they estimate the flow.
+void put_popping(BenchDrawer& drawer, const Stretch& stretch, Row& row) {
+  std::vector<Picture> pictures;
+  drawer.frame().start_over();
+  for (const std::vector<shared::View>& views : stretch.frames) {
+    drawer.bring(views);
+    drawer.draw(views);
+    pictures.push_back(drawer.read_pictures().front());
+  }
+  for (const int apart : apart_frames) {
+    const auto step = static_cast<std::size_t>(apart);
+    std::vector<double> squared_errors, flips;
+    for (std::size_t n = 0; n + step < pictures.size(); ++n) {
+      const Picture &now = pictures[n + step], &earlier = pictures[n];
+      const std::array black = {uncoloured(now), uncoloured(earlier)};
+      const std::array coloured = {now, earlier};
+      const stereo::Disagreement warped = stereo::disagreement(
+          {stretch.frames[n + step].front(), stretch.frames[n].front()}, black, coloured);
+      if (warped.counted == 0.0) continue;  // they share nothing
+      squared_errors.push_back(std::pow(10.0, -0.1 * warped.db));
+      flips.push_back(measure::flip(on_black(now), warped.right) / warped.counted);
+    }
+    if (flips.empty()) continue;
+    put(row, fmt::format("popping_{}_db", apart),
+        std::min(equal_db, -10.0 * std::log10(mean(squared_errors))), fmt::format("popping_{}_flip", apart),
+        mean(flips));
+  }
+}
+
+}  // namespace
+
+std::vector<std::size_t> stretch_starts(std::size_t total, std::size_t length, std::size_t count) {
+  count =
+      std::clamp<std::size_t>(total / std::max<std::size_t>(length, 1), 1, std::max<std::size_t>(count, 1));
+  const std::size_t last = total > length ? total - length : 0;
+  if (count == 1) return {last / 2};
+  std::vector<std::size_t> starts;
+  for (std::size_t k = 0; k < count; ++k) starts.push_back(k * last / (count - 1));
+  return starts;
+}
+
+ExactFrames& Bench::exact_frames(const BenchSettings& settings) {
+  const Seen seen = seen_by(settings);
+  if (!exact_frames_ || exact_frames_seen_ != seen) {
+    exact_frames_.reset();
+    exact_frames_ =
+        std::make_unique<ExactFrames>(gpu_model(), settings, what_.stretches, effort_.exact_bytes);
+    exact_frames_seen_ = seen;
+  }
+  return *exact_frames_;
+}
+
+void Bench::measure_frames(const BenchSettings& settings, BenchDrawer& drawer, Point& point) {
+  const bool finest = has_finest(point.row);
+  std::vector<Row>& frames = point.details;
+  double exact_pairs = 0.0, moving = 0.0;
+  for (std::size_t s = 0; s < what_.stretches.size(); ++s) {
+    const Stretch& stretch = what_.stretches[s];
+    drawer.frame().start_over();
+    for (std::size_t n = 0; n < stretch.frames.size(); ++n) {
+      const LevelsBrought levels = drawer.bring(stretch.frames[n]);
+      const render::FrameReport report = drawer.draw(stretch.frames[n]);
+      Row& row = frames.emplace_back(row_of("of", "frame", "stretch", s + 1, "frame", frames.size(), "part",
+                                            n < stretch.moving ? "moving" : "stop"));
+      if (finest) {
+        const std::vector<double> db = exact_frames(settings).psnr(drawer.frame(), s, n);
+        put(row, "psnr_db", std::min(equal_db, *std::ranges::min_element(db)));
+        if (n < stretch.moving) {
+          exact_pairs += exact_frames(settings).pairs(s, n);
+          moving += 1.0;
+        }
+      }
+      put(row, "reported_db", levels.predicted_db, "pairs", report.pairs, "visible", report.visible,
+          "gaussians", levels.gaussians, "tolerance", report.tolerance, "attempts",
+          std::max(1, report.attempts));
+      if (settings.quality > 0.0f) put(row, "reported_db", std::min(equal_db, report.quality));
+      if (s == 0 && n == 0)
+        point.picture = for_page(composite(drawer.read_pictures().front(), glm::vec3(0.0f)));
+    }
+  }
+  time_frames(drawer, point);
+  put_summary(frames, exact_pairs / moving, point.row);
+  if (effort_.popping) put_popping(drawer, what_.stretches.front(), point.row);
+}
+
+// In passes of their own, which read no picture back.
+void Bench::time_frames(BenchDrawer& drawer, Point& point) {
+  std::vector<std::vector<double>> ms(point.details.size());
+  std::vector<double> repeats, cpu_repeats, of_frames;
+  std::vector<Typical> turns;
+  std::size_t differs = 0;
+  const Stretch& first = what_.stretches.front();
+  wake(context_, 1000.0, [&] { drawer.draw(first.frames.front()); });
+  for (int repeat = 0; repeat < effort_.repeats; ++repeat) {
+    std::size_t at = 0;
+    std::vector<double> moving;
+    double cpu = 0.0;
+    for (const Stretch& stretch : what_.stretches) {
+      drawer.frame().start_over();
+      Reports reports;
+      for (std::size_t n = 0; n < stretch.frames.size(); ++n, ++at) {
+        drawer.bring(stretch.frames[n]);
+        const double cpu_before = process_ms();
+        const render::FrameReport report = drawer.draw(stretch.frames[n]);
+        ms[at].push_back(report.total_ms);
+        differs += static_cast<double>(report.pairs) != number(point.details[at], "pairs");
+        if (n >= stretch.moving) continue;
+        cpu += process_ms() - cpu_before;
+        moving.push_back(report.total_ms);
+        reports.push_back(report);
+      }
+      turns.push_back(typical_of(reports));
+    }
+    repeats.push_back(mean(moving));
+    cpu_repeats.push_back(cpu / static_cast<double>(moving.size()));
+  }
+  for (std::size_t k = 0; k < ms.size(); ++k) {
+    const double median = quantile(ms[k], 0.5);
+    put(point.details[k], "frame_ms", median);
+    if (is_moving(point.details[k])) of_frames.push_back(median);
+  }
+  put_times(repeats, context_.software() ? cpu_repeats : std::vector<double>(), of_frames, point.row);
+  for (const gl::StageTime& stage : mean_of(turns).stages) put(point.row, stage_column(stage.name), stage.ms);
+  if (differs > 0) log_warning("{} frames timed are not those that were judged", differs);
+}
+
+}  // namespace binosplat::lab

@@ -1,0 +1,437 @@
+// The page of what was measured: by chart (scene, eyes, size, along what) the plots that its columns allow.
+
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+#include "lab/results.h"
+
+namespace binosplat::lab {
+
+namespace {
+
+constexpr double good_db = 40.0;     // an error that is hard to see
+constexpr double hardly_seen = 1.0;  // % of the pixels
+constexpr const char* means_begin = "mean of ";
+
+// AdaGScale, table IV: pairs removed against FlashGS at 0.1 to 0.5 dB, K tuned on the test views, mean over
+// the paper's own scenes.
+constexpr struct {
+  double drop_db, removed;
+} paper_removed[] = {{0.1, 31.0}, {0.2, 35.8}, {0.3, 38.9}, {0.4, 41.2}, {0.5, 43.1}};
+
+/// The points of one chart, quickest first.
+struct ChartPoints {
+  std::string title, id;
+  std::vector<std::string> families = {};  // in the plan's order: colours mean the same in every chart
+  std::vector<const Point*> measured = {};
+  std::vector<const Point*> others = {};  // problems, and what is yet to be measured
+  const Point* exact = nullptr;
+
+  std::vector<Row> rows() const {
+    std::vector<Row> all;
+    for (const Point* point : measured) all.push_back(point->row);
+    return all;
+  }
+  bool has(const std::string& column) const {
+    return std::ranges::any_of(measured, [&](const Point* p) { return p->row.contains(column); });
+  }
+  /// The details of a kind, each with its point's setting.
+  std::vector<Row> details(const std::string& of, const std::vector<const Point*>& points) const {
+    std::vector<Row> all;
+    for (const Point* point : points) {
+      for (const Row& detail : point->details) {
+        if (text(detail, "of") != of) continue;
+        Row& row = all.emplace_back(row_of("name", text(point->row, "name")));
+        row.update(detail);
+      }
+    }
+    return all;
+  }
+};
+
+std::vector<ChartPoints> charts_of(const std::vector<Point>& points) {
+  std::vector<ChartPoints> charts;
+  for (const Point& point : points) {
+    const std::string title = point.chart();
+    auto found = std::ranges::find(charts, title, &ChartPoints::title);
+    if (found == charts.end())
+      found = charts.insert(found, {title, fmt::format("chart-{}", charts.size() + 1)});
+    (point.measured() ? found->measured : found->others).push_back(&point);
+    const std::string family = text(point.row, "family");
+    if (std::ranges::find(found->families, family) == found->families.end())
+      found->families.push_back(family);
+    if (found->exact == nullptr && &point == exact_of(points, point)) found->exact = &point;
+  }
+  for (ChartPoints& chart : charts)
+    std::ranges::stable_sort(chart.measured, {}, [](const Point* p) { return number(p->row, "frame_ms"); });
+  return charts;
+}
+
+std::string sentence_of(const ChartPoints& chart) {
+  if (chart.measured.empty()) return "Nothing was measured here yet.";
+  const auto good = std::ranges::find_if(chart.measured,
+                                         [](const Point* p) { return number(p->row, "psnr_db") >= good_db; });
+  if (good == chart.measured.end())
+    return fmt::format("Of {} settings none comes to {} dB against exact.", chart.measured.size(), good_db);
+  std::string sentence = fmt::format(
+      "Of {} settings, “{}” is the quickest with {} dB or more against exact: {:.4g} ms a frame",
+      chart.measured.size(), text((*good)->row, "name"), good_db, number((*good)->row, "frame_ms"));
+  if (chart.exact != nullptr && chart.exact != *good)
+    sentence += fmt::format(", {:.2f} times as fast as the exact picture ({:.4g} ms)",
+                            number((*good)->row, "speed"), number(chart.exact->row, "frame_ms"));
+  return sentence +
+         ". Filled points are on the Pareto front: nothing is both nearer to exact and, beyond noise, "
+         "quicker. Equal pictures count as 100 dB. Bars are half the spread of the repeats.";
+}
+
+/// A section whose chart is of `rows`, with the numbers folded away.
+Section plot(const ChartPoints& chart, const std::string& id, const std::string& title,
+             const std::string& sentence, std::span<const Row> rows, const std::vector<std::string>& columns,
+             Chart drawn) {
+  Section section{chart.id + "-" + id, chart.title + ": " + title, sentence};
+  section.numbers = table_of(rows, columns);
+  const auto is_gone = [&](const std::string& column) {
+    return std::ranges::find(section.numbers->columns, column) == section.numbers->columns.end();
+  };
+  std::erase_if(drawn.y, is_gone);
+  for (std::string* column : {&drawn.by, &drawn.label, &drawn.filled, &drawn.spread}) {
+    if (is_gone(*column)) column->clear();
+  }
+  section.chart = std::move(drawn);
+  return section;
+}
+
+Section accuracy(const ChartPoints& chart) {
+  Chart drawn{.x = "frame ms", .y = {"PSNR dB"}, .by = "family", .label = "setting", .filled = "front"};
+  drawn.title = "PSNR against exact, dB";
+  drawn.order = chart.families;
+  drawn.line = false;
+  drawn.front = true;
+  drawn.spread = "noise ms";
+  return plot(chart, "accuracy", "speed against accuracy", sentence_of(chart), chart.rows(),
+              {"name", "family", "pareto", "frame_ms", "noise_ms", "psnr_db"}, drawn);
+}
+
+/// Those on the front and the exact one; of tolerances that were found, the tile tests and what comes of the
+/// middle target.
+std::vector<const Point*> chosen(const ChartPoints& chart) {
+  std::set<double> targets;
+  const auto target = [](const Point* p) {
+    const double drop = number(p->row, "max_drop");
+    return std::isnan(drop) ? number(p->row, "min_psnr") : drop;
+  };
+  for (const Point* point : chart.measured) {
+    if (!std::isnan(target(point))) targets.insert(target(point));
+  }
+  std::vector<const Point*> some;
+  for (const Point* point : chart.measured) {
+    const bool takes = targets.empty()
+                           ? point == chart.exact || point->row.value("pareto", false)
+                           : text(point->row, "th") == "tau" ||
+                                 (target(point) == *std::next(targets.begin(), std::ssize(targets) / 2) &&
+                                  text(point->row, "found_on") == "test");
+    if (takes) some.push_back(point);
+  }
+  return some;
+}
+
+Section stages(const ChartPoints& chart) {
+  std::vector<Row> rows;
+  for (const Point* point : chosen(chart)) rows.push_back(point->row);
+  std::vector<std::string> columns = {"name"};
+  Chart drawn{.x = "setting", .title = "GPU time, ms"};
+  std::string slowest;
+  double most = 0.0, sum = 0.0;
+  for (const std::string& column : columns_of(rows)) {
+    if (!stage_of(column)) continue;
+    columns.push_back(column);
+    drawn.y.push_back(title_of(column));
+    if (chart.exact == nullptr) continue;
+    const double ms = number(chart.exact->row, column);
+    sum += std::isnan(ms) ? 0.0 : ms;
+    if (!(ms > most)) continue;
+    most = ms;
+    slowest = *stage_of(column);
+  }
+  drawn.bars = true;
+  std::string sentence = "Where the time goes, for the points on the front and for the exact picture";
+  if (!slowest.empty())
+    sentence += fmt::format(": of the exact picture's, {:.0f} % goes to {}", 100 * most / sum, slowest);
+  return plot(chart, "stages", "stages", sentence + ".", rows, columns, drawn);
+}
+
+Section pictures(const ChartPoints& chart) {
+  Section section{chart.id + "-pictures", chart.title + ": pictures",
+                  "Of the first view, the left eye's: drag across it. The numbers are means over all."};
+  section.compared = true;
+  for (const Point* point : chosen(chart)) {
+    if (!point->picture) continue;
+    const Row& row = point->row;
+    section.figures.push_back({fmt::format("{}, {:.1f} dB, {:.4g} ms", text(row, "name"),
+                                           number(row, "psnr_db"), number(row, "frame_ms")),
+                               *point->picture});
+  }
+  std::ranges::reverse(section.figures);
+  return section;
+}
+
+/// All numbers, but what the heading says.
+Section all_numbers(const ChartPoints& chart) {
+  const std::vector<Row> rows = chart.rows();
+  std::vector<std::string> columns;
+  for (const std::string& column : columns_of(rows)) {
+    const bool told =
+        identity_of(row_of(column, true)).size() > 0 || column == "family" || column == "device";
+    if (!told || column == "name") columns.push_back(column);
+  }
+  const auto unsettled = std::ranges::count_if(
+      rows, [](const Row& row) { return row.contains("settled") && !row["settled"].template get<bool>(); });
+  std::string sentence =
+      "Means over the views or the moving frames; docs/measuring.md says how each is found.";
+  if (unsettled > 0)
+    sentence += fmt::format(" At {} of {} settings the GPU's clock had not settled when timing began.",
+                            unsettled, rows.size());
+  return {chart.id + "-numbers", chart.title + ": the numbers", sentence, table_of(rows, columns)};
+}
+
+Section floors(const ChartPoints& chart) {
+  return {chart.id + "-floors", chart.title + ": floors",
+          "What each stage must move and compute at least, over the rates that small programs reach on this "
+          "GPU.",
+          table_of(chart.details("floor", chosen(chart)),
+                   {"name", "stage", "frame_ms", "bytes", "operations", "floor_ms", "floor_share"})};
+}
+
+void add_seen(const ChartPoints& chart, std::vector<Section>& sections) {
+  if (!chart.has("seen")) return;
+  std::vector<Row> rows = chart.rows();
+  double least = INFINITY;
+  std::string sentence =
+      "Against the exact picture, for eyes that look along their axes, by the contrast that Geisler and "
+      "Perry found to be needed at each distance from there. Filled points show less than all that are "
+      "quicker.";
+  bool told = false;
+  for (Row& row : rows) {
+    const double seen = number(row, "seen");
+    row["pareto"] = seen < least;
+    least = std::min(least, seen);
+    if (told || !(seen <= hardly_seen)) continue;
+    told = true;
+    sentence += fmt::format(" The quickest with at most {:g} % of the pixels is “{}”: {:.4g} ms.",
+                            hardly_seen, text(row, "name"), number(row, "frame_ms"));
+  }
+  Chart drawn{.x = "frame ms", .y = {"seen %"}, .by = "family", .label = "setting", .filled = "front"};
+  drawn.order = chart.families;
+  drawn.line = false;
+  sections.push_back(plot(chart, "seen", "what is seen", sentence, rows,
+                          {"name", "family", "pareto", "frame_ms", "seen"}, drawn));
+  sections.back().table =
+      table_of(chart.details("ring", chart.measured), {"name", "from", "to", "share", "psnr_db", "seen"});
+}
+
+/// Every frame of the settings that are asked for the middle quality, or of all.
+void add_frames(const ChartPoints& chart, std::vector<Section>& sections) {
+  std::set<double> asked;
+  for (const Point* point : chart.measured) {
+    if (point->row.contains("quality")) asked.insert(number(point->row, "quality"));
+  }
+  std::vector<const Point*> some;
+  for (const Point* point : chart.measured) {
+    const double quality = number(point->row, "quality");
+    if (asked.empty() || point == chart.exact || quality == *std::next(asked.begin(), std::ssize(asked) / 2))
+      some.push_back(point);
+  }
+  const std::vector<Row> rows = chart.details("frame", some);
+  if (rows.empty()) return;
+  const std::vector<std::string> columns = {"name",        "stretch", "frame",    "part",      "psnr_db",
+                                            "reported_db", "pairs",   "frame_ms", "tolerance", "attempts"};
+  Chart drawn{.x = "frame", .by = "setting", .label = "part", .dots = false};
+  for (const auto& [id, title, sentence, y, axis] :
+       {std::tuple{"quality", "true and reported",
+                   "Of each frame, the worse eye's PSNR against the exact frame, "
+                   "of 8-bit pictures, and what the frame reported of itself.",
+                   std::vector<std::string>{"PSNR dB", "reported dB"}, "PSNR, dB"},
+        {"pairs", "pairs", "Gaussian-tile pairs of a frame, an error sample's included.", {"pairs"}, "pairs"},
+        {"times", "time", "GPU time of a frame, the median of the repeats.", {"frame ms"}, "GPU time, ms"}}) {
+    drawn.y = y;
+    drawn.title = axis;
+    sections.push_back(plot(chart, id, title, sentence, rows, columns, drawn));
+  }
+}
+
+void add_turns(const ChartPoints& chart, std::vector<Section>& sections) {
+  const std::vector<Row> all = chart.details("turn", chart.measured);
+  if (all.empty()) return;
+  std::vector<Row> up;
+  std::ranges::copy_if(all, std::back_inserter(up),
+                       [](const Row& row) { return text(row, "about") == "up"; });
+  Chart drawn{.x = "degrees", .y = {"PSNR dB"}, .by = "setting"};
+  drawn.log_x = true;
+  sections.push_back(
+      plot(chart, "turns", "what a turn changes",
+           "About the axis up, along the same rays, where nothing should change; 40 dB is where "
+           "many begin to see it.",
+           up, {"name", "degrees", "psnr_db"}, drawn));
+  sections.back().table = table_of(all, {"name", "about", "degrees", "rays", "psnr_db", "flip", "rays_off"});
+  for (const Point* point : chart.measured) {
+    if (point->picture)
+      sections.back().figures.push_back(
+          {text(point->row, "name") + ": 8 times the difference after 15 degrees", *point->picture});
+  }
+}
+
+void add_levels(const ChartPoints& chart, std::vector<Section>& sections) {
+  if (!chart.has("detail")) return;
+  sections.push_back(
+      plot(chart, "levels", "what levels of detail lose",
+           "Against the finest levels: true, and as the levels' errors predict it of the eye that "
+           "loses more.",
+           chart.rows(), {"name", "gaussians", "psnr_db", "reported_db", "flip", "frame_ms"},
+           Chart{.x = "Gaussians", .y = {"PSNR dB", "reported dB"}, .label = "setting"}));
+}
+
+/// How frame times grow with scenes, of the same setting.
+void add_growth(const std::vector<ChartPoints>& charts, std::vector<Section>& sections) {
+  std::vector<Row> rows;
+  for (const ChartPoints& chart : charts) {
+    if (!chart.has("detail")) continue;
+    for (const Row& row : chart.rows()) rows.push_back(row);
+  }
+  std::set<std::string> scenes;
+  for (const Row& row : rows) scenes.insert(text(row, "scene"));
+  if (scenes.size() < 2) return;
+  Chart drawn{.x = "Gaussians", .y = {"frame ms"}, .by = "setting", .label = "scene"};
+  drawn.log_x = drawn.log_y = true;
+  sections.push_back(plot({.title = "All scenes", .id = "all"}, "growth", "growth with the model",
+                          "GPU time of a frame over the Gaussians that are drawn.", rows,
+                          {"scene", "name", "gaussians", "frame_ms"}, drawn));
+}
+
+/// What tolerances gain that were found for targets, as AdaGScale's tables III and IV and figure 8 have it.
+void add_targets(const ChartPoints& chart, std::vector<Section>& sections) {
+  for (const char* target : {"max_drop", "min_psnr"}) {
+    std::vector<Row> tuned, trained;
+    for (const Point* point : chart.measured) {
+      if (!point->row.contains(target)) continue;
+      Row row = point->row;
+      (text(row, "found_on") == "test" ? tuned : trained).push_back(row);
+    }
+    const bool drop = std::string(target) == "max_drop";
+    const char* const lost = drop ? "drop_db" : "psnr_db";
+    const std::vector<std::string> columns = {"family",        target,          lost,
+                                              "pairs_removed", "speed",         "found_tolerance",
+                                              "found_db",      "worst_psnr_db", "worst_view"};
+    if (!tuned.empty()) {
+      const Row& most =
+          *std::ranges::max_element(tuned, {}, [](const Row& row) { return number(row, "pairs_removed"); });
+      const std::string sentence = fmt::format(
+          "“{}” removes the most pairs of the exact ellipse test: {:.1f} % at {:g} dB. Tolerances are tuned "
+          "on "
+          "the test views themselves, as the paper's are.",
+          text(most, "family"), number(most, "pairs_removed"), number(most, target));
+      std::vector<Row> with_paper = tuned;
+      for (const auto& [drop_db, removed] : paper_removed) {
+        if (drop)
+          with_paper.push_back(
+              row_of("family", "the paper, its scenes", "max_drop", drop_db, "pairs_removed", removed));
+      }
+      sections.push_back(plot(chart, "removed", "pairs removed (table IV)", sentence, with_paper, columns,
+                              Chart{title_of(target), {"pairs removed %"}, "family"}));
+      sections.push_back(plot(chart, "speed", "speed at equal error (figure 8)",
+                              "Times as fast as the exact frame, over what the test views lose.", tuned,
+                              columns, Chart{title_of(lost), {"times exact"}, "family"}));
+    }
+    if (!trained.empty())
+      sections.push_back(plot(chart, "real", "what is lost where nothing was calibrated (table III)",
+                              "Tolerances found on training views, and what they cost in the test views.",
+                              trained, columns, Chart{title_of(target), {title_of(lost)}, "family"}));
+  }
+}
+
+void add_contributions(const ChartPoints& chart, std::vector<Section>& sections) {
+  const auto of = [&](const char* kind) { return chart.details(kind, chart.measured); };
+  if (const auto rows = of("skipping"); !rows.empty())
+    sections.push_back(
+        plot(chart, "skipping", "what the lowest contributions are worth (figures 4a, 5a, 5b)",
+             "Without so many of all fragments, those that seem to contribute least by what is known "
+             "of the transmittance, pictures keep this PSNR. Against the photos of the paper's four "
+             "scenes 80 % by alpha T cost 0.60 dB, 60 % by alpha max(T) 0.41, 50 % by alpha "
+             "T_upper(depth) 0.51.",
+             rows, {"by", "share", "psnr_db", "drop_db"}, Chart{"share %", {"PSNR dB"}, "by"}));
+  if (const auto rows = of("distance"); !rows.empty())
+    sections.push_back(plot(chart, "distance", "contribution by distance (figure 4b)",
+                            "alpha T of fragments, by the distance of pixel and Gaussian in px.", rows,
+                            {"from", "to", "fragments", "mean", "largest", "nearer"},
+                            Chart{.x = "from", .y = {"mean", "largest"}, .title = "alpha T", .steps = true}));
+  if (const auto rows = of("depth"); !rows.empty())
+    sections.push_back(
+        plot(chart, "depth", "transmittance by depth (figure 6)",
+             "max(T) of the Gaussians at each depth, world units, and T_upper of a table that fits "
+             "the scene.",
+             rows, {"from", "to", "gaussians", "median", "p90", "largest", "upper"},
+             Chart{.x = "from",
+                   .y = {"median", "90 of 100 below", "largest", "T_upper"},
+                   .title = "max(T) of a Gaussian",
+                   .steps = true}));
+}
+
+Section missing(const ChartPoints& chart) {
+  std::string list;
+  for (const Point* point : chart.others) {
+    const std::string problem = text(point->row, "problem");
+    list += fmt::format("{}{}: {}", list.empty() ? "" : "; ", text(point->row, "name"),
+                        problem.empty() ? "not measured yet" : problem);
+  }
+  Section section{chart.id + "-missing", chart.title + ": not measured",
+                  fmt::format("{} of {} settings have no result.", chart.others.size(),
+                              chart.others.size() + chart.measured.size())};
+  section.problem = list;
+  return section;
+}
+
+}  // namespace
+
+Page results_page(const Results& results) {
+  Page page{.title = "Speed against accuracy"};
+  const std::vector<ChartPoints> charts = charts_of(results.points);
+  std::set<std::string> devices, lacks;
+  for (const Point& point : results.points) {
+    if (point.tried()) devices.insert(text(point.row, "device"));
+    if (point.row.contains("no_exact")) lacks.insert(text(point.row, "no_exact"));
+  }
+  page.sentence = charts.empty() ? "No point was measured." : sentence_of(charts.front());
+  for (const std::string& lack : lacks) page.sentence += " There is nothing to compare with: " + lack;
+  page.facts = {{"device", devices.empty() ? "none" : fmt::format("{}", fmt::join(devices, "; "))},
+                {"settings", results.axes},
+                {"program", results.program}};
+  std::vector<Section>& sections = page.sections;
+  for (const ChartPoints& chart : charts) {
+    if (chart.title.starts_with(means_begin)) {
+      sections.push_back(
+          {chart.id, chart.title, "Speeds are geometric means; all else arithmetic ones.",
+           table_of(chart.rows(), {"name", "speed", "psnr_db", "drop_db", "pairs_removed", "flip"})});
+      continue;
+    }
+    if (chart.has("frame_ms")) sections.push_back(accuracy(chart));
+    add_targets(chart, sections);
+    add_seen(chart, sections);
+    add_levels(chart, sections);
+    add_turns(chart, sections);
+    add_frames(chart, sections);
+    if (chart.has("frame_ms")) {
+      if (Section some = pictures(chart); some.figures.size() > 1) sections.push_back(std::move(some));
+      sections.push_back(stages(chart));
+    }
+    if (!chart.measured.empty()) sections.push_back(all_numbers(chart));
+    if (Section some = floors(chart); !some.table->rows.empty()) sections.push_back(std::move(some));
+    add_contributions(chart, sections);
+    if (!chart.others.empty()) sections.push_back(missing(chart));
+  }
+  add_growth(charts, sections);
+  return page;
+}
+
+}  // namespace binosplat::lab

@@ -1,0 +1,46 @@
+#pragma once
+// What frames take: GPU times, and what is typical of them.
+
+#include <span>
+#include <vector>
+
+#include "base/clock.h"
+#include "gl/context.h"
+#include "lab/results.h"
+#include "render/frame.h"
+
+namespace binosplat::lab {
+
+/// The reports of frames that follow one another.
+using Reports = std::vector<render::FrameReport>;
+
+/// What a frame takes.
+struct Typical {
+  double frame_ms = 0.0;
+  std::vector<gl::StageTime> stages;  // ms
+};
+
+/// The medians of frames of one view, which a slow frame does not move. Those that measure for the others
+/// take longer: both kinds count by their numbers.
+Typical typical_of(const Reports& frames);
+/// The mean; the stages are the first one's.
+Typical mean_of(std::span<const Typical> all);
+
+/// Puts what repeats of a time come to, their spread, and what of all frames takes longest. Where the CPU
+/// draws, `cpu_repeats` is its time, of all threads; else empty.
+void put_times(const std::vector<double>& repeats, const std::vector<double>& cpu_repeats,
+               const std::vector<double>& all_ms, Row& row);
+
+/// CPU time of this process, of all its threads, in ms.
+double process_ms();
+
+/// Draws for so long, a second or a little less, after which the clock of a GPU that waited is up again. A
+/// software renderer has none.
+template <typename Draw>
+void wake(const gl::Context& context, double ms, const Draw& draw) {
+  if (context.software()) return;
+  const auto start = Clock::now();
+  while (ms_since(start) < ms) draw();
+}
+
+}  // namespace binosplat::lab

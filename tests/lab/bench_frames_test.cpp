@@ -1,0 +1,208 @@
+// Settings along a moving head: what is reported of them is what a second look at the same pictures finds.
+
+#include <fmt/core.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "lab/bench.h"
+#include "lab/byte_pictures.h"
+#include "measure/metrics.h"
+#include "render/frame.h"
+#include "stereo/rig.h"
+#include "support/gl.h"
+#include "support/models.h"
+
+namespace binosplat::lab {
+namespace {
+
+using Views = std::vector<shared::View>;
+
+/// A pair at x.
+Views head_at(double x) {
+  Camera camera = test::front_camera(50, 37, 48);
+  camera.position.x = x;
+  const auto eyes = stereo::make_rig(camera, {.ipd = 0.05}).views;
+  return {eyes.begin(), eyes.end()};
+}
+
+/// Two stretches of six moving frames and a stop of two.
+std::vector<Stretch> sideways() {
+  std::vector<Stretch> stretches;
+  for (const double from : {0.0, -0.4}) {
+    Stretch& stretch = stretches.emplace_back();
+    for (int n = 0; n < 6; ++n) stretch.frames.push_back(head_at(from + 0.05 * n));
+    stretch.moving = 6;
+    stretch.frames.insert(stretch.frames.end(), 2, Views(stretch.frames.back()));
+  }
+  return stretches;
+}
+
+/// In the same view as 8-bit pictures, each read back and rounded on the CPU.
+std::vector<double> looked_at(const std::vector<Picture>& exact, const std::vector<Picture>& drawn) {
+  const auto shown = [](const Picture& picture) { return quantised(composite(picture, glm::vec3(0.0f))); };
+  std::vector<double> db;
+  for (std::size_t v = 0; v < exact.size(); ++v)
+    db.push_back(measure::psnr(shown(exact[v]), shown(drawn[v])));
+  return db;
+}
+
+struct BenchFrames : testing::Test {
+  const Model model = test::random_model(71, 800, 0);
+  BenchSettings settings;
+
+  BenchFrames() {
+    settings.th = TH_SQUARED;
+    settings.transmittance = TRANSMITTANCE_LAST;
+    settings.quality = 38.0f;
+  }
+  Bench bench(const std::vector<Stretch>& stretches, const BenchEffort& effort = {.repeats = 2}) const {
+    return {test::gl_context(),
+            [this]() -> const Model& { return model; },
+            {.stretches = stretches, .small = make_view(test::front_camera(32, 24, 32))},
+            effort};
+  }
+};
+
+TEST_F(BenchFrames, EachViewHasItsOwnErrorAndNoGroupIsOfTwo) {
+  render::Frame frame(test::gl_context(), model);
+  BytePictures bytes(test::gl_context());
+  gl::Buffer kept(test::gl_context(), "kept");
+  const Views views = {make_view(test::front_camera(50, 37, 48)), make_view(test::front_camera(33, 21, 30)),
+                       make_view(test::front_camera(16, 16, 12))};
+  ASSERT_NE(views[0].width * views[0].height % THREADS, 0u);
+  frame.draw(views);
+  const auto exact = frame.read_pictures();
+  bytes.keep(frame, views, kept);
+  EXPECT_EQ(bytes.errors(frame, views, kept), std::vector<double>(3, 0.0));
+  // A probe's pixels come after the views' and count for none.
+  for (const render::FrameSettings& way : {render::FrameSettings{.th = TH_SQUARED, .tolerance = 2.0f},
+                                           render::FrameSettings{.th = TH_SQUARED, .quality = 35.0f}}) {
+    frame.draw(views, way);
+    const auto errors = bytes.errors(frame, views, kept);
+    const auto db = looked_at(exact, frame.read_pictures());
+    for (std::size_t v = 0; v < 3; ++v) {
+      EXPECT_GT(errors[v], 0.0);
+      EXPECT_NEAR(-10.0 * std::log10(errors[v]), db[v], 1e-4) << v;
+    }
+  }
+}
+
+TEST_F(BenchFrames, DetailsAreWhatASecondLookFinds) {
+  const std::vector<Stretch> stretches = sideways();
+  const Point point = bench(stretches).measure(settings);
+  ASSERT_TRUE(point.measured());
+  ASSERT_EQ(point.details.size(), 16u);
+  double neighbours_off = 0.0;
+  std::vector<double> moving, exact_pairs, pairs;
+  std::size_t at = 0;
+  for (std::size_t s = 0; s < stretches.size(); ++s) {
+    render::Frame frame(test::gl_context(), model), still(test::gl_context(), model);
+    std::vector<Picture> before;
+    for (std::size_t n = 0; n < stretches[s].frames.size(); ++n, ++at) {
+      SCOPED_TRACE(fmt::format("stretch {}, frame {}", s, n));
+      const Views& views = stretches[s].frames[n];
+      const auto of_exact = static_cast<double>(still.draw(views).pairs);
+      const auto exact = still.read_pictures();
+      const render::FrameReport report = frame.draw(views, settings);
+      const auto db = looked_at(exact, frame.read_pictures());
+      const double worse = std::min({db[0], db[1], equal_db});
+      const Row& row = point.details[at];
+      EXPECT_EQ(number(row, "frame"), double(at));
+      EXPECT_EQ(text(row, "part"), n < 6 ? "moving" : "stop");
+      EXPECT_NEAR(number(row, "psnr_db"), worse, 1e-4);
+      EXPECT_EQ(number(row, "reported_db"), report.quality);
+      EXPECT_EQ(number(row, "pairs"), static_cast<double>(report.pairs));
+      EXPECT_EQ(number(row, "tolerance"), static_cast<double>(report.tolerance));
+      EXPECT_GT(number(row, "frame_ms"), 0.0);
+      // The fault that this must see: the frame before is what it is compared with.
+      if (n > 0 && n < 6)
+        neighbours_off = std::max(neighbours_off, worse - looked_at(before, frame.read_pictures())[0]);
+      before = exact;
+      if (n >= 6) continue;
+      moving.push_back(worse);
+      pairs.push_back(static_cast<double>(report.pairs));
+      exact_pairs.push_back(of_exact);
+    }
+  }
+  EXPECT_GT(neighbours_off, 3.0) << "a neighbour's exact picture would go unnoticed";
+  const auto sum = [](const std::vector<double>& all) {
+    return std::accumulate(all.begin(), all.end(), 0.0);
+  };
+  EXPECT_NEAR(number(point.row, "psnr_db"), sum(moving) / 12.0, 1e-3);
+  EXPECT_NEAR(number(point.row, "worst_psnr_db"), *std::ranges::min_element(moving), 1e-3);
+  EXPECT_NEAR(number(point.row, "pairs_removed"), 100.0 * (1.0 - sum(pairs) / sum(exact_pairs)), 1e-6);
+  EXPECT_NEAR(number(point.row, "reported_minus_true_db"),
+              number(point.row, "reported_db") - number(point.row, "psnr_db"), 1e-6);
+  EXPECT_EQ(number(point.row, "frames"), 12);
+  EXPECT_EQ(point.row["repeats_ms"].size(), 2u);
+  const Row exact = bench(stretches).measure({}).row;
+  EXPECT_EQ(number(exact, "equal_frames"), 12);
+  EXPECT_EQ(number(exact, "pairs_removed"), 0.0);
+  EXPECT_FALSE(exact.contains("reported_db"));
+}
+
+TEST_F(BenchFrames, WhatHasNoRoomIsDrawnAgain) {
+  const std::vector<Stretch> stretches = sideways();
+  const auto gpu_model = std::make_shared<render::GpuModel>(test::gl_context(), model);
+  render::Frame frame(gpu_model);
+  const std::int64_t one_frame = BytePictures::bytes(stretches[0].frames[0]);
+  EXPECT_EQ(one_frame, 4 * 2 * 50 * 37);
+  ExactFrames all(gpu_model, {}, stretches, 100 * one_frame), some(gpu_model, {}, stretches, 3 * one_frame);
+  for (std::size_t n = 0; n < 8; ++n) {
+    frame.draw(stretches[1].frames[n], {.th = TH_SQUARED, .tolerance = 1.0f});
+    EXPECT_EQ(all.psnr(frame, 1, n), some.psnr(frame, 1, n)) << n;
+    EXPECT_EQ(all.pairs(1, n), some.pairs(1, n));
+  }
+  frame.draw(stretches[0].frames[7]);
+  EXPECT_EQ(some.psnr(frame, 0, 7), (std::vector<double>{INFINITY, INFINITY}));
+}
+
+TEST_F(BenchFrames, StretchesAreSpreadOverAPath) {
+  using Starts = std::vector<std::size_t>;
+  EXPECT_EQ(stretch_starts(100, 20, 3), (Starts{0, 40, 80}));
+  EXPECT_EQ(stretch_starts(100, 20, 1), (Starts{40})) << "in the middle";
+  EXPECT_EQ(stretch_starts(50, 20, 3), (Starts{0, 30})) << "so many would overlap";
+  EXPECT_EQ(stretch_starts(10, 20, 3), (Starts{0})) << "not even one fits";
+}
+
+// A wall of Gaussians side by side, which no order changes, with some before it.
+Model wall_of_squares(bool with_more) {
+  test::Uniform uniform(6);
+  Model model;
+  for (int y = 0; y < 30; ++y) {
+    for (int x = 0; x < 30; ++x)
+      test::add(model, {0.2f * static_cast<float>(x - 15), 0.2f * static_cast<float>(y - 15), 4.0f},
+                {0.15f, 0.15f, 0.001f}, 0.99f,
+                glm::vec3(uniform(0.4, 0.6), uniform(0.4, 0.6), uniform(0.4, 0.6)));
+  }
+  for (int i = 0; i < (with_more ? 200 : 0); ++i)
+    test::add(model, {uniform(-2, 2), uniform(-2, 2), uniform(3.5, 3.9)}, glm::vec3(0.2f, 0.2f, 0.05f), 0.6f,
+              glm::vec3(uniform(0, 1), uniform(0, 1), uniform(0, 1)),
+              {uniform(-1, 1), uniform(-1, 1), uniform(-1, 1), uniform(-1, 1)});
+  return model;
+}
+
+// Sideways along a wall nothing pops: what is left is of the warp.
+TEST(Popping, IsOfTheOrder) {
+  Stretch stretch;
+  Camera camera = test::front_camera(96, 64, 60);
+  for (int n = 0; n < 9; ++n) {
+    stretch.frames.push_back({make_view(camera)});
+    camera.position.x += 0.02;
+  }
+  stretch.moving = stretch.frames.size();
+  const auto popping = [&](const Model& model) {
+    Bench bench(test::gl_context(), [&]() -> const Model& { return model; },
+                {.stretches = {stretch}, .small = stretch.frames[0][0]}, {.repeats = 1, .popping = true});
+    return bench.measure({}).row;
+  };
+  const Row wall = popping(wall_of_squares(false)), more = popping(wall_of_squares(true));
+  EXPECT_GT(number(wall, "popping_1_db"), number(more, "popping_1_db") + 3.0);
+  EXPECT_GT(number(more, "popping_1_db"), number(more, "popping_7_db"));
+  EXPECT_GT(number(more, "popping_1_flip"), 0.0);
+}
+
+}  // namespace
+}  // namespace binosplat::lab

@@ -1,0 +1,299 @@
+#include "lab/results.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+
+#include "base/error.h"
+#include "lab/axes.h"
+#include "lab/chromium.h"
+#include "support/errors.h"
+#include "support/scenes.h"
+
+namespace binosplat::lab {
+namespace {
+
+using nlohmann::ordered_json;
+
+Point point(const std::string& name, double ms, double db, int eyes = 1) {
+  const std::string family = name.substr(0, name.find(','));
+  const bool exact = family == "ellipse";
+  Row row =
+      row_of("scene", "fox", "eyes", eyes, "size", "own", "along", "views", "tiles", exact ? family : "aabb",
+             "tile", 16, "th", exact ? "tau" : family, "name", name, "family", family);
+  if (std::isnan(ms)) return {row};
+  put(row, "device", "llvmpipe", "frame_ms", ms, "p99_ms", 1.5 * ms, "noise_ms", 0.01 * ms, "settled", true,
+      "pairs", 1000 * ms, "psnr_db", db, "ssim", 0.987654321, "stage_project_ms", 0.25 * ms, "stage_blend_ms",
+      0.75 * ms);
+  row["repeats_ms"] = {0.99 * ms, 1.01 * ms};
+  if (eyes == 2) put(row, "disagreement_db", 55.5);
+  return {row, {row_of("of", "view", "view", "0001", "psnr_db", db, "pairs", 1000 * ms)}};
+}
+
+/// Equal and slow; quicker and worse; both slower and worse than that; with another number of eyes; failed;
+/// and not measured yet.
+Results some_results() {
+  Results made{"quick", "0", {}};
+  made.points = {point("ellipse", 8.0, 100.0),
+                 point("squared, 0.1", 4.0, 45.5),
+                 point("squared, 0.5", 3.0, 38.25),
+                 point("peripheral, 1", 5.0, 41.0),
+                 point("aabb", 30.0, 77.0, 2),
+                 point("obb", NAN, NAN),
+                 point("snug", NAN, NAN)};
+  put(made.points[5].row, "device", "llvmpipe", "problem", "0001: two frames differ");
+  put_beside_others(made.points);
+  return made;
+}
+
+std::vector<bool> front_of(std::vector<Point> points) {
+  put_beside_others(points);
+  std::vector<bool> front;
+  for (const Point& one : points) front.push_back(one.row.value("pareto", false));
+  return front;
+}
+
+TEST(Results, RowsHaveWhatIsKnown) {
+  const Row row =
+      row_of("a", 1.5, "b", NAN, "c", std::optional<double>(), "d", std::optional(2), "e", "text");
+  EXPECT_EQ(row.dump(), R"({"a":1.5,"d":2,"e":"text"})");
+  EXPECT_EQ(number(row, "a"), 1.5);
+  EXPECT_TRUE(std::isnan(number(row, "b")));
+  EXPECT_TRUE(std::isnan(number(row, "e")));
+  EXPECT_EQ(text(row, "e"), "text");
+  EXPECT_EQ(text(row, "a"), "");
+  EXPECT_EQ(mean_number({row, row_of("a", 2.5), row_of("x", 9.0)}, "a"), 2.0);
+  EXPECT_EQ(stage_of(stage_column("blend")), "blend");
+  EXPECT_EQ(title_of(stage_column("blend")), "blend ms");
+}
+
+TEST(Results, FrontHoldsWhatNothingBeats) {
+  const std::vector<Point> points = some_results().points;
+  EXPECT_EQ(front_of(points), (std::vector<bool>{true, true, true, false, true, false, false}));
+  std::vector<Point> other = points;
+  other[3].row["frame_ms"] = 3.5;  // quicker than what is nearer to exact, nearer than what is quicker
+  EXPECT_TRUE(front_of(other)[3]);
+  other = points;
+  other[3] = other[1];  // twice the same: neither beats the other
+  EXPECT_TRUE(front_of(other)[1] && front_of(other)[3]);
+  EXPECT_NEAR(number(points[1].row, "speed"), 2.0, 1e-12) << "times exact";
+  EXPECT_FALSE(points[4].row.contains("speed")) << "its chart has no exact one";
+}
+
+TEST(Results, NoiseAloneDecidesNothingOfTheFront) {
+  std::vector<Point> points = {point("ellipse", 4.0, 60.0), point("aabb", 4.04, 60.0),
+                               point("squared, 0.1", 3.98, 50.0), point("squared, 0.2", 2.0, 45.0)};
+  EXPECT_EQ(front_of(points), (std::vector<bool>{true, true, true, true}));
+  points[1] = point("aabb", 8.0, 60.0);
+  EXPECT_EQ(front_of(points), (std::vector<bool>{true, false, true, true})) << "planted: beyond noise";
+}
+
+TEST(Results, CsvHasEveryNumberOfTheJson) {
+  const Results results = some_results();
+  const std::string csv_text = csv(results.points), details = details_csv(results.points);
+  std::istringstream lines(csv_text);
+  std::string header, line;
+  std::getline(lines, header);
+  EXPECT_EQ(header.substr(0, 22), "scene,eyes,size,along,") << header;
+  std::size_t count = 0;
+  while (std::getline(lines, line)) {
+    std::string bare;  // without what is quoted
+    bool quoted = false;
+    for (const char c : line) {
+      if (c == '"') quoted = !quoted;
+      if (!quoted) bare += c;
+    }
+    EXPECT_EQ(std::ranges::count(bare, ','), std::ranges::count(header, ',')) << line;
+    ++count;
+  }
+  EXPECT_EQ(count, 7u);
+  for (const auto& [name, value] : results.points[1].row.items()) {
+    if (!value.is_array()) EXPECT_NE(("," + header + ",").find("," + name + ","), std::string::npos) << name;
+  }
+  EXPECT_NE(csv_text.find("\"fox\",1,\"own\",\"views\",\"aabb\",16,\"squared\",\"squared, 0.1\""),
+            std::string::npos)
+      << csv_text;
+  EXPECT_NE(csv_text.find("two frames differ"), std::string::npos);
+  EXPECT_NE(details.find("\"fox\",1,\"own\",\"views\",\"squared, 0.1\",\"view\",\"0001\",4000.0,45.5"),
+            std::string::npos)
+      << details;
+}
+
+TEST(Results, FilesAreReadAgainOrRefused) {
+  const ordered_json json = to_json(some_results(), {{"axes_name", "quick"}, {"points", {1, 2}}});
+  EXPECT_FALSE(json["plan"].contains("points"));
+  const std::vector<Row> rows = rows_of(ordered_json::parse(json.dump()), "old.json");
+  ASSERT_EQ(rows.size(), 7u);
+  EXPECT_EQ(rows[1]["details"].size(), 1u);
+  EXPECT_EQ(identity_of(rows[1]), identity_of(some_results().points[1].row));
+  EXPECT_NE(identity_of(rows[1]), identity_of(rows[2]));
+  for (const ordered_json& wrong :
+       {ordered_json({1, 2}), ordered_json({{"format", "binosplat bench"}, {"version", 1}}),
+        ordered_json({{"format", "binosplat results"}, {"version", 2}}),
+        ordered_json({{"format", "binosplat results"}, {"version", 2}, {"points", {1}}})})
+    EXPECT_TRUE(test::fails_saying([&] { rows_of(wrong, "old.json"); }, {"old.json: not the results.json"}))
+        << wrong;
+}
+
+TEST(Results, ScenesAreJoinedByGeometricMeans) {
+  std::vector<Point> points;
+  for (const double factor : {2.0, 8.0}) {
+    for (Point one : {point("ellipse", 8.0, 100.0), point("squared, 0.1", 8.0 / factor, 40.0 + factor)}) {
+      one.row["scene"] = factor == 2.0 ? "fox" : "garden";
+      points.push_back(one);
+    }
+  }
+  put_beside_others(points);
+  add_means(points);
+  ASSERT_EQ(points.size(), 6u);
+  EXPECT_EQ(text(points[5].row, "scene"), "mean of 2 scenes");
+  EXPECT_NEAR(number(points[5].row, "speed"), 4.0, 1e-12);
+  EXPECT_EQ(number(points[5].row, "psnr_db"), 45.0);
+  std::vector<Point> alone = some_results().points;
+  add_means(alone);
+  EXPECT_EQ(alone.size(), 7u);
+}
+
+// docs/measuring.md says how each number is found.
+TEST(Results, ThePageHasEveryColumn) {
+  std::ifstream in(std::string(BINOSPLAT_SOURCE_DIR) + "/docs/measuring.md");
+  const std::string page(std::istreambuf_iterator<char>(in), {});
+  for (const std::string& column : all_columns())
+    EXPECT_NE(page.find("`" + column + "`"), std::string::npos) << column;
+  EXPECT_EQ(page.find("`no_such_column`"), std::string::npos) << "planted";
+}
+
+const Section& section_of(const Page& page, const std::string& id) {
+  const auto found = std::ranges::find(page.sections, id, &Section::id);
+  if (found == page.sections.end()) fail("there is no section {}", id);
+  return *found;
+}
+
+TEST(ResultsPage, SaysWhatItShows) {
+  const Page page = results_page(some_results());
+  EXPECT_NE(page.sentence.find(
+                "Of 4 settings, “squared, 0.1” is the quickest with 40 dB or more against exact: 4 ms a "
+                "frame, 2.00 times as fast as the exact picture (8 ms)"),
+            std::string::npos)
+      << page.sentence;
+  std::vector<std::string> ids;
+  for (const Section& section : page.sections) ids.push_back(section.id);
+  EXPECT_EQ(ids, (std::vector<std::string>{"chart-1-accuracy", "chart-1-stages", "chart-1-numbers",
+                                           "chart-1-missing", "chart-2-accuracy", "chart-2-stages",
+                                           "chart-2-numbers"}));
+  const Table& front = *page.sections[0].numbers;
+  ASSERT_EQ(front.rows.size(), 4u);
+  EXPECT_EQ(std::ranges::count(front.rows, Cell("yes"), [](const auto& cells) { return cells[2]; }), 3);
+  EXPECT_NE(page.sections[1].sentence.find("75 % goes to blend"), std::string::npos);
+  EXPECT_EQ(page.sections[3].problem, "obb: 0001: two frames differ; snug: not measured yet");
+  const std::vector<std::string>& pair = page.sections[6].table->columns;
+  EXPECT_NE(std::ranges::find(pair, "disagreement dB"), pair.end());
+  EXPECT_FALSE(html(results_page({}), {}).empty());
+}
+
+TEST(ResultsPage, ColumnsDecideWhichPlotsThereAre) {
+  Results made = some_results();
+  const auto has = [&](const std::string& id) {
+    const Page page = results_page(made);
+    EXPECT_FALSE(html(page, {}).empty()) << "each chart is of columns that are there";
+    return std::ranges::any_of(page.sections, [&](const Section& section) { return section.id == id; });
+  };
+  for (const char* id : {"seen", "frames", "turns", "levels", "removed", "real", "floors", "skipping",
+                         "distance", "depth", "quality", "pictures"})
+    EXPECT_FALSE(has(std::string("chart-1-") + id)) << id;
+  const double seen[] = {0.0, 0.9, 50.0, 2.0};
+  for (std::size_t k = 0; k < 4; ++k) put(made.points[k].row, "seen", seen[k]);
+  ASSERT_TRUE(has("chart-1-seen"));
+  EXPECT_NE(section_of(results_page(made), "chart-1-seen")
+                .sentence.find("at most 1 % of the pixels is “squared, 0.1”: 4 ms"),
+            std::string::npos);
+  for (Point& one : made.points) {
+    one.details.push_back(row_of("of", "frame", "stretch", 1, "frame", 0, "part", "moving", "psnr_db", 40.0,
+                                 "reported_db", 41.0, "pairs", 5, "frame_ms", 1.0));
+    one.details.push_back(row_of("of", "turn", "about", "up", "degrees", 15.0, "psnr_db", 37.0));
+    one.details.push_back(row_of("of", "floor", "stage", "blend", "frame_ms", 6.0, "floor_ms", 1.5));
+    for (const char* of : {"skipping", "distance", "depth"})
+      one.details.push_back(row_of("of", of, "by", "alpha", "share", 50.0, "psnr_db", 30.0, "from", 1.0,
+                                   "mean", 0.5, "median", 0.5));
+    one.picture = Image(8, 4, 3);
+  }
+  for (const char* id :
+       {"quality", "pairs", "times", "turns", "floors", "skipping", "distance", "depth", "pictures"})
+    EXPECT_TRUE(has(std::string("chart-1-") + id)) << id;
+  put(made.points[1].row, "detail", "40dB", "gaussians", 5);
+  EXPECT_TRUE(has("chart-1-levels"));
+}
+
+TEST(ResultsPage, ThePapersOwnNumbersStandBesideDropsAlone) {
+  for (const bool drop : {true, false}) {
+    Results made{"paper", "0", {point("ellipse", 8.0, 100.0)}};
+    for (const char* found_on : {"test", "training"}) {
+      for (const double target : {0.1, 0.2}) {
+        Point& one = made.points.emplace_back(point("squared, 0.1", 4.0, 45.5));
+        put(one.row, drop ? "max_drop" : "min_psnr", target, "found_on", found_on, "pairs_removed",
+            200 * target, "drop_db", target + 0.03);
+      }
+    }
+    put_beside_others(made.points);
+    const Page page = results_page(made);
+    const Section& removed = section_of(page, "chart-1-removed");
+    EXPECT_NE(removed.sentence.find("removes the most pairs of the exact ellipse test: 40.0 % at 0.2 dB"),
+              std::string::npos)
+        << removed.sentence;
+    EXPECT_EQ(removed.numbers->rows.size(), drop ? 2u + 5 : 2u);
+    EXPECT_EQ(section_of(page, "chart-1-real").numbers->rows.size(), 2u);
+    EXPECT_EQ(section_of(page, "chart-1-stages").numbers->rows.size(), 2u) << "exact, and the middle target";
+  }
+}
+
+// Long: the whole page in a browser, its table against the JSON.
+TEST(ResultsPage, InChromiumHasTheJsonsNumbers) {
+  if (!test::switched_on("BINOSPLAT_LONG")) GTEST_SKIP() << "BINOSPLAT_LONG=1 opens the page in Chromium";
+  ASSERT_TRUE(test::has_chromium()) << "install the package chromium (packages/long.txt)";
+  const test::TempFolder folder;
+  save_page(folder / "report.html", results_page(some_results()), {});
+  const test::Chromium chromium;
+  const std::string cells =
+      chromium.ask(folder / "report.html", 400, false,
+                   "const table = document.querySelector('#chart-1-numbers table');"
+                   "const at = ['frame ms', 'PSNR dB', 'SSIM'].map((name) =>"
+                   "[...table.tHead.rows[0].cells].findIndex((cell) => cell.textContent === name));"
+                   "return [...table.tBodies[0].rows].map((row) =>"
+                   "at.map((k) => row.cells[k].dataset.value).join(' ')).join(';');");
+  EXPECT_EQ(cells, "3 38.25 0.987654321;4 45.5 0.987654321;5 41 0.987654321;8 100 0.987654321");
+  EXPECT_EQ(chromium.ask(folder / "report.html", 400, true,
+                         "return (document.documentElement.scrollWidth <= window.innerWidth) + ' ' +"
+                         "document.querySelectorAll('figure svg').length;"),
+            "true 4");
+}
+
+// Of the exact picture and the front; two lie on each other.
+TEST(ResultsPage, PicturesAreCompared) {
+  Results measured = some_results();
+  for (Point& one : measured.points) one.picture = Image(8, 4, 3);
+  const Page page = results_page(measured);
+  const Section& section = section_of(page, "chart-1-pictures");
+  EXPECT_TRUE(section.compared);
+  ASSERT_EQ(section.figures.size(), 3u);
+  if (!test::switched_on("BINOSPLAT_LONG")) GTEST_SKIP() << "BINOSPLAT_LONG=1 opens the page in Chromium";
+  ASSERT_TRUE(test::has_chromium()) << "install the package chromium (packages/long.txt)";
+  const test::TempFolder folder;
+  save_page(folder / "report.html", page, {});
+  const test::Chromium chromium;
+  const auto ask = [&](const std::string& script) {
+    return chromium.ask(folder / "report.html", 1300, false,
+                        "const at = document.querySelector('#chart-1-pictures');" + script);
+  };
+  EXPECT_EQ(ask("return at.querySelectorAll('.thumbnail').length;"), "3");
+  EXPECT_EQ(ask("const over = at.querySelector('.compared'), slider = over.querySelector('input');"
+                "slider.value = 20; slider.dispatchEvent(new window.Event('input'));"
+                "at.querySelectorAll('.thumbnail')[1].click();"
+                "return over.style.getPropertyValue('--border') + ' ' + "
+                "at.querySelectorAll('select')[1].value + ' ' +"
+                "over.querySelector('.over').alt;"),
+            "20% 1 " + section.figures[1].caption);
+}
+
+}  // namespace
+}  // namespace binosplat::lab
