@@ -5,9 +5,7 @@
 #include <utility>
 
 #include "app/load_scene.h"
-#include "formats/model_file.h"
 #include "formats/streamed_sog.h"
-#include "measure/metrics.h"
 #include "render/halves.h"
 #include "render/memory.h"
 #include "render/scatter.h"
@@ -17,18 +15,6 @@
 namespace binosplat::app {
 
 namespace {
-
-Model finest_of(const SceneOptions& options) {
-  Model model = load_model(options.name);
-  set_as_asked(options, model);
-  return model;
-}
-
-std::vector<Picture> exact_pictures(render::Frame& frame, std::span<const shared::View> views,
-                                    const render::FrameSettings& settings) {
-  frame.draw(views, render::exact_of(settings));
-  return frame.read_pictures();
-}
 
 std::vector<Shot> known_shots(const RenderOptions& options, const CameraList& list, const ModelAxes& axes) {
   const CameraOptions& camera = options.camera;
@@ -133,35 +119,6 @@ std::unique_ptr<PictureStream> open_for_shots(const SceneOptions& options,
   of_shots.detail.heads_turn = heads_turn;
   if (options.detail || options.gpu_memory) of_shots.all_up_to = 0;
   return open_stream<PictureStream>(options, std::move(of_shots));
-}
-
-ShotLevels settle_shot(PictureStream& stream, render::Frame& frame, stereo::DebugView& show,
-                       std::span<const shared::View> views, const render::FrameSettings& settings,
-                       const std::optional<glm::vec3>& background) {
-  ShotLevels levels;
-  std::vector<Picture> before;
-  const auto before_change = [&] {
-    if (background) before = exact_pictures(frame, views, settings);
-    show.release();
-  };
-  levels.switched = stream.settle(views, settings, before_change);
-  if (!before.empty())
-    levels.switch_psnr = measure::psnr(before, exact_pictures(frame, views, settings), *background);
-  levels.gaussians = stream.gaussians();
-  levels.predicted_psnr = stream.reported_db();
-  levels.left = stream.quality_left(settings.quality);
-  const PictureStream::Times times = stream.take_times();
-  levels.read_ms = times.read_ms;
-  levels.upload_ms = times.upload_ms;
-  return levels;
-}
-
-FinestLevels::FinestLevels(const SceneOptions& options, gl::Context& context)
-    : model_(finest_of(options)), show_(std::make_shared<render::GpuModel>(context, model_)) {}
-
-double FinestLevels::psnr(std::span<const shared::View> views, std::span<const Picture> pictures,
-                          const render::FrameSettings& settings, const glm::vec3& background) {
-  return measure::psnr(pictures, show_.exact(views, settings), background);
 }
 
 }  // namespace binosplat::app

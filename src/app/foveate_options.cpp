@@ -92,24 +92,4 @@ void add_foveate_option(CLI::App& sub, std::optional<stereo::Foveation>& foveate
       ->group("Drawing");
 }
 
-void check_foveate(const RenderOptions& o) {
-  if (!o.foveate) return;
-  if (o.output.show >= SHOW_ALPHAS) {
-    fail("--foveate with --show {}: it tells of the lists that one picture is blended by, and these are two",
-         show_choices[o.output.show].name);
-  }
-  if (o.output.exr_depth == Depth::median)
-    fail("--foveate with --exr-depth median: between inset and context only means are mixed");
-  if (o.rig.one_picture() && o.foveate->gaze.size() > 1)
-    fail("--foveate gaze: two are for both eyes: leave --mono and --only out, or give one");
-}
-
-render::MemoryNeeds foveated_memory(std::span<const shared::View> eyes, const stereo::Foveation& foveation,
-                                    const render::FrameSettings& settings, const Model& model) {
-  const stereo::FoveatedViews drawn = stereo::foveated_views(eyes, foveation, settings);
-  render::MemoryNeeds needs = render::memory_needs(render::make_plan(drawn.views, drawn.settings, model));
-  for (const shared::View& eye : eyes) needs.frame += std::int64_t{eye.width} * eye.height * 20;
-  return needs;
-}
-
 }  // namespace binosplat::app

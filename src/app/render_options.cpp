@@ -8,10 +8,11 @@
 #include "app/option_checks.h"
 #include "app/together.h"
 #include "app/tour.h"
-#include "app/vr180.h"
 #include "base/error.h"
+#include "base/text.h"
 #include "formats/streamed_sog.h"
 #include "preview/keys.h"
+#include "stereo/panorama.h"
 
 namespace binosplat::app {
 
@@ -39,6 +40,22 @@ void check_regions(const RenderOptions& o) {
   }
 }
 
+void check_vr180(const RenderOptions& o) {
+  if (!o.camera.lens.vr180()) return;
+  if (const auto& size = o.camera.lens.size; size && (size->x != size->y || size->x % 2 != 0)) {
+    fail("--size {0}x{1} with --vr180: expected an even number of pixels twice, for one 2880x2880", size->x,
+         size->y);
+  }
+  if (const auto& size = o.camera.lens.size; size && size->x > stereo::panorama_side_most)
+    fail("--size {0}x{0} with --vr180: at most {1}x{1}", size->x, stereo::panorama_side_most);
+  const int layout = o.output.layout.value_or(LAYOUT_PARALLEL);
+  if (layout != LAYOUT_PARALLEL && layout != LAYOUT_OVER_UNDER && layout != LAYOUT_SEPARATE)
+    fail("--vr180 with --layout {}: players know parallel and over-under", layout_choices[layout].name);
+  const std::string ending = lowered_ending(o.output.output);
+  if (ending == ".mkv" || ending == ".webm")
+    fail("-o {}: only .mp4 and .mov can be told to be VR180 here", o.output.output);
+}
+
 // What a window that goes where its user goes does not do.
 constexpr std::array render_only = {"--mono", "--only",   "--preset",         "--orbit",
                                     "--path", "--frames", "--reference-until"};
@@ -64,7 +81,12 @@ void add_picture_options(CLI::App& sub, RenderOptions& o) {
 
 void add_options(CLI::App& sub, RenderOptions& o) {
   add_picture_options(sub, o);
-  add_vr180_option(sub, o.camera.lens);
+  sub.add_flag_callback(
+         "--vr180", [&o] { o.camera.lens.preset = "vr180"; },
+         "All that lies ahead of each eye, 180 degrees wide and high\n"
+         "(equirectangular, 2048 x 2048 px an eye, or --size), level, for players of\n"
+         "VR180: .png, or .vr.jpg, .mp4 and .mov that say so")
+      ->group("Cameras");
   add_foveate_option(sub, o.foveate);
   add_tour_options(sub, o.camera);
   add_output_options(sub, o.output);
@@ -105,6 +127,18 @@ void add_view_options(CLI::App& sub, RenderOptions& o) {
 bool may_share(const RenderOptions& o) {
   return o.drawing.quality && !o.scene.lod && !o.scene.repeat && !is_built_in(o.scene.name) &&
          is_streamed_sog(o.scene.name);
+}
+
+void check_foveate(const RenderOptions& o) {
+  if (!o.foveate) return;
+  if (o.output.show >= SHOW_ALPHAS) {
+    fail("--foveate with --show {}: it tells of the lists that one picture is blended by, and these are two",
+         show_choices[o.output.show].name);
+  }
+  if (o.output.exr_depth == Depth::median)
+    fail("--foveate with --exr-depth median: between inset and context only means are mixed");
+  if (o.rig.one_picture() && o.foveate->gaze.size() > 1)
+    fail("--foveate gaze: two are for both eyes: leave --mono and --only out, or give one");
 }
 
 void check(const RenderOptions& o) {

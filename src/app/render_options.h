@@ -43,7 +43,9 @@ void add_view_options(CLI::App& sub, RenderOptions& options);
 /// Whether --quality is for levels of detail, too, if the scene has any that tell what they lose.
 bool may_share(const RenderOptions& options);
 
-/// Throws Error for options that contradict each other, within a part and between them.
+/// Throws Error for options that contradict each other, within a part and between them;
 void check(const RenderOptions& options);
+/// of --foveate alone.
+void check_foveate(const RenderOptions& options);
 
 }  // namespace binosplat::app

@@ -333,6 +333,12 @@ std::vector<shared::View> views_of(const Shot& shot) {
   return views;
 }
 
+std::vector<Camera> eyes_in_axes(const Shot& shot, const ModelAxes& axes) {
+  std::vector<Camera> eyes;
+  for (const Eye& eye : shot.eyes) eyes.push_back(into_axes(eye.camera, axes));
+  return eyes;
+}
+
 std::vector<std::string> view_names(const std::vector<std::string>& texts, const CameraList& list) {
   return separated(texts, [&](const std::string& text) {
     return stereo::find_eyes(list.cameras, text) ||

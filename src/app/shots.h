@@ -115,6 +115,9 @@ void converge(Shot& shot, double metres);
 /// What a frame draws of a shot.
 std::vector<shared::View> views_of(const Shot& shot);
 
+/// Its cameras in the model's frame.
+std::vector<Camera> eyes_in_axes(const Shot& shot, const ModelAxes& axes);
+
 /// As --view: all that a list has.
 inline const std::vector<std::string> all_views = {"all"};
 
