@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 #include <array>
+#include <utility>
 
 #include "app/foveate_options.h"
 #include "app/option_checks.h"
@@ -54,6 +55,58 @@ void check_vr180(const RenderOptions& o) {
   const std::string ending = lowered_ending(o.output.output);
   if (ending == ".mkv" || ending == ".webm")
     fail("-o {}: only .mp4 and .mov can be told to be VR180 here", o.output.output);
+}
+
+void add_headset_options(CLI::App& sub, HeadsetOptions& o) {
+  sub.option_defaults()->group("Headset");
+  sub.add_flag("--xr", o.xr,
+               "In the headset of an OpenXR runtime; sticks walk and turn, grips hold the\nworld");
+  add_value(sub, "--scale", "FACTOR", o.scale, between(0.1, 4.0, "a factor from 0.1 to 4"),
+            "Of both sides of the pictures that the runtime recommends (1)");
+  const auto parse_budget = [](const std::string& text) {
+    double ms = 0.0;
+    const bool good = text == "auto" || (CLI::detail::lexical_cast(text, ms) && ms > 0.0 && ms <= 1000.0);
+    if (!good) fail("--frame-budget {}: expected milliseconds above 0, at most 1000, or auto", text);
+    return ms;
+  };
+  add_parsed(
+      sub, "--frame-budget", "MS|auto", o.budget_ms, parse_budget,
+      "Quality, then size, as a frame's time allows: less where frames take\nlonger; auto: four fifths of "
+      "the time that the runtime has for one");
+  add_value(sub, "--record", "S", o.record_s, between(1e-3, 3600.0, "seconds above zero, at most 3600"),
+            "Record the first S seconds as `profile` does; F8 in the window that\nmirrors records ten more");
+  sub.add_flag_callback(
+      "--no-mirror", [&o] { o.mirror = false; }, "No window that shows what the left eye sees");
+}
+
+// What of the options that only windows, studies or single pictures have does not go with a headset, and why.
+constexpr const char* of_windows = "leave it out, a headset decides that itself";
+constexpr const char* of_studies = "leave it out, a headset's pictures have exact tiles of 16 px";
+constexpr std::pair<const char*, const char*> not_in_headsets[] = {
+    {"--size", of_windows},        {"--layout", of_windows}, {"--ipd", of_windows},
+    {"--convergence", of_windows}, {"--cant", of_windows},   {"--show", of_windows},
+    {"--split", of_windows},       {"--fov", of_windows},    {"--output", of_windows},
+    {"--tiles", of_studies},       {"--tile", of_studies},   {"--shader-dir", of_studies}};
+constexpr std::pair<const char*, const char*> not_beside_a_budget[] = {
+    {"--foveate", "a quality is one for whole pictures: choose one of them"},
+    {"--quality", "choose one, the budget chooses the quality"},
+    {"--tolerance", "choose one, the budget chooses what is left out"}};
+
+// Options that a headset decides, and those of a headset without one.
+void check_headset(const HeadsetOptions& o, const CLI::App& sub) {
+  const auto is_given = [&](const char* name) {
+    const CLI::Option* const option = sub.get_option_no_throw(name);
+    return option != nullptr && option->count() > 0;
+  };
+  for (const char* name : {"--scale", "--frame-budget", "--no-mirror", "--record", "--foveate"}) {
+    if (!o.xr && is_given(name)) fail("{} is for a headset: add --xr, or leave it out", name);
+  }
+  for (const auto& [name, why] : not_in_headsets) {
+    if (o.xr && is_given(name)) fail("{} with --xr: {}", name, why);
+  }
+  for (const auto& [name, why] : not_beside_a_budget) {
+    if (o.budget_ms && is_given(name)) fail("--frame-budget with {}: {}", name, why);
+  }
 }
 
 // What a window that goes where its user goes does not do.
@@ -120,7 +173,7 @@ void add_view_options(CLI::App& sub, RenderOptions& o) {
       if (sub.count(name) > 0 && !o.headset.xr)
         fail("{} is for `binosplat render`, and for --xr: leave it out", name);
     }
-    check(o.headset, sub);
+    check_headset(o.headset, sub);
   });
 }
 

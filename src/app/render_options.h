@@ -7,7 +7,6 @@
 #include "app/camera_options.h"
 #include "app/context_options.h"
 #include "app/drawing_options.h"
-#include "app/headset_options.h"
 #include "app/output_options.h"
 #include "app/rig_options.h"
 #include "app/scene_options.h"
@@ -15,6 +14,15 @@
 #include "stereo/foveate.h"
 
 namespace binosplat::app {
+
+/// Of `binosplat view --xr`.
+struct HeadsetOptions {
+  bool xr = false;
+  double scale = 1.0;               // of the sizes that the runtime recommends
+  std::optional<double> budget_ms;  // 0: what the runtime has for a frame
+  std::optional<double> record_s;   // so much is recorded, from the first frame on
+  bool mirror = true;               // the left eye in a window, where there is a display
+};
 
 struct RenderOptions {
   SceneOptions scene;
