@@ -24,10 +24,6 @@ std::size_t gaussians_that_fit(double megabytes, render::FrameSettings settings,
 /// cameras), where no eye counts.
 DetailBudget detail_budget(const RenderOptions& options, const CameraList& list);
 
-/// What options say of a stream: --detail, or the finest, or what --quality leaves to levels, of more than
-/// few_gaussians; and --gpu-memory for the model and frames of such settings.
-StreamSettings stream_settings(const SceneOptions& options, const render::FrameSettings& settings);
-
 /// Opens a scene, with axes and anti-aliasing as options say, for frames that must not wait, which begin with
 /// the coarsest levels while the others are read; null where no levels follow what is seen.
 std::unique_ptr<Stream> open_for_frames(const SceneOptions& options, const render::FrameSettings& settings);

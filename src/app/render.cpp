@@ -141,7 +141,7 @@ std::vector<Shot> plan_shots(const RenderRun& run, const std::vector<fs::path>& 
   std::vector<Shot> shots =
       make_shots(o.camera.views, o.camera.lens, o.rig, run.list, run.near_plane, run.model().axes);
   if (run.outputs.vr180) {
-    for (Shot& shot : shots) level(shot, up_of(o.camera, run.list.known));
+    for (Shot& shot : shots) level(shot, run.list.known.up.value_or(default_up));
   }
   if (!sequence.empty()) show_in_turn(sequence, shots);
   place_files(run.outputs, o.output.json, shots);

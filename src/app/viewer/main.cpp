@@ -103,7 +103,7 @@ preview::Opened open(const RenderOptions& o) {
       std::rotate(cameras.begin(), at, cameras.end());
     }
     if (pose) cameras.insert(cameras.begin(), pose->cameras[0]);
-    return preview::Start{std::move(cameras), up_of(o.camera, all.known), list.listed};
+    return preview::Start{std::move(cameras), all.known.up.value_or(default_up), list.listed};
   };
   return opened;
 }
