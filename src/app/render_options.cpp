@@ -79,20 +79,20 @@ void add_headset_options(CLI::App& sub, HeadsetOptions& o) {
       "--no-mirror", [&o] { o.mirror = false; }, "No window that shows what the left eye sees");
 }
 
-// What of the options that only windows, studies or single pictures have does not go with a headset, and why.
+// Options that do not go with a headset, and what is said of them.
 constexpr const char* of_windows = "leave it out, a headset decides that itself";
 constexpr const char* of_studies = "leave it out, a headset's pictures have exact tiles of 16 px";
 constexpr std::pair<const char*, const char*> not_in_headsets[] = {
-    {"--size", of_windows},        {"--layout", of_windows}, {"--ipd", of_windows},
-    {"--convergence", of_windows}, {"--cant", of_windows},   {"--show", of_windows},
-    {"--split", of_windows},       {"--fov", of_windows},    {"--output", of_windows},
-    {"--tiles", of_studies},       {"--tile", of_studies},   {"--shader-dir", of_studies}};
+    {"--size", of_windows},        {"--layout", of_windows},    {"--ipd", of_windows},
+    {"--convergence", of_windows}, {"--cant", of_windows},      {"--show", of_windows},
+    {"--fov", of_windows},         {"--output", of_windows},    {"--tiles", of_studies},
+    {"--tile", of_studies},        {"--shader-dir", of_studies}};
 constexpr std::pair<const char*, const char*> not_beside_a_budget[] = {
     {"--foveate", "a quality is one for whole pictures: choose one of them"},
     {"--quality", "choose one, the budget chooses the quality"},
     {"--tolerance", "choose one, the budget chooses what is left out"}};
 
-// Options that a headset decides, and those of a headset without one.
+// Throws Error for options that a headset decides, and for those of a headset where there is none.
 void check_headset(const HeadsetOptions& o, const CLI::App& sub) {
   const auto is_given = [&](const char* name) {
     const CLI::Option* const option = sub.get_option_no_throw(name);

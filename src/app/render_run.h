@@ -68,7 +68,7 @@ struct RenderRun {
   PhotoSource photos = {};
   std::unique_ptr<gl::Context> context = {};   // outlives what draws with it
   std::unique_ptr<PictureStream> stream = {};  // of a model whose levels follow the shots
-  bool heads_turn = false;                     // as the stream is asked for
+  bool heads_turn = false;                     // along a path or in VR180, for the stream
   Model loaded = {};                           // where there is no stream
   CameraList list = {};
   double near_plane = 0.0;  // world units

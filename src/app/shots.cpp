@@ -31,10 +31,6 @@ struct ShotChoice {
   std::vector<Camera> cameras;
 };
 
-bool ends_with(const std::string& text, const std::string& end) {
-  return text.size() > end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
-}
-
 // The cameras as views in their order; where pairs are wanted, a NAME_left and its NAME_right are the one
 // view NAME.
 std::vector<ShotChoice> all_choices(const std::vector<Camera>& cameras, bool pairs) {
@@ -42,9 +38,9 @@ std::vector<ShotChoice> all_choices(const std::vector<Camera>& cameras, bool pai
   std::set<std::string> taken;
   for (const Camera& camera : cameras) {
     const std::string& name = camera.name;
-    const std::string ending = ends_with(name, "_left") ? "_left" : ends_with(name, "_right") ? "_right" : "";
-    const std::string pair = name.substr(0, name.size() - ending.size());
-    const auto eyes = pairs && !ending.empty() ? stereo::find_eyes(cameras, pair) : std::nullopt;
+    const bool is_eye = name.ends_with("_left") || name.ends_with("_right");
+    const std::string pair = is_eye ? name.substr(0, name.rfind('_')) : "";
+    const auto eyes = pairs && !pair.empty() ? stereo::find_eyes(cameras, pair) : std::nullopt;
     if (!eyes) {
       choices.push_back({name, {camera}});
     } else if (taken.insert(pair).second) {
