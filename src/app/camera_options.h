@@ -18,7 +18,7 @@ struct Lens {
   std::optional<glm::ivec2> size;  // px
 
   bool headset() const { return preset == "headset"; }
-  bool vr180() const { return preset == "vr180"; }  // by --vr180 (app/vr180.h)
+  bool vr180() const { return preset == "vr180"; }  // by --vr180
 };
 
 struct CameraOptions {

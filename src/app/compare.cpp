@@ -177,19 +177,16 @@ void add_compare(CLI::App& program, Command& command) {
   sub->add_option("B", options->b, "Picture of the same size")->required();
   add_value(*sub, "--min-psnr", "DB", options->min_psnr, between(-INFINITY, INFINITY, "decibels"),
             "Exit code 1 if PSNR is below this");
-  sub->add_option_function<std::string>(
-         "--background", [options](const std::string& text) { options->background = parse_background(text); },
-         "Colour from 0 to 1 before which pictures with alpha are compared;\nby default alpha counts where "
-         "both have some, and is before black\nwhere one has (0,0,0)")
-      ->type_name("R,G,B|none");
+  add_parsed(
+      *sub, "--background", "R,G,B|none", options->background, parse_background,
+      "Colour from 0 to 1 before which pictures with alpha are compared;\nby default alpha counts where "
+      "both have some, and is before black\nwhere one has (0,0,0)");
   add_value(*sub, "--ppd", "N", options->pixels_per_degree, between(1.0, 1000.0, "a number from 1 to 1000"),
             "For FLIP: pixels per degree that the viewer has (67)");
-  sub->add_option_function<std::string>(
-         "--foveate-at", [options](const std::string& text) { options->gaze = parse_gaze(text); },
-         "What an eye sees of it that looks at pixel X,Y of a picture FOV degrees\nacross: PSNR by degrees "
-         "from "
-         "there, and the share of the pixels whose\ndifference can be seen")
-      ->type_name("X,Y,FOV");
+  add_parsed(
+      *sub, "--foveate-at", "X,Y,FOV", options->gaze, parse_gaze,
+      "What an eye sees of it that looks at pixel X,Y of a picture FOV degrees\nacross: PSNR by degrees "
+      "from there, and the share of the pixels whose\ndifference can be seen");
   add_value(*sub, "--max-memory", "MB", options->max_memory, positive,
             "Refuse pictures that take more than so many MB to compare\n(three quarters of the machine's)");
   sub->add_option(

@@ -103,17 +103,6 @@ std::vector<Image> draw(const Views& views, const Model& model, const char* labe
   return pictures;
 }
 
-std::vector<ViewCost> costs_of_views(const Views& views, const Model& back,
-                                     const std::vector<Image>& originals) {
-  const std::vector<Image> pictures = draw(views, back, "drawing what was written");
-  std::vector<ViewCost> costs;
-  for (std::size_t i = 0; i < pictures.size(); ++i) {
-    costs.push_back({views.cameras[i].name, pictures[i].width, pictures[i].height,
-                     measure::psnr(originals[i], pictures[i])});
-  }
-  return costs;
-}
-
 const ViewCost& worst_of(const std::vector<ViewCost>& views) {
   return *std::min_element(views.begin(), views.end(),
                            [](const ViewCost& a, const ViewCost& b) { return a.psnr < b.psnr; });
@@ -188,7 +177,11 @@ ExitCode convert(const ConvertOptions& o) {
   done.bytes = fs::file_size(o.output);
   if (o.report) {
     model = load_written(o.output, model);
-    done.views = costs_of_views(views, model, originals);
+    const std::vector<Image> pictures = draw(views, model, "drawing what was written");
+    for (std::size_t i = 0; i < pictures.size(); ++i) {
+      done.views.push_back({views.cameras[i].name, pictures[i].width, pictures[i].height,
+                            measure::psnr(originals[i], pictures[i])});
+    }
   }
   print_converted(o, done);
   if (!o.json.empty()) save_json(o.json, converted_json(o, done));

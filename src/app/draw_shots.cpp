@@ -1,4 +1,4 @@
-#include "app/draw_shots.h"
+// Draws the shots of a run, and hands their pictures to threads that write them.
 
 #include <algorithm>
 #include <array>
@@ -9,9 +9,9 @@
 
 #include "app/command_line.h"
 #include "app/empty_view.h"
-#include "app/followed.h"
+#include "app/load_scene.h"
+#include "app/render_run.h"
 #include "app/sequence.h"
-#include "app/vr180.h"
 #include "base/clock.h"
 #include "base/job_queue.h"
 #include "base/log.h"
@@ -19,12 +19,16 @@
 #include "base/output_file.h"
 #include "base/parallel.h"
 #include "base/progress.h"
+#include "formats/model_file.h"
 #include "measure/comparison.h"
 #include "measure/depth_table.h"
+#include "measure/metrics.h"
 #include "render/frame.h"
 #include "render/read_back.h"
 #include "scene/axes.h"
 #include "stereo/comfort.h"
+#include "stereo/debug_view.h"
+#include "stereo/panorama.h"
 
 namespace binosplat::app {
 
@@ -47,18 +51,17 @@ std::optional<double> find_screen(render::Frame& frame, const render::FrameSetti
 
 // What an exact frame takes in the place of the last of a long path, to say whether --quality paid; nothing
 // where a path is too short to tell, or its frames are not drawn whole.
-std::optional<double> exact_frame_ms(render::Frame& frame, const Work& work, const RenderReport& report) {
+std::optional<double> exact_frame_ms(render::Frame& frame, const RenderRun& run) {
   // Frames, of which these two are a small share, or by a CPU, where it hardly ever pays, the one.
   constexpr std::size_t many = 24, some = 6;
-  const RenderOptions& o = report.options;
-  if (!o.drawing.quality || !work.list.path ||
-      report.drawn.size() < (report.context.software() ? some : many) || work.stream || o.foveate ||
-      work.outputs.vr180 || !report.drawn[0].shot.model.empty())
+  const RenderOptions& o = run.options;
+  if (!o.drawing.quality || !run.list.path || run.drawn.size() < (run.context->software() ? some : many) ||
+      run.stream || o.foveate || run.outputs.vr180 || !run.drawn[0].shot.model.empty())
     return std::nullopt;
   render::FrameSettings exact = render::exact_of(settings_of(o.drawing));
   exact.precision = o.drawing.precision;
-  const std::vector<shared::View> views = views_of(report.drawn.back().shot);
-  if (report.drawn.size() >= many) frame.draw(views, exact);  // in which drivers compile their programs
+  const std::vector<shared::View> views = views_of(run.drawn.back().shot);
+  if (run.drawn.size() >= many) frame.draw(views, exact);  // in which drivers compile their programs
   return frame.draw(views, exact).total_ms;
 }
 
@@ -125,16 +128,16 @@ class ShotFiles {
   /// For the shots to come. Pictures that are drawn and not written yet take a quarter of the machine's
   /// memory at most, or what --max-memory allows if that is less; those of three shots in any case. There are
   /// as many threads as cores where memory allows that.
-  ShotFiles(gl::Context& context, RenderReport& report, const Work& work)
-      : report_(report), work_(work), read_back_(context), video_(open_video(work.outputs, work.shots)) {
+  explicit ShotFiles(RenderRun& run)
+      : run_(run), read_back_(*run.context), video_(open_video(run.outputs, run.shots)) {
     double most = 1.0;
-    for (const Shot& shot : work.shots) most = std::max(most, bytes_of(shot));
+    for (const Shot& shot : run.shots) most = std::max(most, bytes_of(shot));
     const double budget = std::min(0.25 * memory_bytes(), picture_memory_allowed.load());
     // Besides one that waits and one that is on its way from the GPU.
     const double fit = budget / most - 2.0;
-    const double useful = std::min<double>(core_count(), static_cast<double>(work.shots.size()));
-    report.run.threads = static_cast<int>(std::clamp(fit, 1.0, std::max(1.0, useful)));
-    queue_ = std::make_unique<JobQueue>(report.run.threads, 1);
+    const double useful = std::min<double>(core_count(), static_cast<double>(run.shots.size()));
+    run.times.threads = static_cast<int>(std::clamp(fit, 1.0, std::max(1.0, useful)));
+    queue_ = std::make_unique<JobQueue>(run.times.threads, 1);
   }
 
   /// Takes a shot, whose pictures `take` hands out on another thread; until finish() its comfort and PSNR of
@@ -148,7 +151,7 @@ class ShotFiles {
       if (!of.shown) of.shown = {std::move(of.pictures), std::nullopt};
       for (const PictureFile& file : drawn.shot.files) {
         const auto begin = Clock::now();
-        *frame = encoded(file, report_.options, work_.outputs, drawn.shot, *of.shown);
+        *frame = encoded(file, run_.options, run_.outputs, drawn.shot, *of.shown);
         encoding_ms_ += ms_since(begin);
         if (!video_) write([&] { write_file(file.name, *frame); });
       }
@@ -159,7 +162,7 @@ class ShotFiles {
     } else {
       queue_->add(encode_all);
     }
-    report_.run.waiting += ms_since(begin);
+    run_.times.waiting += ms_since(begin);
   }
 
   /// Asks for the pictures that the frame has of a shot; hand_over() takes them.
@@ -173,7 +176,7 @@ class ShotFiles {
     if (!on_way_) return;
     const auto begin = Clock::now();
     on_way_->wait();
-    report_.run.reading += ms_since(begin);
+    run_.times.reading += ms_since(begin);
     add(*of_, [taken = std::exchange(on_way_, nullptr)] { return ShotPictures{taken->take(), {}}; });
   }
 
@@ -183,9 +186,9 @@ class ShotFiles {
     const auto begin = Clock::now();
     queue_->finish();
     if (video_) video_->finish();
-    report_.run.waiting += ms_since(begin);
-    report_.run.encoding = 1e-3 * encoding_ms_;
-    report_.run.writing = 1e-3 * writing_ms_;
+    run_.times.waiting += ms_since(begin);
+    run_.times.encoding = 1e-3 * encoding_ms_;
+    run_.times.writing = 1e-3 * writing_ms_;
   }
 
   /// Whether no picture shows anything.
@@ -193,10 +196,10 @@ class ShotFiles {
 
  private:
   void judge(Drawn& drawn, const std::vector<Picture>& pictures) {
-    const RenderOptions& o = report_.options;
+    const RenderOptions& o = run_.options;
     if (!std::all_of(pictures.begin(), pictures.end(), is_empty)) all_empty_ = false;
-    if (!work_.outputs.vr180) drawn.comfort = comfort_of(drawn.shot, o.camera.lens.headset(), pictures[0]);
-    drawn.photo_psnr = photo_psnr(work_.photos, o.output.backdrop(), drawn.shot, pictures[0]);
+    if (!run_.outputs.vr180) drawn.comfort = comfort_of(drawn.shot, o.camera.lens.headset(), pictures[0]);
+    drawn.photo_psnr = photo_psnr(run_.photos, o.output.backdrop(), drawn.shot, pictures[0]);
   }
 
   void write(const auto& bytes_to_file) {
@@ -205,8 +208,7 @@ class ShotFiles {
     writing_ms_ += ms_since(begin);
   }
 
-  RenderReport& report_;
-  const Work& work_;
+  RenderRun& run_;
   render::ReadBack read_back_;
   std::shared_ptr<render::ReadBack::Pictures> on_way_;  // from the GPU
   Drawn* of_ = nullptr;                                 // whose they are
@@ -216,17 +218,31 @@ class ShotFiles {
   std::unique_ptr<JobQueue> queue_;  // last: its jobs end first
 };
 
-/// What draws shots: the frame, or what the options want in its place.
-struct Drawer {
-  Drawer(gl::Context& on, const RenderReport& of, const Work& work,
-         const std::shared_ptr<render::GpuModel>& model)
-      : context(on), report(of), frame(model), show(model) {
-    if (work.outputs.vr180) panorama.emplace(model, work.shots[0].eyes[0].camera.width);
-    if (report.options.foveate) foveated.emplace(model);
+/// A scene at its finest levels, for --detail-report.
+struct FinestLevels {
+  explicit FinestLevels(const RenderRun& run) : model(load_model(run.options.scene.name)) {
+    set_as_asked(run.options.scene, model);
+    frame.emplace(*run.context, model);
   }
 
-  gl::Context& context;
-  const RenderReport& report;
+  Model model;
+  std::optional<render::Frame> frame;
+};
+
+std::vector<Picture> exact_pictures(render::Frame& frame, std::span<const shared::View> views,
+                                    const render::FrameSettings& settings) {
+  frame.draw(views, render::exact_of(settings));
+  return frame.read_pictures();
+}
+
+/// What draws shots of a model: the frame, or what the options want in its place.
+struct Drawer {
+  Drawer(RenderRun& of, const std::shared_ptr<render::GpuModel>& model) : run(of), frame(model), show(model) {
+    if (run.outputs.vr180) panorama.emplace(model, run.shots[0].eyes[0].camera.width);
+    if (run.options.foveate) foveated.emplace(model);
+  }
+
+  RenderRun& run;
   render::Frame frame;
   stereo::DebugView show;
   std::optional<stereo::Panorama> panorama;
@@ -235,16 +251,38 @@ struct Drawer {
 
   /// Whether the frame's own pictures are all that is wanted, which are read while the next ones are drawn.
   bool reads_behind() const {
-    const OutputOptions& o = report.options.output;
+    const OutputOptions& o = run.options.output;
     return !panorama && !foveated && o.show == SHOW_PICTURE && !o.detail_report;
+  }
+
+  /// Brings the stream's model to the levels that a shot needs; --detail-report of a turning head has what
+  /// their switch changes.
+  ShotLevels settle(std::span<const shared::View> views, render::FrameSettings& settings) {
+    const bool reports = run.options.output.detail_report && run.heads_turn;
+    ShotLevels levels;
+    std::vector<Picture> before;
+    levels.switched = run.stream->settle(views, settings, [&] {
+      if (reports) before = exact_pictures(frame, views, settings);
+      show.release();
+    });
+    if (!before.empty())
+      levels.switch_psnr = measure::psnr(before, exact_pictures(frame, views, settings), settings.background);
+    levels.gaussians = run.stream->gaussians();
+    levels.predicted_psnr = run.stream->reported_db();
+    const PictureStream::Times times = run.stream->take_times();
+    levels.read_ms = times.read_ms;
+    levels.upload_ms = times.upload_ms;
+    // What the frame leaves out has the rest of the error that may be there.
+    settings.quality = static_cast<float>(run.stream->quality_left(settings.quality));
+    return levels;
   }
 
   /// Draws a shot. `meanwhile` is called where the GPU has its work and the CPU would wait.
   render::FrameReport draw(const Shot& shot, const std::vector<shared::View>& views,
                            const render::FrameSettings& settings, const std::function<void()>& meanwhile) {
-    const RenderOptions& o = report.options;
+    const RenderOptions& o = run.options;
     const render::Workings workings = workings_of(o.drawing);
-    if (panorama) return app::draw(*panorama, shot, report.model.axes, report.near_plane);
+    if (panorama) return panorama->draw(eyes_in_axes(shot, run.model().axes), run.near_plane);
     if (foveated) return foveated->draw(views, *o.foveate, settings, workings);
     frame.submit(views, settings, workings);
     meanwhile();
@@ -258,10 +296,11 @@ struct Drawer {
                     : foveated ? foveated->read_pictures()
                                : frame.read_pictures(),
                     {}};
-    const OutputOptions& output = report.options.output;
+    const OutputOptions& output = run.options.output;
     if (output.detail_report) {
-      if (!finest) finest.emplace(report.options.scene, context);
-      drawn.levels->finest_psnr = finest->psnr(views, of.pictures, settings, settings.background);
+      if (!finest) finest.emplace(run);
+      drawn.levels->finest_psnr =
+          measure::psnr(of.pictures, exact_pictures(*finest->frame, views, settings), settings.background);
     }
     if (output.show != SHOW_PICTURE) {
       of.shown = show.make(output.show, {frame, views, of.pictures, settings}, output.background);
@@ -273,59 +312,55 @@ struct Drawer {
 
 }  // namespace
 
-void draw_all(gl::Context& context, const Work& work, RenderReport& report) {
-  const RenderOptions& o = report.options;
+void draw_all(RenderRun& run) {
+  const RenderOptions& o = run.options;
   render::FrameSettings settings = settings_of(o.drawing);
   settings.background = o.output.backdrop();
-  if (!work.list.path) settings.probe_tiles = std::numeric_limits<int>::max();  // single pictures: all
-  const auto drawer_of = [&](std::shared_ptr<render::GpuModel> model) {
-    return std::make_unique<Drawer>(context, report, work, std::move(model));
+  if (!run.list.path) settings.probe_tiles = std::numeric_limits<int>::max();  // single pictures: all
+  const auto drawer_of = [&](const Model& model) {
+    return std::make_unique<Drawer>(
+        run, std::make_shared<render::GpuModel>(*run.context, model, settings.precision));
   };
-  auto drawer =
-      drawer_of(work.stream ? work.stream->gpu_model(context, settings.precision)
-                            : std::make_shared<render::GpuModel>(context, report.model, settings.precision));
-  if (settings.transmittance == TRANSMITTANCE_DEPTH && !work.policy.is_calibrated()) {
+  auto drawer = run.stream
+                    ? std::make_unique<Drawer>(run, run.stream->gpu_model(*run.context, settings.precision))
+                    : drawer_of(run.loaded);
+  if (settings.transmittance == TRANSMITTANCE_DEPTH && !run.policy.is_calibrated()) {
     settings.depth_table = measure::measure_depth_table(
-        drawer->frame, views_of_depth_table(o.camera.lens, work.list, report.near_plane, report.model.axes),
+        drawer->frame, views_of_depth_table(o.camera.lens, run.list, run.near_plane, run.model().axes),
         {.order = settings.order, .projection = settings.projection});
   }
-  if (work.screen) report.convergence = find_screen(drawer->frame, settings, *work.screen);
-  std::optional<glm::vec3> of_switches;  // the background, where they are reported
-  if (o.output.detail_report && work.heads_turn) of_switches = settings.background;
+  if (run.screen) run.convergence = find_screen(drawer->frame, settings, *run.screen);
 
   std::optional<ModelsInTurn> in_turn;
-  std::optional<Model> shown;  // of them, where it is not the report's
-  if (!work.shots[0].model.empty()) in_turn.emplace(o.scene, report.model, work.shots);
+  std::optional<Model> shown;  // of them, where it is not the first
+  if (!run.shots[0].model.empty()) in_turn.emplace(o.scene, run.loaded, run.shots);
 
   const auto begin = Clock::now();
-  ShotFiles files(context, report, work);
-  Progress progress("drawing", work.shots.size() * static_cast<std::size_t>(o.drawing.frames),
+  ShotFiles files(run);
+  Progress progress("drawing", run.shots.size() * static_cast<std::size_t>(o.drawing.frames),
                     o.drawing.frames == 1 ? "views" : "frames");
-  report.drawn.reserve(work.shots.size());  // threads refer to them
-  for (const Shot& shot : work.shots) {
-    if (in_turn && !report.drawn.empty()) {
+  run.drawn.reserve(run.shots.size());  // threads refer to them
+  for (const Shot& shot : run.shots) {
+    if (in_turn && !run.drawn.empty()) {
       files.hand_over();
       drawer.reset();
       shown = in_turn->take();
-      drawer = drawer_of(std::make_shared<render::GpuModel>(context, *shown, settings.precision));
+      drawer = drawer_of(*shown);
     }
     // Single pictures do not depend on which were drawn before them.
-    if (!work.list.path) (drawer->foveated ? drawer->foveated->frame() : drawer->frame).start_over();
-    Drawn& drawn = report.drawn.emplace_back();
+    if (!run.list.path) (drawer->foveated ? drawer->foveated->frame() : drawer->frame).start_over();
+    Drawn& drawn = run.drawn.emplace_back();
     drawn.shot = shot;
-    if (work.screen && report.convergence) converge(drawn.shot, *report.convergence);
+    if (run.screen && run.convergence) converge(drawn.shot, *run.convergence);
     const std::vector<shared::View> views = views_of(drawn.shot);
-    render::FrameSettings of_shot = settings_of(work.policy, drawn.shot, settings, report.model.axes);
+    render::FrameSettings of_shot = settings_of(run.policy, drawn.shot, settings, run.model().axes);
     of_shot.depth = o.output.exr_depth;
-    if (work.stream) {
-      drawn.levels = settle_shot(*work.stream, drawer->frame, drawer->show, views, of_shot, of_switches);
-      of_shot.quality = static_cast<float>(drawn.levels->left);
-    }
+    if (run.stream) drawn.levels = drawer->settle(views, of_shot);
     for (int n = 0; n < o.drawing.frames; ++n) {
       drawn.report = drawer->draw(drawn.shot, views, of_shot, [&] { files.hand_over(); });
-      report.frames.push_back(drawn.report);
-      report.run.gpu += drawn.report.total_ms;
-      progress.update(report.frames.size());
+      run.frames.push_back(drawn.report);
+      run.times.gpu += drawn.report.total_ms;
+      progress.update(run.frames.size());
     }
     if (drawer->foveated) drawn.foveated = drawer->foveated->parts();
     if (drawer->reads_behind()) {
@@ -336,11 +371,10 @@ void draw_all(gl::Context& context, const Work& work, RenderReport& report) {
     }
   }
   files.finish();
-  report.run.all = ms_since(begin);
-  report.exact_ms = exact_frame_ms(drawer->frame, work, report);
+  run.times.all = ms_since(begin);
+  run.exact_ms = exact_frame_ms(drawer->frame, run);
   if (files.all_empty() && !o.drawing.reference_until)
-    log_warning("the pictures are empty: {}",
-                why_empty(report.model, report.drawn[0].shot, report.near_plane));
+    log_warning("the pictures are empty: {}", why_empty(run.model(), run.drawn[0].shot, run.near_plane));
 }
 
 }  // namespace binosplat::app

@@ -5,9 +5,7 @@
 #include <utility>
 
 #include "app/load_scene.h"
-#include "formats/model_file.h"
 #include "formats/streamed_sog.h"
-#include "measure/metrics.h"
 #include "render/halves.h"
 #include "render/memory.h"
 #include "render/scatter.h"
@@ -17,26 +15,6 @@
 namespace binosplat::app {
 
 namespace {
-
-Model finest_of(const SceneOptions& options) {
-  Model model = load_model(options.name);
-  set_as_asked(options, model);
-  return model;
-}
-
-std::vector<Picture> exact_pictures(render::Frame& frame, std::span<const shared::View> views,
-                                    const render::FrameSettings& settings) {
-  frame.draw(views, render::exact_of(settings));
-  return frame.read_pictures();
-}
-
-std::vector<Shot> known_shots(const RenderOptions& options, const CameraList& list, const ModelAxes& axes) {
-  const CameraOptions& camera = options.camera;
-  if (!list.listed && !camera.eye) return {};
-  const double near_plane = camera.near_plane.value_or(near_default);
-  return make_shots(camera.views, camera.lens, options.rig,
-                    list.listed ? list : eye_camera(camera, list.known), near_plane, axes);
-}
 
 /// Bytes that a frame starts with, those of the model included; of one whose parts come later, which has room
 /// for so many, those of their uploads, too.
@@ -52,6 +30,28 @@ std::int64_t bytes_for(render::FramePlan plan, std::uint32_t gaussians, bool in_
   const auto uploads = static_cast<std::int64_t>(
       std::bit_ceil(std::min<std::size_t>(gaussians, render::Scatter::records_at_once)));
   return needs.model + needs.frame + uploads * bytes_of_one;
+}
+
+// A pair of eyes of which nothing is known but how many pixels pictures usually have.
+std::vector<shared::View> usual_views(const Lens& lens = {}, std::size_t count = 2) {
+  const Camera camera = look_at({0, 0, -1}, {0, 0, 0}, {0, -1, 0}, 60, 1280, 720);
+  return std::vector<shared::View>(count, make_view(sized(lens, camera)));
+}
+
+/// --detail, or the finest, or what --quality leaves to levels, of more than few_gaussians; and --gpu-memory
+/// for the model and frames of such settings.
+StreamSettings stream_settings(const SceneOptions& options, const render::FrameSettings& settings) {
+  StreamSettings result{.detail = options.detail.value_or(DetailRequest{}),
+                        .shares = !options.detail,
+                        .all_up_to = few_gaussians};
+  if (options.gpu_memory) {
+    result.room = [megabytes = *options.gpu_memory, settings](std::span<const shared::View> views,
+                                                              int degree) {
+      const std::vector<shared::View> usual = usual_views();
+      return gaussians_that_fit(megabytes, settings, views.empty() ? usual : views, degree, true);
+    };
+  }
+  return result;
 }
 
 }  // namespace
@@ -72,7 +72,12 @@ std::size_t gaussians_that_fit(double megabytes, render::FrameSettings settings,
 
 DetailBudget detail_budget(const RenderOptions& options, const CameraList& list) {
   const ModelAxes axes{options.scene.axes.empty() ? Model().axes.letters : options.scene.axes};
-  const std::vector<Shot> shots = known_shots(options, list, axes);
+  std::vector<Shot> shots;
+  if (const CameraOptions& camera = options.camera; list.listed || camera.eye) {
+    shots = make_shots(camera.views, camera.lens, options.rig,
+                       list.listed ? list : eye_camera(camera, list.known),
+                       camera.near_plane.value_or(near_default), axes);
+  }
   DetailBudget budget;
   std::vector<shared::View> widest;  // the shot of the most pixels
   std::uint64_t most_pixels = 0;
@@ -85,37 +90,12 @@ DetailBudget detail_budget(const RenderOptions& options, const CameraList& list)
     if (pixels > most_pixels) widest = views_of(shot);
     most_pixels = std::max(most_pixels, pixels);
   }
-  if (shots.empty()) {
-    Camera camera = look_at({0, 0, -1}, {0, 0, 0}, {0, -1, 0}, 60, 1280, 720);
-    widest.assign(options.rig.one_picture() ? 1 : 2, make_view(sized(options.camera.lens, camera)));
-  }
+  if (shots.empty()) widest = usual_views(options.camera.lens, options.rig.one_picture() ? 1 : 2);
   budget.gaussians = [megabytes = *options.scene.gpu_memory, settings = settings_of(options.drawing),
                       widest](int degree) {
     return gaussians_that_fit(megabytes, settings, widest, degree, false);
   };
   return budget;
-}
-
-StreamSettings stream_settings(const SceneOptions& options, const render::FrameSettings& settings) {
-  StreamSettings result{.detail = options.detail.value_or(DetailRequest{}),
-                        .shares = !options.detail,
-                        .all_up_to = few_gaussians};
-  if (options.gpu_memory) {
-    result.room = [megabytes = *options.gpu_memory, settings](std::span<const shared::View> views,
-                                                              int degree) {
-      const std::vector<shared::View> pair(
-          2, make_view(look_at({0, 0, -1}, {0, 0, 0}, {0, -1, 0}, 60, 1280, 720)));
-      return gaussians_that_fit(megabytes, settings, views.empty() ? pair : views, degree, true);
-    };
-  }
-  return result;
-}
-
-template <typename Kind>
-std::unique_ptr<Kind> open_stream(const SceneOptions& options, StreamSettings settings) {
-  auto stream = std::make_unique<Kind>(options.name, std::move(settings));
-  set_as_asked(options, stream->model());
-  return stream;
 }
 
 std::unique_ptr<Stream> open_for_frames(const SceneOptions& options, const render::FrameSettings& settings) {
@@ -124,7 +104,9 @@ std::unique_ptr<Stream> open_for_frames(const SceneOptions& options, const rende
   if (!follows) return nullptr;
   StreamSettings of_stream = stream_settings(options, settings);
   of_stream.reserve = std::size_t{1} << 22;  // 0.4 GB, or 1 with all their harmonics
-  return open_stream<Stream>(options, std::move(of_stream));
+  auto stream = std::make_unique<Stream>(options.name, std::move(of_stream));
+  set_as_asked(options, stream->model());
+  return stream;
 }
 
 std::unique_ptr<PictureStream> open_for_shots(const SceneOptions& options,
@@ -132,36 +114,9 @@ std::unique_ptr<PictureStream> open_for_shots(const SceneOptions& options,
   StreamSettings of_shots = stream_settings(options, settings);
   of_shots.detail.heads_turn = heads_turn;
   if (options.detail || options.gpu_memory) of_shots.all_up_to = 0;
-  return open_stream<PictureStream>(options, std::move(of_shots));
-}
-
-ShotLevels settle_shot(PictureStream& stream, render::Frame& frame, stereo::DebugView& show,
-                       std::span<const shared::View> views, const render::FrameSettings& settings,
-                       const std::optional<glm::vec3>& background) {
-  ShotLevels levels;
-  std::vector<Picture> before;
-  const auto before_change = [&] {
-    if (background) before = exact_pictures(frame, views, settings);
-    show.release();
-  };
-  levels.switched = stream.settle(views, settings, before_change);
-  if (!before.empty())
-    levels.switch_psnr = measure::psnr(before, exact_pictures(frame, views, settings), *background);
-  levels.gaussians = stream.gaussians();
-  levels.predicted_psnr = stream.reported_db();
-  levels.left = stream.quality_left(settings.quality);
-  const PictureStream::Times times = stream.take_times();
-  levels.read_ms = times.read_ms;
-  levels.upload_ms = times.upload_ms;
-  return levels;
-}
-
-FinestLevels::FinestLevels(const SceneOptions& options, gl::Context& context)
-    : model_(finest_of(options)), show_(std::make_shared<render::GpuModel>(context, model_)) {}
-
-double FinestLevels::psnr(std::span<const shared::View> views, std::span<const Picture> pictures,
-                          const render::FrameSettings& settings, const glm::vec3& background) {
-  return measure::psnr(pictures, show_.exact(views, settings), background);
+  auto stream = std::make_unique<PictureStream>(options.name, std::move(of_shots));
+  set_as_asked(options, stream->model());
+  return stream;
 }
 
 }  // namespace binosplat::app

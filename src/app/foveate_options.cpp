@@ -1,5 +1,7 @@
 #include "app/foveate_options.h"
 
+#include <map>
+
 #include "app/command_line.h"
 #include "app/option_checks.h"
 #include "base/error.h"
@@ -9,74 +11,60 @@ namespace binosplat::app {
 
 namespace {
 
-const std::vector<std::string> foveate_words = {"inset", "context", "gaze", "seam"};
+// What --foveate takes, and what each word's numbers are.
+constexpr std::pair<const char*, const char*> foveate_words[] = {
+    {"inset", "degrees, as in inset=20deg"},
+    {"context", "a share of the pixels along an axis, as in context=0.4"},
+    {"gaze", "degrees to the right and up, as in gaze=10,-5"},
+    {"seam", "a share of the inset, as in seam=0.1"}};
 
-double number_of_word(std::string_view text, const std::string& word, const char* expected) {
-  std::string_view rest = text;
-  const std::optional<double> value = take_real(rest);
-  if (!value || !rest.empty()) fail("--foveate {}={}: expected {}", word, text, expected);
-  return *value;
-}
-
-// A word and its numbers, of which a gaze has several.
-struct Entry {
-  std::string word;
-  std::vector<std::string> values;
-};
-
-std::vector<Entry> entries_of(const std::string& text) {
-  std::vector<Entry> entries;
-  std::istringstream in(text);
-  for (std::string part; std::getline(in, part, ',');) {
-    const std::size_t equals = part.find('=');
-    if (equals != std::string::npos) {
-      entries.push_back({part.substr(0, equals), {part.substr(equals + 1)}});
-    } else if (!entries.empty() && entries.back().word == "gaze") {
-      entries.back().values.push_back(part);
-    } else {
-      fail("--foveate {}: '{}' is no WORD=NUMBER, as in inset=20deg,context=0.4", text, part);
-    }
+const char* numbers_of(const std::string& word, const std::string& text) {
+  std::vector<std::string> words;
+  for (const auto& [name, numbers] : foveate_words) {
+    if (name == word) return numbers;
+    words.emplace_back(name);
   }
-  return entries;
+  fail("--foveate {}: there is no {}{}; it takes {}", text, word, suggestion(word, words),
+       fmt::join(words, ", "));
 }
 
 // "inset=20deg,context=0.4,gaze=5,-3": what is not named is as stereo::Foveation has it. Throws Error, naming
 // --foveate, for what cannot be understood and for numbers that no eye has.
 stereo::Foveation parse_foveation(const std::string& text) {
-  stereo::Foveation out;
-  std::vector<std::string> seen;
-  for (const Entry& entry : entries_of(text)) {
-    if (std::ranges::find(foveate_words, entry.word) == foveate_words.end()) {
-      fail("--foveate {}: there is no {}{}; it takes {}", text, entry.word,
-           suggestion(entry.word, foveate_words), fmt::join(foveate_words, ", "));
+  std::map<std::string, std::vector<double>> given;
+  std::string word;
+  std::istringstream in(text);
+  for (std::string part; std::getline(in, part, ',');) {
+    const std::size_t equals = part.find('=');
+    if (equals == std::string::npos && word != "gaze")  // which has several
+      fail("--foveate {}: '{}' is no WORD=NUMBER, as in inset=20deg,context=0.4", text, part);
+    if (equals != std::string::npos) {
+      word = part.substr(0, equals);
+      part.erase(0, equals + 1);
+      if (given.contains(word)) fail("--foveate {}: {} is given twice", text, word);
     }
-    if (std::ranges::find(seen, entry.word) != seen.end())
-      fail("--foveate {}: {} is given twice", text, entry.word);
-    seen.push_back(entry.word);
-    const std::string& value = entry.values[0];
-    if (entry.word == "inset") {
-      std::string_view degrees = value;
-      if (degrees.ends_with("deg")) degrees.remove_suffix(3);
-      out.inset_degrees = number_of_word(degrees, entry.word, "degrees, as in inset=20deg");
-    } else if (entry.word == "context") {
-      out.context_scale =
-          number_of_word(value, entry.word, "a share of the pixels along an axis, as in context=0.4");
-    } else if (entry.word == "seam") {
-      out.seam = number_of_word(value, entry.word, "a share of the inset, as in seam=0.1");
-    } else {
-      if (entry.values.size() != 2 && entry.values.size() != 4) {
-        fail(
-            "--foveate gaze={}: expected degrees to the right and up, as in gaze=10,-5, or those of the left "
-            "and then of the right eye, as in gaze=10,-5,9,-5",
-            fmt::join(entry.values, ","));
-      }
-      const auto degrees = [&](std::size_t k) {
-        return number_of_word(entry.values[k], "gaze", "degrees to the right and up, as in gaze=10,-5");
-      };
-      for (std::size_t k = 0; k < entry.values.size(); k += 2)
-        out.gaze.emplace_back(degrees(k), degrees(k + 1));
-    }
+    const char* const expected = numbers_of(word, text);
+    std::string_view number = part;
+    if (word == "inset" && number.ends_with("deg")) number.remove_suffix(3);
+    const std::optional<double> value = take_real(number);
+    if (!value || !number.empty()) fail("--foveate {}={}: expected {}", word, part, expected);
+    given[word].push_back(*value);
   }
+  const std::vector<double>& gaze = given["gaze"];
+  if (gaze.size() % 2 != 0 || gaze.size() > 4) {
+    fail(
+        "--foveate gaze={}: expected degrees to the right and up, as in gaze=10,-5, or those of the left and "
+        "then of the right eye, as in gaze=10,-5,9,-5",
+        fmt::join(gaze, ","));
+  }
+  stereo::Foveation out;
+  const auto take = [&](const char* name, double& into) {
+    if (given.contains(name)) into = given[name][0];
+  };
+  take("inset", out.inset_degrees);
+  take("context", out.context_scale);
+  take("seam", out.seam);
+  for (std::size_t k = 0; k < gaze.size(); k += 2) out.gaze.emplace_back(gaze[k], gaze[k + 1]);
   stereo::check(out, "--foveate ");
   return out;
 }
@@ -90,26 +78,6 @@ void add_foveate_option(CLI::App& sub, std::optional<stereo::Foveation>& foveate
       "pixels along each axis: inset=20deg,context=0.4;\ngaze=RIGHT,UP, degrees from straight ahead "
       "(0,0), or those of both eyes;\nseam, of the inset (0.1). --tolerance is for what lies around")
       ->group("Drawing");
-}
-
-void check_foveate(const RenderOptions& o) {
-  if (!o.foveate) return;
-  if (o.output.show >= SHOW_ALPHAS) {
-    fail("--foveate with --show {}: it tells of the lists that one picture is blended by, and these are two",
-         show_choices[o.output.show].name);
-  }
-  if (o.output.exr_depth == Depth::median)
-    fail("--foveate with --exr-depth median: between inset and context only means are mixed");
-  if (o.rig.one_picture() && o.foveate->gaze.size() > 1)
-    fail("--foveate gaze: two are for both eyes: leave --mono and --only out, or give one");
-}
-
-render::MemoryNeeds foveated_memory(std::span<const shared::View> eyes, const stereo::Foveation& foveation,
-                                    const render::FrameSettings& settings, const Model& model) {
-  const stereo::FoveatedViews drawn = stereo::foveated_views(eyes, foveation, settings);
-  render::MemoryNeeds needs = render::memory_needs(render::make_plan(drawn.views, drawn.settings, model));
-  for (const shared::View& eye : eyes) needs.frame += std::int64_t{eye.width} * eye.height * 20;
-  return needs;
 }
 
 }  // namespace binosplat::app

@@ -5,6 +5,24 @@
 
 namespace binosplat::app {
 
+namespace {
+
+// --photos, which may be `found_beside` the cameras, and --exposure.
+void add_photos(CLI::App& sub, std::string& photos, std::string& exposure, const char* help,
+                bool found_beside) {
+  const auto is = [](const char* word) { return CLI::IsMember({word}).description(""); };
+  sub.add_option("--photos", photos, help)
+      ->type_name(found_beside ? fmt::format("DIR|{}", photos_beside) : "DIR")
+      ->check(found_beside ? folder() | is(photos_beside) : folder());
+  sub.add_option("--exposure", exposure,
+                 "The exposure of each photo, which pictures get before --photos\ncompares them: INRIA's "
+                 "exposure.json (the one of the model's training)")
+      ->type_name(fmt::format("FILE|{}", no_exposure))
+      ->check(CLI::ExistingFile.description("") | is(no_exposure));
+}
+
+}  // namespace
+
 Background parse_background(const std::string& text) {
   if (text == "none") return std::nullopt;
   const glm::dvec3 rgb = parse_three("--background", text);
@@ -59,34 +77,15 @@ void add_output_options(CLI::App& sub, OutputOptions& o) {
   choose<ExrCompression>(
       sub, "--exr-compression", o.exr_compression, "How OpenEXR is packed: zip is smallest and slowest (rle)",
       {{"none", ExrCompression::none}, {"rle", ExrCompression::rle}, {"zip", ExrCompression::zip}});
-  sub.add_option(
-         "--photos", o.photos,
-         "Print PSNR against DIR/NAME.jpg, .png or .exr, or the photos found\nbeside the cameras; with "
-         "--mono. Those with alpha are put before\n--background")
-      ->type_name(fmt::format("DIR|{}", photos_beside))
-      ->check(folder() | CLI::IsMember({photos_beside}).description(""));
-  add_exposure_option(sub, o.exposure);
+  add_photos(sub, o.photos, o.exposure,
+             "Print PSNR against DIR/NAME.jpg, .png or .exr, or the photos found\nbeside the cameras; with "
+             "--mono. Those with alpha are put before\n--background",
+             true);
   sub.add_option("--json", o.json, "Write everything printed as JSON")->type_name("FILE");
 }
 
-CLI::Option* add_exposure_option(CLI::App& sub, std::string& exposure) {
-  return sub
-      .add_option("--exposure", exposure,
-                  "The exposure of each photo, which pictures get before --photos\ncompares them: INRIA's "
-                  "exposure.json (the one of the model's training)")
-      ->type_name(fmt::format("FILE|{}", no_exposure))
-      ->check(CLI::ExistingFile.description("") | CLI::IsMember({no_exposure}).description(""));
-}
-
 void add_photos_options(CLI::App& sub, MeasuredOptions& o, const char* help, bool found_beside) {
-  CLI::Option* const option = sub.add_option("--photos", o.photos, help)->type_name("DIR");
-  if (found_beside) {
-    option->type_name(fmt::format("DIR|{}", photos_beside))
-        ->check(folder() | CLI::IsMember({photos_beside}).description(""));
-  } else {
-    option->check(folder());
-  }
-  add_exposure_option(sub, o.exposure);
+  add_photos(sub, o.photos, o.exposure, help, found_beside);
 }
 
 }  // namespace binosplat::app

@@ -14,6 +14,8 @@ namespace binosplat::app {
 
 /// In the place of a folder: the photos that lie beside the cameras.
 constexpr const char* photos_beside = "beside";
+/// In the place of a file: pictures are compared as they are drawn.
+constexpr const char* no_exposure = "none";
 
 struct OutputOptions {
   std::string output;         // a folder or a file; empty: default_folder()
@@ -44,10 +46,6 @@ void add_output_options(CLI::App& sub, OutputOptions& options);
 
 /// Those of them that a window has, too: --layout, --show and --background. A window has no multi-view.
 void add_look_options(CLI::App& sub, OutputOptions& options, bool in_window);
-
-/// In the place of a file: pictures are compared as they are drawn.
-constexpr const char* no_exposure = "none";
-CLI::Option* add_exposure_option(CLI::App& sub, std::string& exposure);
 
 /// --photos of commands that look for none beside the cameras, and --exposure.
 void add_photos_options(CLI::App& sub, MeasuredOptions& options,

@@ -247,7 +247,8 @@ Outputs outputs_of(const RenderOptions& render) {
   if (outputs.video) find_ffmpeg();
   if (!options.json.empty()) check_output(options.json);
   (is_file ? outputs.file : outputs.folder) = output;
-  outputs.fps = render.camera.tour ? tour_fps(options.fps, outputs.video) : options.fps;
+  outputs.fps = options.fps;
+  if (render.camera.tour && !options.fps) outputs.fps = outputs.video ? video_fps : headset_fps;
   outputs.layout = layout_of(render, outputs.video, ending);
   const bool only_exr = ending == ".exr" || outputs.layout == LAYOUT_MULTI_VIEW;
   if (vr_photo) {
@@ -261,15 +262,6 @@ Outputs outputs_of(const RenderOptions& render) {
 }
 
 void place_files(const Outputs& outputs, const std::string& json, std::vector<Shot>& shots) {
-  const fs::path place = json.empty() ? fs::path() : place_of(json);
-  for (Shot& shot : shots) {
-    shot.files = files_of(outputs, shot);
-    for (const PictureFile& file : shot.files) {
-      check_no_input(file.name);
-      if (!json.empty() && place_of(file.name) == place)
-        fail("--json {}: it is the picture of {}; name another file", json, shot.name);
-    }
-  }
   if (!outputs.video && !outputs.file.empty() && shots.size() > 1) {
     std::vector<std::string> names;
     for (const Shot& shot : shots) names.push_back(shot.name);
@@ -284,21 +276,28 @@ void place_files(const Outputs& outputs, const std::string& json, std::vector<Sh
         outputs.file.string(), shots.size(), fmt::join(names, ", "),
         (outputs.file.parent_path() / outputs.file.stem()).string(), names[0]);
   }
-  for (const Shot& shot : shots) {
-    const Camera &a = shots[0].eyes[0].camera, &b = shot.eyes[0].camera;
-    if (outputs.video && (a.width != b.width || a.height != b.height)) {
-      fail("-o {}: the views differ in size, {} x {} and {} x {} px: give them one with --size",
-           outputs.file.string(), a.width, a.height, b.width, b.height);
+  const fs::path place = json.empty() ? fs::path() : place_of(json);
+  const auto differ = [](const Camera& a, const Camera& b) {
+    return a.width != b.width || a.height != b.height;
+  };
+  const Camera& first = shots[0].eyes[0].camera;
+  for (Shot& shot : shots) {
+    shot.files = files_of(outputs, shot);
+    for (const PictureFile& file : shot.files) {
+      check_no_input(file.name);
+      if (!json.empty() && place_of(file.name) == place)
+        fail("--json {}: it is the picture of {}; name another file", json, shot.name);
     }
-  }
-  if (outputs.layout == LAYOUT_SEPARATE) return;
-  for (const Shot& shot : shots) {
-    const Camera &left = shot.eyes[0].camera, &right = shot.eyes[1].camera;
-    if (left.width != right.width || left.height != right.height) {
+    const Camera &left = shot.eyes.front().camera, &right = shot.eyes.back().camera;
+    if (outputs.video && differ(first, left)) {
+      fail("-o {}: the views differ in size, {} x {} and {} x {} px: give them one with --size",
+           outputs.file.string(), first.width, first.height, left.width, left.height);
+    }
+    if (outputs.layout == LAYOUT_SEPARATE) continue;
+    if (differ(left, right)) {
       fail(
           "--layout {}: the eyes of {} differ in size, {} x {} and {} x {} px: give them one with --size, or "
-          "use "
-          "--layout separate and a folder",
+          "use --layout separate and a folder",
           layout_choices[outputs.layout].name, shot.name, left.width, left.height, right.width, right.height);
     }
     stereo::layout_size(outputs.layout, {left.width, left.height});

@@ -10,26 +10,19 @@
 
 #include "app/command.h"
 #include "app/command_line.h"
-#include "app/draw_shots.h"
-#include "app/followed.h"
-#include "app/foveate_options.h"
 #include "app/load_scene.h"
-#include "app/outputs.h"
-#include "app/photos.h"
-#include "app/render_options.h"
-#include "app/render_table.h"
+#include "app/render_run.h"
 #include "app/resume.h"
 #include "app/sequence.h"
-#include "app/shots.h"
 #include "app/together.h"
 #include "app/tour.h"
-#include "app/vr180.h"
 #include "base/log.h"
 #include "demo/demo.h"
 #include "formats/cameras_file.h"
 #include "scene/axes.h"
 #include "scene/framing.h"
 #include "scene/scaffold.h"
+#include "stereo/panorama.h"
 
 namespace binosplat::app {
 
@@ -46,17 +39,26 @@ void check_any_photo(const std::string& folder, const std::vector<Camera>& camer
 }
 
 // What the model takes on the GPU, and the shot that takes most.
-render::MemoryNeeds memory_needs(const RenderOptions& o, const Work& work, double near_plane,
-                                 const Model& model) {
-  render::FrameSettings settings = settings_of(o.drawing);
+render::MemoryNeeds memory_needs(const RenderRun& run) {
+  render::FrameSettings settings = settings_of(run.options.drawing);
   settings.depth_table = {1.0f, {1.0f}};  // not measured yet
   render::MemoryNeeds most;
-  for (const Shot& shot : work.shots) {
-    const std::vector<shared::View> views = views_of(shot);
-    const auto needs = work.outputs.vr180 ? vr180_memory(shot, model, near_plane)
-                       : o.foveate        ? foveated_memory(views, *o.foveate, settings, model)
-                                          : render::memory_needs(render::make_plan(views, settings, model));
-    most = {needs.model, std::max(most.frame, needs.frame)};
+  for (const Shot& shot : run.shots) {
+    stereo::FoveatedViews drawn{.views = views_of(shot), .settings = settings};
+    std::int64_t composed = 0;  // bytes of the pictures that are made of these views
+    if (run.outputs.vr180) {
+      // The largest face of each eye. A ray's place, and its colour and distance for each eye.
+      const int side = shot.eyes[0].camera.width;
+      drawn.views.clear();
+      for (const Camera& eye : eyes_in_axes(shot, run.model().axes))
+        drawn.views.push_back(make_view(stereo::panorama_face(side, eye, 0), run.near_plane));
+      composed = std::int64_t{side} * side * (16 + 20 * static_cast<std::int64_t>(drawn.views.size()));
+    } else if (run.options.foveate) {
+      for (const shared::View& eye : drawn.views) composed += std::int64_t{eye.width} * eye.height * 20;
+      drawn = stereo::foveated_views(drawn.views, *run.options.foveate, settings);
+    }
+    const auto needs = render::memory_needs(render::make_plan(drawn.views, drawn.settings, run.model()));
+    most = {needs.model, std::max(most.frame, needs.frame + composed)};
   }
   return most;
 }
@@ -67,24 +69,26 @@ std::optional<double> finite(const std::optional<double>& metres) {
 
 // The shot that tells how far the screen is, which no option says: where pictures are for one, with both eyes
 // in one picture, and not for a headset.
-std::optional<Shot> shot_for_screen(const RenderOptions& o, const Outputs& outputs,
-                                    const std::vector<Shot>& shots) {
-  const bool flat = outputs.layout != LAYOUT_SEPARATE && outputs.layout != LAYOUT_MULTI_VIEW;
-  if (!flat || outputs.vr180 || o.rig.convergence || o.rig.cant.value_or(0.0) != 0.0 ||
+std::optional<Shot> shot_for_screen(const RenderRun& run) {
+  const RenderOptions& o = run.options;
+  const bool flat = run.outputs.layout != LAYOUT_SEPARATE && run.outputs.layout != LAYOUT_MULTI_VIEW;
+  if (!flat || run.outputs.vr180 || o.rig.convergence || o.rig.cant.value_or(0.0) != 0.0 ||
       o.camera.lens.headset())
     return std::nullopt;
-  const auto head = std::ranges::find_if(shots, [](const Shot& shot) { return !shot.given_eyes; });
-  return head == shots.end() ? std::nullopt : std::optional(*head);
+  const auto head = std::ranges::find_if(run.shots, [](const Shot& shot) { return !shot.given_eyes; });
+  return head == run.shots.end() ? std::nullopt : std::optional(*head);
 }
 
 // Of those that are drawn, before the model is read; and that each has a photo of its own.
-void check_photos_drawn(const RenderOptions& o, const Work& work) {
-  if (work.photos.folder.empty() || !work.list.listed) return;
-  check_photos_apart(work.photos.folder, work.list.cameras);
-  std::vector<Camera> cameras = chosen_cameras(o.camera.views, o.camera.lens, work.list);
-  if (o.camera.views.empty() && !work.list.path) cameras.resize(1);
-  check_any_photo(work.photos.folder, cameras);
-  check_photos(work.photos.folder, cameras);
+void check_photos_drawn(const RenderRun& run) {
+  const std::string& folder = run.photos.folder;
+  if (folder.empty() || !run.list.listed) return;
+  check_photos_apart(folder, run.list.cameras);
+  const CameraOptions& o = run.options.camera;
+  std::vector<Camera> cameras = chosen_cameras(o.views, o.lens, run.list);
+  if (o.views.empty() && !run.list.path) cameras.resize(1);
+  check_any_photo(folder, cameras);
+  check_photos(folder, cameras);
 }
 
 void log_model(const std::string& scene, const std::optional<int>& decode, const Model& model,
@@ -115,33 +119,50 @@ CameraList find_list(const RenderOptions& o, const Outputs& outputs) {
   return list;
 }
 
+// Holds the head of a shot level, as one who wears a headset does: it looks where it did (a pair of eyes
+// between them), seen from above, and the eyes lie level about their middle.
+void level(Shot& shot, const glm::dvec3& up) {
+  const glm::dvec3 down = -glm::normalize(up);
+  Camera &first = shot.eyes.front().camera, &last = shot.eyes.back().camera;
+  // Where it looks straight up or down, its own right.
+  glm::dvec3 right = glm::cross(down, first.rotation[2] + last.rotation[2]);
+  if (glm::length(right) < 1e-3) right = first.rotation[0] - glm::dot(first.rotation[0], down) * down;
+  right = glm::normalize(right);
+  const glm::dvec3 middle = 0.5 * (first.position + last.position);
+  const double half = 0.5 * glm::length(last.position - first.position);
+  first.position = middle - half * right;
+  last.position = middle + half * right;
+  for (Eye& eye : shot.eyes) eye.camera.rotation = glm::dmat3(right, down, glm::cross(right, down));
+}
+
 // What the cameras become: the views that are drawn, and the files of each.
-std::vector<Shot> plan_shots(const RenderOptions& o, const Work& work, const std::vector<fs::path>& sequence,
-                             double near_plane, const ModelAxes& axes) {
-  std::vector<Shot> shots = make_shots(o.camera.views, o.camera.lens, o.rig, work.list, near_plane, axes);
-  if (work.outputs.vr180) {
-    for (Shot& shot : shots) level(shot, up_of(o.camera, work.list.known));
+std::vector<Shot> plan_shots(const RenderRun& run, const std::vector<fs::path>& sequence) {
+  const RenderOptions& o = run.options;
+  std::vector<Shot> shots =
+      make_shots(o.camera.views, o.camera.lens, o.rig, run.list, run.near_plane, run.model().axes);
+  if (run.outputs.vr180) {
+    for (Shot& shot : shots) level(shot, run.list.known.up.value_or(default_up));
   }
   if (!sequence.empty()) show_in_turn(sequence, shots);
-  place_files(work.outputs, o.output.json, shots);
+  place_files(run.outputs, o.output.json, shots);
   return shots;
 }
 
 // Leaves the shots that this run is to draw. What tells it from others, with --resume.
-std::optional<ordered_json> take_what_is_left(const RenderOptions& o, double near_plane, Work& work) {
-  const fs::path& folder = work.outputs.folder;
-  const std::size_t all = work.shots.size();
-  std::optional<ordered_json> run;
-  if (o.resume) run = identity_of(o, work.list, near_plane, work.shots);
-  take_share(o.shard, work.shots);
+std::optional<ordered_json> take_what_is_left(RenderRun& run) {
+  const RenderOptions& o = run.options;
+  const std::size_t all = run.shots.size();
+  std::optional<ordered_json> identity;
+  if (o.resume) identity = identity_of(o, run.list, run.near_plane, run.shots);
+  take_share(o.shard, run.shots);
   if (!o.shard.all())
-    log_info("--shard {}/{}: {} of {} views", o.shard.index + 1, o.shard.count, work.shots.size(), all);
-  if (run) {
-    leave_out_drawn(folder, *run, work.shots);
+    log_info("--shard {}/{}: {} of {} views", o.shard.index + 1, o.shard.count, run.shots.size(), all);
+  if (identity) {
+    leave_out_drawn(run.outputs.folder, *identity, run.shots);
   } else {
-    forget_run(folder);
+    forget_run(run.outputs.folder);
   }
-  return run;
+  return identity;
 }
 
 // A built-in scene's own views are drawn, where no option says anything of eyes, screen, lens or way, with a
@@ -169,69 +190,60 @@ RenderOptions with_eyes_of_demo(RenderOptions o) {
 
 ExitCode render(const RenderOptions& asked) {
   check(asked);
-  RenderOptions o = with_eyes_of_demo(asked);
-  std::unique_ptr<gl::Context> context;  // outlives what draws with it
-  Work work{.outputs = outputs_of(o), .policy = policy_of(o.drawing)};
+  RenderRun run{with_eyes_of_demo(asked), outputs_of(asked), policy_of(asked.drawing)};
+  RenderOptions& o = run.options;
   const std::vector<fs::path> sequence = sequence_of(o);
   if (!sequence.empty()) o.scene.name = sequence[0].string();
-  work.list = find_list(o, work.outputs);
-  check_views(o.camera.views, o.rig.mono, work.list);
-  work.photos = photo_source(o.scene.name, photos_folder(o.output.photos, work.list), o.output.exposure);
-  note_photos(work.photos.folder);
-  check_photos_drawn(o, work);
+  run.list = find_list(o, run.outputs);
+  check_views(o.camera.views, o.rig.mono, run.list);
+  run.photos = photo_source(o.scene.name, photos_folder(o.output.photos, run.list), o.output.exposure);
+  note_photos(run.photos.folder);
+  check_photos_drawn(run);
   const render::FrameSettings settings = settings_of(o.drawing);
-  std::optional<DetailBudget> budget;
   if (o.scene.detail || may_share(o)) {
-    work.heads_turn = work.list.path || work.outputs.vr180;  // such a picture shows what lies beside the view
-    work.stream = open_for_shots(o.scene, settings, work.heads_turn);
-    if (!o.scene.detail && !work.stream->files().has_errors()) work.stream.reset();
+    run.heads_turn = run.list.path || run.outputs.vr180;  // such a picture shows what lies beside the view
+    run.stream = open_for_shots(o.scene, settings, run.heads_turn);
+    if (!o.scene.detail && !run.stream->files().has_errors()) run.stream.reset();
   }
-  if (!work.stream && o.output.detail_report)
+  if (!run.stream && o.output.detail_report)
     fail("--detail-report: {} does not say what its levels lose, to share --quality with: give --detail PX",
          o.scene.name);
-  if (!work.stream && o.scene.gpu_memory) budget = detail_budget(o, work.list);
-  Model loaded;
-  if (!work.stream) {
+  if (!run.stream) {
+    std::optional<DetailBudget> budget;
+    if (o.scene.gpu_memory) budget = detail_budget(o, run.list);
     // The model is read while the driver begins; with --resume there may be nothing left to draw.
     auto loading =
-        std::async(std::launch::async, [&] { return load_scene(o.scene, budget, work.list.cameras); });
-    if (!o.resume) context = open_context(o.context);
-    loaded = loading.get();
+        std::async(std::launch::async, [&] { return load_scene(o.scene, budget, run.list.cameras); });
+    if (!o.resume) run.context = open_context(o.context);
+    run.loaded = loading.get();
   }
-  const Model& model = work.stream ? work.stream->model() : loaded;
-  log_model(o.scene.name, o.drawing.decode, model, work.stream.get());
-  work.policy.check_perspective(settings, model);
-  work.policy.check_model(model);
-  if (!work.list.listed) work.list = made_up_cameras(o.scene, o.camera, work.list.known, model);
+  log_model(o.scene.name, o.drawing.decode, run.model(), run.stream.get());
+  run.policy.check_perspective(settings, run.model());
+  run.policy.check_model(run.model());
+  if (!run.list.listed) run.list = made_up_cameras(o.scene, o.camera, run.list.known, run.model());
 
-  const double near_plane = near_plane_of(o.camera, work.list);
-  work.shots = plan_shots(o, work, sequence, near_plane, model.axes);
-  if (!work.photos.folder.empty() && !work.list.listed)
-    check_any_photo(work.photos.folder, work.list.cameras);
-  work.screen = shot_for_screen(o, work.outputs, work.shots);
+  run.near_plane = near_plane_of(o.camera, run.list);
+  run.shots = plan_shots(run, sequence);
+  if (!run.photos.folder.empty() && !run.list.listed) check_any_photo(run.photos.folder, run.list.cameras);
+  run.screen = shot_for_screen(run);
   const std::vector<shared::View> first =
-      views_of(work.shots[0]);  // whichever part of the views is drawn here
-  const std::optional<ordered_json> run = take_what_is_left(o, near_plane, work);
-  if (work.shots.empty()) return ExitCode::done;
-  if (!context) context = open_context(o.context);
-  if (work.stream) {
-    work.stream->gpu_model(*context, settings.precision);
-    work.stream->settle(first, settings);
+      views_of(run.shots[0]);  // whichever part of the views is drawn here
+  const std::optional<ordered_json> identity = take_what_is_left(run);
+  if (run.shots.empty()) return ExitCode::done;
+  if (!run.context) run.context = open_context(o.context);
+  if (run.stream) {
+    run.stream->gpu_model(*run.context, settings.precision);
+    run.stream->settle(first, settings);
   }
-  RenderReport report{o,
-                      work.outputs,
-                      model,
-                      *context,
-                      near_plane,
-                      memory_needs(o, work, near_plane, model),
-                      finite(o.rig.convergence)};
-  log_info("GPU memory: {} for the model, at least {} for a frame", megabytes(report.needs.model),
-           megabytes(report.needs.frame));
-  if (o.output.output.empty()) claim_folder(work.outputs.folder, asked.scene.name);
-  draw_all(*context, work, report);
-  check_alone(work.outputs.folder, run);
-  print(report);
-  if (!o.output.json.empty()) save(o.output.json, report);
+  run.needs = memory_needs(run);
+  run.convergence = finite(o.rig.convergence);
+  log_info("GPU memory: {} for the model, at least {} for a frame", megabytes(run.needs.model),
+           megabytes(run.needs.frame));
+  if (o.output.output.empty()) claim_folder(run.outputs.folder, asked.scene.name);
+  draw_all(run);
+  check_alone(run.outputs.folder, identity);
+  print(run);
+  if (!o.output.json.empty()) save(o.output.json, run);
   return ExitCode::done;
 }
 

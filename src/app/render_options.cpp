@@ -3,15 +3,17 @@
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 #include <array>
+#include <utility>
 
 #include "app/foveate_options.h"
 #include "app/option_checks.h"
 #include "app/together.h"
 #include "app/tour.h"
-#include "app/vr180.h"
 #include "base/error.h"
+#include "base/text.h"
 #include "formats/streamed_sog.h"
 #include "preview/keys.h"
+#include "stereo/panorama.h"
 
 namespace binosplat::app {
 
@@ -36,6 +38,74 @@ void check_regions(const RenderOptions& o) {
         "{} with --transmittance {} along a path: a frame goes by what those before it measured; draw "
         "the path in one run, or take another --transmittance",
         part, transmittance_choices[o.drawing.transmittance].name);
+  }
+}
+
+void check_vr180(const RenderOptions& o) {
+  if (!o.camera.lens.vr180()) return;
+  if (const auto& size = o.camera.lens.size; size && (size->x != size->y || size->x % 2 != 0)) {
+    fail("--size {0}x{1} with --vr180: expected an even number of pixels twice, for one 2880x2880", size->x,
+         size->y);
+  }
+  if (const auto& size = o.camera.lens.size; size && size->x > stereo::panorama_side_most)
+    fail("--size {0}x{0} with --vr180: at most {1}x{1}", size->x, stereo::panorama_side_most);
+  const int layout = o.output.layout.value_or(LAYOUT_PARALLEL);
+  if (layout != LAYOUT_PARALLEL && layout != LAYOUT_OVER_UNDER && layout != LAYOUT_SEPARATE)
+    fail("--vr180 with --layout {}: players know parallel and over-under", layout_choices[layout].name);
+  const std::string ending = lowered_ending(o.output.output);
+  if (ending == ".mkv" || ending == ".webm")
+    fail("-o {}: only .mp4 and .mov can be told to be VR180 here", o.output.output);
+}
+
+void add_headset_options(CLI::App& sub, HeadsetOptions& o) {
+  sub.option_defaults()->group("Headset");
+  sub.add_flag("--xr", o.xr,
+               "In the headset of an OpenXR runtime; sticks walk and turn, grips hold the\nworld");
+  add_value(sub, "--scale", "FACTOR", o.scale, between(0.1, 4.0, "a factor from 0.1 to 4"),
+            "Of both sides of the pictures that the runtime recommends (1)");
+  const auto parse_budget = [](const std::string& text) {
+    double ms = 0.0;
+    const bool good = text == "auto" || (CLI::detail::lexical_cast(text, ms) && ms > 0.0 && ms <= 1000.0);
+    if (!good) fail("--frame-budget {}: expected milliseconds above 0, at most 1000, or auto", text);
+    return ms;
+  };
+  add_parsed(
+      sub, "--frame-budget", "MS|auto", o.budget_ms, parse_budget,
+      "Quality, then size, as a frame's time allows: less where frames take\nlonger; auto: four fifths of "
+      "the time that the runtime has for one");
+  add_value(sub, "--record", "S", o.record_s, between(1e-3, 3600.0, "seconds above zero, at most 3600"),
+            "Record the first S seconds as `profile` does; F8 in the window that\nmirrors records ten more");
+  sub.add_flag_callback(
+      "--no-mirror", [&o] { o.mirror = false; }, "No window that shows what the left eye sees");
+}
+
+// Options that do not go with a headset, and what is said of them.
+constexpr const char* of_windows = "leave it out, a headset decides that itself";
+constexpr const char* of_studies = "leave it out, a headset's pictures have exact tiles of 16 px";
+constexpr std::pair<const char*, const char*> not_in_headsets[] = {
+    {"--size", of_windows},        {"--layout", of_windows},    {"--ipd", of_windows},
+    {"--convergence", of_windows}, {"--cant", of_windows},      {"--show", of_windows},
+    {"--fov", of_windows},         {"--output", of_windows},    {"--tiles", of_studies},
+    {"--tile", of_studies},        {"--shader-dir", of_studies}};
+constexpr std::pair<const char*, const char*> not_beside_a_budget[] = {
+    {"--foveate", "a quality is one for whole pictures: choose one of them"},
+    {"--quality", "choose one, the budget chooses the quality"},
+    {"--tolerance", "choose one, the budget chooses what is left out"}};
+
+// Throws Error for options that a headset decides, and for those of a headset where there is none.
+void check_headset(const HeadsetOptions& o, const CLI::App& sub) {
+  const auto is_given = [&](const char* name) {
+    const CLI::Option* const option = sub.get_option_no_throw(name);
+    return option != nullptr && option->count() > 0;
+  };
+  for (const char* name : {"--scale", "--frame-budget", "--no-mirror", "--record", "--foveate"}) {
+    if (!o.xr && is_given(name)) fail("{} is for a headset: add --xr, or leave it out", name);
+  }
+  for (const auto& [name, why] : not_in_headsets) {
+    if (o.xr && is_given(name)) fail("{} with --xr: {}", name, why);
+  }
+  for (const auto& [name, why] : not_beside_a_budget) {
+    if (o.budget_ms && is_given(name)) fail("--frame-budget with {}: {}", name, why);
   }
 }
 
@@ -64,7 +134,12 @@ void add_picture_options(CLI::App& sub, RenderOptions& o) {
 
 void add_options(CLI::App& sub, RenderOptions& o) {
   add_picture_options(sub, o);
-  add_vr180_option(sub, o.camera.lens);
+  sub.add_flag_callback(
+         "--vr180", [&o] { o.camera.lens.preset = "vr180"; },
+         "All that lies ahead of each eye, 180 degrees wide and high\n"
+         "(equirectangular, 2048 x 2048 px an eye, or --size), level, for players of\n"
+         "VR180: .png, or .vr.jpg, .mp4 and .mov that say so")
+      ->group("Cameras");
   add_foveate_option(sub, o.foveate);
   add_tour_options(sub, o.camera);
   add_output_options(sub, o.output);
@@ -98,13 +173,25 @@ void add_view_options(CLI::App& sub, RenderOptions& o) {
       if (sub.count(name) > 0 && !o.headset.xr)
         fail("{} is for `binosplat render`, and for --xr: leave it out", name);
     }
-    check(o.headset, sub);
+    check_headset(o.headset, sub);
   });
 }
 
 bool may_share(const RenderOptions& o) {
   return o.drawing.quality && !o.scene.lod && !o.scene.repeat && !is_built_in(o.scene.name) &&
          is_streamed_sog(o.scene.name);
+}
+
+void check_foveate(const RenderOptions& o) {
+  if (!o.foveate) return;
+  if (o.output.show >= SHOW_ALPHAS) {
+    fail("--foveate with --show {}: it tells of the lists that one picture is blended by, and these are two",
+         show_choices[o.output.show].name);
+  }
+  if (o.output.exr_depth == Depth::median)
+    fail("--foveate with --exr-depth median: between inset and context only means are mixed");
+  if (o.rig.one_picture() && o.foveate->gaze.size() > 1)
+    fail("--foveate gaze: two are for both eyes: leave --mono and --only out, or give one");
 }
 
 void check(const RenderOptions& o) {

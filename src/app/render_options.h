@@ -7,7 +7,6 @@
 #include "app/camera_options.h"
 #include "app/context_options.h"
 #include "app/drawing_options.h"
-#include "app/headset_options.h"
 #include "app/output_options.h"
 #include "app/rig_options.h"
 #include "app/scene_options.h"
@@ -15,6 +14,15 @@
 #include "stereo/foveate.h"
 
 namespace binosplat::app {
+
+/// Of `binosplat view --xr`.
+struct HeadsetOptions {
+  bool xr = false;
+  double scale = 1.0;               // of the sizes that the runtime recommends
+  std::optional<double> budget_ms;  // 0: what the runtime has for a frame
+  std::optional<double> record_s;   // so much is recorded, from the first frame on
+  bool mirror = true;               // the left eye in a window, where there is a display
+};
 
 struct RenderOptions {
   SceneOptions scene;
@@ -43,7 +51,9 @@ void add_view_options(CLI::App& sub, RenderOptions& options);
 /// Whether --quality is for levels of detail, too, if the scene has any that tell what they lose.
 bool may_share(const RenderOptions& options);
 
-/// Throws Error for options that contradict each other, within a part and between them.
+/// Throws Error for options that contradict each other, within a part and between them;
 void check(const RenderOptions& options);
+/// of --foveate alone.
+void check_foveate(const RenderOptions& options);
 
 }  // namespace binosplat::app

@@ -1,4 +1,4 @@
-#include "app/render_table.h"
+// What `binosplat render` says of what it drew: a table for people, and JSON.
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -10,6 +10,7 @@
 
 #include "app/command.h"
 #include "app/load_scene.h"
+#include "app/render_run.h"
 #include "base/log.h"
 #include "base/statistics.h"
 #include "lab/fields.h"
@@ -91,16 +92,16 @@ std::vector<Column> columns_of(const RenderOptions& o) {
 
 // A row for each view with its files, and below several views what their numbers come to. Of the many frames
 // of a way or a video only that: rows would bury it.
-void print_views(const RenderReport& report) {
+void print_views(const RenderRun& run) {
   constexpr std::size_t few = 8;
-  const std::vector<Drawn>& all = report.drawn;
-  const bool each = all.size() <= few || !(report.outputs.video || report.options.camera.along_path());
+  const std::vector<Drawn>& all = run.drawn;
+  const bool each = all.size() <= few || !(run.outputs.video || run.options.camera.along_path());
   std::vector<std::vector<std::string>> rows = {{"view"}};
   for (const Drawn& drawn : all) {
     if (each) rows.push_back({drawn.shot.name});
   }
   if (all.size() > 1) rows.insert(rows.end(), {{"median"}, {"mean"}, {"worst"}});
-  for (const Column& column : columns_of(report.options)) {
+  for (const Column& column : columns_of(run.options)) {
     std::vector<std::optional<double>> numbers;
     std::vector<double> found;
     for (const Drawn& drawn : all) {
@@ -119,7 +120,7 @@ void print_views(const RenderReport& report) {
   if (!each) {
     const std::string &first = all.front().shot.files.front().name, &last = all.back().shot.files.back().name;
     fmt::print("{} frames: {}{}{}\n", all.size(), first, first == last ? "" : " to " + last,
-               report.options.output.json.empty() ? " (each by itself: --json FILE)" : "");
+               run.options.output.json.empty() ? " (each by itself: --json FILE)" : "");
   }
   std::vector<std::size_t> widths(rows[0].size());
   for (const auto& row : rows) {
@@ -143,13 +144,11 @@ struct StageRow {
 };
 
 // The first frame of all makes the driver compile shaders: it counts only while it is alone.
-std::size_t timed_frames(const RenderReport& report) {
-  return std::max<std::size_t>(report.frames.size(), 2) - 1;
-}
+std::size_t timed_frames(const RenderRun& run) { return std::max<std::size_t>(run.frames.size(), 2) - 1; }
 
 // GPU times of frames, by stage; none where the reference drew them.
-std::vector<StageRow> stage_rows(const RenderReport& report) {
-  const std::span frames = std::span(report.frames).last(timed_frames(report));
+std::vector<StageRow> stage_rows(const RenderRun& run) {
+  const std::span frames = std::span(run.frames).last(timed_frames(run));
   if (frames.front().stages.empty()) return {};
   const auto row = [&](const std::string& name, const auto& time_of) {
     std::vector<double> times;
@@ -165,16 +164,16 @@ std::vector<StageRow> stage_rows(const RenderReport& report) {
 }
 
 // Where most of the time is waited for files.
-std::string what_bounds(const RenderReport& report) {
-  const RunTimes& run = report.run;
-  const OutputOptions& o = report.options.output;
-  const std::string cores = fmt::format("on {} core{}", run.threads, run.threads == 1 ? "" : "s");
-  if (report.outputs.video) {
-    const bool is_ffmpeg = run.writing > run.encoding / run.threads;
+std::string what_bounds(const RenderRun& run) {
+  const RunTimes& times = run.times;
+  const OutputOptions& o = run.options.output;
+  const std::string cores = fmt::format("on {} core{}", times.threads, times.threads == 1 ? "" : "s");
+  if (run.outputs.video) {
+    const bool is_ffmpeg = times.writing > times.encoding / times.threads;
     return is_ffmpeg ? "ffmpeg, which encodes the video, bounds this run"
                      : fmt::format("converting frames {} bounds this run: more cores would help", cores);
   }
-  if (run.writing > run.encoding)
+  if (times.writing > times.encoding)
     return fmt::format("writing files {} bounds this run: a faster disk would help", cores);
   return fmt::format("encoding files {} bounds this run: {}", cores,
                      o.exr_half && o.exr_compression == ExrCompression::zip
@@ -183,20 +182,20 @@ std::string what_bounds(const RenderReport& report) {
                                        : "more cores would help");
 }
 
-void tell_whether_quality_pays(const RenderReport& report) {
-  const RenderOptions& o = report.options;
+void tell_whether_quality_pays(const RenderRun& run) {
+  const RenderOptions& o = run.options;
   if (!o.drawing.quality) return;
   double ms = 0.0;
   int attempts = 0;
-  for (const Drawn& drawn : report.drawn) {
-    ms += drawn.report.total_ms / static_cast<double>(report.drawn.size());
+  for (const Drawn& drawn : run.drawn) {
+    ms += drawn.report.total_ms / static_cast<double>(run.drawn.size());
     attempts = std::max(attempts, drawn.report.attempts);
   }
-  if (report.exact_ms && ms > *report.exact_ms) {
+  if (run.exact_ms && ms > *run.exact_ms) {
     log_warning(
         "--quality {:g} does not pay here: a frame took {:.3g} ms in the mean, the first one's search "
         "included, and an exact one takes {:.3g} ms: leave it out",
-        *o.drawing.quality, ms, *report.exact_ms);
+        *o.drawing.quality, ms, *run.exact_ms);
   } else if (!o.camera.along_path() && o.drawing.frames == 1) {
     log_info(
         "--quality {:g} draws a single picture exactly as well, and up to {} times until it holds: by itself "
@@ -205,23 +204,23 @@ void tell_whether_quality_pays(const RenderReport& report) {
   }
 }
 
-void print_run(const RenderReport& report) {
-  const RunTimes& run = report.run;
-  const std::size_t shots = report.drawn.size();
-  if (run.all < 1000.0 || shots < 2) return;
-  const auto percent = [&](double ms) { return static_cast<int>(std::lround(100.0 * ms / run.all)); };
-  const int drawing = percent(run.all - run.reading - run.waiting), files = percent(run.waiting);
+void print_run(const RenderRun& run) {
+  const RunTimes& times = run.times;
+  const std::size_t shots = run.drawn.size();
+  if (times.all < 1000.0 || shots < 2) return;
+  const auto percent = [&](double ms) { return static_cast<int>(std::lround(100.0 * ms / times.all)); };
+  const int drawing = percent(times.all - times.reading - times.waiting), files = percent(times.waiting);
   fmt::print(
       "{} views in {:.1f} s, {:.3g} a second; of the time: drawing {} %, reading back {} %, waiting for "
       "files {} %\n",
-      shots, 1e-3 * run.all, 1e3 * static_cast<double>(shots) / run.all, drawing, percent(run.reading),
+      shots, 1e-3 * times.all, 1e3 * static_cast<double>(shots) / times.all, drawing, percent(times.reading),
       files);
-  if (files > 50) fmt::print("{}\n", what_bounds(report));
-  if (!report.context.software() && run.gpu < 0.5 * run.all)
+  if (files > 50) fmt::print("{}\n", what_bounds(run));
+  if (!run.context->software() && times.gpu < 0.5 * times.all)
     fmt::print(
         "The GPU had nothing to do for {} % of the time and may have run at a low clock: `binosplat bench` "
         "times a busy one\n",
-        100 - percent(run.gpu));
+        100 - percent(times.gpu));
 }
 
 double discomfort(const Drawn& drawn) {
@@ -247,9 +246,9 @@ void warn_of_discomfort(const std::vector<Drawn>& all) {
       better.ipd ? fmt::format(" --ipd {:.3g}", *better.ipd) : "");
 }
 
-std::optional<double> mean_photo_psnr(const RenderReport& report) {
+std::optional<double> mean_photo_psnr(const RenderRun& run) {
   std::vector<double> found;
-  for (const Drawn& drawn : report.drawn) {
+  for (const Drawn& drawn : run.drawn) {
     if (drawn.photo_psnr) found.push_back(*drawn.photo_psnr);
   }
   return found.size() < 2 ? std::nullopt : std::optional(mean(found));
@@ -310,21 +309,20 @@ ordered_json view_json(const Drawn& drawn, const RenderOptions& options,
   return json;
 }
 
-ordered_json settings_json(const RenderReport& report) {
-  const DrawingOptions& o = report.options.drawing;
-  const Background& background = report.options.output.background;
-  const Model& model = report.model;
-  const std::optional<DetailRequest>& detail = report.options.scene.detail;
-  const bool vr180 = report.options.camera.lens.vr180();
+ordered_json settings_json(const RenderRun& run) {
+  const DrawingOptions& o = run.options.drawing;
+  const Background& background = run.options.output.background;
+  const Model& model = run.model();
+  const std::optional<DetailRequest>& detail = run.options.scene.detail;
+  const bool vr180 = run.options.camera.lens.vr180();
   const int order = vr180 ? ORDER_DISTANCE : o.order.value_or(model.perspective.order);
   const int projection = vr180 ? PROJECTION_TANGENT : o.projection.value_or(model.perspective.projection);
   return object("vr180", given(vr180, true), "tiles", tiles_choices[o.tiles].name, "tile",
                 o.tile ? ordered_json(*o.tile) : ordered_json("auto"), "precision",
-                precision_choices[o.precision].name, "near", report.near_plane, "antialiased",
-                model.antialiased, "order", order_choices[order].name, "projection",
-                projection_choices[projection].name, "kernel_px2", model.kernel_px2, "th",
-                th_choices[threshold_of(o)].name, "tolerance", o.tolerance, "transmittance",
-                transmittance_choices[o.transmittance].name, "decode",
+                precision_choices[o.precision].name, "near", run.near_plane, "antialiased", model.antialiased,
+                "order", order_choices[order].name, "projection", projection_choices[projection].name,
+                "kernel_px2", model.kernel_px2, "th", th_choices[threshold_of(o)].name, "tolerance",
+                o.tolerance, "transmittance", transmittance_choices[o.transmittance].name, "decode",
                 given(model.scaffold != nullptr, decode_choices[o.decode.value_or(DECODE_EYES)].name),
                 "detail_px", given(detail && !detail->db, detail ? detail->apart_px : 0.0), "detail_db",
                 detail ? detail->db : std::nullopt, "quality_db", o.quality, "calibration",
@@ -333,15 +331,15 @@ ordered_json settings_json(const RenderReport& report) {
                 o.reference_until ? std::optional(render::name_of(*o.reference_until)) : std::nullopt);
 }
 
-ordered_json scene_json(const RenderReport& report) {
-  const SceneOptions& o = report.options.scene;
-  const Model& model = report.model;
+ordered_json scene_json(const RenderRun& run) {
+  const SceneOptions& o = run.options.scene;
+  const Model& model = run.model();
   const bool city = o.name == demo_city_name;
   ordered_json json = object("name", o.name, "seed", given(city, city_settings(o).seed), "count",
                              given(city, city_settings(o).count));
   if (o.repeat) json["repeat"] = object("x", o.repeat->x, "z", o.repeat->y, "spacing", *o.spacing);
-  const bool follows = report.drawn.back().levels.has_value();
-  FieldWriter{json}("gaussians", follows ? report.drawn.back().levels->gaussians : model.count(), "left_out",
+  const bool follows = run.drawn.back().levels.has_value();
+  FieldWriter{json}("gaussians", follows ? run.drawn.back().levels->gaussians : model.count(), "left_out",
                     model.left_out, "degree", model.degree);
   if (const Scaffold* s = model.scaffold.get())
     json["scaffold"] = object("anchors", s->anchor_count(), "gaussians_per_anchor", s->offset_count,
@@ -352,44 +350,44 @@ ordered_json scene_json(const RenderReport& report) {
 
 }  // namespace
 
-void print(const RenderReport& report) {
-  print_views(report);
-  warn_of_discomfort(report.drawn);
-  tell_whether_quality_pays(report);
-  const std::vector<StageRow> rows = stage_rows(report);
+void print(const RenderRun& run) {
+  print_views(run);
+  warn_of_discomfort(run.drawn);
+  tell_whether_quality_pays(run);
+  const std::vector<StageRow> rows = stage_rows(run);
   if (rows.empty()) fmt::print("(by the float64 reference, on the CPU)\n");
   if (rows.empty() || is_quiet()) return;
-  const std::size_t frames = timed_frames(report);
+  const std::size_t frames = timed_frames(run);
   fmt::print("\n{:<12}{:>12}{:>12}\n", "stage", "median ms", "p99 ms");
   for (const StageRow& row : rows) {
     fmt::print("{:<12}{:>12.3f}{:>12.3f}\n", row.stage, row.median_ms, row.p99_ms);
   }
   fmt::print(
       "GPU time of {} frame{} on {}{}; {:.1f} MB in buffers; making the shaders' programs took {:.2f} s\n",
-      frames, frames == 1 ? "" : "s", report.context.renderer(), frames == 1 ? " (--frames N for more)" : "",
-      static_cast<double>(report.context.peak_bytes()) / 1e6, 1e-3 * report.context.making_ms());
-  print_run(report);
+      frames, frames == 1 ? "" : "s", run.context->renderer(), frames == 1 ? " (--frames N for more)" : "",
+      static_cast<double>(run.context->peak_bytes()) / 1e6, 1e-3 * run.context->making_ms());
+  print_run(run);
 }
 
-void save(const std::filesystem::path& path, const RenderReport& report) {
-  const gl::Context& context = report.context;
+void save(const std::filesystem::path& path, const RenderRun& run) {
+  const gl::Context& context = *run.context;
   ordered_json json = object(
-      "version", BINOSPLAT_VERSION, "scene", scene_json(report), "device",
+      "version", BINOSPLAT_VERSION, "scene", scene_json(run), "device",
       object("backend", context.backend(), "renderer", context.renderer(), "opengl", context.version()),
-      "settings", settings_json(report));
-  if (report.exact_ms) json["exact_frame_ms"] = *report.exact_ms;
+      "settings", settings_json(run));
+  if (run.exact_ms) json["exact_frame_ms"] = *run.exact_ms;
   json["views"] = ordered_json::array();
-  for (const Drawn& drawn : report.drawn)
-    json["views"].push_back(view_json(drawn, report.options, report.convergence));
-  FieldWriter{json}("mean_photo_psnr_db", mean_photo_psnr(report), "frames", timed_frames(report), "stages",
+  for (const Drawn& drawn : run.drawn)
+    json["views"].push_back(view_json(drawn, run.options, run.convergence));
+  FieldWriter{json}("mean_photo_psnr_db", mean_photo_psnr(run), "frames", timed_frames(run), "stages",
                     ordered_json::array());
-  for (const StageRow& row : stage_rows(report))
+  for (const StageRow& row : stage_rows(run))
     json["stages"].push_back(object("stage", row.stage, "median_ms", row.median_ms, "p99_ms", row.p99_ms));
-  const RunTimes& run = report.run;
-  json["run"] = object("seconds", 1e-3 * run.all, "reading_back_seconds", 1e-3 * run.reading,
-                       "waiting_for_files_seconds", 1e-3 * run.waiting, "encoding_thread_seconds",
-                       run.encoding, "writing_thread_seconds", run.writing, "threads", run.threads);
-  json["memory"] = object("model_bytes", report.needs.model, "frame_bytes_at_least", report.needs.frame,
+  const RunTimes& times = run.times;
+  json["run"] = object("seconds", 1e-3 * times.all, "reading_back_seconds", 1e-3 * times.reading,
+                       "waiting_for_files_seconds", 1e-3 * times.waiting, "encoding_thread_seconds",
+                       times.encoding, "writing_thread_seconds", times.writing, "threads", times.threads);
+  json["memory"] = object("model_bytes", run.needs.model, "frame_bytes_at_least", run.needs.frame,
                           "gpu_bytes", context.allocated_bytes(), "gpu_peak_bytes", context.peak_bytes());
   save_json(path, json);
 }

@@ -12,37 +12,33 @@ namespace binosplat::app {
 
 namespace {
 
-struct Length {
-  double metres = 0.0;
-  bool has_unit = false;  // else metres are assumed
-};
-
-Length parse_length(const char* option, const std::string& text, const char* examples) {
+// In metres, which a bare number is taken for.
+double parse_length(const char* option, const std::string& text, const char* examples) {
   std::string_view unit = text;
   if (unit.starts_with("+")) unit.remove_prefix(1);
   const std::optional<double> value = take_real(unit);
   if (!value || !std::isfinite(*value))
     fail("{} {}: expected metres, or a number with a unit, {}", option, text, examples);
-  if (unit == "mm") return {1e-3 * *value, true};
-  if (unit == "cm") return {1e-2 * *value, true};
+  if (unit == "mm") return 1e-3 * *value;
+  if (unit == "cm") return 1e-2 * *value;
   if (!unit.empty() && unit != "m") fail("{} {}: its unit may be m, cm or mm", option, text);
-  return {*value, !unit.empty()};
+  return *value;
 }
 
 // Metres. A bare number beyond what a human or a low flight has is taken for millimetres that were meant.
 double parse_ipd(const std::string& text) {
   constexpr double most = 1.0;
-  const Length length = parse_length("--ipd", text, "as in 0.064, 64mm or 3m");
-  if (!length.has_unit && std::abs(length.metres) > most)
+  const double metres = parse_length("--ipd", text, "as in 0.064, 64mm or 3m");
+  if (!text.ends_with("m") && std::abs(metres) > most)
     fail("--ipd {0}: that is {0} metres, and eyes are 0.063 apart; say {0}mm, or {0}m if it is meant", text);
-  return length.metres;
+  return metres;
 }
 
 double parse_convergence(const std::string& text) {
   std::string word = text.substr(text.starts_with("+") ? 1 : 0);
   for (char& c : word) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   if (word == "inf" || word == "infinity") return std::numeric_limits<double>::infinity();
-  return parse_length("--convergence", text, "as in 3, 80cm or 2.5m, or inf").metres;
+  return parse_length("--convergence", text, "as in 3, 80cm or 2.5m, or inf");
 }
 
 }  // namespace

@@ -1,12 +1,12 @@
 #include "app/sequence.h"
 
 #include <algorithm>
+#include <set>
 
 #include "app/load_scene.h"
 #include "base/error.h"
 #include "base/log.h"
 #include "formats/model_file.h"
-#include "formats/view_files.h"
 
 namespace binosplat::app {
 
@@ -35,15 +35,11 @@ void show_in_turn(const std::vector<fs::path>& files, std::vector<Shot>& shots) 
              std::min(shots.size(), files.size()));
     shots.resize(std::min(shots.size(), files.size()));
   }
-  std::vector<std::string> stems;
+  std::set<std::string> taken;
   for (std::size_t k = 0; k < shots.size(); ++k) {
     shots[k].model = files[k].string();
     shots[k].name = files[k].filename().string();
-    shots[k].stem = stem_of(files[k].stem().string());
-    if (std::ranges::count(stems, shots[k].stem) > 0)
-      fail("{} would be drawn to {}.png, as another model of the folder: rename one", files[k].string(),
-           shots[k].stem);
-    stems.push_back(shots[k].stem);
+    shots[k].stem = free_stem(files[k].stem().string(), taken);
   }
 }
 

@@ -31,10 +31,6 @@ struct ShotChoice {
   std::vector<Camera> cameras;
 };
 
-bool ends_with(const std::string& text, const std::string& end) {
-  return text.size() > end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
-}
-
 // The cameras as views in their order; where pairs are wanted, a NAME_left and its NAME_right are the one
 // view NAME.
 std::vector<ShotChoice> all_choices(const std::vector<Camera>& cameras, bool pairs) {
@@ -42,9 +38,9 @@ std::vector<ShotChoice> all_choices(const std::vector<Camera>& cameras, bool pai
   std::set<std::string> taken;
   for (const Camera& camera : cameras) {
     const std::string& name = camera.name;
-    const std::string ending = ends_with(name, "_left") ? "_left" : ends_with(name, "_right") ? "_right" : "";
-    const std::string pair = name.substr(0, name.size() - ending.size());
-    const auto eyes = pairs && !ending.empty() ? stereo::find_eyes(cameras, pair) : std::nullopt;
+    const bool is_eye = name.ends_with("_left") || name.ends_with("_right");
+    const std::string pair = is_eye ? name.substr(0, name.rfind('_')) : "";
+    const auto eyes = pairs && !pair.empty() ? stereo::find_eyes(cameras, pair) : std::nullopt;
     if (!eyes) {
       choices.push_back({name, {camera}});
     } else if (taken.insert(pair).second) {
@@ -123,8 +119,8 @@ Known known_of(const std::optional<SavedPose>& saved) {
 }
 
 // What the cameras beside a model tell of those that are made up.
-void learn(const CameraList& list, const CameraOptions& camera, Known& known) {
-  const auto capture = capture_of(list.cameras, camera.up ? camera.up : known.up);
+void learn(const std::vector<Camera>& cameras, Known& known) {
+  const auto capture = capture_of(cameras, known.up);
   if (!capture) return;
   if (!known.up) known.up = capture->up;
   known.around = capture->around;
@@ -141,12 +137,12 @@ std::vector<Camera> cameras_for(const std::string& scene, const std::string& fil
 }
 
 // Cameras are made up all the same where those beside the model cannot be read.
-void learn_beside(const std::string& scene, const CameraOptions& camera, Known& known) {
+void learn_beside(const std::string& scene, Known& known) {
   const auto found = find_cameras(scene);
   if (!found) return;
   note_input(*found);
   try {
-    learn({found->string(), cameras_for(scene, found->string())}, camera, known);
+    learn(cameras_for(scene, found->string()), known);
   } catch (const Error& error) {
     log_warning("{}; cameras are made up without them", error.what());
   }
@@ -174,12 +170,12 @@ std::string learn_from(const CoredModel& cored, const SceneOptions& scene, const
                        Known& known) {
   if (known.around && !camera.eye)
     return "around what the cameras beside it look at (--eye and --at for other places)";
-  const std::optional<glm::dvec3> up = camera.up ? camera.up : known.up;
+  const std::optional<glm::dvec3> up = known.up;
   std::string place = camera.eye ? "" : "from outside";
   const char* tells = known.up ? "by what lies beside it" : "since nothing in it tells";
   if (!is_built_in(scene.name) && !(camera.eye && up)) {
     if (const auto ground = find_ground(cored, up)) {
-      known.up = ground->up;
+      if (!camera.up) known.up = ground->up;
       if (!up) tells = "by the surfaces in it";
       if (!camera.eye)
         known.around = capture_of(cored, *ground, eye_height * known.units_per_metre.value_or(1.0)).around;
@@ -191,7 +187,7 @@ std::string learn_from(const CoredModel& cored, const SceneOptions& scene, const
     }
   }
   if (camera.up || is_built_in(scene.name)) return place;
-  const glm::dvec3 found = up_of(camera, known);
+  const glm::dvec3 found = known.up.value_or(default_up);
   return fmt::format("{}{}up is {:.2f},{:.2f},{:.2f}, {} (--up for another)", place,
                      place.empty() ? "" : "; ", found.x, found.y, found.z, tells);
 }
@@ -202,6 +198,7 @@ CameraList listed_cameras(const SceneOptions& scene, const CameraOptions& camera
                           const std::optional<SavedPose>& saved) {
   const std::vector<Camera> built_in = built_in_cameras(scene);
   Known known = known_of(saved);
+  if (camera.up) known.up = camera.up;
   if (rig.units_per_metre) known.units_per_metre = rig.units_per_metre;
   if (!known.units_per_metre && built_in.empty()) {
     known.units_per_metre = usd_units_per_metre(model_file(scene.name));
@@ -209,7 +206,7 @@ CameraList listed_cameras(const SceneOptions& scene, const CameraOptions& camera
       log_info("{}: {:.6g} units make a metre, says its metersPerUnit", scene.name, *known.units_per_metre);
   }
   if (camera.made_up()) {
-    if (built_in.empty() && !(camera.eye && camera.up)) learn_beside(scene.name, camera, known);
+    if (built_in.empty() && !(camera.eye && camera.up)) learn_beside(scene.name, known);
     return {.known = known};
   }
   CameraList list = camera_list(scene, camera, built_in);
@@ -219,8 +216,8 @@ CameraList listed_cameras(const SceneOptions& scene, const CameraOptions& camera
   list.known = known;
   // Keys of a path may all lean the same way; of the many beside the model the mean does not.
   if (built_in.empty() && camera.lens.vr180() && !(camera.path + camera.file).empty())
-    learn_beside(scene.name, camera, list.known);
-  if (built_in.empty()) learn(list, camera, list.known);
+    learn_beside(scene.name, list.known);
+  if (built_in.empty()) learn(list.cameras, list.known);
   const bool takes_fov = list.listed && camera.fov && built_in.empty() && lacks_lenses(list.source);
   if (list.listed && ((camera.up && !camera.lens.vr180()) || (camera.fov && !takes_fov))) {
     fail(
@@ -261,7 +258,7 @@ std::optional<CameraList> saved_camera(const SceneOptions& scene, const CameraOp
 
 CameraList eye_camera(const CameraOptions& camera, const Known& known) {
   return {.source = "--eye",
-          .cameras = {look_at(*camera.eye, *camera.at, up_of(camera, known),
+          .cameras = {look_at(*camera.eye, *camera.at, known.up.value_or(default_up),
                               camera.fov.value_or(default_fov_degrees), made_up_width, made_up_height)},
           .known = known};
 }
@@ -271,7 +268,7 @@ CameraList made_up_cameras(const SceneOptions& scene, const CameraOptions& camer
   const double fov = camera.fov.value_or(default_fov_degrees);
   const CoredModel cored(model);
   const std::string how = learn_from(cored, scene, camera, known);
-  const glm::dvec3 up = up_of(camera, known);
+  const glm::dvec3 up = known.up.value_or(default_up);
   CameraList list{.source = scene.name, .known = known};
   if (!known.unusable.empty()) log_warning("{}; cameras are made up instead", known.unusable);
   if (camera.eye) {
@@ -287,10 +284,6 @@ CameraList made_up_cameras(const SceneOptions& scene, const CameraOptions& camer
   }
   list.near_plane = near_for(cored);
   return list;
-}
-
-glm::dvec3 up_of(const CameraOptions& camera, const Known& known) {
-  return camera.up.value_or(known.up.value_or(default_up));
 }
 
 double near_plane_of(const CameraOptions& camera, const CameraList& list) {
@@ -327,10 +320,22 @@ void converge(Shot& shot, double metres) {
   }
 }
 
+std::string free_stem(const std::string& name, std::set<std::string>& taken) {
+  std::string stem = stem_of(name);
+  for (int n = 2; !taken.insert(stem).second; ++n) stem = fmt::format("{}_{}", stem_of(name), n);
+  return stem;
+}
+
 std::vector<shared::View> views_of(const Shot& shot) {
   std::vector<shared::View> views;
   for (const Eye& eye : shot.eyes) views.push_back(eye.view);
   return views;
+}
+
+std::vector<Camera> eyes_in_axes(const Shot& shot, const ModelAxes& axes) {
+  std::vector<Camera> eyes;
+  for (const Eye& eye : shot.eyes) eyes.push_back(into_axes(eye.camera, axes));
+  return eyes;
 }
 
 std::vector<std::string> view_names(const std::vector<std::string>& texts, const CameraList& list) {
@@ -361,8 +366,7 @@ std::vector<Shot> make_shots(const std::vector<std::string>& views, const Lens& 
   for (const ShotChoice& choice : chosen(views, list, rig.mono)) {
     Shot& shot = shots.emplace_back();
     shot.name = choice.name;
-    const std::string stem = shot.stem = stem_of(choice.name);
-    for (int n = 2; !taken.insert(shot.stem).second; ++n) shot.stem = fmt::format("{}_{}", stem, n);
+    shot.stem = free_stem(choice.name, taken);
     shot.units_per_metre = settings.units_per_metre;
     add_eyes(lens, rig, settings, choice, axes, shot);
   }

@@ -2,6 +2,7 @@
 // From the options to what is drawn: the cameras, and the eyes of each.
 
 #include <functional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -47,7 +48,7 @@ struct Shot {
 struct Known {
   std::optional<double> units_per_metre;  // world units
   std::optional<double> ipd;              // m
-  std::optional<glm::dvec3> up;           // the world's
+  std::optional<glm::dvec3> up;           // the world's; --up, where that is given
   std::optional<Capture::Around> around;  // what to stand around
   std::string unusable;                   // why the cameras beside the model cannot be used, if they cannot
 };
@@ -88,9 +89,6 @@ CameraList eye_camera(const CameraOptions& camera, const Known& known);
 CameraList made_up_cameras(const SceneOptions& scene, const CameraOptions& camera, Known known,
                            const Model& model);
 
-/// --up, or what is known.
-glm::dvec3 up_of(const CameraOptions& camera, const Known& known);
-
 /// --near, or what suits the cameras of a file, or those made up for the model; world units.
 double near_plane_of(const CameraOptions& camera, const CameraList& list);
 
@@ -112,8 +110,14 @@ stereo::RigSettings rig_settings(const RigOptions& rig, const Known& known, doub
 /// Brings the screen of eyes that look infinitely far to so many metres. Not of eyes that the cameras give.
 void converge(Shot& shot, double metres);
 
+/// stem_of() a name, or with a number where that is taken; takes it.
+std::string free_stem(const std::string& name, std::set<std::string>& taken);
+
 /// What a frame draws of a shot.
 std::vector<shared::View> views_of(const Shot& shot);
+
+/// Its cameras in the model's frame.
+std::vector<Camera> eyes_in_axes(const Shot& shot, const ModelAxes& axes);
 
 /// As --view: all that a list has.
 inline const std::vector<std::string> all_views = {"all"};

@@ -61,10 +61,6 @@ void add_tour_options(CLI::App& sub, CameraOptions& o) {
             "even pace (by their times)");
 }
 
-double tour_fps(const std::optional<double>& fps, bool video) {
-  return fps.value_or(video ? video_fps : headset_fps);
-}
-
 CameraList go_on_tour(const SceneOptions& scene, const CameraOptions& camera, const RigOptions& rig,
                       double fps, CameraList list) {
   if (list.cameras.empty()) {

@@ -7,16 +7,13 @@
 
 namespace binosplat::app {
 
-/// Frames a second where nothing says otherwise: of tours, and of what is studied along a way.
+/// Frames a second where nothing says otherwise: of tours but for videos, and of what is studied along a way.
 inline constexpr double headset_fps = 90.0;
 
 /// Adds --tour.
 CLI::Option* add_tour_option(CLI::App& sub, CameraOptions& options);
 /// Adds --tour, --keys and --seconds.
 void add_tour_options(CLI::App& sub, CameraOptions& options);
-
-/// --fps, or what fits a tour: 30 for a video, as for others, else 90 as headsets have.
-double tour_fps(const std::optional<double>& fps, bool video);
 
 /// The tour's cameras, one a frame, in the place of those that it goes through; says so. A metre is what it
 /// is for pictures, one unit where nothing tells; what the cameras' distances would make of it (metre_of) is

@@ -12,12 +12,14 @@
 #include <csignal>
 #include <cstdlib>
 #include <cstring>
+#include <fstream>
 #include <map>
 #include <sstream>
 
-#include "app/mp4_spherical.h"
 #include "base/error.h"
+#include "base/mapped_file.h"
 #include "base/text.h"
+#include "formats/content.h"
 
 namespace binosplat::app {
 
@@ -63,6 +65,96 @@ std::vector<std::string> arguments_for(const fs::path& target, const fs::path& t
   if (!stereo_mode(layout).empty()) more({"-metadata:s:v:0", "stereo_mode=" + stereo_mode(layout)});
   more({fs::absolute(temporary).string()});
   return arguments;
+}
+
+std::string number(std::uint32_t value) {
+  return {static_cast<char>(value >> 24), static_cast<char>(value >> 16), static_cast<char>(value >> 8),
+          static_cast<char>(value)};
+}
+
+std::uint32_t number_at(std::string_view bytes, std::size_t at) {
+  std::uint32_t value = 0;
+  for (std::size_t k = 0; k < 4; ++k) value = value << 8 | static_cast<unsigned char>(bytes[at + k]);
+  return value;
+}
+
+std::string box(std::string_view type, const std::string& content) {
+  return number(static_cast<std::uint32_t>(content.size() + 8)) + std::string(type) + content;
+}
+
+std::string full_box(std::string_view type, const std::string& content) {
+  return box(type, number(0) + content);  // version and flags
+}
+
+std::string boxes_of(int layout) {
+  const char mode = layout == LAYOUT_SEPARATE ? 0 : layout == LAYOUT_OVER_UNDER ? 1 : 2;
+  // Shares of the sphere that the picture leaves out at the top, the bottom, the left and the right: /2^32.
+  const std::string bounds = number(0) + number(0) + number(0x40000000) + number(0x40000000);
+  const std::string pose = number(0) + number(0) + number(0);
+  return full_box("st3d", std::string(1, mode)) +
+         box("sv3d", full_box("svhd", std::string("binosplat") + '\0') +
+                         box("proj", full_box("prhd", pose) + full_box("equi", bounds)));
+}
+
+std::uint64_t box_size_at(std::string_view bytes, std::size_t at) {
+  const std::uint64_t size = number_at(bytes, at);
+  if (size != 1 || at + 16 > bytes.size()) return size;
+  return std::uint64_t{number_at(bytes, at + 8)} << 32 | number_at(bytes, at + 12);
+}
+
+// The first box of a type in [begin, end), or npos.
+std::size_t find_box(std::string_view bytes, std::size_t begin, std::size_t end, std::string_view type) {
+  for (std::size_t at = begin; at + 8 <= end;) {
+    const std::uint64_t size = box_size_at(bytes, at);
+    if (size < 8 || size > end - at) return std::string_view::npos;
+    if (bytes.substr(at + 4, 4) == type) return at;
+    at += size;
+  }
+  return std::string_view::npos;
+}
+
+// Where the boxes are from the movie to the first track's description of its pictures, each in the one
+// before; empty if one is missing.
+std::vector<std::size_t> way_to_entry(std::string_view movie) {
+  std::vector<std::size_t> way = {0};
+  std::size_t begin = 8, end = movie.size();
+  for (const std::string_view type : {"trak", "mdia", "minf", "stbl", "stsd"}) {
+    const std::size_t at = find_box(movie, begin, end, type);
+    if (at == std::string_view::npos) return {};
+    way.push_back(at);
+    begin = at + 8;
+    end = at + number_at(movie, at);
+  }
+  begin += 8;  // the version of stsd, and how many entries it has
+  if (begin + 8 > end || begin + number_at(movie, begin) > end) return {};
+  way.push_back(begin);
+  return way;
+}
+
+// Tells players that a finished .mp4 or .mov with one track, whose `moov` comes last as ffmpeg leaves it, is
+// half a sphere: equirectangular, 180 degrees across, of one eye (LAYOUT_SEPARATE) or both as `layout` has
+// them. The boxes st3d and sv3d of Google's Spherical Video V2 say that, which no option of ffmpeg writes.
+void mark_half_sphere(const fs::path& path, int layout) {
+  std::string movie;
+  std::size_t at = 0;
+  {
+    const MappedFile film(path);
+    const std::string_view bytes = as_text(film.bytes());
+    at = find_box(bytes, 0, bytes.size(), "moov");
+    if (at != std::string_view::npos && at + number_at(bytes, at) == bytes.size()) movie = bytes.substr(at);
+  }
+  const std::vector<std::size_t> way = way_to_entry(movie);
+  if (way.empty()) fail("{}: ffmpeg left no film of one track that could be marked as VR180", path.string());
+  const std::string added = boxes_of(layout);
+  const std::size_t entry_end = way.back() + number_at(movie, way.back());
+  for (const std::size_t of : way)
+    movie.replace(of, 4, number(number_at(movie, of) + static_cast<std::uint32_t>(added.size())));
+  movie.insert(entry_end, added);
+  std::fstream file(path, std::ios::in | std::ios::out | std::ios::binary);
+  file.seekp(static_cast<std::streamoff>(at));
+  file.write(movie.data(), static_cast<std::streamsize>(movie.size()));
+  file.close();
+  if (!file) fail("cannot write {}", path.string());
 }
 
 }  // namespace

@@ -29,8 +29,7 @@ class Video {
   /// Starts ffmpeg: H.264 of a quality at which losses are hard to see, VP9 in .webm. Matroska's files
   /// say which layout the pictures are in. Colours are stored at half resolution, as players expect, except
   /// in layouts whose neighbouring pixels belong to different eyes. A picture of odd size is given another
-  /// row or column. With `vr180` .mp4 and .mov say that each eye's picture is half a sphere
-  /// (mp4_spherical.h).
+  /// row or column. With `vr180` .mp4 and .mov say that each eye's picture is half a sphere.
   Video(const std::filesystem::path& path, int width, int height, double frames_a_second, int layout,
         bool vr180 = false);
   ~Video();

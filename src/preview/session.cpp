@@ -59,12 +59,12 @@ Session::Session(gl::Context& context, Loaded loaded, Start start, Choices wante
                  : std::make_shared<render::GpuModel>(context, loaded_.model, choices.settings.precision)),
       presenter_(context),
       debug_view_(frame_.model()),
-      shown_{{}, gl::Buffer(context, "pixels to show")},
-      screen_{.is_sought = choices.seeks_screen} {
-  if (screen_.is_sought) choices.rig.convergence.reset();
+      shown_colours_(context, "pixels to show"),
+      seeks_screen_(choices.seeks_screen) {
+  if (seeks_screen_) choices.rig.convergence.reset();
 }
 
-Session::~Session() { context_.gl().DeleteFramebuffers(1, &smaller_.framebuffer); }
+Session::~Session() { context_.gl().DeleteFramebuffers(1, &smaller_framebuffer_); }
 
 void Session::move() {
   moving_ = true;
@@ -130,59 +130,58 @@ Camera Session::head_camera(int divisor) const {
 void Session::set_up() {
   start_.up = -head.camera().rotation[1];
   head = Navigator(head.camera(), start_.up, head.distance());
-  marks_.ground.reset();
+  mark_ground_.reset();
   if (shows_marks()) change();
 }
 
 // Maps come by way of the CPU, as files do: slower than pictures, for as long as they are looked at.
 void Session::make_shown(std::span<const shared::View> views) {
-  shown_.pictures = {};
+  shown_ = {};
   if (choices.show == SHOW_PICTURE) {
     debug_view_.release();
     return;
   }
   const std::vector<Picture> pictures = frame_.read_pictures();
   const render::FrameSettings of_frame = settings(views);
-  shown_.pictures =
+  shown_ =
       debug_view_.make(choices.show, {frame_, views, pictures, of_frame}, choices.background, choices.split);
   std::vector<glm::vec4> colours;
-  for (const Picture& picture : shown_.pictures.pictures)
+  for (const Picture& picture : shown_.pictures)
     colours.insert(colours.end(), picture.colour.begin(), picture.colour.end());
-  shown_.colours.upload(colours);
+  shown_colours_.upload(colours);
 }
 
 bool Session::needs_depth_table() const {
   return choices.settings.transmittance == TRANSMITTANCE_DEPTH && !choices.policy.is_calibrated() &&
-         !depth_table_.table;
+         !depth_table_;
 }
 
 bool Session::measure_depth_table() {
   // Of levels the table is that of those which stay.
   if (!needs_depth_table() || (loaded_.stream && !loaded_.stream->settled())) return false;
-  DepthTableWork& work = depth_table_;
-  if (!work.frame) {
+  if (!depth_frame_) {
     const glm::ivec2 size = glm::max(eye_size(), glm::ivec2(1));
     const std::size_t count = std::min(measure::depth_table_views, start_.cameras.size());
     for (std::size_t k = 0; k < count; ++k) {
       const Camera& camera = start_.cameras[k * start_.cameras.size() / count];
-      work.views.push_back(
+      depth_views_.push_back(
           make_view(into_axes(resized(camera, size.x, size.y), model().axes), choices.rig.near_plane));
     }
-    work.measurement = measure::DepthTableMeasurement(
+    depth_measurement_ = measure::DepthTableMeasurement(
         {.order = choices.settings.order, .projection = choices.settings.projection});
-    work.frame = std::make_unique<render::Frame>(frame_.model());
+    depth_frame_ = std::make_unique<render::Frame>(frame_.model());
   }
-  work.measurement.add(*work.frame, work.views[work.measured++]);
-  if (work.measured < work.views.size()) return true;
-  work.table = work.measurement.table();
-  work.frame.reset();
+  depth_measurement_.add(*depth_frame_, depth_views_[depth_measured_++]);
+  if (depth_measured_ < depth_views_.size()) return true;
+  depth_table_ = depth_measurement_.table();
+  depth_frame_.reset();
   change();
   return false;
 }
 
 std::optional<std::pair<std::size_t, std::size_t>> Session::depth_table_progress() const {
-  if (!depth_table_.frame) return std::nullopt;
-  return std::pair(depth_table_.measured, depth_table_.views.size());
+  if (!depth_frame_) return std::nullopt;
+  return std::pair(depth_measured_, depth_views_.size());
 }
 
 render::FrameSettings Session::settings(std::span<const shared::View> views) const {
@@ -195,14 +194,14 @@ render::FrameSettings Session::settings(std::span<const shared::View> views) con
   render::FrameSettings of_frame = choices.policy.settings(choices.settings, views.front(), model().axes);
   // What is not measured yet lets all light through.
   if (of_frame.transmittance == TRANSMITTANCE_DEPTH && !choices.policy.is_calibrated())
-    of_frame.depth_table = depth_table_.table.value_or(DepthTable{1.0f, {1.0f}});
+    of_frame.depth_table = depth_table_.value_or(DepthTable{1.0f, {1.0f}});
   if (loaded_.stream) of_frame.quality = static_cast<float>(loaded_.stream->quality_left(of_frame.quality));
   return of_frame;
 }
 
 MarkPlaces Session::mark_places() {
-  if (!marks_.ground) marks_.ground = find_mark_ground(model(), start_.up);
-  return places_of(*marks_.ground, start_.cameras, choices.rig.units_per_metre);
+  if (!mark_ground_) mark_ground_ = find_mark_ground(model(), start_.up);
+  return places_of(*mark_ground_, start_.cameras, choices.rig.units_per_metre);
 }
 
 // Maps tell of frames as they are without.
@@ -212,7 +211,7 @@ bool Session::shows_marks() const {
 
 render::FrameReport Session::draw_frame(std::span<const shared::View> asked) {
   if (!shows_marks()) {
-    marks_.drawing.reset();
+    mark_drawing_.reset();
     return frame_.draw(asked, settings(asked));
   }
   const MarkPlaces places = mark_places();
@@ -223,17 +222,17 @@ render::FrameReport Session::draw_frame(std::span<const shared::View> asked) {
         camera_lines(start_.cameras, camera_, head.camera().position, places.camera_size);
     lines.insert(lines.end(), more.begin(), more.end());
   }
-  if (!marks_.drawing) marks_.drawing = std::make_unique<MarkDrawing>(context_);
-  return marks_.drawing->draw(frame_, asked, eyes_, settings(asked), lines);
+  if (!mark_drawing_) mark_drawing_ = std::make_unique<MarkDrawing>(context_);
+  return mark_drawing_->draw(frame_, asked, eyes_, settings(asked), lines);
 }
 
 void Session::follow_levels() {
   if (!loaded_.stream) return;
-  last_.followed = Clock::now();
-  last_.levels.ms = 0.0;
-  const TimedSpan span("levels", &last_.levels.ms);
+  followed_ = Clock::now();
+  levels_.ms = 0.0;
+  const TimedSpan span("levels", &levels_.ms);
   const bool has_changed = loaded_.stream->begin_frame(views(), choices.settings, levels_ms_most);
-  last_.levels.uploaded += loaded_.stream->take_times().put;
+  levels_.uploaded += loaded_.stream->take_times().put;
   if (!has_changed) return;
   debug_view_.release();
   change();
@@ -252,8 +251,8 @@ std::vector<shared::View> Session::views_of(const Camera& camera) {
 
 bool Session::draw() {
   const bool interlaced = choices.layout == LAYOUT_ROWS || choices.layout == LAYOUT_COLUMNS;  // never scaled
-  const bool shrinks = moving_ && !keeps_size && !interlaced && !last_.frames.empty();
-  const int divisor = shrinks ? next_divisor(divisor_, last_.frames.back().report.total_ms) : 1;
+  const bool shrinks = moving_ && !keeps_size && !interlaced && !frames_.empty();
+  const int divisor = shrinks ? next_divisor(divisor_, frames_.back().report.total_ms) : 1;
   const glm::ivec2 size = eye_size(divisor);
   if (pending_ == 0 || size.x < 1 || size.y < 1) return false;
   --pending_;
@@ -263,11 +262,11 @@ bool Session::draw() {
     eyes_ = stereo::make_rig(camera, choices.rig).cameras;
     divisor_ = divisor;
     render::FrameRecord frame{.views = asked, .gaussians = loaded_.gaussians()};
-    frame.begin = frame.due = std::exchange(last_.followed, {}).value_or(Clock::now());
+    frame.begin = frame.due = std::exchange(followed_, {}).value_or(Clock::now());
     frame.report = draw_frame(asked);
     frame.end = Clock::now();
-    frame.levels = std::exchange(last_.levels, {});
-    last_.frames.push_back(std::move(frame));
+    frame.levels = std::exchange(levels_, {});
+    frames_.push_back(std::move(frame));
     shown_layout_ = choices.layout;
     drawn_ = frame_.views();
     threshold_effect_.reset();
@@ -279,20 +278,19 @@ bool Session::draw() {
     pending_ = 0;
     return true;
   }
-  if (last_.frames.size() > frames_kept) last_.frames.pop_front();
+  if (frames_.size() > frames_kept) frames_.pop_front();
   ++frames_drawn_;
-  if (screen_.is_sought && shown_layout_ != LAYOUT_SEPARATE) find_screen();
+  if (seeks_screen_ && shown_layout_ != LAYOUT_SEPARATE) find_screen();
   return true;
 }
 
 // Once: a screen that moved with the head would make heads swim.
 void Session::find_screen() {
-  screen_.is_sought = false;
+  seeks_screen_ = false;
   if (choices.rig.convergence || choices.rig.cant_degrees != 0.0) return;
-  screen_.convergence =
-      stereo::suitable_convergence(eyes_, frame_.read_pictures()[0], choices.rig.units_per_metre);
-  choices.rig.convergence = screen_.convergence;
-  if (screen_.convergence) change();
+  screen_found_ = stereo::suitable_convergence(eyes_, frame_.read_pictures()[0], choices.rig.units_per_metre);
+  choices.rig.convergence = screen_found_;
+  if (screen_found_) change();
 }
 
 void Session::present() {
@@ -304,19 +302,18 @@ void Session::present() {
   if (divisor_ == 1) {
     target.y = std::max(0, framebuffer_.y - size.y);
   } else {
-    if (smaller_.framebuffer == 0) context_.gl().CreateFramebuffers(1, &smaller_.framebuffer);
-    if (!smaller_.texture || !smaller_.texture->is(GL_RGBA8, size.x, size.y)) {
-      smaller_.texture = std::make_unique<gl::Texture>(context_, GL_RGBA8, size.x, size.y);
-      context_.gl().NamedFramebufferTexture(smaller_.framebuffer, GL_COLOR_ATTACHMENT0,
-                                            smaller_.texture->id(), 0);
+    if (smaller_framebuffer_ == 0) context_.gl().CreateFramebuffers(1, &smaller_framebuffer_);
+    if (!smaller_ || !smaller_->is(GL_RGBA8, size.x, size.y)) {
+      smaller_ = std::make_unique<gl::Texture>(context_, GL_RGBA8, size.x, size.y);
+      context_.gl().NamedFramebufferTexture(smaller_framebuffer_, GL_COLOR_ATTACHMENT0, smaller_->id(), 0);
     }
-    target.texture = smaller_.texture->id();
+    target.texture = smaller_->id();
   }
-  const gl::Buffer& colours = shown_.pictures.pictures.empty() ? frame_.colours() : shown_.colours;
+  const gl::Buffer& colours = shown_.pictures.empty() ? frame_.colours() : shown_colours_;
   const auto draw = [&](std::size_t first, int layout) {
     presenter_.draw(colours, drawn_, first, layout, target, choices.background);
     if (divisor_ > 1) {
-      context_.gl().BlitNamedFramebuffer(smaller_.framebuffer, 0, 0, 0, size.x, size.y, 0, 0, framebuffer_.x,
+      context_.gl().BlitNamedFramebuffer(smaller_framebuffer_, 0, 0, 0, size.x, size.y, 0, 0, framebuffer_.x,
                                          framebuffer_.y, GL_COLOR_BUFFER_BIT, GL_LINEAR);
     }
   };
@@ -372,7 +369,7 @@ std::string Session::write_picture(bool exr) {
   if (exr) {
     save_exr(path, pictures[0], pictures[1], {.half = false, .background = choices.background});
   } else {
-    const std::vector<Picture>& eyes = shown_.pictures.pictures.empty() ? pictures : shown_.pictures.pictures;
+    const std::vector<Picture>& eyes = shown_.pictures.empty() ? pictures : shown_.pictures;
     const int layout = shown_layout_ == LAYOUT_QUAD_BUFFER ? LAYOUT_PARALLEL : shown_layout_;
     const Picture both =
         layout == LAYOUT_SEPARATE ? eyes[0] : stereo::lay_out(layout, eyes[0], eyes[1], choices.background);
@@ -404,7 +401,7 @@ const std::optional<ThresholdEffect>& Session::threshold_effect() {
     return threshold_effect_;
   const std::vector<shared::View> now = views();
   const std::vector<Picture> shown = frame_.read_pictures();
-  ThresholdEffect effect{.drawn = last_.frames.back().report};
+  ThresholdEffect effect{.drawn = frames_.back().report};
   const std::vector<Picture> exact = debug_view_.exact(now, choices.settings);
   effect.exact = debug_view_.exact_report();
   effect.psnr = measure::psnr(shown, exact, choices.background);

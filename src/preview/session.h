@@ -135,13 +135,13 @@ class Session {
   Image picture_of(const shared::View& view);
 
   /// The last frames drawn, newest last.
-  const std::deque<render::FrameRecord>& frames() const { return last_.frames; }
+  const std::deque<render::FrameRecord>& frames() const { return frames_; }
   /// The number of a map's brightest colour (stereo/debug_view.h).
-  std::optional<double> most_shown() const { return shown_.pictures.most; }
+  std::optional<double> most_shown() const { return shown_.most; }
   std::size_t frames_drawn() const { return frames_drawn_; }
   const std::string& trouble() const { return trouble_; }
   /// The convergence that suited the first picture, in m, where that was asked for.
-  const std::optional<double>& screen_found() const { return screen_.convergence; }
+  const std::optional<double>& screen_found() const { return screen_found_; }
   const Model& model() const { return loaded_.shown(); }
 
   /// What the next frame draws, left eye first; none before there is a size to draw in.
@@ -167,56 +167,35 @@ class Session {
   render::Frame frame_;
   stereo::Presenter presenter_;
   stereo::DebugView debug_view_;
-  /// In place of the frame's own pictures; none: those.
-  struct Shown {
-    stereo::DebugPictures pictures;
-    gl::Buffer colours;  // as the frame's colours
-  };
-  Shown shown_;
+  stereo::DebugPictures shown_;  // in place of the frame's own pictures; none: those
+  gl::Buffer shown_colours_;     // theirs, as the frame's colours
   glm::ivec2 framebuffer_{0};
   bool moving_ = false;
   int divisor_ = 1;  // of the last frame drawn
-  /// Where a frame is drawn that is shown enlarged.
-  struct Smaller {
-    std::unique_ptr<gl::Texture> texture;
-    std::uint32_t framebuffer = 0;
-  };
-  Smaller smaller_;
-  /// Made at first use; the drawing, which has textures, goes once nothing of it is shown.
-  struct Marks {
-    std::unique_ptr<MarkDrawing> drawing;
-    std::optional<MarkGround> ground;
-  };
-  Marks marks_;
+  // Where a frame is drawn that is shown enlarged.
+  std::unique_ptr<gl::Texture> smaller_;
+  std::uint32_t smaller_framebuffer_ = 0;
+  // Made at first use; the drawing, which has textures, goes once nothing of it is shown.
+  std::unique_ptr<MarkDrawing> mark_drawing_;
+  std::optional<MarkGround> mark_ground_;
   std::array<Camera, 2> eyes_;
   int shown_layout_ = LAYOUT_SEPARATE;  // of the last frame drawn, as are
   std::vector<shared::View> drawn_;     // its views as the frame has them
   int pending_ = 1;                     // frames still to draw
   std::size_t frames_drawn_ = 0;
-  /// The last frames, and the levels that came since.
-  struct Last {
-    std::deque<render::FrameRecord> frames;
-    render::FrameLevels levels;
-    std::optional<Clock::time_point> followed;  // when the next frame's levels were followed
-  };
-  Last last_;
+  std::deque<render::FrameRecord> frames_;     // the last ones
+  render::FrameLevels levels_;                 // that came since
+  std::optional<Clock::time_point> followed_;  // when the next frame's levels were followed
   std::string trouble_;
   std::optional<ThresholdEffect> threshold_effect_;  // of the last frame drawn
-  /// The table of transmittance by depth, or how far its measurement is.
-  struct DepthTableWork {
-    std::optional<DepthTable> table;
-    measure::DepthTableMeasurement measurement{{}};
-    std::unique_ptr<render::Frame> frame;
-    std::vector<shared::View> views;
-    std::size_t measured = 0;
-  };
-  DepthTableWork depth_table_;
-  /// Whether the convergence that suits the first picture is sought, and what was found.
-  struct Screen {
-    bool is_sought = false;
-    std::optional<double> convergence;  // m
-  };
-  Screen screen_;
+  // The table of transmittance by depth, or how far its measurement is.
+  std::optional<DepthTable> depth_table_;
+  measure::DepthTableMeasurement depth_measurement_{{}};
+  std::unique_ptr<render::Frame> depth_frame_;
+  std::vector<shared::View> depth_views_;
+  std::size_t depth_measured_ = 0;      // of these
+  bool seeks_screen_ = false;           // the convergence that suits the first picture,
+  std::optional<double> screen_found_;  // m, and what was found
 };
 
 }  // namespace binosplat::preview

@@ -93,7 +93,7 @@ void Window::run() {
     if (session_ && announced_) {
       go();
       play();
-      if (session_->moving() && glfwGetTime() - hands_.moved > seconds_to_rest) session_->rest();
+      if (session_->moving() && glfwGetTime() - moved_at_ > seconds_to_rest) session_->rest();
       follow_levels();
       measure_depth_table();
       if (recording_) session_->change_show();  // at rest, too

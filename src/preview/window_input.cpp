@@ -44,15 +44,15 @@ glm::dvec3 Window::direction() const {
 }
 
 void Window::moved() {
-  hands_.moved = glfwGetTime();
+  moved_at_ = glfwGetTime();
   session_->move();
 }
 
 // Held keys go half the distance to the target a second; with Shift four times as fast.
 void Window::go() {
   const double now = glfwGetTime();
-  const double seconds = std::min(0.1, now - hands_.went);
-  hands_.went = now;
+  const double seconds = std::min(0.1, now - went_at_);
+  went_at_ = now;
   if (!going()) return;
   const double speed = (down(GLFW_KEY_LEFT_SHIFT) ? 2.0 : 0.5) * session_->head.distance() * seconds;
   const glm::dvec3 by = speed * direction();
@@ -62,8 +62,8 @@ void Window::go() {
 
 void Window::drag(const glm::dvec2& at) {
   // Radians a pixel: a window's width is some 3 of them, on a display of any scale.
-  const glm::dvec2 by = (at - hands_.cursor) / (400.0 * ImGui::GetFontSize() / 13.0);
-  hands_.cursor = at;
+  const glm::dvec2 by = (at - cursor_) / (400.0 * ImGui::GetFontSize() / 13.0);
+  cursor_ = at;
   ui_frames_ = 3;
   if (!session_ || ImGui::GetIO().WantCaptureMouse) return;
   const auto held = [&](int button) { return glfwGetMouseButton(window_, button) == GLFW_PRESS; };
@@ -88,13 +88,13 @@ void Window::scroll(double by) {
 
 void Window::click() {
   const double now = glfwGetTime();
-  const bool twice = now - hands_.clicked < 0.35;
-  hands_.clicked = twice ? 0.0 : now;
+  const bool twice = now - clicked_at_ < 0.35;
+  clicked_at_ = twice ? 0.0 : now;
   if (!twice || !session_ || ImGui::GetIO().WantCaptureMouse) return;
   glm::ivec2 window, framebuffer;
   glfwGetWindowSize(window_, &window.x, &window.y);
   glfwGetFramebufferSize(window_, &framebuffer.x, &framebuffer.y);
-  session_->focus(glm::ivec2(hands_.cursor * glm::dvec2(framebuffer) / glm::max(glm::dvec2(window), 1.0)));
+  session_->focus(glm::ivec2(cursor_ * glm::dvec2(framebuffer) / glm::max(glm::dvec2(window), 1.0)));
 }
 
 void Window::open_file(const std::string& file) {

@@ -106,13 +106,9 @@ class Window {
     std::size_t gaussians = 0;  // that the log reported last
   };
   Levels levels_;
-  bool is_measuring_ = false;  // a table of transmittance by depth
-  /// When hands did what, in s.
-  struct Hands {
-    double went = 0.0, clicked = 0.0, moved = 0.0;
-    glm::dvec2 cursor{0.0};
-  };
-  Hands hands_;
+  bool is_measuring_ = false;                                 // a table of transmittance by depth
+  double went_at_ = 0.0, clicked_at_ = 0.0, moved_at_ = 0.0;  // s: when hands did that
+  glm::dvec2 cursor_{0.0};
   /// The path that the head is taken along; it ends where somebody moves the head.
   struct Playing {
     KeyPath path;

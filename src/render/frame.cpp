@@ -92,8 +92,7 @@ void Frame::submit(std::span<const shared::View> views, const FrameSettings& set
   is_cut_ = (settings.quality > 0.0f || measures(settings.transmittance)) && !history_.goes_on(plan_);
   if (settings.quality > 0.0f) {
     if (!history_.goes_on(plan_)) tolerance_control_.forget();
-    if (!tolerance_control_.knows(views, settings) || !history_.probed_lately(plan_, workings.probe_every))
-      return start_search();
+    if (!tolerance_control_.knows(views, settings) || !history_.probed_lately(plan_)) return start_search();
     PlanRequest with = request;
     with.tolerance = tolerance_control_.tolerance();
     begin(with);

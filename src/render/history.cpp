@@ -10,6 +10,7 @@ namespace {
 
 constexpr double turn_max_degrees = 15.0;
 constexpr double move_max_of_depth = 0.1;
+constexpr int probe_every = 4;  // frames
 // Of the way to a cut: a picture that has changed by more is probed, and measured, again.
 constexpr double probe_share = 1.0 / 15.0;
 constexpr double measure_share = 1.0 / 3.0;
@@ -65,7 +66,7 @@ void FrameHistory::follow_levels(std::uint32_t gaussians) {
   last_.gaussian_count = gaussians;
 }
 
-bool FrameHistory::probed_lately(const FramePlan& now, int probe_every) {
+bool FrameHistory::probed_lately(const FramePlan& now) {
   return ++since_probed_ < probe_every && continues(probed_, now, middle_depth_, probe_share);
 }
 

@@ -34,9 +34,10 @@ class FrameHistory {
   /// Whether `now` follows the last frame without a camera cut.
   bool goes_on(const FramePlan& now) const { return continues(last_, now, middle_depth_); }
 
-  /// Whether `now` needs no probe: fewer than `probe_every` frames (Workings) ago there was one, of nearly
-  /// the same views. Counts the frames that ask.
-  bool probed_lately(const FramePlan& now, int probe_every);
+  /// Whether `now` needs no probe, of its error: one in four frames measures that, and each whose eyes have
+  /// gone a fifteenth of the way to a camera cut since the last that did, such as a turn by a degree. Counts
+  /// the frames that ask.
+  bool probed_lately(const FramePlan& now);
 
   /// Whether the frame uses what was measured, and whether it measures (FrameSettings::measure_every).
   Measuring decide(const FramePlan& now);

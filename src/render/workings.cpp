@@ -13,8 +13,6 @@ void check(const Workings& workings, const FrameSettings& settings, std::string_
         "out",
         prefix);
   }
-  if (workings.probe_every < 1)
-    fail("measuring the error of one of {} frames: expected at least one", workings.probe_every);
   const auto is_whole = [](const ViewRegion& region) { return region.is_whole(); };
   if (workings.between_pixels && !std::ranges::all_of(settings.regions, is_whole))
     fail("rays between pixels: only of whole pictures");

@@ -33,9 +33,6 @@ struct Workings {
   std::int64_t slots = 0;
   std::int64_t pairs = 0;
   std::optional<StandIn> stand_in;
-  /// With a quality, at least 1 of `probe_every` frames measures its error, and each whose eyes have gone a
-  /// fifteenth of the way to a camera cut since the last that did (history.h), such as a turn by a degree.
-  int probe_every = 4;
   /// The lists also hold splats that are seen only between the centres of pixels, for ray_blend.h. For
   /// TILES_ELLIPSE.
   bool between_pixels = false;

@@ -59,16 +59,6 @@ preview::Choices choices_of(const RenderOptions& o) {
   return choices;
 }
 
-// What is opened, and what goes for files that are dropped on the window, too.
-struct Wanted {
-  fs::path folder;  // for what is saved; empty: default_folder()
-  SceneOptions scene;
-  CameraOptions camera;
-  RigOptions rig;
-  render::FrameSettings settings;
-  render::ThresholdPolicy policy;
-};
-
 preview::Loaded load(const SceneOptions& scene, const std::vector<Camera>& cameras,
                      const render::FrameSettings& settings) {
   auto stream = open_for_frames(scene, settings);
@@ -77,56 +67,55 @@ preview::Loaded load(const SceneOptions& scene, const std::vector<Camera>& camer
 }
 
 // Cameras that come as pairs of eyes are taken one by one.
-preview::Opened open(const Wanted& wanted) {
-  const SceneOptions& scene = wanted.scene;
-  const CameraOptions& camera = wanted.camera;
+preview::Opened open(const RenderOptions& o) {
+  const SceneOptions& scene = o.scene;
   const auto saved = find_saved(scene);
-  const CameraList list = listed_cameras(scene, camera, wanted.rig, saved);
-  const auto pose = saved_camera(scene, camera, saved);
+  const CameraList list = listed_cameras(scene, o.camera, o.rig, saved);
+  const auto pose = saved_camera(scene, o.camera, saved);
+  const render::FrameSettings settings = settings_of(o.drawing);
   preview::Opened opened;
   opened.name = scene.name;
-  opened.folder = wanted.folder;
+  opened.folder = o.output.output;
   if (opened.folder.empty()) {
     opened.folder = default_folder(scene.name);
     opened.claim = [folder = opened.folder, name = scene.name] { claim_folder(folder, name); };
   }
   check_output(opened.folder / "picture");
   if (!is_built_in(scene.name)) opened.pose_file = pose_path(scene.name);
-  opened.load = [scene = scene, cameras = list.cameras, settings = wanted.settings] {
-    return load(scene, cameras, settings);
-  };
-  opened.start = [wanted, list, pose](const Model& model, preview::Choices& choices) {
-    const CameraOptions& o = wanted.camera;
-    wanted.policy.check_perspective(wanted.settings, model);
-    wanted.policy.check_model(model);
-    choices.policy = wanted.policy;
-    const CameraList all = list.listed ? list : made_up_cameras(wanted.scene, o, list.known, model);
+  opened.load = [scene, cameras = list.cameras, settings] { return load(scene, cameras, settings); };
+  opened.start = [o, list, pose, settings, policy = policy_of(o.drawing)](const Model& model,
+                                                                          preview::Choices& choices) {
+    policy.check_perspective(settings, model);
+    policy.check_model(model);
+    choices.policy = policy;
+    const CameraList all = list.listed ? list : made_up_cameras(o.scene, o.camera, list.known, model);
     const stereo::RigSettings found =
-        rig_settings(wanted.rig, list.known, near_plane_of(o, pose ? *pose : all));
+        rig_settings(o.rig, list.known, near_plane_of(o.camera, pose ? *pose : all));
     choices.rig.ipd = found.ipd;
     choices.rig.units_per_metre = found.units_per_metre;
     choices.rig.near_plane = found.near_plane;
     std::vector<Camera> cameras = all.cameras;
-    if (!o.views.empty()) {
+    if (!o.camera.views.empty()) {
+      const std::string& name = o.camera.views[0];
       const auto at =
-          std::find_if(cameras.begin(), cameras.end(), [&](const Camera& c) { return c.name == o.views[0]; });
-      if (at == cameras.end()) fail("--view {}: {} has no camera of this name", o.views[0], list.source);
+          std::find_if(cameras.begin(), cameras.end(), [&](const Camera& c) { return c.name == name; });
+      if (at == cameras.end()) fail("--view {}: {} has no camera of this name", name, list.source);
       std::rotate(cameras.begin(), at, cameras.end());
     }
     if (pose) cameras.insert(cameras.begin(), pose->cameras[0]);
-    return preview::Start{std::move(cameras), up_of(o, all.known), list.listed};
+    return preview::Start{std::move(cameras), all.known.up.value_or(default_up), list.listed};
   };
   return opened;
 }
 
 /// The same of a folder with the models of a moving scene, which is called after the folder.
-preview::Opened open_sequence(Wanted wanted, const std::vector<fs::path>& files, double fps) {
-  const std::string folder = std::exchange(wanted.scene.name, files[0].string());
-  preview::Opened opened = open(wanted);
+preview::Opened open_sequence(RenderOptions o, const std::vector<fs::path>& files) {
+  const std::string folder = std::exchange(o.scene.name, files[0].string());
+  preview::Opened opened = open(o);
   opened.name = folder;
-  opened.fps = fps;
+  opened.fps = *o.output.fps;
   for (std::size_t k = 1; k < files.size(); ++k) {
-    SceneOptions scene = wanted.scene;
+    SceneOptions scene = o.scene;
     scene.name = files[k].string();
     opened.more.emplace_back([scene] { return preview::Loaded(load_scene(scene)); });
   }
@@ -136,10 +125,7 @@ preview::Opened open_sequence(Wanted wanted, const std::vector<fs::path>& files,
 void view(const RenderOptions& o) {
   const std::vector<fs::path> sequence = sequence_of(o);
   check_view(o, !sequence.empty());
-  const fs::path folder = o.output.output;
-  const Wanted wanted{folder, o.scene, o.camera, o.rig, settings_of(o.drawing), policy_of(o.drawing)};
-  const preview::Opened opened =
-      sequence.empty() ? open(wanted) : open_sequence(wanted, sequence, *o.output.fps);
+  const preview::Opened opened = sequence.empty() ? open(o) : open_sequence(o, sequence);
   if (o.headset.xr) return view_in_headset(o, opened, choices_of(o));
   preview::WindowSettings window;
   window.size = o.camera.lens.size;
@@ -151,9 +137,13 @@ void view(const RenderOptions& o) {
                    std::move(recording), draw);
   };
   // What is saved of another model lies apart.
-  const auto open_other = [folder, metre = o.rig.units_per_metre](const std::string& file) {
-    const fs::path own = folder.empty() ? folder : folder / default_folder(file).filename();
-    return open({own, {.name = file}, {}, {.units_per_metre = metre}, {}, {}});
+  const auto open_other = [&o](const std::string& file) {
+    RenderOptions other;
+    other.scene.name = file;
+    other.rig.units_per_metre = o.rig.units_per_metre;
+    if (!o.output.output.empty())
+      other.output.output = fs::path(o.output.output) / default_folder(file).filename();
+    return open(other);
   };
   preview::run(opened, choices_of(o), window, open_other);
 }
