@@ -52,6 +52,7 @@ void measure_all(const BenchOptions& options, const BenchPlan& plan, const Bench
 
   lab::BenchEffort effort{
       .frames = plan.axes.frames, .repeats = plan.axes.repeats, .ppd = options.ppd, .peaks = {}};
+  effort.perception = plan.axes.perception;
   effort.seen = std::ranges::any_of(
       plan.axes.settings, [](const lab::BenchSettings& settings) { return settings.foveation.has_value(); });
   if (options.floors) {
@@ -105,10 +106,10 @@ void print_points(const std::vector<lab::Point>& points) {
       }
     }
     fmt::print("\n{}\n", chart);
-    print_table(
-        lab::table_of(rows, {"name", "pareto", "frame_ms", "speed", "psnr_db", "worst_psnr_db", "drop_db",
-                             "reported_db", "ssim", "flip", "seen", "popping_1_db", "popping_7_db",
-                             "found_tolerance", "gaussians", "pairs", "pairs_removed"}));
+    print_table(lab::table_of(
+        rows, {"name", "pareto", "frame_ms", "speed", "psnr_db", "worst_psnr_db", "photo_psnr_db", "drop_db",
+               "reported_db", "ssim", "flip", "seen", "popping_1_db", "popping_7_db", "found_tolerance",
+               "gaussians", "pairs", "pairs_removed"}));
     for (const std::string& other : others) fmt::print("{}\n", other);
     for (const lab::Point& point : points) {
       std::vector<lab::Row> floors;

@@ -24,6 +24,7 @@ namespace {
 constexpr std::size_t stretches_of_a_tour = 3, frames_at_rest = 15;
 constexpr double sideways_metres_a_frame = 1.5 / headset_fps;
 constexpr std::size_t sideways_frames = 16;
+constexpr int sideways_side_max = 640;  // px: what is compared is warped on the CPU
 
 bool is_along_frames(const std::string& along) { return along != "views" && along != "turn"; }
 
@@ -73,6 +74,11 @@ void check_cases(const BenchPlan& plan, const BenchOptions& options) {
   const bool levels = any([](const lab::BenchSettings& s) { return s.detail.has_value(); });
   const bool finds = any([](const lab::BenchSettings& s) { return s.finds_tolerance(); });
   const bool foveated = any([](const lab::BenchSettings& s) { return s.foveation.has_value(); });
+  const bool compares = std::ranges::any_of(
+      plan.cases, [&](const CasePlan& which) { return has_photos(plan.scenes[which.scene], which); });
+  if (!options.photos.empty() && !compares)
+    fail("--photos {}: photos are of single views in their own size: leave --size and pairs of eyes out",
+         options.photos);
   for (const CasePlan& which : plan.cases) {
     const BenchScene& scene = plan.scenes[which.scene];
     const CameraList& list = scene.list;
@@ -199,16 +205,16 @@ void MeasuredScene::open_views(const CasePlan& which, const CameraList& list, la
 std::vector<lab::Stretch> MeasuredScene::stretches_of(const CasePlan& which, const CameraList& list,
                                                       const Lens& lens, const RigOptions& rig) {
   const double near_plane = near_plane_of(options_.camera, list), metre = metre_of(options_, list.known);
-  const auto frames_of = [&](const std::vector<Camera>& cameras) {
+  const auto frames_of = [&](const std::vector<Camera>& cameras, const Lens& of) {
     const CameraList path{
         .cameras = cameras, .path = true, .known = {.units_per_metre = metre, .ipd = list.known.ipd}};
     std::vector<std::vector<shared::View>> frames;
-    for (const Shot& shot : make_shots({}, lens, rig, path, near_plane, some_model().axes))
+    for (const Shot& shot : make_shots({}, of, rig, path, near_plane, some_model().axes))
       frames.push_back(views_of(shot));
     return frames;
   };
-  const auto moving = [&](const std::vector<Camera>& cameras) {
-    lab::Stretch stretch{frames_of(cameras), cameras.size()};
+  const auto moving = [&](const std::vector<Camera>& cameras, const Lens& of) {
+    lab::Stretch stretch{frames_of(cameras, of), cameras.size()};
     stretch.frames.insert(stretch.frames.end(), frames_at_rest, std::vector(stretch.frames.back()));
     return stretch;
   };
@@ -216,17 +222,21 @@ std::vector<lab::Stretch> MeasuredScene::stretches_of(const CasePlan& which, con
                make_shots(all_views, lens, no_rig, list, near_plane, some_model().axes), near_plane);
   if (which.along == along_path) {
     const CameraList path = go_along_path(options_.camera, headset_fps, true, list);
-    return {moving(path.cameras)};
+    return {moving(path.cameras, lens)};
   }
   if (which.along == along_tour)
-    return {moving(go_on_tour(scene_.options, options_.camera, options_.rig, headset_fps, list).cameras)};
+    return {
+        moving(go_on_tour(scene_.options, options_.camera, options_.rig, headset_fps, list).cameras, lens)};
   if (which.along == "sideways") {
-    std::vector<Camera> cameras = {chosen_cameras(options_.camera.views, {}, list).front()};
+    std::vector<Camera> cameras = {sized(lens, chosen_cameras(options_.camera.views, {}, list).front())};
+    const glm::dvec2 px(cameras.front().width, cameras.front().height);
+    const double smaller = std::min(1.0, sideways_side_max / std::max(px.x, px.y));
+    const Lens small{.size = glm::ivec2(glm::max(glm::round(smaller * px), 1.0))};
     while (cameras.size() < sideways_frames) {
       cameras.push_back(cameras.back());
       cameras.back().position += sideways_metres_a_frame * metre * cameras.back().rotation[0];
     }
-    return {moving(cameras)};
+    return {moving(cameras, small)};
   }
   const bool still = which.along == "still";
   const auto motion =
@@ -236,7 +246,7 @@ std::vector<lab::Stretch> MeasuredScene::stretches_of(const CasePlan& which, con
   std::vector<lab::Stretch> stretches;
   for (const std::size_t start : lab::stretch_starts(tour.size(), length, stretches_of_a_tour)) {
     const auto first = tour.begin() + static_cast<std::ptrdiff_t>(start);
-    stretches.push_back(moving({first, first + static_cast<std::ptrdiff_t>(still ? 1 : length)}));
+    stretches.push_back(moving({first, first + static_cast<std::ptrdiff_t>(still ? 1 : length)}, lens));
     if (!still) continue;
     stretches.back().frames.resize(length, std::vector(stretches.back().frames.front()));
     stretches.back().moving = length;

@@ -11,6 +11,7 @@
 #include <fstream>
 
 #include "app/command.h"
+#include "app/option_checks.h"
 
 namespace binosplat::app {
 

@@ -60,8 +60,8 @@ class Block {
     return number;
   }
 
-  bool yes(const std::string& key) const {
-    const nlohmann::json value = object_.contains(key) ? object_.at(key) : nlohmann::json(false);
+  bool yes(const std::string& key, bool otherwise) const {
+    const nlohmann::json value = object_.contains(key) ? object_.at(key) : nlohmann::json(otherwise);
     if (!value.is_boolean()) fail("{}: '{}' {}: expected true or false", place_, key, value.dump());
     return value.get<bool>();
   }
@@ -206,14 +206,15 @@ std::vector<std::string> along_choices() {
 
 Axes parse_axes(const std::string& name, const std::string& text) {
   const nlohmann::json root = parse_json(name, text);
-  const Block top(
-      name, root,
-      {"views", "training", "frames", "repeats", "contributions", "eyes", "sizes", "along", "settings"});
+  const Block top(name, root,
+                  {"views", "training", "frames", "repeats", "perception", "contributions", "eyes", "sizes",
+                   "along", "settings"});
   Axes axes;
   axes.name = name;
   axes.views = top.one("views", axes.views, 1, 100000);
   axes.training = top.one("training", axes.training, 0, 100000);
-  axes.contributions = top.yes("contributions");
+  axes.perception = top.yes("perception", axes.perception);
+  axes.contributions = top.yes("contributions", axes.contributions);
   axes.frames = top.one("frames", axes.frames, 1, 100000);
   axes.repeats = top.one("repeats", axes.repeats, 1, 1000);
   axes.eyes.clear();
@@ -256,8 +257,8 @@ nlohmann::ordered_json to_json(const Axes& axes) {
   std::vector<Row> settings;
   for (const BenchSettings& s : axes.settings) settings.push_back(named(s));
   return object("views", axes.views, "training", axes.training, "frames", axes.frames, "repeats",
-                axes.repeats, "contributions", axes.contributions, "eyes", axes.eyes, "sizes", axes.sizes,
-                "along", axes.along, "settings", settings);
+                axes.repeats, "perception", axes.perception, "contributions", axes.contributions, "eyes",
+                axes.eyes, "sizes", axes.sizes, "along", axes.along, "settings", settings);
 }
 
 }  // namespace binosplat::lab

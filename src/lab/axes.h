@@ -21,6 +21,7 @@ struct Axes {
   int training = 0;             // above 0: the views are of those held out, and so many others train
   int frames = 30;              // timed, a view and repeat; of a motion's stretch those that move
   int repeats = 3;              // whose spread is the noise
+  bool perception = true;       // SSIM and FLIP, too, which take longest on a GPU
   bool contributions = false;   // what single Gaussians contribute, too (contributions.h)
   std::vector<int> eyes = {1};  // 1: the camera itself; 2: a pair around it
   std::vector<std::string> sizes = {"own"};    // own: the camera's; WxH px; preview or headset (stereo/rig.h)

@@ -6,6 +6,7 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "gl/context.h"
@@ -58,13 +59,14 @@ class Bench {
   const std::vector<Exact>& exact(const BenchSettings& settings);
   ExactFrames& exact_frames(const BenchSettings& settings);
   const DepthTable& depth_table(const std::optional<float>& far);
-  Calibrator& calibrator(bool training, bool drop);
+  Calibrator& calibrator(bool training, bool drop, const BenchSettings& settings);
   BenchDrawer drawer(const BenchSettings& settings);
   void find_tolerance(BenchSettings& settings, Row& row);
   std::string verify(const BenchSettings& settings);
 
   void time_views(BenchDrawer& drawer, Row& row);
   void judge_views(const BenchSettings& settings, BenchDrawer& drawer, Point& point);
+  void judge_by_sums(const BenchSettings& settings, BenchDrawer& drawer, Point& point);
   Row compare(const BenchView& view, const Exact& exact, const std::vector<Picture>& drawn) const;
   void measure_frames(const BenchSettings& settings, BenchDrawer& drawer, Point& point);
   void time_frames(BenchDrawer& drawer, Point& point);
@@ -80,7 +82,8 @@ class Bench {
   std::unique_ptr<ExactFrames> exact_frames_;
   Seen exact_frames_seen_ = {-1, -1};
   std::map<std::optional<float>, DepthTable> tables_;
-  std::map<std::pair<bool, bool>, std::unique_ptr<Calibrator>> calibrators_;  // by calibrator()'s two
+  std::map<std::tuple<bool, bool, Seen>, std::unique_ptr<Calibrator>>
+      calibrators_;  // by calibrator()'s three
 };
 
 }  // namespace binosplat::lab

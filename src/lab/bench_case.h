@@ -65,12 +65,13 @@ struct BenchCase {
 };
 
 struct BenchEffort {
-  int frames = 30;                                   // timed, a view and repeat
-  int repeats = 3;                                   // each a pass over all; their spread is the noise
-  double ppd = measure::flip_pixels_per_degree;      // for FLIP
-  std::optional<Peaks> peaks = {};                   // of the GPU: whole pictures get floors
-  bool seen = false;                                 // what eyes see that look along their axes
-  bool popping = false;                              // of the first frames of the first stretch
+  int frames = 30;                               // timed, a view and repeat
+  int repeats = 3;                               // each a pass over all; their spread is the noise
+  double ppd = measure::flip_pixels_per_degree;  // for FLIP
+  std::optional<Peaks> peaks = {};               // of the GPU: whole pictures get floors
+  bool perception = true;                        // SSIM, FLIP and what pixels blend; else PSNR alone, quickly
+  bool seen = false;                             // what eyes see that look along their axes
+  bool popping = false;                          // of the first frames of the first stretch
   std::int64_t exact_bytes = std::int64_t{8} << 30;  // of exact frames that stay on the GPU
 };
 

@@ -15,6 +15,8 @@ class BenchDrawer {
   BenchDrawer(FollowingModel model, const BenchSettings& settings)
       : model_(std::move(model)), frame_(model_.model), settings_(settings) {}
 
+  /// Whether levels follow what is drawn.
+  bool follows() const { return bool(model_.bring); }
   /// To the levels that the views need.
   LevelsBrought bring(std::span<const shared::View> eyes) {
     return model_.bring ? model_.bring(eyes) : LevelsBrought{model_.model->size().gaussians};

@@ -50,7 +50,7 @@ std::vector<glm::dvec2> field_of(const Camera& camera, const glm::ivec2& rays) {
 
 /// The colours of rays as a picture, a pixel a ray; black where `shown` leaves one out.
 Image rays_picture(const std::vector<glm::vec3>& colours, const std::vector<std::size_t>& shown,
-                 const glm::ivec2& rays) {
+                   const glm::ivec2& rays) {
   Image image(rays.x, rays.y, 3);
   for (std::size_t k = 0; k < shown.size(); ++k) {
     for (int c = 0; c < 3; ++c)
@@ -111,15 +111,18 @@ void Bench::measure_turns(const BenchSettings& settings, Point& point) {
       const auto after = measure::colours_at(frame, head, there, drawn, what_.near_plane);
       Image difference;
       Row& row = point.details.emplace_back(row_of("of", "turn", "about", axis.name, "degrees", degrees));
-      row.update(
-          compare_turned(rays_picture(before, shown, rays), rays_picture(after, shown, rays), shown, difference));
+      row.update(compare_turned(rays_picture(before, shown, rays), rays_picture(after, shown, rays), shown,
+                                difference));
       if (degrees != told_degrees) continue;
       told.push_back(row);
       if (&axis == head_axes.data() && !shown.empty()) point.picture = std::move(difference);
     }
   }
-  for (const char* name : {"psnr_db", "flip", "rays_off", "rays"})
-    put(point.row, name, mean_number(told, name));
+  double squared_error = 0.0;
+  for (const Row& row : told)
+    squared_error += std::pow(10.0, -0.1 * row.value("psnr_db", equal_db)) / double(told.size());
+  put(point.row, "psnr_db", std::min(equal_db, -10.0 * std::log10(squared_error)));
+  for (const char* name : {"flip", "rays_off", "rays"}) put(point.row, name, mean_number(told, name));
   const auto psnr = [](const Row& row) { return row.value("psnr_db", equal_db); };
   const Row& worst = *std::ranges::min_element(told, {}, psnr);
   put(point.row, "worst_psnr_db", number(worst, "psnr_db"), "worst_view", text(worst, "about"));
