@@ -171,7 +171,7 @@ lab::Profile record(const ProfileOptions& o) {
     Progress progress("profiling", all.run.frames.size(), "frames");
     all.profile.recording = drawer.record([&](std::size_t done) { progress.update(done); });
   }
-  all.profile.cpu_ms = drawer.cpu_ms();
+  all.profile.cpu = drawer.cpu();
   const lab::ProfileSummary summary = lab::summary_of(all.profile);
   for (const std::size_t n : summary.worst) all.profile.pictures.emplace_back(drawer.picture(n));
   if (!all.stream)

@@ -347,11 +347,13 @@ void Bench::time_views(BenchDrawer& drawer, Row& row) {
   const bool software = context_.software(), follows = drawer.follows();
   bool settled = true;
   render::FrameReport last;
-  std::vector<double> repeats, cpu_repeats, all_ms, submit_ms;  // repeats: means over the views
+  std::vector<double> repeats, all_ms, submit_ms;  // repeats: means over the views
+  std::vector<CpuUse> cpu_repeats;
   std::vector<Typical> turns;
   for (int repeat = 0; repeat < effort_.repeats; ++repeat) {
     std::vector<Typical> of_views;
-    double cpu = 0.0;
+    CpuUse cpu;
+    double drawn = 0.0;
     for (const BenchView& view : what_.views) {
       drawer.bring(view.eyes);
       // The clock of a GPU that waited, for pictures to be compared or levels to be read, is down.
@@ -361,9 +363,10 @@ void Bench::time_views(BenchDrawer& drawer, Row& row) {
       if (repeat == 0) settled = warm_up(drawer, view, software) && settled;
       for (int n = 0; repeat > 0 && n < render::settling_frames; ++n) drawer.draw(view.eyes);
       Reports frames;
-      const double cpu_before = process_ms();
+      const CpuUse before = CpuUse::now();
       for (int n = 0; n < effort_.frames; ++n) frames.push_back(last = drawer.draw(view.eyes));
-      cpu += (process_ms() - cpu_before) / static_cast<double>(frames.size() * what_.views.size());
+      cpu += CpuUse::now().since(before);
+      drawn += static_cast<double>(frames.size());
       of_views.push_back(typical_of(frames));
       for (const render::FrameReport& report : frames) {
         all_ms.push_back(report.total_ms);
@@ -371,11 +374,12 @@ void Bench::time_views(BenchDrawer& drawer, Row& row) {
       }
     }
     repeats.push_back(mean_of(of_views).frame_ms);
-    cpu_repeats.push_back(cpu);
+    if (software) cpu_repeats.push_back({cpu.used / drawn, cpu.waited / drawn});
     turns.insert(turns.end(), of_views.begin(), of_views.end());
   }
   put(row, "settled", settled, "gpu_bytes", last.gpu_bytes, "submit_ms", quantile(submit_ms, 0.5));
-  put_times(repeats, software ? cpu_repeats : std::vector<double>(), all_ms, row);
+  put_times(repeats, all_ms, row);
+  put_cpu_times(cpu_repeats, row);
   for (const gl::StageTime& stage : mean_of(turns).stages) put(row, stage_column(stage.name), stage.ms);
 }
 
@@ -457,6 +461,8 @@ Point Bench::measure(BenchSettings settings) {
     put(point.row, "problem", problem);
     return point;
   }
+  // A head that moves is drawn without depth, unless that is what is compared.
+  if (!what_.stretches.empty() && !effort_.popping) settings.depth = Depth::none;
   BenchDrawer drawer = this->drawer(settings);
   if (!what_.stretches.empty()) {
     measure_frames(settings, drawer, point);

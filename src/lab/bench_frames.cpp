@@ -151,7 +151,8 @@ void Bench::measure_frames(const BenchSettings& settings, BenchDrawer& drawer, P
 // In passes of their own, which read no picture back.
 void Bench::time_frames(BenchDrawer& drawer, Point& point) {
   std::vector<std::vector<double>> ms(point.details.size());
-  std::vector<double> repeats, cpu_repeats, of_frames;
+  std::vector<double> repeats, of_frames;
+  std::vector<CpuUse> cpu_repeats;
   std::vector<Typical> turns;
   std::size_t differs = 0;
   const Stretch& first = what_.stretches.front();
@@ -159,32 +160,34 @@ void Bench::time_frames(BenchDrawer& drawer, Point& point) {
   for (int repeat = 0; repeat < effort_.repeats; ++repeat) {
     std::size_t at = 0;
     std::vector<double> moving;
-    double cpu = 0.0;
+    CpuUse cpu;
     for (const Stretch& stretch : what_.stretches) {
       drawer.frame().start_over();
       Reports reports;
       for (std::size_t n = 0; n < stretch.frames.size(); ++n, ++at) {
         drawer.bring(stretch.frames[n]);
-        const double cpu_before = process_ms();
+        const CpuUse before = CpuUse::now();
         const render::FrameReport report = drawer.draw(stretch.frames[n]);
         ms[at].push_back(report.total_ms);
         differs += static_cast<double>(report.pairs) != number(point.details[at], "pairs");
         if (n >= stretch.moving) continue;
-        cpu += process_ms() - cpu_before;
+        cpu += CpuUse::now().since(before);
         moving.push_back(report.total_ms);
         reports.push_back(report);
       }
       turns.push_back(typical_of(reports));
     }
     repeats.push_back(mean(moving));
-    cpu_repeats.push_back(cpu / static_cast<double>(moving.size()));
+    const auto drawn = static_cast<double>(moving.size());
+    if (context_.software()) cpu_repeats.push_back({cpu.used / drawn, cpu.waited / drawn});
   }
   for (std::size_t k = 0; k < ms.size(); ++k) {
     const double median = quantile(ms[k], 0.5);
     put(point.details[k], "frame_ms", median);
     if (is_moving(point.details[k])) of_frames.push_back(median);
   }
-  put_times(repeats, context_.software() ? cpu_repeats : std::vector<double>(), of_frames, point.row);
+  put_times(repeats, of_frames, point.row);
+  put_cpu_times(cpu_repeats, point.row);
   for (const gl::StageTime& stage : mean_of(turns).stages) put(point.row, stage_column(stage.name), stage.ms);
   if (differs > 0) log_warning("{} frames timed are not those that were judged", differs);
 }

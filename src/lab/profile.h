@@ -10,6 +10,7 @@
 
 #include "lab/page.h"
 #include "lab/results.h"
+#include "lab/times.h"
 #include "render/recorder.h"
 
 namespace binosplat::lab {
@@ -33,7 +34,7 @@ struct Profile {
   render::Recording recording;
   std::vector<std::optional<Image>> pictures;  // of the left eye in the worst frames, in their order
   std::optional<Saving> saving;
-  std::vector<double> cpu_ms;  // where the CPU draws: CPU time of all threads, by frame; else empty
+  std::vector<CpuUse> cpu;  // where the CPU draws: what each frame took of it, all threads; else empty
 };
 
 struct Quantiles {

@@ -90,11 +90,11 @@ render::Recording ProfileDrawer::record(const std::function<void(std::size_t)>& 
       ticks += 1.0;
     }
     frame.begin = Clock::now();
-    const double cpu_before = process_ms();
+    const CpuUse before = CpuUse::now();
     frame.levels = follow_levels(frame.views, drawn_ms);
     frame.report = draw(frame.views, settings_now());
     frame.end = Clock::now();
-    if (context_.software()) cpu_ms_.push_back(process_ms() - cpu_before);
+    if (context_.software()) cpu_.push_back(CpuUse::now().since(before));
     frame.gaussians = stream_ != nullptr ? stream_->gaussians() : frame_.frame().model()->size().gaussians;
     drawn_ms = frame.report.total_ms;
     recorder.add(std::move(frame));

@@ -35,8 +35,8 @@ class ProfileDrawer {
   /// still being drawn when the next one is due lets that one, and all those due meanwhile, begin later.
   render::Recording record(const std::function<void(std::size_t done)>& progress);
 
-  /// Where the CPU draws: what each recorded frame took of it, all threads together, in ms; else empty.
-  const std::vector<double>& cpu_ms() const { return cpu_ms_; }
+  /// Where the CPU draws: what each recorded frame took of it, all threads together; else empty.
+  const std::vector<CpuUse>& cpu() const { return cpu_; }
 
   /// The left eye's picture of a frame, small, as the levels are now.
   Image picture(std::size_t frame);
@@ -54,7 +54,7 @@ class ProfileDrawer {
   gl::Context& context_;
   stereo::FoveatedFrame frame_;
   std::shared_ptr<const gl::GpuClock> clock_;
-  std::vector<double> cpu_ms_;
+  std::vector<CpuUse> cpu_;
 };
 
 }  // namespace binosplat::lab

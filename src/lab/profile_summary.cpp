@@ -140,9 +140,11 @@ Point profile_point(const Profile& profile, const ProfileSummary& summary) {
   for (const gl::StageTime& stage : summary.stages) put(row, stage_column(stage.name), stage.ms);
   if (gpu.front() > 0.0) row["repeats_ms"] = by_stretch(gpu);
   row["wall_repeats_ms"] = by_stretch(wall);
-  if (!profile.cpu_ms.empty()) {
-    put(row, "cpu_ms", mean(profile.cpu_ms));
-    row["cpu_repeats_ms"] = by_stretch(profile.cpu_ms);
+  if (!profile.cpu.empty()) {
+    std::vector<double> used;
+    for (const CpuUse& frame : profile.cpu) used.push_back(frame.used);
+    put_cpu_times(profile.cpu, row);
+    row["cpu_repeats_ms"] = by_stretch(used);
   }
   put(row, "bound", bound_of(profile, summary), "clock", clock_of(profile, summary), "try",
       advice_of(profile, summary));

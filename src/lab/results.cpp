@@ -69,6 +69,7 @@ constexpr Column columns[] = {
     {"wall_p99_ms", "wall p99 ms"},
     {"wall_most_ms", "wall most ms"},
     {"cpu_ms", "CPU ms"},
+    {"waited", "waited for the CPU %"},
     {"submit_ms", "submit ms"},
     {"missed", "missed"},
     {"fps", "frames a second"},

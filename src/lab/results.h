@@ -122,8 +122,9 @@ struct RunComparison {
 /// Points are matched by what tells them from others. Each repeat of a time is set beside the same repeat of
 /// the older run: a time has changed when it differs by more than 2 %, and by more than these pairs scatter:
 /// then one pair of equal runs in a hundred finds a change (Student's t of their scatter, over all points
-/// together, or of the point's own where that is larger). Where the CPU draws, its time counts, which other
-/// programs on the machine hardly change. PSNR has changed when it differs by 0.01 dB; pairs by 0.1 %.
+/// together, or of the point's own where that is larger). Where the CPU draws, its time counts, and
+/// must differ by more than the share for which threads waited while other programs had it. PSNR has changed
+/// when it differs by 0.01 dB; pairs by 0.1 %.
 RunComparison compare_runs(const std::vector<Row>& before, const std::vector<Row>& now);
 
 }  // namespace binosplat::lab

@@ -1,7 +1,8 @@
 #include "lab/times.h"
 
 #include <algorithm>
-#include <ctime>
+#include <filesystem>
+#include <fstream>
 
 #include "base/statistics.h"
 
@@ -53,19 +54,34 @@ Typical mean_of(std::span<const Typical> all) {
   return result;
 }
 
-void put_times(const std::vector<double>& repeats, const std::vector<double>& cpu_repeats,
-               const std::vector<double>& all_ms, Row& row) {
+void put_times(const std::vector<double>& repeats, const std::vector<double>& all_ms, Row& row) {
   const auto [least, most] = std::ranges::minmax(repeats);
   put(row, "frame_ms", mean(repeats), "p99_ms", quantile(all_ms, 0.99), "most_ms", quantile(all_ms, 1.0),
       "frames", all_ms.size(), "repeats_ms", repeats);
   if (repeats.size() > 1) put(row, "noise_ms", (most - least) / 2);
-  if (!cpu_repeats.empty()) put(row, "cpu_ms", mean(cpu_repeats), "cpu_repeats_ms", cpu_repeats);
 }
 
-double process_ms() {
-  timespec now{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-  return 1e3 * static_cast<double>(now.tv_sec) + 1e-6 * static_cast<double>(now.tv_nsec);
+void put_cpu_times(const std::vector<CpuUse>& repeats, Row& row) {
+  if (repeats.empty()) return;
+  std::vector<double> used;
+  CpuUse all;
+  for (const CpuUse& repeat : repeats) {
+    used.push_back(repeat.used);
+    all += repeat;
+  }
+  put(row, "cpu_ms", mean(used), "cpu_repeats_ms", used, "waited",
+      100.0 * all.waited / (all.used + all.waited));
+}
+
+CpuUse CpuUse::now() {
+  CpuUse use;
+  std::error_code ignored;
+  for (const auto& task : std::filesystem::directory_iterator("/proc/self/task", ignored)) {
+    std::ifstream in(task.path() / "schedstat");
+    double used_ns = 0.0, waited_ns = 0.0;
+    if (in >> used_ns >> waited_ns) use += {1e-6 * used_ns, 1e-6 * waited_ns};
+  }
+  return use;
 }
 
 }  // namespace binosplat::lab

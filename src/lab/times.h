@@ -26,13 +26,20 @@ Typical typical_of(const Reports& frames);
 /// The mean; the stages are the first one's.
 Typical mean_of(std::span<const Typical> all);
 
-/// Puts what repeats of a time come to, their spread, and what of all frames takes longest. Where the CPU
-/// draws, `cpu_repeats` is its time, of all threads; else empty.
-void put_times(const std::vector<double>& repeats, const std::vector<double>& cpu_repeats,
-               const std::vector<double>& all_ms, Row& row);
+/// What the threads of this process had of the CPU, and how long they were ready while others had it, in ms.
+struct CpuUse {
+  double used = 0.0, waited = 0.0;
 
-/// CPU time of this process, of all its threads, in ms.
-double process_ms();
+  static CpuUse now();
+  CpuUse since(const CpuUse& before) const { return {used - before.used, waited - before.waited}; }
+  void operator+=(const CpuUse& other) { used += other.used, waited += other.waited; }
+};
+
+/// Puts what repeats of a time come to, their spread, and what of all frames takes longest.
+void put_times(const std::vector<double>& repeats, const std::vector<double>& all_ms, Row& row);
+
+/// The same of the CPU, where it draws: what each repeat used and waited a frame. None: it does not draw.
+void put_cpu_times(const std::vector<CpuUse>& repeats, Row& row);
 
 /// Draws for so long, a second or a little less, after which the clock of a GPU that waited is up again. A
 /// software renderer has none.

@@ -86,6 +86,8 @@ TEST(RunComparison, WhereTheCpuDrawsItsTimeCounts) {
   EXPECT_EQ(compare_runs(before, now).lines.size(), 1u);
   for (Row& row : now) slow_down(row, "cpu_repeats_ms", 1.6);
   EXPECT_EQ(compare_runs(before, now).lines.size(), 9u) << "planted: it truly became slower";
+  for (Row& row : now) row["waited"] = 65.0;
+  EXPECT_EQ(compare_runs(before, now).lines.size(), 1u) << "other programs had the CPU for longer than that";
 }
 
 TEST(RunComparison, KnowsNoNoiseOfASingleRepeat) {

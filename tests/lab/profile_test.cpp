@@ -178,8 +178,9 @@ TEST(Profile, ARowSaysWhatTheFramesComeTo) {
   EXPECT_EQ(row["repeats_ms"], std::vector<double>(10, 5.0)) << "medians of ten stretches";
   EXPECT_EQ(row["wall_repeats_ms"].size(), 10u);
   EXPECT_FALSE(row.contains("cpu_repeats_ms"));
-  profile.cpu_ms.assign(60, 9.0);
+  profile.cpu.assign(60, {9.0, 1.0});
   EXPECT_EQ(profile_point(profile, summary_of(profile)).row["cpu_repeats_ms"], std::vector<double>(10, 9.0));
+  EXPECT_NEAR(number(profile_point(profile, summary_of(profile)).row, "waited"), 10.0, 1e-9);
   ASSERT_EQ(point.details.size(), 10u);
   EXPECT_EQ(number(point.details[0], "frame"), 5);
   EXPECT_NE(text(point.details[0], "reason").find("program compiled"), std::string::npos);
