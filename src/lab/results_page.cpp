@@ -30,9 +30,12 @@ struct ChartPoints {
   std::vector<const Point*> others = {};  // problems, and what is yet to be measured
   const Point* exact = nullptr;
 
-  std::vector<Row> rows() const {
+  /// Of the points that have this column.
+  std::vector<Row> rows(const std::string& column) const {
     std::vector<Row> all;
-    for (const Point* point : measured) all.push_back(point->row);
+    for (const Point* point : measured) {
+      if (point->row.contains(column)) all.push_back(point->row);
+    }
     return all;
   }
   bool has(const std::string& column) const {
@@ -61,7 +64,7 @@ std::vector<ChartPoints> charts_of(const std::vector<Point>& points) {
       found = charts.insert(found, {title, fmt::format("chart-{}", charts.size() + 1)});
     (point.measured() ? found->measured : found->others).push_back(&point);
     const std::string family = text(point.row, "family");
-    if (std::ranges::find(found->families, family) == found->families.end())
+    if (point.row.contains("th") && std::ranges::find(found->families, family) == found->families.end())
       found->families.push_back(family);
     if (found->exact == nullptr && &point == exact_of(points, point)) found->exact = &point;
   }
@@ -72,13 +75,15 @@ std::vector<ChartPoints> charts_of(const std::vector<Point>& points) {
 
 std::string sentence_of(const ChartPoints& chart) {
   if (chart.measured.empty()) return "Nothing was measured here yet.";
+  if (!chart.has("frame_ms")) return "How much the colours along the same rays change when the head turns.";
+  const std::size_t timed = chart.rows("frame_ms").size();
   const auto good = std::ranges::find_if(chart.measured,
                                          [](const Point* p) { return number(p->row, "psnr_db") >= good_db; });
   if (good == chart.measured.end())
-    return fmt::format("Of {} settings none comes to {} dB against exact.", chart.measured.size(), good_db);
-  std::string sentence = fmt::format(
-      "Of {} settings, “{}” is the quickest with {} dB or more against exact: {:.4g} ms a frame",
-      chart.measured.size(), text((*good)->row, "name"), good_db, number((*good)->row, "frame_ms"));
+    return fmt::format("Of {} settings none comes to {} dB against exact.", timed, good_db);
+  std::string sentence =
+      fmt::format("Of {} settings, “{}” is the quickest with {} dB or more against exact: {:.4g} ms a frame",
+                  timed, text((*good)->row, "name"), good_db, number((*good)->row, "frame_ms"));
   if (chart.exact != nullptr && chart.exact != *good)
     sentence += fmt::format(", {:.2f} times as fast as the exact picture ({:.4g} ms)",
                             number((*good)->row, "speed"), number(chart.exact->row, "frame_ms"));
@@ -111,7 +116,7 @@ Section accuracy(const ChartPoints& chart) {
   drawn.line = false;
   drawn.front = true;
   drawn.spread = "noise ms";
-  return plot(chart, "accuracy", "speed against accuracy", sentence_of(chart), chart.rows(),
+  return plot(chart, "accuracy", "speed against accuracy", sentence_of(chart), chart.rows("frame_ms"),
               {"name", "family", "pareto", "frame_ms", "noise_ms", "psnr_db"}, drawn);
 }
 
@@ -180,7 +185,7 @@ Section pictures(const ChartPoints& chart) {
 
 /// All numbers, but what the heading says.
 Section all_numbers(const ChartPoints& chart) {
-  const std::vector<Row> rows = chart.rows();
+  const std::vector<Row> rows = chart.rows("name");
   std::vector<std::string> columns;
   for (const std::string& column : columns_of(rows)) {
     const bool told =
@@ -207,7 +212,7 @@ Section floors(const ChartPoints& chart) {
 
 void add_seen(const ChartPoints& chart, std::vector<Section>& sections) {
   if (!chart.has("seen")) return;
-  std::vector<Row> rows = chart.rows();
+  std::vector<Row> rows = chart.rows("seen");
   double least = INFINITY;
   std::string sentence =
       "Against the exact picture, for eyes that look along their axes, by the contrast that Geisler and "
@@ -258,7 +263,11 @@ void add_frames(const ChartPoints& chart, std::vector<Section>& sections) {
         {"times", "time", "GPU time of a frame, the median of the repeats.", {"frame ms"}, "GPU time, ms"}}) {
     drawn.y = y;
     drawn.title = axis;
-    sections.push_back(plot(chart, id, title, sentence, rows, columns, drawn));
+    std::vector<Row> shown = rows;  // exact frames are at 100 dB, and would hide how the others differ
+    const std::string exact = chart.exact == nullptr ? "" : text(chart.exact->row, "name");
+    if (std::string_view(id) == "quality" && some.size() > 1)
+      std::erase_if(shown, [&](const Row& row) { return text(row, "name") == exact; });
+    sections.push_back(plot(chart, id, title, sentence, shown, columns, drawn));
   }
 }
 
@@ -289,7 +298,7 @@ void add_levels(const ChartPoints& chart, std::vector<Section>& sections) {
       plot(chart, "levels", "what levels of detail lose",
            "Against the finest levels: true, and as the levels' errors predict it of the eye that "
            "loses more.",
-           chart.rows(), {"name", "gaussians", "psnr_db", "reported_db", "flip", "frame_ms"},
+           chart.rows("gaussians"), {"name", "gaussians", "psnr_db", "reported_db", "flip", "frame_ms"},
            Chart{.x = "Gaussians", .y = {"PSNR dB", "reported dB"}, .label = "setting"}));
 }
 
@@ -298,7 +307,7 @@ void add_growth(const std::vector<ChartPoints>& charts, std::vector<Section>& se
   std::vector<Row> rows;
   for (const ChartPoints& chart : charts) {
     if (!chart.has("detail")) continue;
-    for (const Row& row : chart.rows()) rows.push_back(row);
+    for (const Row& row : chart.rows("frame_ms")) rows.push_back(row);
   }
   std::set<std::string> scenes;
   for (const Row& row : rows) scenes.insert(text(row, "scene"));
@@ -412,7 +421,7 @@ Page results_page(const Results& results) {
     if (chart.title.starts_with(means_begin)) {
       sections.push_back(
           {chart.id, chart.title, "Speeds are geometric means; all else arithmetic ones.",
-           table_of(chart.rows(), {"name", "speed", "psnr_db", "drop_db", "pairs_removed", "flip"})});
+           table_of(chart.rows("name"), {"name", "speed", "psnr_db", "drop_db", "pairs_removed", "flip"})});
       continue;
     }
     if (chart.has("frame_ms")) sections.push_back(accuracy(chart));
