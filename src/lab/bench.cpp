@@ -246,9 +246,10 @@ Calibrator& Bench::calibrator(bool training, bool drop, const BenchSettings& set
 
 void Bench::find_tolerance(BenchSettings& settings, Row& row) {
   settings.tolerance = static_cast<float>(render::threshold_rules[settings.th].careful_tolerance);
+  const render::FrameSettings& whole = settings;
   const CalibrationEntry found =
       calibrator(settings.found_on_training, settings.max_drop.has_value(), settings)
-          .find(settings, settings.max_drop ? *settings.max_drop : *settings.min_psnr);
+          .find(whole, settings.max_drop ? *settings.max_drop : *settings.min_psnr);
   settings.tolerance = static_cast<float>(found.tolerance);
   put(row, "found_tolerance", found.tolerance, "found_db", found.reached_db);
 }

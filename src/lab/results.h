@@ -61,7 +61,7 @@ std::vector<std::string> columns_of(std::span<const Row> rows);
 std::vector<std::string> all_columns();
 
 /// Some columns of rows for readers, under their titles; those that no row has are left out.
-Table table_of(std::span<const Row> rows, const std::vector<std::string>& columns);
+Table table_of(std::span<const Row> rows, const std::vector<std::string>& wanted);
 
 /// A line a row, a column a name.
 std::string csv(std::span<const Row> rows);

@@ -189,7 +189,7 @@ Section all_numbers(const ChartPoints& chart) {
   std::vector<std::string> columns;
   for (const std::string& column : columns_of(rows)) {
     const bool told =
-        identity_of(row_of(column, true)).size() > 0 || column == "family" || column == "device";
+        !identity_of(row_of(column, true)).empty() || column == "family" || column == "device";
     if (!told || column == "name") columns.push_back(column);
   }
   const auto unsettled = std::ranges::count_if(
