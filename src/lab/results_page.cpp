@@ -188,8 +188,7 @@ Section all_numbers(const ChartPoints& chart) {
   const std::vector<Row> rows = chart.rows("name");
   std::vector<std::string> columns;
   for (const std::string& column : columns_of(rows)) {
-    const bool told =
-        !identity_of(row_of(column, true)).empty() || column == "family" || column == "device";
+    const bool told = !identity_of(row_of(column, true)).empty() || column == "family" || column == "device";
     if (!told || column == "name") columns.push_back(column);
   }
   const auto unsettled = std::ranges::count_if(
