@@ -53,7 +53,7 @@ void add_calibrated(const std::string& file, lab::Axes& axes) {
 std::vector<std::string> motions_of(const std::vector<std::string>& texts) {
   std::vector<std::string> choices = lab::along_choices();
   std::erase_if(choices, [](const std::string& name) { return name == "views" || name == "turn"; });
-  const std::vector<std::string> names = separated(texts, [](const std::string&) { return false; });
+  std::vector<std::string> names = separated(texts, [](const std::string&) { return false; });
   for (const std::string& name : names) {
     if (std::ranges::find(choices, name) == choices.end())
       fail("--motion {}: expected of {}", name, fmt::join(choices, ", "));
