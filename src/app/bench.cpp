@@ -207,7 +207,10 @@ void add_bench(CLI::App& program, Command& command) {
                    "NAME,...");
   sub->add_option("--path", o->camera.path, "Along the cameras of this file, through keys 90 frames a second")
       ->type_name("FILE");
-  add_tour_option(*sub, o->camera);
+  add_tour_option(*sub, o->camera)
+      ->description(
+          "Along all cameras, as a head goes through them, 90 frames a second, or at so\nmany metres and "
+          "degrees a second");
   sub->add_flag("--turn", o->turn,
                 "What turning the head changes along the same rays, by order and projection");
   sub->add_option("--detail", o->details,
