@@ -364,9 +364,9 @@ void Bench::time_views(BenchDrawer& drawer, Row& row) {
       if (repeat == 0) settled = warm_up(drawer, view, software) && settled;
       for (int n = 0; repeat > 0 && n < render::settling_frames; ++n) drawer.draw(view.eyes);
       Reports frames;
-      const CpuUse before = CpuUse::now();
+      const CpuUse before = CpuUse::now(context_);
       for (int n = 0; n < effort_.frames; ++n) frames.push_back(last = drawer.draw(view.eyes));
-      cpu += CpuUse::now().since(before);
+      cpu += CpuUse::now(context_).since(before);
       drawn += static_cast<double>(frames.size());
       of_views.push_back(typical_of(frames));
       for (const render::FrameReport& report : frames) {

@@ -166,12 +166,12 @@ void Bench::time_frames(BenchDrawer& drawer, Point& point) {
       Reports reports;
       for (std::size_t n = 0; n < stretch.frames.size(); ++n, ++at) {
         drawer.bring(stretch.frames[n]);
-        const CpuUse before = CpuUse::now();
+        const CpuUse before = CpuUse::now(context_);
         const render::FrameReport report = drawer.draw(stretch.frames[n]);
         ms[at].push_back(report.total_ms);
         differs += static_cast<double>(report.pairs) != number(point.details[at], "pairs");
         if (n >= stretch.moving) continue;
-        cpu += CpuUse::now().since(before);
+        cpu += CpuUse::now(context_).since(before);
         moving.push_back(report.total_ms);
         reports.push_back(report);
       }

@@ -89,12 +89,12 @@ render::Recording ProfileDrawer::record(const std::function<void(std::size_t)>& 
       wait_until(frame.due);
       ticks += 1.0;
     }
+    const CpuUse before = CpuUse::now(context_);  // outside of the frame, whose time it would be
     frame.begin = Clock::now();
-    const CpuUse before = CpuUse::now();
     frame.levels = follow_levels(frame.views, drawn_ms);
     frame.report = draw(frame.views, settings_now());
     frame.end = Clock::now();
-    if (context_.software()) cpu_.push_back(CpuUse::now().since(before));
+    if (context_.software()) cpu_.push_back(CpuUse::now(context_).since(before));
     frame.gaussians = stream_ != nullptr ? stream_->gaussians() : frame_.frame().model()->size().gaussians;
     drawn_ms = frame.report.total_ms;
     recorder.add(std::move(frame));

@@ -73,8 +73,9 @@ void put_cpu_times(const std::vector<CpuUse>& repeats, Row& row) {
       100.0 * all.waited / (all.used + all.waited));
 }
 
-CpuUse CpuUse::now() {
+CpuUse CpuUse::now(const gl::Context& context) {
   CpuUse use;
+  if (!context.software()) return use;
   std::error_code ignored;
   for (const auto& task : std::filesystem::directory_iterator("/proc/self/task", ignored)) {
     std::ifstream in(task.path() / "schedstat");

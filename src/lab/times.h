@@ -30,7 +30,8 @@ Typical mean_of(std::span<const Typical> all);
 struct CpuUse {
   double used = 0.0, waited = 0.0;
 
-  static CpuUse now();
+  /// Since the process began, where the CPU draws; else nothing, and no time is spent on it.
+  static CpuUse now(const gl::Context& context);
   CpuUse since(const CpuUse& before) const { return {used - before.used, waited - before.waited}; }
   void operator+=(const CpuUse& other) { used += other.used, waited += other.waited; }
 };
