@@ -97,8 +97,9 @@ void print_points(const std::vector<lab::Point>& points) {
     std::vector<std::string> others;
     for (const lab::Point& point : points) {
       if (point.chart() != chart || lab::text(point.row, "name") == "contributions") continue;
-      const std::string problem = lab::text(point.row, "problem");
-      if (point.measured()) {
+      const bool has_no_finest = point.row.contains("no_exact") && !point.row.contains("frame_ms");
+      const std::string problem = lab::text(point.row, has_no_finest ? "no_exact" : "problem");
+      if (point.measured() && !has_no_finest) {
         rows.push_back(point.row);
       } else {
         others.push_back(fmt::format("{}: {}", lab::text(point.row, "name"),

@@ -142,16 +142,17 @@ lab::BenchCase MeasuredScene::open(const CasePlan& which) {
   const ModelAxes& axes = some_model().axes;
   lab::BenchCase opened;
   opened.near_plane = near_plane_of(options_.camera, list);
-  opened.follow = [this](const DetailRequest& detail) {
-    SceneOptions scene = scene_.options;
-    scene.detail = detail;
-    const std::shared_ptr<PictureStream> stream = open_for_shots(scene, {}, false);
-    return lab::FollowingModel{stream->gpu_model(context_, PRECISION_FULL),
-                               [stream](std::span<const shared::View> views) {
-                                 stream->settle(views, {});
-                                 return lab::LevelsBrought{stream->gaussians(), stream->reported_db()};
-                               }};
-  };
+  if (stream_)
+    opened.follow = [this](const DetailRequest& detail) {
+      SceneOptions scene = scene_.options;
+      scene.detail = detail;
+      const std::shared_ptr<PictureStream> stream = open_for_shots(scene, {}, false);
+      return lab::FollowingModel{stream->gpu_model(context_, PRECISION_FULL),
+                                 [stream](std::span<const shared::View> views) {
+                                   stream->settle(views, {});
+                                   return lab::LevelsBrought{stream->gaussians(), stream->reported_db()};
+                                 }};
+    };
   const Lens lens = lens_of(which.size);
   const RigOptions rig = rig_of(options_, which);
   if (which.along == "turn") {

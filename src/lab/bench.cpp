@@ -255,7 +255,8 @@ void Bench::find_tolerance(BenchSettings& settings, Row& row) {
 }
 
 double Bench::work_ms(const BenchSettings& settings, std::size_t points) {
-  if (what_.turned) return 0.0;
+  Row ignored;
+  if (what_.turned || (!settings.detail && !has_finest(ignored))) return 0.0;
   BenchSettings first = settings;
   first.transmittance = first.transmittance == TRANSMITTANCE_DEPTH ? TRANSMITTANCE_ONE : first.transmittance;
   BenchDrawer drawer = this->drawer(first);
@@ -452,6 +453,7 @@ void Bench::judge_by_sums(const BenchSettings& settings, BenchDrawer& drawer, Po
 
 Point Bench::measure(BenchSettings settings) {
   Point point{row_of("device", device_text(context_))};
+  if (!settings.detail && !has_finest(point.row)) return point;
   if (settings.transmittance == TRANSMITTANCE_DEPTH) settings.depth_table = depth_table(settings.far);
   if (settings.finds_tolerance()) find_tolerance(settings, point.row);
   if (what_.turned) {

@@ -30,7 +30,8 @@ class Bench {
   /// About how long so many points will take that are like this one, in ms. Draws two frames.
   double work_ms(const BenchSettings& settings, std::size_t points);
 
-  /// A point that fails verification is not timed: it has a problem instead. TRANSMITTANCE_DEPTH goes by a
+  /// A point that fails verification is not timed: it has a problem instead. Where the finest levels of a
+  /// scene have no room, what needs them is left out, and "no_exact" says so. TRANSMITTANCE_DEPTH goes by a
   /// table of the views for training, or of the bench's own. Throws Error where the GPU cannot draw the views
   /// at all.
   Point measure(BenchSettings settings);

@@ -36,23 +36,22 @@ void put_summary(const std::vector<Row>& frames, double exact_pairs, Row& row) {
     (is_moving(frame) ? moving : stop).push_back(frame);
     if (is_moving(frame) && number(frame, "attempts") == 1.0) once.push_back(frame);
   }
+  for (const char* name : {"pairs", "visible", "gaussians", "attempts", "reported_db"})
+    put(row, name, mean_number(moving, name));
+  put(row, "once_ms", mean_number(once, "frame_ms"));
+  if (!moving.front().contains("psnr_db")) return;  // there is nothing to compare with
   const std::vector<double> db = numbers(moving, "psnr_db");
   const Row& worst = *std::ranges::min_element(moving, {}, [](const Row& f) { return number(f, "psnr_db"); });
-  put(row, "psnr_db", mean(db), "tenth_psnr_db", quantile(db, 0.1), "worst_psnr_db", quantile(db, 0.0),
-      "worst_view",
+  put(row, "pairs_removed", 100.0 * (1.0 - mean_number(moving, "pairs") / exact_pairs), "psnr_db", mean(db),
+      "tenth_psnr_db", quantile(db, 0.1), "worst_psnr_db", quantile(db, 0.0), "worst_view",
       fmt::format("stretch {}, frame {}", worst["stretch"].get<int>(), worst["frame"].get<int>()),
       "stop_psnr_db", mean_number(stop, "psnr_db"), "equal_frames", std::ranges::count(db, equal_db));
   if (moving.front().contains("reported_db")) {
     std::vector<double> beyond;
     for (const Row& frame : moving) beyond.push_back(number(frame, "reported_db") - number(frame, "psnr_db"));
-    put(row, "reported_db", mean_number(moving, "reported_db"), "reported_minus_true_db", mean(beyond),
-        "reported_farthest_db",
+    put(row, "reported_minus_true_db", mean(beyond), "reported_farthest_db",
         *std::ranges::max_element(beyond, [](double a, double b) { return std::abs(a) < std::abs(b); }));
   }
-  for (const char* name : {"pairs", "visible", "gaussians", "attempts"})
-    put(row, name, mean_number(moving, name));
-  put(row, "pairs_removed", 100.0 * (1.0 - mean_number(moving, "pairs") / exact_pairs), "once_ms",
-      mean_number(once, "frame_ms"));
 }
 
 /// Its depth, in black.
@@ -116,7 +115,7 @@ ExactFrames& Bench::exact_frames(const BenchSettings& settings) {
 }
 
 void Bench::measure_frames(const BenchSettings& settings, BenchDrawer& drawer, Point& point) {
-  const bool finest = has_finest(point.row);
+  ExactFrames* const exact = has_finest(point.row) ? &exact_frames(settings) : nullptr;
   std::vector<Row>& frames = point.details;
   double exact_pairs = 0.0, moving = 0.0;
   for (std::size_t s = 0; s < what_.stretches.size(); ++s) {
@@ -127,11 +126,11 @@ void Bench::measure_frames(const BenchSettings& settings, BenchDrawer& drawer, P
       const render::FrameReport report = drawer.draw(stretch.frames[n]);
       Row& row = frames.emplace_back(row_of("of", "frame", "stretch", s + 1, "frame", frames.size(), "part",
                                             n < stretch.moving ? "moving" : "stop"));
-      if (finest) {
-        const std::vector<double> db = exact_frames(settings).psnr(drawer.frame(), s, n);
+      if (exact != nullptr) {
+        const std::vector<double> db = exact->psnr(drawer.frame(), s, n);
         put(row, "psnr_db", std::min(equal_db, *std::ranges::min_element(db)));
         if (n < stretch.moving) {
-          exact_pairs += exact_frames(settings).pairs(s, n);
+          exact_pairs += exact->pairs(s, n);
           moving += 1.0;
         }
       }

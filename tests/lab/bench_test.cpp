@@ -185,8 +185,18 @@ TEST_F(BenchLevels, GoOnWhereTheFinestHaveNoRoom) {
   EXPECT_FALSE(row.contains("psnr_db") || row.contains("flip") || row.contains("disagreement_db"));
   EXPECT_EQ(number(row, "reported_db"), 33.0);
   EXPECT_GT(number(row, "frame_ms"), 0.0);
-  small_gpu.measure(detailed);
+  const Row finest = small_gpu.measure({}).row;
+  EXPECT_EQ(finest["no_exact"], row["no_exact"]);
+  EXPECT_FALSE(finest.contains("frame_ms") || finest.contains("problem")) << "it is no fault of the picture";
   EXPECT_EQ(loaded, 1) << "and are not asked for again";
+  what.views.clear();
+  what.stretches = {{std::vector(3, std::vector{make_view(head)}), 2}};
+  Bench along = without(ExitCode::out_of_memory);
+  const Row frames = along.measure(detailed).row;
+  EXPECT_GT(number(frames, "frame_ms"), 0.0);
+  EXPECT_EQ(number(frames, "reported_db"), 33.0);
+  EXPECT_FALSE(frames.contains("psnr_db") || frames.contains("pairs_removed") ||
+               frames.contains("worst_view"));
   EXPECT_THROW(without(ExitCode::bad_input).measure(detailed), Error) << "any other error ends it";
 }
 
