@@ -124,19 +124,16 @@ void print_points(const std::vector<lab::Point>& points) {
   }
 }
 
-void compare_with_older(const BenchOptions& options, const lab::Results& results) {
-  std::vector<lab::Row> now;
-  for (const lab::Point& point : results.points) now.push_back(point.row);
-  print_comparison(options.compare, lab::compare_runs(load_rows(options.compare), now),
-                   options.fail_if_slower);
-}
-
-ExitCode finish(const BenchOptions& options, const BenchFolder& folder) {
+ExitCode finish(const BenchOptions& options, const BenchFolder& folder, const std::vector<lab::Row>& before) {
   const lab::Results results = folder.results();
   folder.save_results(results);
   print_points(results.points);
   fmt::print("\n{}: report.html, results.csv, details.csv, results.json\n", folder.path().string());
-  if (!options.compare.empty()) compare_with_older(options, results);
+  if (!options.compare.empty()) {
+    std::vector<lab::Row> now;
+    for (const lab::Point& point : results.points) now.push_back(point.row);
+    print_comparison(options.compare, lab::compare_runs(before, now), options.fail_if_slower);
+  }
   const auto problems = std::ranges::count_if(
       results.points, [](const lab::Point& point) { return point.row.contains("problem"); });
   if (problems > 0)
@@ -171,21 +168,20 @@ void check_bench(const BenchOptions& o) {
       int{!o.camera.path.empty()} + int{o.camera.tour.has_value()} + int{!o.motions.empty()} + int{o.turn};
   if (along > 1)
     fail("--path, --tour, --motion and --turn are measured one by one: choose one, or write --axes");
-  if (o.fail_if_slower && o.compare.empty())
-    fail("--fail-if-slower goes with --compare: name the results.json of the run that it is to keep up with");
   check(o.context, "auto");
 }
 
 ExitCode bench(const BenchOptions& options) {
   check_bench(options);
   check_output(fs::path(options.output) / "results.json");
-  if (!options.compare.empty()) load_rows(options.compare);  // while nothing is lost
-  if (!options.merge.empty()) return finish(options, merge(options));
+  // While nothing is lost.
+  const std::vector<lab::Row> before = rows_to_compare(options.compare, options.fail_if_slower);
+  if (!options.merge.empty()) return finish(options, merge(options), before);
   const BenchPlan plan = make_plan(options);
   check_cases(plan, options);
   const BenchFolder folder(options.output, plan.json);
   measure_all(options, plan, folder);
-  return finish(options, folder);
+  return finish(options, folder, before);
 }
 
 }  // namespace

@@ -182,10 +182,7 @@ lab::Profile record(const ProfileOptions& o) {
 ExitCode profile(const ProfileOptions& o) {
   check(o);
   for (const char* const name : profile_files) check_output(fs::path(o.folder) / name);
-  if (o.fail_if_slower && o.compare.empty())
-    fail("--fail-if-slower goes with --compare: name the results.json of the run that it is to keep up with");
-  std::vector<lab::Row> before;
-  if (!o.compare.empty()) before = load_rows(o.compare);
+  const std::vector<lab::Row> before = rows_to_compare(o.compare, o.fail_if_slower);
   const lab::Profile profile = record(o);
   const lab::ProfileSummary summary = lab::summary_of(profile);
   lab::RunComparison found;

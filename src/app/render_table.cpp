@@ -11,6 +11,7 @@
 #include "app/command.h"
 #include "app/load_scene.h"
 #include "app/render_run.h"
+#include "app/report.h"
 #include "base/log.h"
 #include "base/statistics.h"
 #include "lab/fields.h"
@@ -122,19 +123,14 @@ void print_views(const RenderRun& run) {
     fmt::print("{} frames: {}{}{}\n", all.size(), first, first == last ? "" : " to " + last,
                run.options.output.json.empty() ? " (each by itself: --json FILE)" : "");
   }
-  std::vector<std::size_t> widths(rows[0].size());
-  for (const auto& row : rows) {
-    for (std::size_t k = 0; k < row.size(); ++k) widths[k] = std::max(widths[k], row[k].size());
-  }
-  for (std::size_t n = 0; n < rows.size(); ++n) {
-    fmt::print("{:<{}}", rows[n][0], widths[0]);
-    for (std::size_t k = 1; k < rows[n].size(); ++k) fmt::print("  {:>{}}", rows[n][k], widths[k]);
+  const std::vector<std::string> lines = aligned(rows);
+  for (std::size_t n = 0; n < lines.size(); ++n) {
     std::vector<std::string> files;
     if (each && n == 0) files.emplace_back("files");
     if (each && n > 0 && n <= all.size()) {
       for (const PictureFile& file : all[n - 1].shot.files) files.push_back(file.name);
     }
-    fmt::print("{}{}\n", files.empty() ? "" : "  ", fmt::join(files, ", "));
+    fmt::print("{}{}{}\n", lines[n], files.empty() ? "" : "  ", fmt::join(files, ", "));
   }
 }
 

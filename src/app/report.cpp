@@ -48,21 +48,27 @@ std::string shown(const lab::Cell& cell, const std::string& column) {
 
 }  // namespace
 
+std::vector<std::string> aligned(const std::vector<std::vector<std::string>>& rows) {
+  std::vector<std::size_t> widths(rows.front().size());
+  for (const std::vector<std::string>& row : rows) {
+    for (std::size_t k = 0; k < row.size(); ++k) widths[k] = std::max(widths[k], row[k].size());
+  }
+  std::vector<std::string> lines;
+  for (const std::vector<std::string>& row : rows) {
+    std::string& line = lines.emplace_back();
+    for (std::size_t k = 0; k < row.size(); ++k)
+      line += k == 0 ? fmt::format("{:<{}}", row[k], widths[k]) : fmt::format("  {:>{}}", row[k], widths[k]);
+  }
+  return lines;
+}
+
 void print_table(const lab::Table& table) {
-  std::vector<std::vector<std::string>> lines = {table.columns};
-  for (const std::vector<lab::Cell>& row : table.rows) {
-    std::vector<std::string>& line = lines.emplace_back();
-    for (std::size_t k = 0; k < row.size(); ++k) line.push_back(shown(row[k], table.columns[k]));
+  std::vector<std::vector<std::string>> rows = {table.columns};
+  for (const std::vector<lab::Cell>& cells : table.rows) {
+    std::vector<std::string>& row = rows.emplace_back();
+    for (std::size_t k = 0; k < cells.size(); ++k) row.push_back(shown(cells[k], table.columns[k]));
   }
-  std::vector<std::size_t> widths(table.columns.size());
-  for (const std::vector<std::string>& line : lines) {
-    for (std::size_t k = 0; k < line.size(); ++k) widths[k] = std::max(widths[k], line[k].size());
-  }
-  for (const std::vector<std::string>& line : lines) {
-    for (std::size_t k = 0; k < line.size(); ++k)
-      k == 0 ? fmt::print("  {:<{}}", line[k], widths[k]) : fmt::print("  {:>{}}", line[k], widths[k]);
-    fmt::print("\n");
-  }
+  for (const std::string& line : aligned(rows)) fmt::print("  {}\n", line);
 }
 
 void add_compare_options(CLI::App& sub, std::string& file, std::optional<double>& fail_if_slower) {
@@ -73,8 +79,10 @@ void add_compare_options(CLI::App& sub, std::string& file, std::optional<double>
       "With --compare: end with exit code 1 if a time has risen beyond noise,\nand by more than PERCENT");
 }
 
-std::vector<lab::Row> load_rows(const std::filesystem::path& file) {
-  return lab::rows_of(load_json(file), "--compare " + file.string());
+std::vector<lab::Row> rows_to_compare(const std::string& file, const std::optional<double>& fail_if_slower) {
+  if (file.empty() && fail_if_slower)
+    fail("--fail-if-slower goes with --compare: name the results.json of the run that it is to keep up with");
+  return file.empty() ? std::vector<lab::Row>() : lab::rows_of(load_json(file), "--compare " + file);
 }
 
 void print_comparison(const std::string& file, const lab::RunComparison& found,

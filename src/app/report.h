@@ -18,14 +18,16 @@ namespace binosplat::app {
 void save_report(const std::filesystem::path& folder, const std::string& name,
                  const nlohmann::ordered_json& results, const lab::Page& page);
 
-/// Prints a table, its columns aligned.
+/// The lines of a table whose first column is at the left of its place, and the others at the right.
+std::vector<std::string> aligned(const std::vector<std::vector<std::string>>& rows);
 void print_table(const lab::Table& table);
 
 /// Adds --compare and --fail-if-slower; both must outlive the parsing.
 void add_compare_options(CLI::App& sub, std::string& file, std::optional<double>& fail_if_slower);
 
-/// The rows of the results.json that --compare names. Throws Error if it is none.
-std::vector<lab::Row> load_rows(const std::filesystem::path& file);
+/// The rows of the results.json that --compare names; none without it. Throws Error where it is no such file,
+/// and for --fail-if-slower without it.
+std::vector<lab::Row> rows_to_compare(const std::string& file, const std::optional<double>& fail_if_slower);
 
 /// Prints what changed since the `file` of --compare. Throws Error (fell_short) where something became slower
 /// than --fail-if-slower allows, or its times cannot be compared.

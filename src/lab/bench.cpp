@@ -35,8 +35,6 @@ const glm::vec3 black(0.0f);
 constexpr std::size_t contribution_views = 3;
 constexpr float paper_far = 100.0f;  // world units: where AdaGScale's table by depth ends
 
-double capped(double db) { return std::min(db, equal_db); }
-
 bool is_finite(const Picture& picture) {
   return std::all_of(picture.colour.begin(), picture.colour.end(), [](const glm::vec4& v) {
     return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z) && std::isfinite(v.w);
@@ -320,17 +318,17 @@ std::string Bench::verify(const BenchSettings& settings) {
 }
 
 Row Bench::compare(const BenchView& view, const Exact& exact, const std::vector<Picture>& drawn) const {
-  double squared_error = 0.0, ssim = 0.0, flip = 0.0, signed_error = 0.0;
+  std::vector<double> psnr;
+  double ssim = 0.0, flip = 0.0, signed_error = 0.0;
   const auto eyes = static_cast<double>(drawn.size());
   for (std::size_t eye = 0; eye < drawn.size(); ++eye) {
     const Image image = composite(drawn[eye], black);
-    squared_error += std::pow(10.0, -0.1 * measure::psnr(image, exact.eyes[eye])) / eyes;
+    psnr.push_back(measure::psnr(image, exact.eyes[eye]));
     ssim += measure::ssim(image, exact.eyes[eye]) / eyes;
     flip += measure::flip(image, exact.eyes[eye], effort_.ppd) / eyes;
     signed_error += mean_signed(image, exact.eyes[eye]) / eyes;
   }
-  Row row = row_of("psnr_db", capped(-10.0 * std::log10(squared_error)), "ssim", ssim, "flip", flip,
-                   "signed_error", signed_error);
+  Row row = row_of("psnr_db", pooled_db(psnr), "ssim", ssim, "flip", flip, "signed_error", signed_error);
   if (!exact.pictures.empty()) {
     const std::array<shared::View, 2> both = {view.eyes[0], view.eyes[1]};
     put(row, "disagreement_db", capped(stereo::disagreement(both, exact.pictures, drawn).db));
@@ -382,7 +380,7 @@ void Bench::time_views(BenchDrawer& drawer, Row& row) {
   put(row, "settled", settled, "gpu_bytes", last.gpu_bytes, "submit_ms", quantile(submit_ms, 0.5));
   put_times(repeats, all_ms, row);
   put_cpu_times(cpu_repeats, row);
-  for (const gl::StageTime& stage : mean_of(turns).stages) put(row, stage_column(stage.name), stage.ms);
+  put_stages(mean_of(turns).stages, row);
 }
 
 void Bench::judge_views(const BenchSettings& settings, BenchDrawer& drawer, Point& point) {
@@ -479,12 +477,12 @@ Point Bench::measure(BenchSettings settings) {
   return point;
 }
 
-Point Bench::contributions(const std::function<void()>& progress) {
+Point Bench::contributions() {
   std::vector<BenchView> some;
   for (const std::size_t v : spread_evenly(what_.views.size(), contribution_views))
     some.push_back(what_.views[v]);
   return {row_of("device", device_text(context_)),
-          lab::contributions(load_(), some, depth_table(paper_far), depth_table({}), progress)};
+          lab::contributions(load_(), some, depth_table(paper_far), depth_table({}), {})};
 }
 
 std::vector<std::size_t> spread_evenly(std::size_t all, std::size_t count) {

@@ -37,7 +37,7 @@ class Bench {
   Point measure(BenchSettings settings);
 
   /// What single Gaussians contribute (contributions.h), as details; with bounds of the paper's table.
-  Point contributions(const std::function<void()>& progress = {});
+  Point contributions();
 
  private:
   using Seen = std::pair<int, int>;  // order, projection; -1: the model's

@@ -72,7 +72,6 @@ struct BenchEffort {
   bool perception = true;                        // SSIM, FLIP and what pixels blend; else PSNR alone, quickly
   bool seen = false;                             // what eyes see that look along their axes
   bool popping = false;                          // of the first frames of the first stretch
-  std::int64_t exact_bytes = std::int64_t{8} << 30;  // of exact frames that stay on the GPU
 };
 
 /// `count` of `all` things, spread evenly, first and last among them; all where there are no more.

@@ -20,14 +20,9 @@ namespace binosplat::lab {
 namespace {
 
 constexpr std::array apart_frames = {1, 7};
+constexpr std::int64_t exact_bytes = std::int64_t{8} << 30;  // of exact frames that stay on the GPU
 
 bool is_moving(const Row& frame) { return text(frame, "part") == "moving"; }
-
-std::vector<double> numbers(const std::vector<Row>& rows, const char* name) {
-  std::vector<double> all;
-  for (const Row& row : rows) all.push_back(number(row, name));
-  return all;
-}
 
 /// What the moving frames come to, and those at rest after them.
 void put_summary(const std::vector<Row>& frames, double exact_pairs, Row& row) {
@@ -73,7 +68,7 @@ void put_popping(BenchDrawer& drawer, const Stretch& stretch, Row& row) {
   }
   for (const int apart : apart_frames) {
     const auto step = static_cast<std::size_t>(apart);
-    std::vector<double> squared_errors, flips;
+    std::vector<double> psnr, flips;
     for (std::size_t n = 0; n + step < pictures.size(); ++n) {
       const Picture &now = pictures[n + step], &earlier = pictures[n];
       const std::array black = {uncoloured(now), uncoloured(earlier)};
@@ -81,12 +76,11 @@ void put_popping(BenchDrawer& drawer, const Stretch& stretch, Row& row) {
       const stereo::Disagreement warped = stereo::disagreement(
           {stretch.frames[n + step].front(), stretch.frames[n].front()}, black, coloured);
       if (warped.counted == 0.0) continue;  // they share nothing
-      squared_errors.push_back(std::pow(10.0, -0.1 * warped.db));
+      psnr.push_back(warped.db);
       flips.push_back(measure::flip(on_black(now), warped.right) / warped.counted);
     }
     if (flips.empty()) continue;
-    put(row, fmt::format("popping_{}_db", apart),
-        std::min(equal_db, -10.0 * std::log10(mean(squared_errors))), fmt::format("popping_{}_flip", apart),
+    put(row, fmt::format("popping_{}_db", apart), pooled_db(psnr), fmt::format("popping_{}_flip", apart),
         mean(flips));
   }
 }
@@ -107,8 +101,7 @@ ExactFrames& Bench::exact_frames(const BenchSettings& settings) {
   const Seen seen = seen_by(settings);
   if (!exact_frames_ || exact_frames_seen_ != seen) {
     exact_frames_.reset();
-    exact_frames_ =
-        std::make_unique<ExactFrames>(gpu_model(), settings, what_.stretches, effort_.exact_bytes);
+    exact_frames_ = std::make_unique<ExactFrames>(gpu_model(), settings, what_.stretches, exact_bytes);
     exact_frames_seen_ = seen;
   }
   return *exact_frames_;
@@ -128,7 +121,7 @@ void Bench::measure_frames(const BenchSettings& settings, BenchDrawer& drawer, P
                                             n < stretch.moving ? "moving" : "stop"));
       if (exact != nullptr) {
         const std::vector<double> db = exact->psnr(drawer.frame(), s, n);
-        put(row, "psnr_db", std::min(equal_db, *std::ranges::min_element(db)));
+        put(row, "psnr_db", capped(*std::ranges::min_element(db)));
         if (n < stretch.moving) {
           exact_pairs += exact->pairs(s, n);
           moving += 1.0;
@@ -137,7 +130,7 @@ void Bench::measure_frames(const BenchSettings& settings, BenchDrawer& drawer, P
       put(row, "reported_db", levels.predicted_db, "pairs", report.pairs, "visible", report.visible,
           "gaussians", levels.gaussians, "tolerance", report.tolerance, "attempts",
           std::max(1, report.attempts));
-      if (settings.quality > 0.0f) put(row, "reported_db", std::min(equal_db, report.quality));
+      if (settings.quality > 0.0f) put(row, "reported_db", capped(report.quality));
       if (s == 0 && n == 0)
         point.picture = for_page(composite(drawer.read_pictures().front(), glm::vec3(0.0f)));
     }
@@ -187,7 +180,7 @@ void Bench::time_frames(BenchDrawer& drawer, Point& point) {
   }
   put_times(repeats, of_frames, point.row);
   put_cpu_times(cpu_repeats, point.row);
-  for (const gl::StageTime& stage : mean_of(turns).stages) put(point.row, stage_column(stage.name), stage.ms);
+  put_stages(mean_of(turns).stages, point.row);
   if (differs > 0) log_warning("{} frames timed are not those that were judged", differs);
 }
 

@@ -79,7 +79,7 @@ Row compare_turned(const Image& straight, const Image& turned, const std::vector
     flip += static_cast<double>(map.data[ray]);
   }
   const auto count = static_cast<double>(shown.size());
-  return row_of("rays", shown.size(), "psnr_db", std::min(equal_db, -10.0 * std::log10(sum / count)), "flip",
+  return row_of("rays", shown.size(), "psnr_db", capped(-10.0 * std::log10(sum / count)), "flip",
                 flip / count, "rays_off", 100.0 * off / count);
 }
 
@@ -118,10 +118,7 @@ void Bench::measure_turns(const BenchSettings& settings, Point& point) {
       if (&axis == head_axes.data() && !shown.empty()) point.picture = std::move(difference);
     }
   }
-  double squared_error = 0.0;
-  for (const Row& row : told)
-    squared_error += std::pow(10.0, -0.1 * row.value("psnr_db", equal_db)) / double(told.size());
-  put(point.row, "psnr_db", std::min(equal_db, -10.0 * std::log10(squared_error)));
+  put(point.row, "psnr_db", pooled_db(numbers(told, "psnr_db")));
   for (const char* name : {"flip", "rays_off", "rays"}) put(point.row, name, mean_number(told, name));
   const auto psnr = [](const Row& row) { return row.value("psnr_db", equal_db); };
   const Row& worst = *std::ranges::min_element(told, {}, psnr);

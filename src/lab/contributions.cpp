@@ -104,8 +104,8 @@ std::vector<Row> contributions(const Model& model, std::span<const BenchView> vi
       const auto skipped = reference::skip_lowest(splats, lists, view, bounds[by], skipped_shares);
       for (std::size_t k = 0; k < skipped_shares.size(); ++k) {
         const Image image = on_black(skipped[k].picture);
-        Row& row = skipping[by][k].emplace_back(row_of("share", 100.0 * skipped[k].share, "psnr_db",
-                                                       std::min(measure::psnr(image, exact), equal_db)));
+        Row& row = skipping[by][k].emplace_back(
+            row_of("share", 100.0 * skipped[k].share, "psnr_db", capped(measure::psnr(image, exact))));
         if (one.photo)
           put(row, "drop_db",
               measure::photo_psnr(exact, one.exposure, *one.photo) -

@@ -4,6 +4,8 @@
 
 namespace binosplat::lab {
 
+namespace {
+
 std::string csv_field(const Cell& cell) {
   const auto* const text = std::get_if<std::string>(&cell.value);
   const std::string bare = text == nullptr ? nlohmann::ordered_json(cell).dump() : *text;
@@ -13,6 +15,8 @@ std::string csv_field(const Cell& cell) {
   for (const char c : bare) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
   return quoted + "\"";
 }
+
+}  // namespace
 
 std::string csv(const Table& table) {
   std::string text;

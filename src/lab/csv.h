@@ -7,10 +7,8 @@
 
 namespace binosplat::lab {
 
-/// Numbers as they are, texts in quotes; nothing for what is empty or not finite.
-std::string csv_field(const Cell& cell);
-
-/// A line of names, if there are any, then a line a row.
+/// A line of names, if there are any, then a line a row: numbers as they are, texts in quotes; nothing for
+/// what is empty or not finite.
 std::string csv(const Table& table);
 
 }  // namespace binosplat::lab

@@ -9,8 +9,6 @@
 #include <type_traits>
 #include <vector>
 
-#include "gl/dispatch.h"
-
 namespace binosplat::lab {
 
 /// T or const T.
@@ -26,9 +24,6 @@ struct FieldWriter {
   void operator()(const char* key, const T& value, const Rest&... rest) const {
     if constexpr (requires { value.has_value(); }) {
       if (value) json[key] = *value;
-    } else if constexpr (std::same_as<T, std::vector<gl::StageTime>>) {
-      json[key] = nlohmann::ordered_json::object();
-      for (const gl::StageTime& stage : value) json[key][stage.name] = stage.ms;
     } else {
       json[key] = value;
     }
@@ -43,22 +38,14 @@ struct FieldReader {
   void operator()() const {}
   template <typename T, typename... Rest>
   void operator()(const char* key, T& value, Rest&... rest) const {
-    if (json.contains(key)) read(json.at(key), value);
-    (*this)(rest...);
-  }
-
- private:
-  template <typename T>
-  static void read(const nlohmann::ordered_json& from, T& value) {
-    if constexpr (requires { value.has_value(); }) {
-      read(from, value.emplace());
-    } else if constexpr (std::same_as<T, std::vector<gl::StageTime>>) {
-      for (const auto& [name, ms] : from.items()) value.push_back({name, ms.template get<double>()});
-    } else if constexpr (std::same_as<T, double>) {
-      value = from.is_null() ? NAN : from.get<double>();
-    } else {
-      from.get_to(value);
+    if (json.contains(key)) {
+      if constexpr (std::same_as<T, double>) {
+        value = json.at(key).is_null() ? NAN : json.at(key).template get<double>();
+      } else {
+        json.at(key).get_to(value);
+      }
     }
+    (*this)(rest...);
   }
 };
 

@@ -22,8 +22,6 @@ void to_json(ordered_json& json, const Cell& cell) {
   std::visit([&](const auto& value) { json = value; }, cell.value);
 }
 
-std::string json_text(double number) { return ordered_json(number).dump(); }
-
 static void fields(const auto& io, const Table& t) { io("columns", t.columns, "rows", t.rows); }
 
 static void fields(const auto& io, const Figure& f) {

@@ -39,9 +39,6 @@ struct Cell {
 
 void to_json(nlohmann::ordered_json& json, const Cell& cell);
 
-/// A number as JSON has it: "40.0".
-std::string json_text(double number);
-
 std::vector<Cell> row(const auto&... cells) { return {Cell(cells)...}; }
 
 /// Rows of as many cells as there are columns.

@@ -137,7 +137,7 @@ Point profile_point(const Profile& profile, const ProfileSummary& summary) {
       recording.frames.size(), "missed", summary.missed, "pairs", mean(pairs), "visible", mean(visible),
       "gaussians", recording.frames.back().gaussians, "gpu_bytes", recording.frames.back().report.gpu_bytes);
   if (recording.fps > 0.0) put(row, "fps", recording.fps);
-  for (const gl::StageTime& stage : summary.stages) put(row, stage_column(stage.name), stage.ms);
+  put_stages(summary.stages, row);
   if (gpu.front() > 0.0) row["repeats_ms"] = by_stretch(gpu);
   row["wall_repeats_ms"] = by_stretch(wall);
   if (!profile.cpu.empty()) {

@@ -175,12 +175,25 @@ std::string text(const Row& row, const std::string& name) {
   return found != row.end() && found->is_string() ? found->get<std::string>() : "";
 }
 
-double mean_number(const std::vector<Row>& rows, const std::string& name) {
-  std::vector<double> numbers;
+std::vector<double> numbers(const std::vector<Row>& rows, const std::string& name) {
+  std::vector<double> all;
   for (const Row& row : rows) {
-    if (const double one = number(row, name); !std::isnan(one)) numbers.push_back(one);
+    if (const double one = number(row, name); !std::isnan(one)) all.push_back(one);
   }
-  return numbers.empty() ? NAN : mean(numbers);
+  return all;
+}
+
+double mean_number(const std::vector<Row>& rows, const std::string& name) {
+  const std::vector<double> all = numbers(rows, name);
+  return all.empty() ? NAN : mean(all);
+}
+
+double capped(double db) { return std::min(db, equal_db); }
+
+double pooled_db(const std::vector<double>& db) {
+  double squared_errors = 0.0;
+  for (const double one : db) squared_errors += std::pow(10.0, -0.1 * one);
+  return capped(-10.0 * std::log10(squared_errors / static_cast<double>(db.size())));
 }
 
 std::string stage_column(const std::string& stage) {

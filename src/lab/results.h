@@ -18,6 +18,10 @@ namespace binosplat::lab {
 /// The PSNR in dB that stands for equal pictures, which have none: in means, charts and files.
 constexpr double equal_db = 100.0;
 
+double capped(double db);
+/// The PSNR of pictures together: of the mean of their squared errors; capped.
+double pooled_db(const std::vector<double>& db);
+
 /// An object of JSON: values by the names of columns. What is not known is not there.
 using Row = nlohmann::ordered_json;
 
@@ -45,7 +49,9 @@ Row row_of(const auto&... names_and_values) {
 double number(const Row& row, const std::string& name);
 /// "" where it has no text of that name.
 std::string text(const Row& row, const std::string& name);
-/// The mean of the numbers that rows have under a name; NaN where none has one.
+/// The numbers that rows have under a name.
+std::vector<double> numbers(const std::vector<Row>& rows, const std::string& name);
+/// Their mean; NaN where no row has one.
 double mean_number(const std::vector<Row>& rows, const std::string& name);
 
 /// The name of a stage's GPU time, and the stage of such a name.

@@ -61,6 +61,10 @@ void put_times(const std::vector<double>& repeats, const std::vector<double>& al
   if (repeats.size() > 1) put(row, "noise_ms", (most - least) / 2);
 }
 
+void put_stages(const std::vector<gl::StageTime>& stages, Row& row) {
+  for (const gl::StageTime& stage : stages) put(row, stage_column(stage.name), stage.ms);
+}
+
 void put_cpu_times(const std::vector<CpuUse>& repeats, Row& row) {
   if (repeats.empty()) return;
   std::vector<double> used;

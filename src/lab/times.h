@@ -39,6 +39,9 @@ struct CpuUse {
 /// Puts what repeats of a time come to, their spread, and what of all frames takes longest.
 void put_times(const std::vector<double>& repeats, const std::vector<double>& all_ms, Row& row);
 
+/// Puts the time of each stage.
+void put_stages(const std::vector<gl::StageTime>& stages, Row& row);
+
 /// The same of the CPU, where it draws: what each repeat used and waited a frame. None: it does not draw.
 void put_cpu_times(const std::vector<CpuUse>& repeats, Row& row);
 
