@@ -16,13 +16,13 @@
 #include "app/load_scene.h"
 #include "app/shots.h"
 #include "base/text.h"
+#include "compact/weights.h"
 #include "formats/cameras_file.h"
 #include "formats/exposures.h"
 #include "formats/model_file.h"
 #include "formats/model_output.h"
 #include "formats/usd.h"
 #include "lab/fields.h"
-#include "lab/weights.h"
 #include "render/frame_plan.h"
 #include "render/memory.h"
 #include "scene/axes.h"
@@ -59,7 +59,7 @@ std::optional<SeenOfViews> see(const InfoOptions& o, const Model& model) {
   const CameraList list = listed_cameras(o.scene, o.camera);
   const std::vector<Camera> cameras = chosen_cameras({}, {}, list);
   const auto context = open_context({});
-  lab::Weights weights = lab::weigh(*context, model, cameras, near_plane_of(o.camera, list));
+  compact::Weights weights = compact::weigh(*context, model, cameras, near_plane_of(o.camera, list));
   std::vector<double>& weight = weights.weight;
   SeenOfViews seen{cameras.size(), weights.unseen(), 0};
   std::sort(weight.begin(), weight.end(), std::greater<>());

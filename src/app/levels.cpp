@@ -20,15 +20,15 @@
 #include "base/log.h"
 #include "base/mapped_file.h"
 #include "base/output_file.h"
+#include "compact/leaf_errors.h"
+#include "compact/level_errors.h"
+#include "compact/loss_together.h"
+#include "compact/streamed_sog_writer.h"
 #include "formats/cameras_file.h"
 #include "formats/content.h"
 #include "formats/model_output.h"
 #include "formats/whole.h"
 #include "lab/fields.h"
-#include "lab/leaf_errors.h"
-#include "lab/level_errors.h"
-#include "lab/loss_together.h"
-#include "lab/streamed_sog_writer.h"
 #include "scene/axes.h"
 
 namespace binosplat::app {
@@ -147,9 +147,9 @@ ExitCode levels(const LevelsOptions& o) {
       {[&](const std::string& name) { return folder.has(name); },
        [&](const std::string& name) { return folder.read(name); },
        [&](const std::string& name, std::span<const std::byte> bytes) { folder.write(name, bytes); }},
-      {[&](std::span<const std::vector<Model>> leaves) { return lab::level_errors(*context, leaves); },
+      {[&](std::span<const std::vector<Model>> leaves) { return compact::level_errors(*context, leaves); },
        [&](std::span<const std::vector<Model>> leaves, std::span<const LeafErrors> errors, int pictures) {
-         std::vector<LossTogether> losses = lab::loss_together(*context, leaves, errors, pictures);
+         std::vector<LossTogether> losses = compact::loss_together(*context, leaves, errors, pictures);
          undrawn += std::ranges::count(losses, false, &LossTogether::drawn);
          return losses;
        }});

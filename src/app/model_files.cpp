@@ -55,12 +55,12 @@ Model load_written(const fs::path& file, const Model& model) {
   return written;
 }
 
-lab::TrialWriter trial_writer(const std::string& output, ModelFormat format) {
+compact::TrialWriter trial_writer(const std::string& output, ModelFormat format) {
   return [output, format](const Model& model, int harmonic_bits) {
     OutputFile file(output);
     write_model(file, model, format, harmonic_bits);
     file.flush();
-    return lab::WrittenModel{load_written(file.path(), model), fs::file_size(file.path())};
+    return compact::WrittenModel{load_written(file.path(), model), fs::file_size(file.path())};
   };
 }
 

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "app/cli.h"
+#include "compact/trim.h"
 #include "formats/model_output.h"
-#include "lab/trim.h"
 #include "scene/model.h"
 
 namespace binosplat::app {
@@ -32,7 +32,7 @@ void check_harmonic_bits(const std::optional<int>& bits, ModelFormat format);
 Model load_written(const std::filesystem::path& file, const Model& model);
 
 /// Writes to a file beside the output, which is never committed.
-lab::TrialWriter trial_writer(const std::string& output, ModelFormat format);
+compact::TrialWriter trial_writer(const std::string& output, ModelFormat format);
 
 /// Writes a model in the axes of the format (write_model), and reads it back; a signal leaves nothing
 /// half-written. Returns what the format could not keep.

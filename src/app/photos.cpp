@@ -89,7 +89,7 @@ void check_photos(const std::string& photos, std::span<const Camera> cameras) {
   }
 }
 
-lab::PhotoOf photo_finder(const PhotoSource& photos) {
+compact::PhotoOf photo_finder(const PhotoSource& photos) {
   if (photos.folder.empty()) return {};
   return [photos](const Camera& camera) -> std::optional<Image> {
     const auto file = find_view_photo(photos.folder, camera);

@@ -11,9 +11,9 @@
 #include "app/measured_options.h"
 #include "app/shots.h"
 #include "base/image.h"
+#include "compact/refit.h"
 #include "formats/exposures.h"
 #include "lab/calibrate.h"
-#include "lab/refit.h"
 
 namespace binosplat::app {
 
@@ -48,7 +48,7 @@ void check_photos(const std::string& photos, std::span<const Camera> cameras);
 /// The photos of a folder for a fit, with their exposures taken back, so that a model fits all of them at
 /// once; none where there is no folder. Throws Error, when asked for a photo, for an exposure that cannot be
 /// taken back.
-lab::PhotoOf photo_finder(const PhotoSource& photos);
+compact::PhotoOf photo_finder(const PhotoSource& photos);
 
 /// What pictures may lose: --max-drop against the photos, or --quality against the exact pictures.
 struct TargetOptions {

@@ -14,8 +14,8 @@
 #include "app/photos.h"
 #include "app/split.h"
 #include "base/log.h"
+#include "compact/refit.h"
 #include "lab/fields.h"
-#include "lab/refit.h"
 #include "scene/axes.h"
 
 namespace binosplat::app {
@@ -33,7 +33,7 @@ using TargetKind = CalibrationTarget::Kind;
 struct RefitOptions : MeasuredOptions {
   bool against_exact = false;
   std::optional<int> order, projection;
-  int rounds = lab::RefitSettings{}.rounds;
+  int rounds = compact::RefitSettings{}.rounds;
   std::optional<int> harmonic_bits;
   SplitOptions split{.held_back = 4};
   std::string output;
@@ -140,7 +140,7 @@ ExitCode refit(const RefitOptions& o) {
   const auto context = open_context(o.context);
   leave_out_blind("refit", *context, model, views);
   add_own_size(o, list, views);
-  const lab::RefitTargets targets{model, views.training, photo_finder(source), views.near_plane};
+  const compact::RefitTargets targets{model, views.training, photo_finder(source), views.near_plane};
   const auto photos = static_cast<std::size_t>(std::count_if(
       views.training.begin(), views.training.end(),
       [&](const Camera& camera) { return !o.photos.empty() && find_view_photo(o.photos, camera); }));
@@ -158,11 +158,11 @@ ExitCode refit(const RefitOptions& o) {
   steps.push_back(judge.step("before: " + name_of(fitted.perspective), fitted));
   const double before = steps.back().held_back, before_own = steps.back().held_back_own;
 
-  lab::Refitted found = lab::refit(*context, fitted, targets, {.rounds = o.rounds},
-                                   [&](const Model& m) { return -judge.held_back(m); });
+  compact::Refitted found = compact::refit(*context, fitted, targets, {.rounds = o.rounds},
+                                           [&](const Model& m) { return -judge.held_back(m); });
   fitted.sh = std::move(found.sh);
   steps.push_back(judge.step(fmt::format("after {} rounds", found.best_round), fitted));
-  const lab::WrittenModel written = trial_writer(o.output, format)(fitted, o.harmonic_bits.value_or(8));
+  const compact::WrittenModel written = trial_writer(o.output, format)(fitted, o.harmonic_bits.value_or(8));
   steps.push_back(
       judge.step(fmt::format("as {}, {} bytes", row_of(format).name, written.bytes), written.model));
   print_refit(steps, o, views, photos);

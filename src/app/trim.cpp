@@ -16,11 +16,11 @@
 #include "base/log.h"
 #include "base/mapped_file.h"
 #include "base/output_file.h"
+#include "compact/trim.h"
 #include "formats/content.h"
 #include "formats/model_file.h"
 #include "formats/model_output.h"
 #include "lab/fields.h"
-#include "lab/trim.h"
 #include "scene/axes.h"
 
 namespace binosplat::app {
@@ -69,7 +69,7 @@ std::string size_of(const std::vector<lab::CalibrationView>& views) {
   return fmt::format("{} x {} px", views[0].camera.width, views[0].camera.height);
 }
 
-void print_trimmed(const TrimOptions& o, const lab::Trimmed& found, const lab::ViewSplit& views,
+void print_trimmed(const TrimOptions& o, const compact::Trimmed& found, const lab::ViewSplit& views,
                    std::size_t gaussians) {
   const BoundKind kind = o.bound.target().kind;
   const bool two_sizes = !views.held_back_own.empty();
@@ -95,14 +95,14 @@ void print_trimmed(const TrimOptions& o, const lab::Trimmed& found, const lab::V
                decibels_of_bound(kind, held_back.worst_db),
                has_test ? decibels_of_bound(kind, test.mean_db) : "");
   };
-  for (const lab::TrimStep& s : found.steps) {
+  for (const compact::TrimStep& s : found.steps) {
     fmt::print("{:<28}{:>10}{:>4}{:>12}{:>11.0f}{:>9.3f}", s.name, s.gaussians, s.degree,
                s.bytes > 0 ? std::to_string(s.bytes) : "", s.held_back.pairs, s.held_back.ms);
     print_db(s.held_back, s.test);
     if (two_sizes) print_db(*s.held_back_own, s.test_own.value_or(Calibrator::Cost{}));
     fmt::print("\n");
   }
-  const lab::TrimStep& last = found.steps.back();
+  const compact::TrimStep& last = found.steps.back();
   const auto print_worst = [&](const char* size, const Calibrator::Cost& cost) {
     fmt::print("worst of those held back{}: {}, {} dB\n", size, views.held_back[cost.worst_view].camera.name,
                decibels_of_bound(kind, cost.worst_db));
@@ -119,14 +119,14 @@ ordered_json trimmed_json(const Calibrator::Cost& cost, const std::vector<lab::C
   return json;
 }
 
-ordered_json trimmed_json(const TrimOptions& o, const lab::Trimmed& found, const lab::ViewSplit& views,
+ordered_json trimmed_json(const TrimOptions& o, const compact::Trimmed& found, const lab::ViewSplit& views,
                           ModelFormat format, const std::vector<std::string>& losses) {
   ordered_json json = lab::object("version", BINOSPLAT_VERSION, "model", o.scene.name, "output", o.output,
                                   "format", word_of(format), "as_it_was", !found.less, "unseen", found.unseen,
                                   "views_weighed", views.training.size(), "losses", losses);
   if (o.bound.max_drop) json["target"]["drop_db"] = *o.bound.max_drop;
   if (o.bound.quality) json["target"]["quality_db"] = *o.bound.quality;
-  for (const lab::TrimStep& s : found.steps) {
+  for (const compact::TrimStep& s : found.steps) {
     ordered_json step = lab::object("step", s.name, "gaussians", s.gaussians, "degree", s.degree, "bytes",
                                     s.bytes > 0 ? ordered_json(s.bytes) : ordered_json(), "held_back",
                                     trimmed_json(s.held_back, views.held_back));
@@ -139,8 +139,8 @@ ordered_json trimmed_json(const TrimOptions& o, const lab::Trimmed& found, const
 }
 
 /// Writes what was found; the file itself where nothing of it could be left out.
-std::vector<std::string> write_trimmed(const TrimOptions& o, const lab::Trimmed& found, ModelFormat format,
-                                       const std::optional<fs::path>& original) {
+std::vector<std::string> write_trimmed(const TrimOptions& o, const compact::Trimmed& found,
+                                       ModelFormat format, const std::optional<fs::path>& original) {
   if (!found.less && original) {
     write_file(o.output, as_text(MappedFile(*original).bytes()));
     return {};
@@ -158,15 +158,15 @@ ExitCode trim(const TrimOptions& o) {
   bring_into_axes(model, row_of(format).axes);
   lab::ViewSplit views = split_views("trim", o, photos, o.split, list,
                                      [](std::size_t, std::size_t cameras) { return cameras / 2; });
-  lab::TrimSettings settings{o.bound.target(), format, trial_writer(o.output, format), {}};
+  compact::TrimSettings settings{o.bound.target(), format, trial_writer(o.output, format), {}};
   if (o.refit) settings.refit = photo_finder(photos);
   const auto context = open_context(o.context);
   leave_out_blind("trim", *context, model, views);
   add_own_size(o, list, views);
-  lab::Trimmed found = lab::trim(*context, model, views, settings);
+  compact::Trimmed found = compact::trim(*context, model, views, settings);
   if (const fs::path file = model_file(o.scene.name); fs::is_regular_file(file))
     found.steps.front().bytes = fs::file_size(file);
-  const lab::TrimStep &first = found.steps.front(), &last = found.steps.back();
+  const compact::TrimStep &first = found.steps.front(), &last = found.steps.back();
   const bool no_smaller = found.less && original && last.bytes >= first.bytes;
   if (no_smaller) found.less = false;
   print_trimmed(o, found, views, model.count());

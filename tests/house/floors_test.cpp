@@ -36,13 +36,16 @@ const std::map<std::string, std::set<std::string>> may_see = {
     {"library", {"stream", "stereo", "formats", "render", "gl", "scene", "base", "shared"}},
     {"lab",
      {"stream", "stereo", "measure", "render", "gl", "reference", "formats", "scene", "base", "shared"}},
+    {"compact",
+     {"lab", "stream", "stereo", "measure", "render", "gl", "reference", "formats", "scene", "base",
+      "shared"}},
     {"preview",
      {"stream", "stereo", "measure", "render", "gl", "reference", "formats", "scene", "base", "shared"}},
     {"xr", {"base"}},
     {"python", {"stereo", "measure", "render", "gl", "reference", "formats", "scene", "base", "shared"}},
     {"app",
-     {"demo", "preview", "xr", "lab", "stream", "stereo", "measure", "render", "gl", "reference", "formats",
-      "scene", "base", "shared"}},
+     {"demo", "preview", "xr", "compact", "lab", "stream", "stereo", "measure", "render", "gl", "reference",
+      "formats", "scene", "base", "shared"}},
 };
 
 bool starts_with(const std::string& text, const std::string& start) { return text.rfind(start, 0) == 0; }

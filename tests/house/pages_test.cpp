@@ -1,8 +1,10 @@
-// Pages are read in a terminal, too: no line of them is over 120 characters. The tests that they name exist.
+// Pages are read in a terminal, too: no line of them is over 120 characters. Tests and sources that they name
+// exist.
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <fstream>
 #include <regex>
@@ -67,6 +69,24 @@ std::vector<std::string> missing_tests(const std::string& page) {
   return missing;
 }
 
+/// The sources that a page names as `room/file.cpp` or `room/file.{h,cpp}`, from the top or from where
+/// sources are included from, and that are not there.
+std::vector<std::string> missing_sources(const std::string& page) {
+  static const std::regex named("`((?:[a-z_]+/)+[a-z0-9_]+\\.)(?:(cpp|h|comp|glsl)|\\{([a-z,]+)\\})`");
+  std::vector<std::string> missing;
+  for (std::sregex_iterator at(page.begin(), page.end(), named), end; at != end; ++at) {
+    std::istringstream endings((*at)[2].matched ? (*at)[2].str() : (*at)[3].str());
+    for (std::string ending; std::getline(endings, ending, ',');) {
+      const std::string name = (*at)[1].str() + ending;
+      const bool found =
+          std::ranges::any_of(std::array{"", "src", "shaders", "include", "tests"},
+                              [&](const char* from) { return fs::exists(root / from / name); });
+      if (!found) missing.push_back(name);
+    }
+  }
+  return missing;
+}
+
 TEST(Pages, HaveLinesThatFitATerminal) {
   const std::vector<fs::path> pages = all_pages();
   EXPECT_GT(pages.size(), 15u) << "the pages were not found";
@@ -82,6 +102,14 @@ TEST(Pages, NameTestsThatExist) {
     EXPECT_EQ(missing_tests(text_of(page)), std::vector<std::string>()) << page;
   EXPECT_EQ(missing_tests("`lab.Judge.TellsNothing`, `lab.Traps.*`, `house.Pages.NameTestsThatExist`"),
             std::vector<std::string>{"`lab.Judge.TellsNothing`"})
+      << "planted";
+}
+
+TEST(Pages, NameSourcesThatExist) {
+  for (const fs::path& page : all_pages())
+    EXPECT_EQ(missing_sources(text_of(page)), std::vector<std::string>()) << page;
+  EXPECT_EQ(missing_sources("`src/gl/none.cpp`, `gl/context.{h,txt,cpp}`, `shaders/blend.comp`, `NAME.cpp`"),
+            (std::vector<std::string>{"src/gl/none.cpp", "gl/context.txt"}))
       << "planted";
 }
 

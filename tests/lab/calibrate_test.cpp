@@ -9,6 +9,7 @@
 #include "formats/calibration_file.h"
 #include "lab/settings.h"
 #include "measure/metrics.h"
+#include "scene/axes.h"
 #include "support/gl.h"
 #include "support/models.h"
 
@@ -145,6 +146,20 @@ TEST_F(Calibrating, NeedsViewsAndPhotos) {
                Error);
   EXPECT_THROW(Calibrator(test::gl_context(), model, views, near_default, CalibrationTarget::Kind::drop),
                Error);
+}
+
+// Cameras are of the world: a model in other axes is seen as it would be in the world's.
+TEST_F(Calibrating, SeesModelsOfAllAxes) {
+  Model turned = model;
+  bring_into_axes(turned, "RUB");
+  const auto pairs = [&](const Model& of) {
+    Calibrator calibrator(test::gl_context(), of, views, near_default, CalibrationTarget::Kind::quality);
+    EXPECT_EQ(calibrator.cost(of).mean_db, equal_db);
+    EXPECT_LT(calibrator.cost(test::random_model(63, 500, 0)).mean_db, 40.0) << "any model is as good";
+    return calibrator.cost(of).pairs;
+  };
+  EXPECT_GT(pairs(model), 100.0);
+  EXPECT_NEAR(pairs(turned), pairs(model), 2.0);
 }
 
 }  // namespace

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "compact/streamed_sog_writer.h"
 #include "formats/content.h"
-#include "lab/streamed_sog_writer.h"
 #include "support/models.h"
 #include "support/program.h"
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "lab/streamed_sog_writer.h"
+#include "compact/streamed_sog_writer.h"
 
 namespace binosplat {
 

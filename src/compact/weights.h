@@ -3,12 +3,12 @@
 
 #include <vector>
 
+#include "compact/colour_fit.h"
 #include "gl/context.h"
-#include "lab/colour_fit.h"
 #include "scene/camera.h"
 #include "scene/model.h"
 
-namespace binosplat::lab {
+namespace binosplat::compact {
 
 struct Weights {
   std::size_t views = 0;
@@ -31,4 +31,4 @@ std::vector<double> changes_without(gl::Context& context, const Model& model,
 Weights weigh(gl::Context& context, const Model& model, const std::vector<Camera>& cameras, double near_plane,
               bool with_colours = false);
 
-}  // namespace binosplat::lab
+}  // namespace binosplat::compact

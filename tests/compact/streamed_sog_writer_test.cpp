@@ -1,4 +1,4 @@
-#include "lab/streamed_sog_writer.h"
+#include "compact/streamed_sog_writer.h"
 
 #include <gtest/gtest.h>
 

@@ -8,11 +8,11 @@
 #include <string>
 #include <vector>
 
+#include "compact/refit.h"
 #include "formats/model_output.h"
 #include "lab/calibrate.h"
-#include "lab/refit.h"
 
-namespace binosplat::lab {
+namespace binosplat::compact {
 
 /// A model as its file keeps it, and the bytes of that file.
 struct WrittenModel {
@@ -29,10 +29,10 @@ struct TrimStep {
   std::size_t gaussians = 0;
   int degree = 0;
   std::uintmax_t bytes = 0;
-  Calibrator::Cost held_back;
-  Calibrator::Cost test;  // all 0 without such views
+  lab::Calibrator::Cost held_back;
+  lab::Calibrator::Cost test;  // all 0 without such views
   // In the cameras' own size, where the views are smaller (ViewSplit).
-  std::optional<Calibrator::Cost> held_back_own, test_own;
+  std::optional<lab::Calibrator::Cost> held_back_own, test_own;
 
   /// What the bound is on: the mean of the size that loses more; a PSNR, as a drop is of one size.
   double worse_db() const {
@@ -65,6 +65,7 @@ struct TrimSettings {
 /// candidate is judged as it reads back from its file, so the bound holds for what is written. The model's
 /// axes are those of the format, and it is not Scaffold-GS's. Throws Error for views that a target cannot be
 /// measured in (Calibrator).
-Trimmed trim(gl::Context& context, const Model& model, const ViewSplit& views, const TrimSettings& settings);
+Trimmed trim(gl::Context& context, const Model& model, const lab::ViewSplit& views,
+             const TrimSettings& settings);
 
-}  // namespace binosplat::lab
+}  // namespace binosplat::compact

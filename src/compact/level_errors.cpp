@@ -1,4 +1,4 @@
-#include "lab/level_errors.h"
+#include "compact/level_errors.h"
 
 #include <algorithm>
 #include <array>
@@ -11,7 +11,7 @@
 #include "scene/camera.h"
 #include "scene/reduce.h"
 
-namespace binosplat::lab {
+namespace binosplat::compact {
 
 namespace {
 
@@ -250,4 +250,4 @@ std::vector<LeafErrors> level_errors(gl::Context& context, std::span<const std::
   return errors;
 }
 
-}  // namespace binosplat::lab
+}  // namespace binosplat::compact

@@ -1,14 +1,13 @@
-#include "lab/weights.h"
+#include "compact/weights.h"
 
 #include <gtest/gtest.h>
 
-#include "lab/calibrate.h"
 #include "scene/axes.h"
 #include "scene/harmonics.h"
 #include "support/gl.h"
 #include "support/models.h"
 
-namespace binosplat::lab {
+namespace binosplat::compact {
 namespace {
 
 std::vector<Camera> cameras_to_weigh() {
@@ -122,21 +121,5 @@ TEST(ColourFits, AreTheNearest) {
   }
 }
 
-// Cameras are of the world: a model in other axes is seen as it would be in the world's.
-TEST(Calibrator, SeesModelsOfAllAxes) {
-  const Model model = test::random_model(62, 500, 0);
-  Model turned = model;
-  bring_into_axes(turned, "RUB");
-  const std::vector<CalibrationView> views = {{cameras_to_weigh()[1], {}}};
-  const auto pairs = [&](const Model& of) {
-    Calibrator calibrator(test::gl_context(), of, views, near_default, CalibrationTarget::Kind::quality);
-    EXPECT_EQ(calibrator.cost(of).mean_db, equal_db);
-    EXPECT_LT(calibrator.cost(test::random_model(63, 500, 0)).mean_db, 40.0) << "any model is as good";
-    return calibrator.cost(of).pairs;
-  };
-  EXPECT_GT(pairs(model), 100.0);
-  EXPECT_NEAR(pairs(turned), pairs(model), 2.0);
-}
-
 }  // namespace
-}  // namespace binosplat::lab
+}  // namespace binosplat::compact

@@ -1,4 +1,4 @@
-#include "lab/streamed_sog_writer.h"
+#include "compact/streamed_sog_writer.h"
 
 #include <algorithm>
 #include <cmath>
@@ -12,11 +12,11 @@
 #include "base/parallel.h"
 #include "base/progress.h"
 #include "base/statistics.h"
+#include "compact/leaf_errors.h"
 #include "formats/json_file.h"
 #include "formats/model_writers.h"
 #include "formats/morton.h"
 #include "formats/sog_source.h"
-#include "lab/leaf_errors.h"
 #include "scene/merge.h"
 #include "scene/reduce.h"
 #include "scene/space_tree.h"

@@ -1,4 +1,4 @@
-#include "lab/leaf_errors.h"
+#include "compact/leaf_errors.h"
 
 #include <fmt/format.h>
 

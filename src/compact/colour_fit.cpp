@@ -1,11 +1,11 @@
-#include "lab/colour_fit.h"
+#include "compact/colour_fit.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "scene/model.h"
 
-namespace binosplat::lab {
+namespace binosplat::compact {
 
 namespace {
 
@@ -67,4 +67,4 @@ double ColourFit::change(int degree, const Coefficients& now) const {
   return std::max(0.0, sum / 3.0);
 }
 
-}  // namespace binosplat::lab
+}  // namespace binosplat::compact

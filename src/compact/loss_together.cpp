@@ -1,4 +1,4 @@
-#include "lab/loss_together.h"
+#include "compact/loss_together.h"
 
 #include <cmath>
 #include <functional>
@@ -15,7 +15,7 @@
 #include "stream/choice.h"
 #include "stream/visibility.h"
 
-namespace binosplat::lab {
+namespace binosplat::compact {
 
 namespace {
 
@@ -224,4 +224,4 @@ std::vector<LossTogether> loss_together(gl::Context& context, std::span<const st
   return losses;
 }
 
-}  // namespace binosplat::lab
+}  // namespace binosplat::compact

@@ -1,4 +1,4 @@
-#include "lab/trim.h"
+#include "compact/trim.h"
 
 #include <algorithm>
 #include <array>
@@ -12,11 +12,11 @@
 #include "base/parallel.h"
 #include "base/progress.h"
 #include "base/statistics.h"
-#include "lab/weights.h"
+#include "compact/weights.h"
 #include "measure/search.h"
 #include "scene/reduce.h"
 
-namespace binosplat::lab {
+namespace binosplat::compact {
 
 namespace {
 
@@ -28,12 +28,13 @@ constexpr double after_bits = 0.25, after_harmonics = 0.5;  // shares of the bou
 /// What a model loses in the views that had no say in it, and whether the bound allows for that.
 class TrimJudge {
  public:
-  TrimJudge(gl::Context& context, const Model& original, const ViewSplit& views,
+  TrimJudge(gl::Context& context, const Model& original, const lab::ViewSplit& views,
             const CalibrationTarget& target)
       : target_(target) {
-    const auto open = [&](const std::vector<CalibrationView>& of) {
-      return of.empty() ? nullptr
-                        : std::make_unique<Calibrator>(context, original, of, views.near_plane, target.kind);
+    const auto open = [&](const std::vector<lab::CalibrationView>& of) {
+      return of.empty()
+                 ? nullptr
+                 : std::make_unique<lab::Calibrator>(context, original, of, views.near_plane, target.kind);
     };
     held_back_ = open(views.held_back);
     held_back_own_ = open(views.held_back_own);
@@ -90,8 +91,8 @@ class TrimJudge {
   CalibrationTarget target_;
   int judged_ = 0;      // models
   double start_ = 0.0;  // what the whole model loses, as a drop: below 0 where fitting gained
-  std::unique_ptr<Calibrator> held_back_, held_back_own_;  // own: in the cameras' own size, or none
-  std::unique_ptr<Calibrator> test_, test_own_;
+  std::unique_ptr<lab::Calibrator> held_back_, held_back_own_;  // own: in the cameras' own size, or none
+  std::unique_ptr<lab::Calibrator> test_, test_own_;
 };
 
 ColourFit::Coefficients coefficients(const Model& model, std::size_t gaussian) {
@@ -139,7 +140,7 @@ std::vector<std::array<double, 3>> changes_below(int degree, const Model& whole,
 
 class Trimmer {
  public:
-  Trimmer(gl::Context& context, const Model& model, const ViewSplit& views, const TrimSettings& settings)
+  Trimmer(gl::Context& context, const Model& model, const lab::ViewSplit& views, const TrimSettings& settings)
       : context_(context),
         views_(views),
         settings_(settings),
@@ -299,7 +300,7 @@ class Trimmer {
   }
 
   gl::Context& context_;
-  const ViewSplit& views_;
+  const lab::ViewSplit& views_;
   const TrimSettings& settings_;
   const Model& original_;
   TrimJudge judge_;
@@ -311,8 +312,9 @@ class Trimmer {
 
 }  // namespace
 
-Trimmed trim(gl::Context& context, const Model& model, const ViewSplit& views, const TrimSettings& settings) {
+Trimmed trim(gl::Context& context, const Model& model, const lab::ViewSplit& views,
+             const TrimSettings& settings) {
   return Trimmer(context, model, views, settings).run();
 }
 
-}  // namespace binosplat::lab
+}  // namespace binosplat::compact

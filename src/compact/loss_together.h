@@ -5,11 +5,11 @@
 #include <span>
 #include <vector>
 
+#include "compact/streamed_sog_writer.h"
 #include "gl/context.h"
-#include "lab/streamed_sog_writer.h"
 #include "scene/model.h"
 
-namespace binosplat::lab {
+namespace binosplat::compact {
 
 /// Draws `pictures` pictures of the leaves, from eyes among them, at levels that `errors` (of level_errors)
 /// predict to come to 40 dB, and compares each with the picture of the finest levels of what it shows. Leaves
@@ -19,4 +19,4 @@ namespace binosplat::lab {
 std::vector<LossTogether> loss_together(gl::Context& context, std::span<const std::vector<Model>> leaves,
                                         std::span<const LeafErrors> errors, int pictures);
 
-}  // namespace binosplat::lab
+}  // namespace binosplat::compact

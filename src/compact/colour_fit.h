@@ -4,7 +4,7 @@
 #include <array>
 #include <glm/glm.hpp>
 
-namespace binosplat::lab {
+namespace binosplat::compact {
 
 /// The colours of one Gaussian towards some views, as sums from which harmonics of degrees 0 to 2 are fitted:
 /// weighted least squares.
@@ -29,4 +29,4 @@ class ColourFit {
   float square_ = 0.0f;                                      // of the colours
 };
 
-}  // namespace binosplat::lab
+}  // namespace binosplat::compact

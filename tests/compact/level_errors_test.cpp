@@ -1,5 +1,5 @@
 // What levels of detail lose, from pictures.
-#include "lab/level_errors.h"
+#include "compact/level_errors.h"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 #include "support/gl.h"
 #include "support/models.h"
 
-namespace binosplat::lab {
+namespace binosplat::compact {
 namespace {
 
 Model ball(float scale, float opacity, const glm::vec3& at) {
@@ -131,4 +131,4 @@ TEST(LevelErrors, WhatHasNoExtentIsDrawn) {
 }
 
 }  // namespace
-}  // namespace binosplat::lab
+}  // namespace binosplat::compact

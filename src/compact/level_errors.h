@@ -4,11 +4,11 @@
 #include <span>
 #include <vector>
 
+#include "compact/streamed_sog_writer.h"
 #include "gl/context.h"
-#include "lab/streamed_sog_writer.h"
 #include "scene/model.h"
 
-namespace binosplat::lab {
+namespace binosplat::compact {
 
 /// Draws every level of each leaf by itself, before a background of about its mean colour, from far away and
 /// from six directions, in pixels of two widths, and compares it with the leaf's finest level. A picture
@@ -17,4 +17,4 @@ namespace binosplat::lab {
 /// drawn in the wide pixels alone, whose error per area is taken for the narrow ones, too.
 std::vector<LeafErrors> level_errors(gl::Context& context, std::span<const std::vector<Model>> leaves);
 
-}  // namespace binosplat::lab
+}  // namespace binosplat::compact

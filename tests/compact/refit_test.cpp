@@ -1,4 +1,4 @@
-#include "lab/refit.h"
+#include "compact/refit.h"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 #include "support/gl.h"
 #include "support/models.h"
 
-namespace binosplat::lab {
+namespace binosplat::compact {
 namespace {
 
 std::vector<Camera> cameras_to_fit() {
@@ -165,4 +165,4 @@ TEST(Refit, AModelThatIsRightStays) {
 }
 
 }  // namespace
-}  // namespace binosplat::lab
+}  // namespace binosplat::compact

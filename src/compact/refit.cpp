@@ -1,4 +1,4 @@
-#include "lab/refit.h"
+#include "compact/refit.h"
 
 #include <algorithm>
 #include <array>
@@ -12,7 +12,7 @@
 #include "scene/axes.h"
 #include "scene/harmonics.h"
 
-namespace binosplat::lab {
+namespace binosplat::compact {
 
 namespace {
 
@@ -261,4 +261,4 @@ Refitted refit(gl::Context& context, const Model& model, const RefitTargets& tar
   return Refit(context, model, targets, settings, judge).run();
 }
 
-}  // namespace binosplat::lab
+}  // namespace binosplat::compact

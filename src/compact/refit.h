@@ -12,7 +12,7 @@
 #include "scene/camera.h"
 #include "scene/model.h"
 
-namespace binosplat::lab {
+namespace binosplat::compact {
 
 /// The photo of a camera, RGB in its size; or none.
 using PhotoOf = std::function<std::optional<Image>(const Camera&)>;
@@ -48,4 +48,4 @@ struct Refitted {
 Refitted refit(gl::Context& context, const Model& model, const RefitTargets& targets,
                const RefitSettings& settings, const RefitJudge& judge);
 
-}  // namespace binosplat::lab
+}  // namespace binosplat::compact

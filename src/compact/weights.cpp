@@ -1,4 +1,4 @@
-#include "lab/weights.h"
+#include "compact/weights.h"
 
 #include <algorithm>
 
@@ -8,7 +8,7 @@
 #include "scene/axes.h"
 #include "scene/harmonics.h"
 
-namespace binosplat::lab {
+namespace binosplat::compact {
 
 std::size_t Weights::unseen() const {
   return static_cast<std::size_t>(std::count(weight.begin(), weight.end(), 0.0));
@@ -59,4 +59,4 @@ std::vector<double> changes_without(gl::Context& context, const Model& model,
   return changes;
 }
 
-}  // namespace binosplat::lab
+}  // namespace binosplat::compact

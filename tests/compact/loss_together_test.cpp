@@ -1,16 +1,16 @@
 // What levels lose in pictures of many parts.
-#include "lab/loss_together.h"
+#include "compact/loss_together.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "lab/level_errors.h"
+#include "compact/level_errors.h"
 #include "scene/reduce.h"
 #include "support/gl.h"
 #include "support/models.h"
 
-namespace binosplat::lab {
+namespace binosplat::compact {
 namespace {
 
 /// Leaves all around, which hide what is behind them; a level has every other Gaussian of the one before.
@@ -72,4 +72,4 @@ TEST(LossTogether, IsNothingWhereLevelsAreTheSame) {
 }
 
 }  // namespace
-}  // namespace binosplat::lab
+}  // namespace binosplat::compact
