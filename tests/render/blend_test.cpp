@@ -44,27 +44,5 @@ TEST(Blend, TheComparisonCatchesAnEarlyStopOneGaussianLate) {
   EXPECT_LT(test::psnr(test::draw(model, view, {}, only_blend), late), 95.0);
 }
 
-TEST(Blend, HandComputedPixel) {
-  // Two splats on the axis, so large that the middle pixel sees their full opacity.
-  Model model;
-  test::add(model, {0, 0, 1}, glm::vec3(1.0f), 0.5f, {1, 0, 0});
-  test::add(model, {0, 0, 2}, glm::vec3(1.0f), 0.8f, {0, 1, 0});
-  const Picture picture = test::draw(model, make_view(test::front_camera(65, 65, 64)));
-  const glm::vec4 middle = picture.colour[32 * 65 + 32];
-  EXPECT_NEAR(middle.r, 0.5, 1e-5);
-  EXPECT_NEAR(middle.g, 0.5 * 0.8, 1e-5);
-  EXPECT_NEAR(middle.b, 0.0, 1e-5);
-  EXPECT_NEAR(middle.a, 0.1, 1e-5);
-  EXPECT_NEAR(picture.z_sum[32 * 65 + 32], 0.5 * 1 + 0.4 * 2, 1e-5);
-}
-
-TEST(Blend, AnEmptyViewIsAllBackground) {
-  Model model;
-  test::add(model, {0, 0, -5}, glm::vec3(0.1f), 0.5f);
-  for (const glm::vec4& c : test::draw(model, make_view(test::front_camera(20, 20, 20))).colour) {
-    EXPECT_EQ(c, glm::vec4(0, 0, 0, 1));
-  }
-}
-
 }  // namespace
 }  // namespace binosplat

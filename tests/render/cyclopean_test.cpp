@@ -41,6 +41,8 @@ Cost cost_of(render::Frame& frame, const std::array<shared::View, 2>& views) {
 }
 
 TEST(Cyclopean, ErrorAndDisagreementAtThreeDistances) {
+  if (!test::switched_on("BINOSPLAT_LONG") && test::gl_context().software())
+    GTEST_SKIP() << "the numbers of a page: set BINOSPLAT_LONG=1";
   REQUIRE_SCENE("scaffold", scenes);
   REQUIRE_SCENE("fox", fox);
   const std::vector<Camera> cameras = load_cameras(fox / "cameras.json");

@@ -173,20 +173,6 @@ TEST(DecodeStage, AnchorsOutOfSightAreDecodedWithoutTheCull) {
   EXPECT_GT(whole.kept, culled.kept + 100);
 }
 
-TEST(DecodeStage, PagesMakeNoDifference) {
-  const Model model = model_of(test::random_scaffold(14, {.anchors = 100}));
-  const std::vector<shared::View> views{front_view(-0.1), front_view(0.1)};
-  test::StageRun run(model, views, {}, {}, 75);
-  run.run_until(render::Stage::decode);
-  ASSERT_EQ(run.drawn.model_buffers().pages.size(), 15u);  // 7 anchors each
-  for (std::uint32_t d = 0; d < 2; ++d) {
-    const Difference difference = compare_decoded(
-        read_decoding(run, d), reference::decode(*model.scaffold, std::span(views).subspan(d, 1)));
-    EXPECT_LT(difference.value, 1e-5);
-    EXPECT_EQ(difference.alone, 0u);
-  }
-}
-
 TEST(DecodeStage, MatchesTheTrainersFixtureAndARealModel) {
   REQUIRE_FIXTURES(formats);
   REQUIRE_SCENE("scaffold", scenes);

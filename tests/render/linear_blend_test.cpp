@@ -8,8 +8,6 @@
 
 #include "render/faulty_shaders.h"
 #include "render/support.h"
-#include "stereo/rig.h"
-#include "support/errors.h"
 
 namespace binosplat {
 namespace {

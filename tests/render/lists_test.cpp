@@ -1,8 +1,9 @@
 // The stages bin and sort: which splats each tile blends, and in which order.
 
+#include <fmt/format.h>
 #include <gtest/gtest-spi.h>
-#include <algorithm>
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <functional>
@@ -59,56 +60,27 @@ std::size_t total(const TileLists& lists) {
   return count;
 }
 
-class Lists : public testing::TestWithParam<std::tuple<int, int>> {};  // tiles, tile size
-
-TEST_P(Lists, EqualTheReferences) {
-  const auto [tiles, tile_size] = GetParam();
-  const render::FrameSettings settings = {.tiles = tiles, .tile_size = tile_size};
+TEST(ListsOf, EveryTileTestAndSizeEqualTheReferences) {
   const Model model = test::random_model(21, 2000, 0);
   const std::vector views = {make_view(test::front_camera(333, 131, 300)),
                              make_view(test::front_camera(131, 222, 200))};
-  test::StageRun run(model, views, settings);
-  const TileLists lists = gpu_lists(run);
-  const TileLists expected = reference_lists(model, run.plan);
-  ASSERT_EQ(lists.size(), expected.size());
-  EXPECT_GT(total(expected), 5000u);
-  // fp32 may decide otherwise only at a boundary: 0.02 % (docs/method.md 8).
-  EXPECT_LE(differing_entries(lists, expected), total(expected) / 5000 + 1);
-
-  TileLists shifted = expected;  // every list one tile further: what an index off by one would do
-  std::rotate(shifted.begin(), shifted.begin() + 1, shifted.end());
-  EXPECT_GT(differing_entries(lists, shifted), total(expected) / 100);
-}
-
-TEST_P(Lists, AreInDepthOrderWithTiesByIndex) {
-  const auto [tiles, tile_size] = GetParam();
-  Model model = test::random_model(22, 1500, 0);
-  for (std::size_t i = 0; i < 300; ++i) model.position[5 * i].z = 2.0f;  // 300 at equal depth
-  test::StageRun run(model, {make_view(test::front_camera(160, 96, 150))},
-                     {.tiles = tiles, .tile_size = tile_size});
-  const TileLists lists = gpu_lists(run);
-  const auto splats = run.projected(0).splats;
-  const auto key = [&](std::uint32_t i) { return std::pair(splats[i].depth, i); };
-  std::size_t ties = 0;
-  for (const auto& list : lists) {
-    for (std::size_t k = 1; k < list.size(); ++k) {
-      EXPECT_LT(key(list[k - 1]), key(list[k]));
-      ties += splats[list[k - 1]].depth == splats[list[k]].depth ? 1 : 0;
+  for (int tiles = 0; tiles < std::ssize(tiles_choices); ++tiles) {
+    for (const int tile_size : {8, 16, 32}) {
+      if (tiles == TILES_ALL) continue;  // which needs no reference
+      SCOPED_TRACE(fmt::format("{}, tiles of {}", tiles_choices[tiles].name, tile_size));
+      test::StageRun run(model, views, {.tiles = tiles, .tile_size = tile_size});
+      const TileLists lists = gpu_lists(run), expected = reference_lists(model, run.plan);
+      ASSERT_EQ(lists.size(), expected.size());
+      EXPECT_GT(total(expected), 5000u);
+      // fp32 may decide otherwise only at a boundary: 0.02 % (docs/method.md 8), and 0.05 % of boxes around
+      // shapes, which it makes a little too wide.
+      EXPECT_LE(differing_entries(lists, expected),
+                total(expected) / (tiles == TILES_SNUG ? 2000 : 5000) + 1);
+      TileLists shifted = expected;  // every list one tile further: what an index off by one would do
+      std::rotate(shifted.begin(), shifted.begin() + 1, shifted.end());
+      EXPECT_GT(differing_entries(lists, shifted), total(expected) / 100);
     }
   }
-  EXPECT_GT(ties, 100u);
-}
-
-INSTANTIATE_TEST_SUITE_P(TilesAndSizes, Lists,
-                         testing::Combine(testing::Values(TILES_AABB, TILES_ELLIPSE),
-                                          testing::Values(8, 16, 32)));
-
-TEST(ListsOf, OneSplatOverEveryTileHasEveryTile) {
-  Model model;
-  test::add(model, {0, 0, 2}, glm::vec3(100.0f), 0.5f);
-  test::StageRun run(model, {make_view(test::front_camera(1000, 700, 500))}, {.tile_size = 8});
-  const TileLists lists = gpu_lists(run);
-  EXPECT_TRUE(std::all_of(lists.begin(), lists.end(), [](const auto& list) { return list.size() == 1; }));
 }
 
 TEST(ListsOf, SplatsOnTileEdgesAndBeyondThePictureEqualTheReferences) {
@@ -155,7 +127,8 @@ TEST(ListsOf, SplatsOverThousandsOfTilesAreWhole) {
 
 TEST(ListsOf, ManySupertilesAreBinnedInParts) {
   // More supertiles than a work group has room for in shared memory.
-  const Model model = test::random_model(56, 3000, 0);
+  Model model = test::random_model(56, 3000, 0);
+  for (glm::vec3& scale : model.scale) scale *= 0.1f;
   test::StageRun run(model, {make_view(test::front_camera(4000, 3900, 3000))});
   const TileLists lists = gpu_lists(run), expected = reference_lists(model, run.plan);
   EXPECT_GT(run.plan.supertile_count, test::gl_context().limits().shared_bytes / 4);
@@ -315,22 +288,6 @@ TEST(ListsOf, ABlockThatMissesASplatIsNoticed) {
   EXPECT_TRUE(misses("blocks.glsl", "bits |= ((2u << uint(last))", "bits = ((2u << uint(last))"));
 }
 
-TEST(ListsOf, FramesGrowWithTheirTiles) {
-  const Model model = test::random_model(52, 4000, 1);
-  render::Frame frame(test::gl_context(), model);
-  const render::FrameReport report = frame.draw(two_views(), {}, {.pairs = 50});
-  EXPECT_GE(report.redrawn, 2);  // for the lists, then for the tiles
-  EXPECT_EQ(frame.draw(two_views(), {}).redrawn, 0);
-  EXPECT_TRUE(same_bits(frame.read_pictures()[1], draw(model, two_views())[1]));
-}
-
-TEST(ListsOf, TilesOfAnySizeGiveTheSameBits) {
-  const Model model = test::random_model(54, 400, 1);
-  const Picture expected = draw(model, two_views())[0];
-  for (const int tile_size : {8, 32})
-    EXPECT_TRUE(same_bits(draw(model, two_views(), {.tile_size = tile_size})[0], expected)) << tile_size;
-}
-
 // Lists that are too long to be sorted at once, and depths that are parted badly.
 struct Depths {
   std::string name;
@@ -386,30 +343,26 @@ testing::AssertionResult is_in_order(const TileLists& lists, const Model& model)
   return testing::AssertionSuccess();
 }
 
-class HardLists : public testing::TestWithParam<Depths> {};
-
-TEST_P(HardLists, AreWholeAndInOrder) {
+TEST(HardListsOf, AnyDepthsAreWholeAndInOrder) {
   const Camera camera = test::front_camera(48, 48, 64);
   const bool many = test::switched_on("BINOSPLAT_LONG") || !test::gl_context().software();
-  for (const std::uint32_t count : {100u, 4000u, 4100u, many ? 1'000'000u : 20'000u}) {
-    const Model model = crowd(count, GetParam(), camera);
-    test::StageRun run(model, {make_view(camera)});
-    run.run_until(render::Stage::sort);
-    TileLists lists = run.lists();
-    EXPECT_TRUE(is_in_order(lists, model)) << count;
-    TileLists expected = reference_lists(model, run.plan);
-    EXPECT_EQ(total(lists), total(expected)) << count;
-    test::StageRun again(model, {make_view(camera)});
-    again.run_until(render::Stage::sort);
-    EXPECT_EQ(again.lists(), lists) << "not the same bits twice";
-    std::swap(*std::ranges::max_element(lists, {}, &std::vector<std::uint32_t>::size)->begin(),
-              *std::ranges::max_element(lists, {}, &std::vector<std::uint32_t>::size)->rbegin());
-    EXPECT_FALSE(is_in_order(lists, model)) << "two that have changed places go unnoticed";
+  for (const Depths& depths : hard_depths) {
+    for (const std::uint32_t count : {100u, 4000u, 4100u, many ? 1'000'000u : 20'000u}) {
+      SCOPED_TRACE(fmt::format("{} {}", count, depths.name));
+      const Model model = crowd(count, depths, camera);
+      test::StageRun run(model, {make_view(camera)});
+      TileLists lists = gpu_lists(run);
+      EXPECT_TRUE(is_in_order(lists, model));
+      EXPECT_EQ(total(lists), total(reference_lists(model, run.plan)));
+      test::StageRun again(model, {make_view(camera)});
+      EXPECT_EQ(gpu_lists(again), lists) << "not the same bits twice";
+      std::vector<std::uint32_t>& longest =
+          *std::ranges::max_element(lists, {}, &std::vector<std::uint32_t>::size);
+      std::swap(longest.front(), longest.back());
+      EXPECT_FALSE(is_in_order(lists, model)) << "two that have changed places go unnoticed";
+    }
   }
 }
-
-INSTANTIATE_TEST_SUITE_P(All, HardLists, testing::ValuesIn(hard_depths),
-                         [](const auto& one) { return one.param.name; });
 
 TEST(HardListsOf, ArePartedInFramesOfMoreViews) {
   // Splats in one supertile and in all eight, that fill more than half of the room for entries and no other.

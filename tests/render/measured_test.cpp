@@ -7,7 +7,6 @@
 #include "render/history.h"
 #include "render/support.h"
 #include "stereo/rig.h"
-#include "support/errors.h"
 
 namespace binosplat {
 namespace {
@@ -91,7 +90,6 @@ TEST(Remember, MeasuresSomeFramesOfAStillCameraForAll) {
   EXPECT_EQ(recorded, "rrrr---r---r---r");
   frame.forget();
   EXPECT_TRUE(frame.draw(std::vector{wall_view()}, settings).measured);
-  EXPECT_THROW(frame.draw(std::vector{wall_view()}, {.measure_every = 0}), Error);
 }
 
 TEST(Remember, MeasuresAnewOnceTheEyesHaveGoneAThirdOfTheWayToACut) {
@@ -160,20 +158,6 @@ TEST(Remember, WhatComesOutFromBehindIsSeenAgain) {
   EXPECT_GT(db, 35.0);
 }
 
-TEST(Remember, EachEyeGoesByWhatItMeasured) {
-  const Model model = test::random_model(82, 4000, 1);
-  const auto rig = stereo::make_rig(test::front_camera(120, 90, 110), {.ipd = 0.06});
-  std::uint64_t pairs[TRANSMITTANCE_LAST + 1] = {};
-  for (const int source : {TRANSMITTANCE_ONE, TRANSMITTANCE_LAST}) {
-    render::Frame frame(test::gl_context(), model);
-    for (int n = 0; n < 3; ++n) {
-      pairs[source] =
-          frame.draw(rig.views, {.th = TH_PERIPHERAL, .transmittance = source, .tolerance = 1.0f}).pairs;
-    }
-  }
-  EXPECT_LT(pairs[TRANSMITTANCE_LAST], pairs[TRANSMITTANCE_ONE]);
-}
-
 TEST(Remember, AFrameThatIsDrawnAgainMeasuresTheSame) {
   const Model model = test::random_model(83, 4000, 1);
   const std::vector views = {make_view(test::front_camera(120, 90, 110))};
@@ -185,12 +169,6 @@ TEST(Remember, AFrameThatIsDrawnAgainMeasuresTheSame) {
     tight.draw(views, settings, {.slots = 10 + n});
     EXPECT_TRUE(same_bits(ample.read_pictures().front(), tight.read_pictures().front())) << n;
   }
-}
-
-TEST(Remember, WhatMakesNoSenseIsNamed) {
-  const Model model = test::random_model(84, 10, 0);
-  EXPECT_TRUE(test::fails_saying([&] { test::draw(model, wall_view(), {.th = TH_SQUARED, .tolerance = -1}); },
-                                 {"tolerance -1"}));
 }
 
 TEST(Continuity, TellsAMomentFromACut) {

@@ -75,39 +75,34 @@ TEST_P(InPerspective, EqualsTheReference) {
     SCOPED_TRACE(model.name);
     const Picture expected = reference::render(model, view);
     const Picture drawn = draw(model, view);
-    EXPECT_GE(psnr(drawn, expected), 80.0) << model.name;
-    EXPECT_GE(psnr(draw(model, view, {.precision = PRECISION_HALF}), expected), 60.0) << model.name;
-    for (const Perspective& other : perspectives) {
-      if (other == GetParam()) continue;
-      EXPECT_LT(psnr(drawn, reference::render(model, view, {.perspective = other})), 50.0)
-          << name_of_perspective(other);
-      const Picture by_settings = draw(model, view, {.order = other.order, .projection = other.projection});
-      EXPECT_TRUE(same_bits(by_settings, draw(in(other, plain), view))) << name_of_perspective(other);
-    }
+    EXPECT_GE(psnr(drawn, expected), 80.0);
+    double depth_off = 0.0;
+    for (std::size_t k = 0; k < drawn.z_sum.size(); ++k)
+      depth_off = std::max(depth_off, std::abs(double{drawn.z_sum[k]} - expected.z_sum[k]));
+    EXPECT_LE(depth_off, 0.05);  // a Gaussian at tau
+    EXPECT_GT(depth_off, 0.0);
+    EXPECT_GE(psnr(draw(model, view, {.precision = PRECISION_HALF}), expected), 60.0);
+    const Perspective &mine = GetParam(), other{1 - mine.order, mine.projection},
+                      another{mine.order, 1 - mine.projection};
+    EXPECT_LT(psnr(drawn, reference::render(model, view, {.perspective = other})), 50.0);
+    EXPECT_LT(psnr(drawn, reference::render(model, view, {.perspective = another})), 50.0);
+    const Model opposite = in({1 - mine.order, 1 - mine.projection}, plain);
+    EXPECT_TRUE(same_bits(draw(opposite, view, {.order = mine.order, .projection = mine.projection}), drawn))
+        << "settings go before what a model was trained with";
   }
 }
 
-TEST_P(InPerspective, DepthIsTheReferences) {
-  const Model model = in(GetParam(), surrounding_model(63, 4000));
-  const shared::View view = make_view(wide_camera());
-  const Picture drawn = draw(model, view), expected = reference::render(model, view);
-  double worst = 0.0;
-  for (std::size_t k = 0; k < drawn.z_sum.size(); ++k)
-    worst = std::max(worst, std::abs(double(drawn.z_sum[k]) - expected.z_sum[k]));
-  EXPECT_LE(worst, 0.05);  // a Gaussian at tau
-  EXPECT_GT(worst, 0.0);
-}
-
 // Of the affine projection frame_test.cpp holds it, and what is sorted by is no matter of tiles.
-TEST(Perspectives, EllipseAndSnugEqualBruteForceBitForBit) {
+TEST(Perspectives, ExactTilesEqualBruteForceBitForBit) {
   const Model model = in(steady, surrounding_model(64, 1000));
   const shared::View view = make_view(wide_camera());
   const Picture brute = draw(model, view, {.tiles = TILES_ALL});
-  for (const int tile_size : {8, 16, 32})
+  for (const int tile_size : {8, 32})
     EXPECT_TRUE(same_bits(draw(model, view, {.tile_size = tile_size}), brute)) << "tiles of " << tile_size;
-  EXPECT_TRUE(same_bits(draw(model, view, {.tiles = TILES_SNUG}), brute));
-  EXPECT_FALSE(same_bits(draw(model, view, {.tiles = TILES_AABB}), brute));
-  EXPECT_FALSE(same_bits(draw(model, view, {.tiles = TILES_OBB}), brute));
+  for (const int tiles : test::exact_tiles)
+    EXPECT_TRUE(same_bits(draw(model, view, {.tiles = tiles}), brute)) << tiles_choices[tiles].name;
+  for (const int tiles : test::clipping_tiles)
+    EXPECT_FALSE(same_bits(draw(model, view, {.tiles = tiles}), brute)) << tiles_choices[tiles].name;
   const Picture half = draw(model, view, {.tiles = TILES_ALL, .precision = PRECISION_HALF});
   EXPECT_TRUE(same_bits(draw(model, view, {.precision = PRECISION_HALF}), half));
   EXPECT_FALSE(same_bits(half, brute));
@@ -141,7 +136,8 @@ struct WideView {
 };
 
 TEST(Perspectives, TilesChangeNoBitAtAnyFieldOfView) {
-  for (std::uint32_t n = 0; n < 40; ++n) EXPECT_GE(WideView(n).worst_psnr(), 65.0) << n;
+  const std::uint32_t step = test::switched_on("BINOSPLAT_LONG") ? 1 : 3;
+  for (std::uint32_t n = 0; n < 40; n += step) EXPECT_GE(WideView(n).worst_psnr(), 65.0) << n;
   const test::FaultyShaders faulty("blending.glsl", "ray) >= 0.0) continue;", "ray) >= -9.0) continue;");
   EXPECT_LT(WideView(39).worst_psnr(), 60.0);
 }
@@ -150,7 +146,8 @@ TEST_P(InPerspective, PairsAreTheReferences) {
   const Model model = in(GetParam(), surrounding_model(65, 3000));
   const shared::View view = make_view(wide_camera());
   const bool every_test = test::switched_on("BINOSPLAT_LONG") || !test::gl_context().software();
-  for (const int tiles : {TILES_AABB, TILES_OBB, TILES_SNUG, TILES_ELLIPSE}) {
+  for (int tiles = 0; tiles < std::ssize(tiles_choices); ++tiles) {
+    if (tiles == TILES_ALL) continue;
     if (!every_test && tiles != TILES_ELLIPSE && GetParam().order != ORDER_DEPTH)
       continue;  // what is sorted by is no matter of tiles
     test::StageRun run(model, {view}, {.tiles = tiles});
@@ -177,7 +174,7 @@ TEST_P(InPerspective, PairsAreTheReferences) {
 TEST_P(InPerspective, ThresholdsAndStagesOfTheReferenceGiveItsPictures) {
   const Model model = in(GetParam(), surrounding_model(66, 2000));
   const auto eyes = stereo::make_rig(wide_camera(), {.ipd = 0.06});
-  for (const int th : {TH_PERIPHERAL, TH_SQUARED}) {
+  for (const int th : test::tolerant_rules) {
     const FrameSettings settings{.th = th, .tolerance = 0.5f};
     const std::vector<Picture> drawn = draw(model, {eyes.views.begin(), eyes.views.end()}, settings);
     for (const std::size_t eye : {0, 1}) {
@@ -264,7 +261,7 @@ void expect_nothing_changes_by_turning(const Model& plain, const Camera& camera,
   const Model trained = in({}, plain);
   render::Frame other(test::gl_context(), trained);
   for (const glm::dvec3& axis : {glm::dvec3(0, 1, 0), glm::dvec3(1, 0, 0), glm::dvec3(0, 0, 1)}) {
-    for (const double degrees : is_long ? std::vector{0.25, 1.0, 5.0, 15.0, 45.0} : std::vector{1.0, 45.0})
+    for (const double degrees : is_long ? std::vector{0.25, 1.0, 5.0, 15.0, 45.0} : std::vector{15.0})
       EXPECT_GE(consistency(frame, camera, axis, degrees, rays), 100.0) << plain.name << " " << degrees;
     // About the view's own axis depths stay what they are.
     if (axis.z == 0.0) {
@@ -274,7 +271,7 @@ void expect_nothing_changes_by_turning(const Model& plain, const Camera& camera,
 }
 
 TEST(Turn, ChangesNothingInASurroundingModel) {
-  expect_nothing_changes_by_turning(surrounding_model(68, 2000), wide_camera(), 64);
+  expect_nothing_changes_by_turning(surrounding_model(68, 2000), wide_camera(), 24);
 }
 
 TEST(Turn, ChangesNothingInTheBuiltInScenes) {
@@ -308,7 +305,7 @@ TEST(Turn, PixelsByThemselvesAreThoseOfThePicture) {
     const Camera camera = wide_camera();
     const Picture whole = draw(model, make_view(camera));
     std::vector<glm::dvec2> pixels;
-    for (int k = 0; k < 40; ++k) pixels.emplace_back((37 * k) % camera.width, (53 * k) % camera.height);
+    for (int k = 0; k < 16; ++k) pixels.emplace_back((37 * k) % camera.width, (53 * k) % camera.height);
     const auto colours = measure::colours_at(frame, camera, pixels, {});
     for (std::size_t k = 0; k < pixels.size(); ++k) {
       const auto at = static_cast<std::size_t>(pixels[k].y * camera.width + pixels[k].x);

@@ -59,6 +59,8 @@ TEST(Settings, ThatContradictAreNamed) {
       {{.th = TH_SQUARED, .tolerance = nan}, "--tolerance nan"},
       {{.th = TH_SQUARED, .tolerance = infinite}, "--tolerance inf"},
       {{.th = TH_SQUARED, .quality = nan}, "--quality nan"},
+      {{.th = TH_SQUARED, .quality = -1.0f}, "--quality -1"},
+      {{.th = TH_SQUARED, .quality = 40.0f, .probe_tiles = 0}, "0 tiles of a view to probe"},
       {{.tile_size = 12}, "--tile 12"},
       {{.measure_every = 0}, "measuring one of 0 frames"},
   };

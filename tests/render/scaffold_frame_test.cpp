@@ -75,18 +75,6 @@ TEST(ScaffoldFrame, APrecisionThatChangesForgetsWhatWasKept) {
   EXPECT_TRUE(frame.draw(eyes_at_scaffold(), settings).used_measured);
 }
 
-TEST(ScaffoldFrame, TileTestsAgreeBitForBit) {
-  const Model model = test::scaffold_model(22, four_hundred);
-  const std::vector<shared::View> views = eyes_at_scaffold();
-  const std::vector<Picture> brute = draw(model, views, {.tiles = TILES_ALL});
-  for (const int tiles : {TILES_SNUG, TILES_ELLIPSE}) {
-    const std::vector<Picture> drawn = draw(model, views, {.tiles = tiles, .tile_size = 8});
-    for (std::size_t v = 0; v < 2; ++v)
-      EXPECT_TRUE(same_bits(drawn[v], brute[v])) << tiles_choices[tiles].name;
-  }
-  EXPECT_FALSE(same_bits(draw(model, views, {.tiles = TILES_AABB})[0], brute[0]));
-}
-
 TEST(ScaffoldFrame, EachEyeEqualsItsMonoPictureBitForBit) {
   const Model model = test::scaffold_model(23, four_hundred);
   for (const double cant : {0.0, 5.0}) {
@@ -166,15 +154,6 @@ TEST(ScaffoldFrame, WhatIsHiddenMakesFewerPairs) {
   EXPECT_GT(test::psnr(frame.read_pictures()[0], exact[0]), 40.0);
 }
 
-TEST(ScaffoldFrame, AThresholdTakesEachEyesOwn) {
-  const Model model = test::scaffold_model(29, four_hundred);
-  const std::vector<shared::View> views = eyes_at_scaffold();
-  const std::vector<Picture> exact = draw(model, views);
-  const std::vector<Picture> drawn = draw(model, views, {.th = TH_SQUARED});
-  for (std::size_t v = 0; v < 2; ++v) EXPECT_TRUE(same_bits(drawn[v], exact[v])) << v;
-  EXPECT_FALSE(same_bits(draw(model, views, {.th = TH_SQUARED, .tolerance = 0.05f})[0], exact[0]));
-}
-
 TEST(ScaffoldFrame, AProbeSharesTheGaussiansOfItsView) {
   // Without tolerance a strip beside the picture differs from it by nothing, though the strip alone would see
   // other anchors.
@@ -183,9 +162,8 @@ TEST(ScaffoldFrame, AProbeSharesTheGaussiansOfItsView) {
   for (const int decode : {DECODE_EYES, DECODE_CYCLOPEAN}) {
     render::Frame frame(test::gl_context(), model);
     const FrameSettings settings{.th = TH_SQUARED, .quality = 200.0f, .decode = decode};
-    render::FrameReport report;
-    for (int n = 0; n < 40; ++n) report = frame.draw(views, settings);
-    EXPECT_GT(report.quality, 100.0f) << decode_choices[decode].name;
+    for (int n = 0; n < 2; ++n)
+      EXPECT_GT(frame.draw(views, settings).quality, 100.0f) << decode_choices[decode].name << " " << n;
   }
 }
 

@@ -8,13 +8,10 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "demo/demo.h"
 #include "formats/cameras_file.h"
 #include "formats/image_file.h"
 #include "formats/model_file.h"
 #include "render/support.h"
-#include "stereo/rig.h"
-
 namespace binosplat {
 namespace {
 
@@ -102,44 +99,20 @@ fs::path photo(const fs::path& folder, const std::string& view) {
   return {};
 }
 
-// Scenes on llvmpipe take long: in the short run a view of fox, of each of its models, whose figures
-// docs/method.md has, stands for the others.
-bool is_for_the_long_run(const Case& c) {
-  return test::gl_context().software() && !test::switched_on("BINOSPLAT_LONG") &&
-         std::string(c.view) != "0001";
-}
-
-class Scenes : public testing::TestWithParam<Case> {};
-
-TEST_P(Scenes, ObbAndSnugMakeTheirPairs) {
-  const Case& c = GetParam();
-  if (c.obb == 0) return;  // docs/method.md has no figures of this view
-  if (is_for_the_long_run(c)) GTEST_SKIP() << "one of many views: set BINOSPLAT_LONG=1";
-  REQUIRE_SCENE(c.trained.scene, folder);
-  DrawnScene drawn(folder, c);
-  const auto within = [&](int tiles, std::size_t expected, double share) {
-    const auto pairs = static_cast<double>(drawn.draw(tiles).pairs);
-    EXPECT_NEAR(pairs, static_cast<double>(expected), share * static_cast<double>(expected));
-  };
-  within(TILES_OBB, c.obb, 0.0002);
-  within(TILES_SNUG, c.snug, 0.0005);
-  const Picture snug = drawn.picture;
-  drawn.draw(TILES_ELLIPSE);
-  EXPECT_TRUE(test::same_bits(snug, drawn.picture));
-}
-
-TEST_P(Scenes, AabbIsInriasPictureAndPsnr) {
-  const Case& c = GetParam();
-  if (is_for_the_long_run(c) && std::string(c.view) != "DSC07956")  // the other scene has one, too
-    GTEST_SKIP() << "one of many views: set BINOSPLAT_LONG=1";
-  REQUIRE_SCENE(c.trained.scene, folder);
-  DrawnScene drawn(folder, c);
-  const auto report = drawn.draw(TILES_AABB);
-  const Image image = quantised(over_black(drawn.picture));
-  if (c.aabb != 0) {
-    EXPECT_NEAR(static_cast<double>(report.pairs), static_cast<double>(c.aabb),
-                0.0002 * static_cast<double>(c.aabb));
+// Draws by a tile test, whose pairs docs/method.md has for some views.
+render::FrameReport draw_pairs(DrawnScene& drawn, int tiles, std::size_t expected, double share = 0.0002) {
+  const auto report = drawn.draw(tiles);
+  if (expected != 0) {
+    EXPECT_NEAR(static_cast<double>(report.pairs), static_cast<double>(expected),
+                share * static_cast<double>(expected))
+        << tiles_choices[tiles].name;
   }
+  return report;
+}
+
+void expect_inrias_picture_and_psnr(const Case& c, const fs::path& folder, DrawnScene& drawn) {
+  const auto report = draw_pairs(drawn, TILES_AABB, c.aabb);
+  const Image image = quantised(over_black(drawn.picture));
   const fs::path inria = folder / c.trained.inria / (std::string(c.view) + ".png");
   if (fs::exists(inria)) {
     const double db = measure::psnr(image, load_image(inria));
@@ -155,16 +128,8 @@ TEST_P(Scenes, AabbIsInriasPictureAndPsnr) {
   EXPECT_NEAR(measure::psnr(image, photograph), figures.at(c.view).get<double>(), 0.005);
 }
 
-TEST_P(Scenes, ExactEqualsTheReference) {
-  const Case& c = GetParam();
-  if (is_for_the_long_run(c)) GTEST_SKIP() << "one of many views: set BINOSPLAT_LONG=1";
-  REQUIRE_SCENE(c.trained.scene, folder);
-  DrawnScene drawn(folder, c);
-  const auto report = drawn.draw(TILES_ELLIPSE);
-  if (c.ellipse != 0) {
-    EXPECT_NEAR(static_cast<double>(report.pairs), static_cast<double>(c.ellipse),
-                0.0002 * static_cast<double>(c.ellipse));
-  }
+// Of the exact picture, which was drawn last.
+void expect_the_reference(const Case& c, DrawnScene& drawn) {
   const auto splats = reference::project_all(drawn.model, drawn.view);
   const auto lists = reference::make_lists(splats, reference::depth_order(splats), drawn.view, TILES_ELLIPSE);
   const Image image = over_black(drawn.picture);
@@ -191,12 +156,30 @@ TEST_P(Scenes, ExactEqualsTheReference) {
   EXPECT_GE(measure::psnr(over_black(drawn.picture), expected), 60.0) << "half";
 }
 
+class Scenes : public testing::TestWithParam<Case> {};
+
+TEST_P(Scenes, AreAsInriaThePhotosAndTheReferenceHaveThem) {
+  const Case& c = GetParam();
+  // On llvmpipe a view of fox, of each of its models, stands for the others.
+  if (!test::switched_on("BINOSPLAT_LONG") && std::string(c.view) != "0001" && test::gl_context().software())
+    GTEST_SKIP() << "one of many views: set BINOSPLAT_LONG=1";
+  REQUIRE_SCENE(c.trained.scene, folder);
+  DrawnScene drawn(folder, c);
+  expect_inrias_picture_and_psnr(c, folder, drawn);
+  if (c.obb != 0) draw_pairs(drawn, TILES_OBB, c.obb);
+  draw_pairs(drawn, TILES_SNUG, c.snug, 0.0005);
+  const Picture snug = drawn.picture;
+  draw_pairs(drawn, TILES_ELLIPSE, c.ellipse);
+  EXPECT_TRUE(test::same_bits(snug, drawn.picture));
+  expect_the_reference(c, drawn);
+}
+
 // Other orders and projections than 3D-GS's; smaller where the CPU draws.
 TEST(SceneSeen, OtherwiseEqualsTheReference) {
   const bool software = test::gl_context().software();
+  const bool is_short = software && !test::switched_on("BINOSPLAT_LONG");
   for (const Case& c : {Case{fox, "0042"}, Case{garden, "DSC07956"}}) {
-    if (std::string(c.trained.scene) == "garden" && software && !test::switched_on("BINOSPLAT_LONG"))
-      continue;  // 20 s
+    if (std::string(c.trained.scene) == "garden" && is_short) continue;  // 20 s
     REQUIRE_SCENE(c.trained.scene, folder);
     DrawnScene drawn(folder, c);
     if (software) {
@@ -208,8 +191,9 @@ TEST(SceneSeen, OtherwiseEqualsTheReference) {
     drawn.draw(TILES_ELLIPSE);
     const Image trained = over_black(drawn.picture);
     for (const Perspective& seen :
-         {Perspective{ORDER_DISTANCE, PROJECTION_AFFINE}, Perspective{ORDER_DEPTH, PROJECTION_TANGENT},
-          Perspective{ORDER_DISTANCE, PROJECTION_TANGENT}}) {
+         {Perspective{ORDER_DISTANCE, PROJECTION_TANGENT}, Perspective{ORDER_DISTANCE, PROJECTION_AFFINE},
+          Perspective{ORDER_DEPTH, PROJECTION_TANGENT}}) {
+      if (is_short && seen != Perspective{ORDER_DISTANCE, PROJECTION_TANGENT}) continue;
       const Image expected = over_black(reference::render(drawn.model, drawn.view, {.perspective = seen}));
       drawn.draw({.order = seen.order, .projection = seen.projection});
       const double db = measure::psnr(over_black(drawn.picture), expected);
@@ -224,45 +208,6 @@ TEST(SceneSeen, OtherwiseEqualsTheReference) {
 
 INSTANTIATE_TEST_SUITE_P(All, Scenes, testing::ValuesIn(cases),
                          [](const auto& one) { return name_of_case(one.param); });
-
-// Each eye has the same bits drawn with the other and alone, for parallel and for canted eyes; without a
-// distance between them both are equal.
-void expect_eyes_equal_themselves_alone(const Model& model, const Camera& head, double units_per_metre) {
-  render::Frame frame(test::gl_context(), model);
-  for (const double cant : {0.0, 5.0}) {
-    const auto rig = stereo::make_rig(head, {.units_per_metre = units_per_metre, .cant_degrees = cant});
-    frame.draw(rig.views);
-    const auto both = frame.read_pictures();
-    for (const std::size_t eye : {0, 1}) {
-      frame.draw(std::span(&rig.views[eye], 1));
-      const auto alone = frame.read_pictures().front();
-      EXPECT_TRUE(test::same_bits(both[eye], alone)) << model.name << " cant " << cant;
-      EXPECT_FALSE(test::same_bits(both[1 - eye], alone)) << model.name << " cant " << cant;
-    }
-  }
-  const auto together = stereo::make_rig(head, {.ipd = 0.0});
-  frame.draw(together.views);
-  const auto equal = frame.read_pictures();
-  EXPECT_TRUE(test::same_bits(equal[0], equal[1])) << model.name;
-}
-
-TEST(SceneEyes, EachEqualsItselfAloneBitForBit) {
-  const bool is_short = test::gl_context().software() && !test::switched_on("BINOSPLAT_LONG");
-  for (const Case& c : {Case{fox, "0042"}, Case{garden, "DSC07956"}}) {
-    if (is_short && std::string(c.trained.scene) == "garden") continue;
-    REQUIRE_SCENE(c.trained.scene, folder);
-    const auto cameras = load_cameras(folder / "cameras.json");
-    const auto head =
-        std::find_if(cameras.begin(), cameras.end(), [&](const Camera& k) { return k.name == c.view; });
-    ASSERT_NE(head, cameras.end());
-    expect_eyes_equal_themselves_alone(load_model(folder / c.trained.ply), resized(*head, 160, 120), 1.7);
-  }
-}
-
-TEST(DemoEyes, EachEqualsItselfAloneBitForBit) {
-  const Demo demo = demo_room();
-  expect_eyes_equal_themselves_alone(demo.model, resized(demo.cameras.front(), 160, 90), 1.0);
-}
 
 TEST(SceneBruteForce, EllipseEqualsItBitForBit) {
   // Offering everything to every tile is for a GPU; llvmpipe gets the random models of frame_test.cpp.

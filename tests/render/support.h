@@ -62,8 +62,8 @@ inline double psnr(const Picture& a, const Picture& b) {
 /// A frame drawn as far as a stage, with every buffer at hand.
 struct StageRun {
   StageRun(const Model& model, std::vector<shared::View> of_views, const render::FrameSettings& with = {},
-           const std::optional<render::Probe>& and_probe = {}, std::uint32_t page_gaussians = 0)
-      : drawn(std::make_shared<render::GpuModel>(gl_context(), model, with.precision, page_gaussians)),
+           const std::optional<render::Probe>& and_probe = {})
+      : drawn(std::make_shared<render::GpuModel>(gl_context(), model, with.precision)),
         views(std::move(of_views)),
         settings(with),
         probe(and_probe) {}
@@ -154,5 +154,23 @@ inline std::size_t differing(const std::vector<float>& measured, const Model& mo
     count += std::abs(measured[i] - expected[i]) > 1e-4 ? 1 : 0;
   return count;
 }
+
+/// Of the table of tile tests: those that make every pair that can be seen but `all`, which pictures of
+/// theirs are compared with, and those that clip tails.
+inline std::vector<int> tiles_of_kind(bool exact) {
+  std::vector<int> tiles;
+  for (int t = 0; t < std::ssize(tiles_choices); ++t)
+    if (t != TILES_ALL && render::has_every_pair(t) == exact) tiles.push_back(t);
+  return tiles;
+}
+inline const std::vector<int> exact_tiles = tiles_of_kind(true), clipping_tiles = tiles_of_kind(false);
+
+/// The threshold rules that have a tolerance.
+inline const std::vector<int> tolerant_rules = [] {
+  std::vector<int> rules;
+  for (int th = 0; th < std::ssize(th_choices); ++th)
+    if (!render::is_exact(th)) rules.push_back(th);
+  return rules;
+}();
 
 }  // namespace binosplat::test

@@ -14,8 +14,6 @@ using render::FrameSettings;
 
 constexpr double tolerance = 0.6;
 
-stereo::EyePair rig() { return stereo::make_rig(test::front_camera(120, 90, 110), {.ipd = 0.3}); }
-
 // Th of every Gaussian by itself as one view has it, 0 where it does not draw it. `bounds` by Gaussian.
 std::vector<double> thresholds(const Model& model, const shared::View& view, int th,
                                const std::vector<double>& bounds = {}) {
@@ -49,41 +47,23 @@ Compared compare_rho(const test::StageRun& run, std::uint32_t view, const Model&
 TEST(ThEyes, EachEyeGoesByItsOwn) {
   // Near and large, so that the eyes see different sizes.
   const Model model = test::random_model(91, 3000, 0);
-  const auto eyes = rig().views;
-  for (const int th : {TH_PERIPHERAL, TH_SQUARED}) {
-    const std::vector<double> expected[2] = {thresholds(model, eyes[0], th), thresholds(model, eyes[1], th)};
-    test::StageRun run(model, {eyes[0], eyes[1]}, {.th = th, .tolerance = static_cast<float>(tolerance)});
-    run.run_until(render::Stage::project);
-    for (std::uint32_t eye = 0; eye < 2; ++eye) {
-      const Compared c = compare_rho(run, eye, model, expected[eye]);
-      EXPECT_EQ(c.wrong, 0) << "of " << c.all;
-      EXPECT_GT(c.all, 300);
-      // The other eye's would be told apart.
-      EXPECT_GT(compare_rho(run, eye, model, expected[1 - eye]).wrong, c.all / 20);
+  for (const double cant : {0.0, 5.0}) {
+    const auto eyes =
+        stereo::make_rig(test::front_camera(120, 90, 110), {.ipd = 0.3, .cant_degrees = cant}).views;
+    for (const int th : test::tolerant_rules) {
+      const std::vector<double> expected[2] = {thresholds(model, eyes[0], th),
+                                               thresholds(model, eyes[1], th)};
+      test::StageRun run(model, {eyes[0], eyes[1]}, {.th = th, .tolerance = static_cast<float>(tolerance)});
+      run.run_until(render::Stage::project);
+      // The stage runs once an order group, and canted eyes are two: the last one's splats are left.
+      for (std::uint32_t eye = cant == 0.0 ? 0 : 1; eye < 2; ++eye) {
+        const Compared c = compare_rho(run, eye, model, expected[eye]);
+        EXPECT_EQ(c.wrong, 0) << "of " << c.all;
+        EXPECT_GT(c.all, 300);
+        // The other eye's would be told apart.
+        EXPECT_GT(compare_rho(run, eye, model, expected[1 - eye]).wrong, c.all / 20);
+      }
     }
-  }
-}
-
-TEST(ThEyes, CantedEyesGoByTheirOwn) {
-  const Model model = test::random_model(92, 3000, 0);
-  const auto eyes = stereo::make_rig(test::front_camera(120, 90, 110), {.ipd = 0.3, .cant_degrees = 5}).views;
-  test::StageRun run(model, {eyes[0], eyes[1]},
-                     {.th = TH_SQUARED, .tolerance = static_cast<float>(tolerance)});
-  run.run_until(render::Stage::project);
-  // The stage runs once an order group, and the last one's splats are in the order of its own indices.
-  const Compared c = compare_rho(run, 1, model, thresholds(model, eyes[1], TH_SQUARED));
-  EXPECT_EQ(c.wrong, 0);
-  EXPECT_GT(c.all, 300);
-}
-
-TEST(ThEyes, ToleranceOfZeroIsExactBitForBit) {
-  const Model model = test::random_model(93, 3000, 1);
-  const auto eyes = rig().views;
-  const std::vector views(eyes.begin(), eyes.end());
-  const auto exact = test::draw(model, views);
-  for (const int th : {TH_PERIPHERAL, TH_SQUARED}) {
-    const auto drawn = test::draw(model, views, {.th = th});
-    for (std::size_t eye = 0; eye < 2; ++eye) EXPECT_TRUE(test::same_bits(drawn[eye], exact[eye]));
   }
 }
 

@@ -65,9 +65,8 @@ testing::AssertionResult windows_are_right(const Model& model, const FrameSettin
 
 TEST(Parts, WindowsAreTheWholePictureBitForBit) {
   const Model model = test::random_model(41, 3000, 1, 0.75);
-  EXPECT_TRUE(windows_are_right(model, {}));
   EXPECT_TRUE(windows_are_right(model, {.th = TH_SQUARED, .tolerance = 0.05f}));
-  for (const int tiles : {TILES_SNUG, TILES_OBB, TILES_AABB, TILES_ALL})
+  for (int tiles = 0; tiles < std::ssize(tiles_choices); ++tiles)
     EXPECT_TRUE(windows_are_right(model, {.tiles = tiles})) << tiles_choices[tiles].name;
   for (const int tile_size : {8, 32}) EXPECT_TRUE(windows_are_right(model, {.tile_size = tile_size}));
   EXPECT_TRUE(windows_are_right(
@@ -156,7 +155,7 @@ std::vector<std::size_t> list_sizes(const Model& model, const FrameSettings& set
 
 TEST(Parts, WhatIsNotShownMakesNoPairs) {
   const Model model = test::random_model(43, 3000, 1, 0.75);
-  for (const int tiles : {TILES_ELLIPSE, TILES_SNUG, TILES_AABB}) {
+  for (int tiles = 0; tiles < std::ssize(tiles_choices); ++tiles) {
     const FrameSettings whole{.tiles = tiles};
     const ViewRegion part = ragged(whole.tile_size);
     EXPECT_EQ(list_sizes(model, with(whole, {part}), part), list_sizes(model, whole, part))
@@ -211,7 +210,7 @@ TEST(Parts, AHoleThatMovesIsACut) {
 TEST(Parts, AViewGoesByItsShareOfTheTolerance) {
   const Model model = test::random_model(45, 4000, 1, 0.75);
   const std::vector views = {view_of_centre(100), view_of_centre(100), view_of_centre(100)};
-  for (const int th : {TH_SQUARED, TH_PERIPHERAL}) {
+  for (const int th : test::tolerant_rules) {
     FrameSettings settings{.th = th, .tolerance = 0.1f};
     const auto drawn = draw(
         model, views,
