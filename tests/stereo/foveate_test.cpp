@@ -9,7 +9,6 @@
 
 #include "render/faulty_shaders.h"
 #include "render/support.h"
-#include "stereo/layout.h"
 #include "stereo/present.h"
 #include "stereo/rig.h"
 #include "support/caller.h"
@@ -80,6 +79,7 @@ TEST(Foveate, TheInsetIsTheExactPictureBitForBit) {
           .inset_degrees = 18, .context_scale = 0.3 + 0.1 * static_cast<double>(n), .gaze = gazes[n]};
       const auto drawn = draw(model, views, foveation);
       EXPECT_EQ(drawn.report.order_groups, rig.cant_degrees == 0.0 ? 1u : 2u);
+      EXPECT_EQ(drawn.report.stages.back().name, "compose");
       for (std::size_t eye = 0; eye < 2; ++eye) {
         const glm::dvec2 gaze =
             gazes[n].empty() ? glm::dvec2(0.0) : gazes[n][std::min(eye, gazes[n].size() - 1)];
@@ -110,13 +110,6 @@ TEST(Foveate, TheInsetIsExactWhateverTheContextMayCost) {
     EXPECT_TRUE(is_sharp(drawn.pictures[eye], exact[eye], views[eye], foveation, {}));
     EXPECT_FALSE(test::same_bits(drawn.pictures[eye], lossless.pictures[eye]));
   }
-}
-
-TEST(Foveate, CantedEyesShareOneOrderByDistance) {
-  const Model model = test::random_model(73, 1000, 0, 0.75);
-  const auto drawn = draw(model, eyes_of_rig(rigs[2]), {}, {.order = ORDER_DISTANCE});
-  EXPECT_EQ(drawn.report.order_groups, 1u);
-  EXPECT_EQ(drawn.report.stages.back().name, "compose");
 }
 
 double catmull_rom(double t) {
@@ -277,34 +270,6 @@ TEST(Foveate, ComposesOntoCanvases) {
   EXPECT_THROW(
       frame.draw(eyes_of_rig(rigs[0]), {}, settings, {}, {.canvases = std::span(canvases.list).first(1)}),
       Error);
-}
-
-TEST(Foveate, ComposedPicturesGoIntoEveryLayout) {
-  test::Caller caller;
-  const Model model = test::random_model(77, 500, 0, 0.75);
-  FoveatedFrame frame(std::make_shared<render::GpuModel>(*caller.context, model, PRECISION_FULL));
-  frame.draw(eyes_of_rig(rigs[0]), {.gaze = {{5, 5}}});
-  const auto pictures = frame.read_pictures();
-  stereo::Presenter presenter(*caller.context);
-  const glm::vec3 blue(0.1f, 0.2f, 0.6f);
-  for (const int layout : {LAYOUT_PARALLEL, LAYOUT_OVER_UNDER}) {
-    const auto extent = stereo::layout_size(layout, size);
-    const std::uint32_t texture = caller.texture(GL_RGBA32F, extent.x, extent.y);
-    presenter.draw(frame.colours(), frame.views(), 0, layout, {.texture = texture}, blue);
-    const auto pixels = caller.read<float>(texture, extent.x, extent.y);
-    const Image written = composite(stereo::lay_out(layout, pictures[0], pictures[1], blue), blue);
-    double worst = 0;
-    for (int y = 0; y < extent.y; ++y) {
-      for (int x = 0; x < extent.x; ++x) {
-        const auto at = 4 * static_cast<std::size_t>((extent.y - 1 - y) * extent.x + x);
-        for (int c = 0; c < 3; ++c)
-          worst = std::max(worst,
-                           std::abs(double{pixels[at + static_cast<std::size_t>(c)]} - written.at(x, y, c)));
-      }
-    }
-    EXPECT_LT(worst, 1e-6);
-    caller.gl.DeleteTextures(1, &texture);
-  }
 }
 
 TEST(Foveate, WrongWordsAreNamed) {

@@ -163,32 +163,21 @@ TEST(Layout, PlacedPixelsKeepColourCoverageAndDepth) {
   })) << "columns that are rows go unnoticed";
 }
 
-TEST(Layout, HalfWidthIsTheMeanOfTwoColumns) {
-  const Picture left = random_picture(8, 3, 1), right = random_picture(8, 3, 2);
-  const Picture out = lay_out(LAYOUT_HALF_WIDTH, left, right, std::nullopt);
-  ASSERT_EQ(out.width, 8);
-  for (std::size_t y = 0; y < 3; ++y) {
-    for (std::size_t x = 0; x < 8; ++x) {
-      const Picture& eye = x < 4 ? left : right;
-      const std::size_t at = y * 8 + 2 * (x % 4), to = y * 8 + x;
-      EXPECT_LT(glm::length(out.colour[to] - 0.5f * (eye.colour[at] + eye.colour[at + 1])), 1e-6f);
-      EXPECT_GT(glm::length(out.colour[to] - eye.colour[at]), 1e-6f) << "every other column goes unnoticed";
-      EXPECT_NEAR(out.z_sum[to], 0.5f * (eye.z_sum[at] + eye.z_sum[at + 1]), 1e-6);
-    }
-  }
-}
-
-TEST(Layout, HalfHeightIsTheMeanOfTwoRows) {
-  const Picture left = random_picture(3, 8, 1), right = random_picture(3, 8, 2);
-  const Picture out = lay_out(LAYOUT_HALF_HEIGHT, left, right, std::nullopt);
-  ASSERT_EQ(out.height, 8);
-  for (std::size_t y = 0; y < 8; ++y) {
-    for (std::size_t x = 0; x < 3; ++x) {
-      const Picture& eye = y < 4 ? left : right;
-      const std::size_t at = 2 * (y % 4) * 3 + x, to = y * 3 + x;
-      EXPECT_LT(glm::length(out.colour[to] - 0.5f * (eye.colour[at] + eye.colour[at + 3])), 1e-6f);
-      EXPECT_GT(glm::length(out.colour[to] - eye.colour[at]), 1e-6f) << "every other row goes unnoticed";
-      EXPECT_NEAR(out.z_sum[to], 0.5f * (eye.z_sum[at] + eye.z_sum[at + 3]), 1e-6);
+TEST(Layout, HalvesAreTheMeansOfTwoColumnsOrRows) {
+  const Picture left = random_picture(8, 8, 1), right = random_picture(8, 8, 2);
+  for (const int layout : {LAYOUT_HALF_WIDTH, LAYOUT_HALF_HEIGHT}) {
+    const Picture out = lay_out(layout, left, right, std::nullopt);
+    ASSERT_EQ(glm::ivec2(out.width, out.height), glm::ivec2(8, 8));
+    const bool wide = layout == LAYOUT_HALF_WIDTH;
+    for (std::size_t y = 0; y < 8; ++y) {
+      for (std::size_t x = 0; x < 8; ++x) {
+        const Picture& eye = (wide ? x : y) < 4 ? left : right;
+        const std::size_t at = wide ? y * 8 + 2 * (x % 4) : 2 * (y % 4) * 8 + x;
+        const std::size_t next = at + (wide ? 1 : 8), to = y * 8 + x;
+        EXPECT_LT(glm::length(out.colour[to] - 0.5f * (eye.colour[at] + eye.colour[next])), 1e-6f);
+        EXPECT_GT(glm::length(out.colour[to] - eye.colour[at]), 1e-6f) << "every other one goes unnoticed";
+        EXPECT_NEAR(out.z_sum[to], 0.5f * (eye.z_sum[at] + eye.z_sum[next]), 1e-6);
+      }
     }
   }
 }

@@ -17,6 +17,8 @@ namespace {
 using stereo::Panorama;
 
 constexpr int side = 32;
+constexpr std::size_t every =
+    7;  // so many pixels one is compared, as each is expected from a picture of its own
 constexpr double near_plane = 0.05;
 
 // Gaussians on all sides, small ones among them, which few rays meet.
@@ -63,7 +65,7 @@ Picture expected_panorama(const Model& model, const Camera& eye) {
     camera.cx = camera.cy = 2.0 * side;
     std::vector<glm::dvec2> pixels;
     std::vector<std::size_t> places;
-    for (std::size_t k = 0; k < is_seen.size(); ++k) {
+    for (std::size_t k = 0; k < is_seen.size(); k += every) {
       const glm::dvec3 ray =
           eye.rotation * stereo::panorama_ray(side, static_cast<int>(k % side), static_cast<int>(k / side));
       const glm::dvec2 at = measure::pixel_of(camera, ray);
@@ -76,11 +78,19 @@ Picture expected_panorama(const Model& model, const Camera& eye) {
         frame, camera, pixels, {.order = ORDER_DISTANCE, .projection = PROJECTION_TANGENT}, near_plane);
     for (std::size_t n = 0; n < places.size(); ++n) picture.colour[places[n]] = glm::vec4(colours[n], 0.0f);
   }
-  EXPECT_TRUE(std::all_of(is_seen.begin(), is_seen.end(), [](bool seen) { return seen; }));
+  EXPECT_EQ(std::ranges::count(is_seen, true), (side * side - 1) / every + 1);
   return picture;
 }
 
-double psnr(const Picture& a, const Picture& b) { return measure::psnr(on_black(a), on_black(b)); }
+// Over black, of the pixels that are compared.
+double psnr(const Picture& a, const Picture& b) {
+  double sum = 0.0, count = 0.0;
+  for (std::size_t k = 0; k < a.colour.size(); k += every, count += 3.0) {
+    const glm::vec3 off = glm::vec3(a.colour[k]) - glm::vec3(b.colour[k]);
+    sum += glm::dot(off, off);
+  }
+  return -10.0 * std::log10(sum / count);
+}
 
 TEST(Panoramas, ShowAlongEachRayWhatAnyCameraShowsThere) {
   const Model model = around(7, 1500);
@@ -117,10 +127,10 @@ TEST(Panoramas, ShowBothEyesAtOnce) {
   const std::vector<Picture> both = drawn(model, {left, right});
   ASSERT_EQ(both.size(), 2U);
   // Sorted from the point between them, each is nearly what it is by itself.
-  const Picture of_right = expected_panorama(model, right);  // a picture for each pixel: drawn once
-  EXPECT_GE(psnr(both[0], expected_panorama(model, left)), 50.0);
-  EXPECT_GE(psnr(both[1], of_right), 50.0);
-  EXPECT_LE(psnr(both[0], of_right), 28.0);
+  const Image of_left = on_black(drawn(model, {left})[0]), of_right = on_black(drawn(model, {right})[0]);
+  EXPECT_GE(measure::psnr(on_black(both[0]), of_left), 50.0);
+  EXPECT_GE(measure::psnr(on_black(both[1]), of_right), 50.0);
+  EXPECT_LE(measure::psnr(on_black(both[0]), of_right), 28.0);
 }
 
 TEST(Panoramas, TellTheTimeOfAllTheirStages) {

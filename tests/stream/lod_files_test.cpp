@@ -128,17 +128,6 @@ TEST(LodFiles, OnlyWhatSwitchesIsReadAndWhatShrinksFirst) {
   EXPECT_EQ(counts, (std::vector<std::size_t>{65, 505}));
 }
 
-TEST(LodFiles, OneChoiceForBothEyes) {
-  REQUIRE_FIXTURES(folder);
-  const fs::path lod = folder / "sog/st-lod";
-  const shared::View left = view_at(beside_first), right = view_at(beside_last);
-  Followed scene(lod), swapped(lod);
-  const Model both = scene.read({left, right}, {30.0});
-  EXPECT_EQ(both.count(), 505u + 65 + 248) << "each part as the nearer eye sees it";
-  EXPECT_TRUE(test::equal(both, swapped.read({right, left}, {30.0})));
-  EXPECT_FALSE(test::equal(both, read_anew(lod, beside_first, {30.0}))) << "planted: the left eye's choice";
-}
-
 TEST(LodFiles, AHeadThatTremblesSwitchesOnce) {
   REQUIRE_FIXTURES(folder);
   Followed scene(folder / "sog/st-lod");
@@ -153,15 +142,6 @@ TEST(LodFiles, AHeadThatTremblesSwitchesOnce) {
   }
   EXPECT_EQ(switches, 1) << "the first";
   EXPECT_EQ(anew.size(), 2u) << "without a memory it would switch with each step";
-}
-
-TEST(LodFiles, KeepsToTheRoomThereIs) {
-  REQUIRE_FIXTURES(folder);
-  Followed scene(folder / "sog/st-lod");
-  for (const std::size_t most : {1000, 999, 700, 440, 250}) {
-    for (const glm::dvec3& eye : {beside_first, far_away, beside_last})
-      EXPECT_LE(scene.read({view_at(eye)}, {0.0, most}).count(), most);
-  }
 }
 
 TEST(LodFiles, SaysWhatItCannotOpen) {

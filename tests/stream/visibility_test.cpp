@@ -200,21 +200,24 @@ TEST(Visibility, OfSeveralViewsAndOfSmallerPictures) {
   turned.rotation = glm::dmat3(glm::dvec3(0.8, 0, 0.6), glm::dvec3(0, 1, 0), glm::dvec3(-0.6, 0, 0.8));
   std::vector<shared::View> views;
   for (const Camera& eye : {camera, beside, turned}) views.push_back(make_view(eye));
-  const auto small = chunked.measure(views), large = chunked.measure(views, {}, 1);
+  const auto small = chunked.measure(views);
+  const auto large = chunked.measure({views.back()}, {}, 1).at(0);
   for (std::size_t v = 0; v < views.size(); ++v) {
     const auto alone = chunked.measure({views[v]}).at(0);
-    double apart = 0.0, sum = 0.0;
     for (std::size_t p = 0; p < indices.size(); ++p) {
       EXPECT_EQ(small[v][p].area, alone[p].area) << v << " " << p;
       EXPECT_EQ(small[v][p].distance, alone[p].distance) << v << " " << p;
-      EXPECT_NEAR(small[v][p].area, large[v][p].area, 0.1 * large[v][p].area + 100.0) << v << " " << p;
-      apart += std::abs(small[v][p].area - large[v][p].area);
-      sum += large[v][p].area;
     }
-    EXPECT_LT(apart, 0.03 * sum);
-    EXPECT_GT(apart, 0.0) << "planted: as large";
-    EXPECT_GT(sum, 0.05 * 1100 * 1030);
   }
+  double apart = 0.0, sum = 0.0;
+  for (std::size_t p = 0; p < indices.size(); ++p) {
+    EXPECT_NEAR(small.back()[p].area, large[p].area, 0.1 * large[p].area + 100.0) << p;
+    apart += std::abs(small.back()[p].area - large[p].area);
+    sum += large[p].area;
+  }
+  EXPECT_LT(apart, 0.03 * sum);
+  EXPECT_GT(apart, 0.0) << "planted: as large";
+  EXPECT_GT(sum, 0.05 * 1100 * 1030);
 }
 
 // Nothing of a pass is left for the next, of other views and another number of them.

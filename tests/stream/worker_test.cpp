@@ -144,23 +144,5 @@ TEST(StreamWorker, EndsInTheMidstOfIt) {
   }
 }
 
-TEST(StreamWorker, TellsWhatIsWrong) {
-  REQUIRE_FIXTURES(folder);
-  const test::Copy copy(folder / "sog/st-lod");
-  const LodFiles files(copy.path());
-  StreamWorker worker(files, {1, 1, 1});
-  std::filesystem::resize_file(copy.path() / "0_0/means_l.webp", 100);
-  worker.request(request_from(beside_first));
-  const auto waits = [&] {
-    for (int n = 0; n < 60'000; ++n) {
-      worker.check();
-      std::this_thread::sleep_for(std::chrono::milliseconds(1));
-    }
-  };
-  EXPECT_TRUE(test::fails_saying(waits, {"0_0", "means_l.webp"}));
-  EXPECT_TRUE(test::fails_saying([&] { worker.check(); }, {"0_0", "means_l.webp"})) << "still";
-  EXPECT_FALSE(worker.is_idle());
-}
-
 }  // namespace
 }  // namespace binosplat
