@@ -68,19 +68,6 @@ TEST(Frame, TwoRunsAreEqualBitForBit) {
   EXPECT_TRUE(same_bits(first, frame.read_pictures().front()));
 }
 
-TEST(Frame, EqualsTheReference) {
-  for (int degree = 0; degree <= 3; ++degree) {
-    const Model model = test::random_model(static_cast<std::uint32_t>(50 + degree), 3000, degree);
-    const shared::View view = make_view(test::front_camera(150, 110, 140));
-    for (const int tiles : {TILES_AABB, TILES_ELLIPSE}) {
-      EXPECT_GE(
-          test::psnr(draw(model, view, {.tiles = tiles}), reference::render(model, view, {.tiles = tiles})),
-          80.0)
-          << degree << " " << tiles;
-    }
-  }
-}
-
 TEST(Frame, AntialiasedModelsEqualTheReference) {
   Model model = test::random_model(54, 3000, 1);
   for (glm::vec3& scale : model.scale) scale *= 0.2f;  // many are smaller than a pixel
@@ -93,23 +80,6 @@ TEST(Frame, AntialiasedModelsEqualTheReference) {
   Model plain = model;
   plain.antialiased = false;
   EXPECT_LT(test::psnr(drawn, reference::render(plain, view)), 40.0);
-}
-
-TEST(Frame, TheComparisonWithTheReferenceCatchesASignAndATile) {
-  const Model model = test::random_model(51, 3000, 1);
-  const shared::View view = make_view(test::front_camera(150, 110, 140));
-  const Picture drawn = draw(model, view);
-  Model sign = model;
-  for (std::size_t i = 0; i < sign.count(); ++i) sign.sh[i * 12 + 3] *= -1.0f;
-  EXPECT_LT(test::psnr(drawn, reference::render(sign, view)), 60.0);
-  // Lists one tile further along: a tile off by one.
-  const auto splats = reference::project_all(model, view);
-  reference::TileLists lists =
-      reference::make_lists(splats, reference::depth_order(splats), view, TILES_ELLIPSE);
-  std::vector<std::uint32_t> begin(lists.begin.begin() + 1, lists.begin.end());
-  begin.push_back(begin.back());
-  lists.begin = begin;
-  EXPECT_LT(test::psnr(drawn, reference::blend(splats, lists, view)), 60.0);
 }
 
 TEST(Frame, ReferenceUntilAnyStageGivesTheSamePicture) {

@@ -199,12 +199,7 @@ TEST(LinearBlends, KnowWhatChangesWithoutOne) {
 
 // Tiles whose lists are long have a launch of their own, whatever is asked first and how often.
 TEST(LinearBlends, OfLongListsAreWhole) {
-  Model model;
-  test::Uniform uniform(104);
-  for (int i = 0; i < 2 * LONG_LIST; ++i) {
-    test::add(model, glm::vec3(uniform(-0.05, 0.05), uniform(-0.05, 0.05), uniform(1.0, 2.0)),
-              glm::vec3(static_cast<float>(uniform(0.01, 0.1))), 0.02f, glm::vec3(uniform(0, 1)));
-  }
+  const Model model = test::long_lists_model();
   const auto right = [&] {
     LinearBlend blend(test::gl_context(), model);
     blend.set_view(blend_view());

@@ -36,7 +36,7 @@ shared::View view_of_focal(double focal) { return make_view(test::front_camera(1
 
 // The least over needles, focal lengths and seeds; a fault shows in fewer of these.
 double least_db(const render::FrameSettings& settings, double kernel_px2 = KERNEL_PX2,
-                std::uint32_t seeds = 3) {
+                std::uint32_t seeds = 2) {
   double least = 1e9;
   for (const Needle& needle : {shortest, Needle{2, 0.001}, Needle{5, 0.002}, longest}) {
     for (const double focal : {300.0, 1536.0, 4000.0}) {

@@ -133,12 +133,7 @@ TEST(Probe, TellsTheErrorOfItsTilesAsTheScreenShowsThem) {
 }
 
 TEST(Probe, TellsOfLongListsToo) {
-  Model model;
-  test::Uniform uniform(104);
-  for (int i = 0; i < 2 * LONG_LIST; ++i) {
-    test::add(model, glm::vec3(uniform(-0.05, 0.05), uniform(-0.05, 0.05), uniform(1.0, 2.0)),
-              glm::vec3(uniform(0.01, 0.1)), 0.02f, glm::vec3(uniform(0, 1), uniform(0, 1), uniform(0, 1)));
-  }
+  const Model model = test::long_lists_model();
   const auto views = eyes_for_probe(64, 48);
   const auto exact = test::draw(model, views, {.background = background});
   for (const float tolerance : {0.0f, 0.02f}) {

@@ -175,7 +175,7 @@ TEST(Promise, HoldsInMistBehindFrontsAndUnderCuts) {
   for (const Model& model : models) {
     for (const bool cuts : {false, true}) {
       if (!all && cuts != (&model == &models[0])) continue;  // a quarter of a minute each
-      const Walk walk = look_at(model, cuts, 4);
+      const Walk walk = look_at(model, cuts, 3);
       const Kept kept = keep(model, walk, steered(walk));
       // A tolerance between too much and too little need not be found in so few Gaussians: better is no
       // fault.

@@ -135,6 +135,17 @@ struct StageRun {
   std::vector<std::vector<std::uint32_t>> indices;  // Gaussian by slot, for each order group
 };
 
+/// Faint Gaussians, so many in the tiles in the middle that these have launches of their own.
+inline Model long_lists_model() {
+  Model model;
+  Uniform uniform(104);
+  for (int i = 0; i < 2 * LONG_LIST; ++i) {
+    add(model, glm::vec3(uniform(-0.05, 0.05), uniform(-0.05, 0.05), uniform(1.0, 2.0)),
+        glm::vec3(uniform(0.01, 0.1)), 0.02f, glm::vec3(uniform(0, 1), uniform(0, 1), uniform(0, 1)));
+  }
+  return model;
+}
+
 /// What a first frame leaves for the next, by Gaussian (Scaffold-GS: by id).
 inline std::vector<float> measured_on_gpu(const Model& model, const shared::View& view) {
   render::Frame frame(gl_context(), model);
