@@ -113,7 +113,7 @@ TEST(Probe, TellsTheErrorOfItsTilesAsTheScreenShowsThem) {
       const auto exact = test::draw(model, views, {.tile_size = side, .background = background});
       int differing = 0;
       const std::uint32_t across = tiles_along(width, side);
-      const auto all = probes({1, 2, 3}, across, tiles_along(height, side));
+      const auto all = probes({1, 3}, across, tiles_along(height, side));
       for (const Probe& probe : all) {
         const ProbeRun run(model, views, settings, probe);
         const Picture drawn = run.picture(probe.view);
