@@ -64,6 +64,14 @@ TEST(Dispatcher, SplitsWhatExceedsADriversGroups) {
   EXPECT_EQ(counted(count, 1), expected);
 }
 
+TEST(Dispatcher, GoesBeyondTheRealLimitOfGroups) {
+  constexpr std::uint32_t count = 65536 * 256 + 1;
+  const std::vector<std::uint32_t> items = counted(count, test::gl_context().limits().groups);
+  EXPECT_EQ(items.front(), 1u);
+  EXPECT_EQ(items[65535 * 256], 65536u);
+  EXPECT_EQ(items.back(), 65537u);
+}
+
 TEST(Dispatcher, RefusesWhatIsForgotten) {
   Context& context = test::gl_context();
   const OwnShader shader("count_up.comp", count_up);

@@ -261,7 +261,6 @@ TEST(Frame, BuffersTooSmallGiveTheSamePicture) {
     const std::vector<Picture> tight = frame.read_pictures();
     EXPECT_TRUE(same_bits(ample[0], tight[0]));
     EXPECT_TRUE(same_bits(ample[1], tight[1]));
-    EXPECT_EQ(frame.draw(views).redrawn, 0) << "they are as large now";
   }
 }
 

@@ -89,10 +89,8 @@ void expect_no_error(const Model& model, const FrameSettings& settings, double c
 
 TEST(Probe, WithoutToleranceFindsNoErrorWhereverItsTilesLie) {
   const Model model = test::random_model(101, 1500, 1);
-  for (const int tile_size : {8, 16, 32}) {
-    for (const double cant : {0.0, 4.0})
-      expect_no_error(model, {.th = TH_SQUARED, .tile_size = tile_size, .background = background}, cant);
-  }
+  for (const auto& [tile_size, cant] : {std::pair{8, 4.0}, {16, 0.0}, {16, 4.0}, {32, 0.0}})
+    expect_no_error(model, {.th = TH_SQUARED, .tile_size = tile_size, .background = background}, cant);
 }
 
 TEST(Probe, WithoutToleranceFindsNoErrorByAnyTileTest) {
