@@ -101,7 +101,7 @@ fs::path photo(const fs::path& folder, const std::string& view) {
 
 // Draws by a tile test, whose pairs docs/method.md has for some views.
 render::FrameReport draw_pairs(DrawnScene& drawn, int tiles, std::size_t expected, double share = 0.0002) {
-  const auto report = drawn.draw(tiles);
+  auto report = drawn.draw(tiles);
   if (expected != 0) {
     EXPECT_NEAR(static_cast<double>(report.pairs), static_cast<double>(expected),
                 share * static_cast<double>(expected))
