@@ -17,7 +17,6 @@ using test::Copy;
 using test::little;
 using test::near3;
 using test::patched;
-using test::replaced;
 
 bool agrees_in_pose_and_lens(const Camera& camera, const json& truth) {
   return near3(camera.position, truth["center"], 1e-6, 1e-6) &&
@@ -129,50 +128,45 @@ TEST(Colmap, IsFoundBesideTheModel) {
 TEST(ColmapErrors, Binary) {
   REQUIRE_FIXTURES(folder);
   const Copy copy(folder / "cameras/colmap-real/bin");
+  const auto refuses = [&](const std::string& file, const std::vector<test::BrokenFile>& refusals) {
+    const std::string good = copy.read(file);
+    test::expect_refusals(file, refusals, [&](const std::string& bytes) {
+      copy.write(bytes, file);
+      load_cameras(copy.path());
+    });
+    copy.write(good, file);
+  };
   const std::string images = copy.read("images.bin"), cameras = copy.read("cameras.bin");
-  const auto with_images = [&](const std::string& bytes, std::initializer_list<std::string> parts) {
-    copy.write(bytes, "images.bin");
-    const auto result = test::fails_saying([&] { load_cameras(copy.path()); }, parts);
-    copy.write(images, "images.bin");
-    return result;
+  const std::size_t name = 8 + 4 + 56 + 4, points = images.find('\0', name) + 1;
+  std::vector<test::BrokenFile> of_images = {
+      {images.substr(0, 1000), {"images.bin is cut short or damaged: image 0 of 8", "1000 bytes"}},
+      {images.substr(0, name) + std::string(500, 'x'), {"image 0 of 8", "name that runs to the end"}},
+      {patched(images, points, little(std::uint64_t{1} << 60)), {"image 0 of 8", "goes on beyond"}},
+      {patched(images, name - 4, little(99u)),
+       {"image 5 was taken with camera 99", "cameras.bin does not have"}},
+      {patched(images, 12, std::string(32, '\0')), {"image 0 of 8", "no quaternion"}},
+      {patched(images, 44, little(std::nan(""))), {"translation is not finite"}},
+      {patched(images, 0, little(std::uint64_t{1} << 62)), {"image 8 of 4611686018427387904"}},
+      {little(std::uint64_t{0}), {"images.bin holds no images"}},
+      {"1234", {"the number of records goes on beyond"}},
   };
-  EXPECT_TRUE(with_images(images.substr(0, 1000),
-                          {"images.bin is cut short or damaged: image 0 of 8", "1000 bytes"}));
-  const std::size_t name = 8 + 4 + 56 + 4;
-  EXPECT_TRUE(with_images(images.substr(0, name) + std::string(500, 'x'),
-                          {"image 0 of 8", "name that runs to the end"}));
-  const std::size_t points = images.find('\0', name) + 1;
-  EXPECT_TRUE(with_images(patched(images, points, little(std::uint64_t{1} << 60)),
-                          {"image 0 of 8", "goes on beyond"}));
-  EXPECT_TRUE(with_images(patched(images, name - 4, little(99u)),
-                          {"image 5 was taken with camera 99", "cameras.bin does not have"}));
-  EXPECT_TRUE(with_images(patched(images, 12, std::string(32, '\0')), {"image 0 of 8", "no quaternion"}));
-  EXPECT_TRUE(with_images(patched(images, 44, little(std::nan(""))), {"translation is not finite"}));
-  EXPECT_TRUE(
-      with_images(patched(images, 0, little(std::uint64_t{1} << 62)), {"image 8 of 4611686018427387904"}));
-  EXPECT_TRUE(with_images(little(std::uint64_t{0}), {"images.bin holds no images"}));
-  EXPECT_TRUE(with_images("1234", {"the number of records goes on beyond"}));
   // Truncation at every byte of the first record and of the last.
-  for (std::size_t end = 0; end < points + 8; ++end)
-    EXPECT_TRUE(with_images(images.substr(0, end), {"images.bin"})) << end;
+  for (std::size_t end = 0; end < points + 8; ++end) of_images.push_back({images.substr(0, end), {}});
   for (std::size_t end = images.size() - 100; end < images.size(); ++end)
-    EXPECT_TRUE(with_images(images.substr(0, end), {"images.bin is cut short", "image 7 of 8"})) << end;
+    of_images.push_back({images.substr(0, end), {"images.bin is cut short", "image 7 of 8"}});
+  refuses("images.bin", of_images);
 
-  const auto with_cameras = [&](const std::string& bytes, std::initializer_list<std::string> parts) {
-    copy.write(bytes, "cameras.bin");
-    return test::fails_saying([&] { load_cameras(copy.path()); }, parts);
+  std::vector<test::BrokenFile> of_cameras = {
+      {patched(cameras, 12, little(42)), {"cameras.bin: camera 1 has the model 42, which is not known"}},
+      {patched(cameras, 12, little(-1)), {"has the model -1"}},
+      {patched(cameras, 16, little(std::uint64_t{1} << 40)), {"camera 1", "a picture of 2147483647 x"}},
+      {patched(cameras, 32, little(-1.0)), {"camera 1: focal lengths of -1 and -1 px"}},
+      {patched(cameras, 56, little(std::nan(""))), {"camera 1", "must be finite"}},
+      {patched(cameras, 0, little(std::uint64_t{2})) + cameras.substr(8), {"there is a camera 1 already"}},
   };
-  EXPECT_TRUE(with_cameras(patched(cameras, 12, little(42)),
-                           {"cameras.bin: camera 1 has the model 42, which is not known"}));
-  EXPECT_TRUE(with_cameras(patched(cameras, 12, little(-1)), {"has the model -1"}));
-  EXPECT_TRUE(with_cameras(patched(cameras, 16, little(std::uint64_t{1} << 40)),
-                           {"camera 1", "a picture of 2147483647 x"}));
-  EXPECT_TRUE(with_cameras(patched(cameras, 32, little(-1.0)), {"camera 1: focal lengths of -1 and -1 px"}));
-  EXPECT_TRUE(with_cameras(patched(cameras, 56, little(std::nan(""))), {"camera 1", "must be finite"}));
-  EXPECT_TRUE(with_cameras(patched(cameras, 0, little(std::uint64_t{2})) + cameras.substr(8),
-                           {"there is a camera 1 already"}));
   for (std::size_t end = 0; end < cameras.size(); ++end)
-    EXPECT_TRUE(with_cameras(cameras.substr(0, end), {"cameras.bin is cut short"})) << end;
+    of_cameras.push_back({cameras.substr(0, end), {"cameras.bin is cut short"}});
+  refuses("cameras.bin", of_cameras);
 }
 
 TEST(Colmap, QuaternionsOfAnyLengthAreRotations) {
@@ -187,28 +181,32 @@ TEST(Colmap, QuaternionsOfAnyLengthAreRotations) {
 
 TEST(ColmapErrors, Text) {
   REQUIRE_FIXTURES(folder);
-  const auto with = [&](const char* file, const std::string& from, const std::string& to,
-                        std::initializer_list<std::string> parts) {
-    const Copy copy(folder / "cameras/colmap-models/txt");
-    copy.write(replaced(copy.read(file), from, to), file);
-    return test::fails_saying([&] { load_cameras(copy.path()); }, parts);
+  const struct {
+    const char *file, *from, *to;
+    std::vector<std::string> said;
+  } faults[] = {
+      {"images.txt",
+       "img_000.png\n\n",
+       "img_000.png\n1.5 2.5\n",
+       {"line 6", "seen in image 100", "empty line"}},
+      {"images.txt", "100 -0.5 0.5", "100 -0.5 O.5", {"images.txt, line 5", "'O.5' is no number"}},
+      {"images.txt", " 4 sub/img_001.png", "", {"images.txt, line 7", "expected IMAGE_ID QW"}},
+      {"images.txt", "100 -0.5 0.5 0.5 0.5", "100 0 0 0 0", {"line 5", "no quaternion"}},
+      {"images.txt", "0 0 0 1 sub", "0 0 0 99 sub", {"image 100 was taken with camera 99"}},
+      {"cameras.txt", "1 SIMPLE_PINHOLE", "1 SIMPLE", {"cameras.txt, line 4", "'SIMPLE' is no model"}},
+      {"cameras.txt",
+       "480 500 320 240\n",
+       "480 500 320\n",
+       {"line 4", "2 parameters", "SIMPLE_PINHOLE has 3"}},
+      {"cameras.txt", "1 SIMPLE_PINHOLE 640", "1 SIMPLE_PINHOLE -640", {"'-640' is no number of pixels"}},
+      {"cameras.txt", "4 PINHOLE", "1 PINHOLE", {"line 5", "there is a camera 1 already"}},
+      {"cameras.txt", "PINHOLE 640 480 500 320 240", "PINHOLE", {"line 4", "expected CAMERA_ID"}},
   };
-  EXPECT_TRUE(with("images.txt", "img_000.png\n\n", "img_000.png\n1.5 2.5\n",
-                   {"images.txt, line 6", "the points seen in image 100", "an empty line"}));
-  EXPECT_TRUE(
-      with("images.txt", "100 -0.5 0.5", "100 -0.5 O.5", {"images.txt, line 5", "'O.5' is no number"}));
-  EXPECT_TRUE(with("images.txt", " 4 sub/img_001.png", "", {"images.txt, line 7", "expected IMAGE_ID QW"}));
-  EXPECT_TRUE(with("images.txt", "100 -0.5 0.5 0.5 0.5", "100 0 0 0 0", {"line 5", "no quaternion"}));
-  EXPECT_TRUE(with("images.txt", "0 0 0 1 sub", "0 0 0 99 sub", {"image 100 was taken with camera 99"}));
-  EXPECT_TRUE(
-      with("cameras.txt", "1 SIMPLE_PINHOLE", "1 SIMPLE", {"cameras.txt, line 4", "'SIMPLE' is no model"}));
-  EXPECT_TRUE(with("cameras.txt", "640 480 500 320 240\n", "640 480 500 320\n",
-                   {"line 4", "2 parameters; the model SIMPLE_PINHOLE has 3"}));
-  EXPECT_TRUE(with("cameras.txt", "1 SIMPLE_PINHOLE 640 480", "1 SIMPLE_PINHOLE -640 480",
-                   {"line 4", "'-640' is no number of pixels"}));
-  EXPECT_TRUE(with("cameras.txt", "4 PINHOLE", "1 PINHOLE", {"line 5", "there is a camera 1 already"}));
-  EXPECT_TRUE(with("cameras.txt", "1 SIMPLE_PINHOLE 640 480 500 320 240", "1 SIMPLE_PINHOLE",
-                   {"line 4", "expected CAMERA_ID"}));
+  for (const auto& [file, from, to, said] : faults) {
+    const Copy copy(folder / "cameras/colmap-models/txt");
+    copy.write(test::replaced(copy.read(file), from, to), file);
+    EXPECT_TRUE(test::fails_saying([&] { load_cameras(copy.path()); }, said)) << to;
+  }
 }
 
 }  // namespace

@@ -54,9 +54,19 @@ struct Dataparser : testing::Test {
     write_text(folder / "dataparser_transforms.json", transforms.dump());
   }
 
-  std::vector<Camera> moved(const fs::path& cameras_file) const {
+  json transforms() const {
+    const glm::dmat3 world = applied * pose;
+    json file = {
+        {"w", 64}, {"h", 48}, {"fl_x", 50}, {"applied_transform", rows_of_pose(applied, applied_shift)}};
+    file["frames"] = {{{"file_path", "a.png"},
+                       {"transform_matrix", rows_of_pose(glm::dmat3(world[0], -world[1], -world[2]),
+                                                         applied * place + applied_shift)}}};
+    return file;
+  }
+
+  std::vector<Camera> moved(const fs::path& cameras_file, bool is_moved = true) const {
     std::vector<Camera> cameras = load_cameras(cameras_file);
-    EXPECT_TRUE(move_into_training(folder / "dataparser_transforms.json", cameras_file, cameras));
+    EXPECT_EQ(move_into_training(folder / "dataparser_transforms.json", cameras_file, cameras), is_moved);
     return cameras;
   }
 
@@ -68,17 +78,10 @@ struct Dataparser : testing::Test {
 };
 
 TEST_F(Dataparser, MovesCamerasOfTransforms) {
-  const glm::dmat3 world = applied * pose;
-  json file = {
-      {"w", 64}, {"h", 48}, {"fl_x", 50}, {"applied_transform", rows_of_pose(applied, applied_shift)}};
-  file["frames"] = {{{"file_path", "a.png"},
-                     {"transform_matrix", rows_of_pose(glm::dmat3(world[0], -world[1], -world[2]),
-                                                       applied * place + applied_shift)}}};
-  write_text(folder / "transforms.json", file.dump());
+  write_text(folder / "transforms.json", transforms().dump());
   EXPECT_TRUE(is_trained(moved(folder / "transforms.json")[0]));
   // Planted fault: what was applied is not taken back.
-  file.erase("applied_transform");
-  write_text(folder / "transforms.json", file.dump());
+  write_text(folder / "transforms.json", test::with_value(transforms(), "/applied_transform", nullptr));
   EXPECT_FALSE(is_trained(moved(folder / "transforms.json")[0]));
 }
 
@@ -94,29 +97,15 @@ TEST_F(Dataparser, MovesCamerasOfColmap) {
 }
 
 TEST_F(Dataparser, TakesCamerasForWhatTheyAreWhateverLiesBeside) {
-  const glm::dmat3 world = applied * pose;
-  json file = {
-      {"w", 64}, {"h", 48}, {"fl_x", 50}, {"applied_transform", rows_of_pose(applied, applied_shift)}};
-  file["frames"] = {{{"file_path", "a.png"},
-                     {"transform_matrix", rows_of_pose(glm::dmat3(world[0], -world[1], -world[2]),
-                                                       applied * place + applied_shift)}}};
   fs::create_directories(folder / "data");
-  write_text(folder / "data/transforms.json", file.dump());
+  write_text(folder / "data/transforms.json", transforms().dump());
   EXPECT_TRUE(is_trained(moved(folder / "data")[0])) << "the folder stands for its transforms.json";
   // A reconstruction in the same folder says nothing of files that are none of its own.
   for (const char* name : {"cameras.bin", "images.bin"}) write_text(folder / "data" / name, "");
   EXPECT_TRUE(is_trained(moved(folder / "data/transforms.json")[0]));
+  // INRIA's are in the model's world already.
   write_text(folder / "data/cameras.json", list_of_one.dump());
-  std::vector<Camera> cameras = load_cameras(folder / "data/cameras.json");
-  EXPECT_FALSE(
-      move_into_training(folder / "dataparser_transforms.json", folder / "data/cameras.json", cameras));
-}
-
-TEST_F(Dataparser, LeavesCamerasThatAreToldInTheModelsWorld) {
-  write_text(folder / "cameras.json", list_of_one.dump());
-  std::vector<Camera> cameras = load_cameras(folder / "cameras.json");
-  EXPECT_FALSE(move_into_training(folder / "dataparser_transforms.json", folder / "cameras.json", cameras));
-  EXPECT_EQ(cameras[0].position, glm::dvec3(1, 2, 3));
+  EXPECT_EQ(moved(folder / "data/cameras.json", false)[0].position, glm::dvec3(1, 2, 3));
 }
 
 TEST_F(Dataparser, IsFoundAboveAnExportAndSaysWhatIsWrong) {
@@ -125,22 +114,18 @@ TEST_F(Dataparser, IsFoundAboveAnExportAndSaysWhatIsWrong) {
   EXPECT_EQ(find_dataparser(folder / "exports/splat/splat.ply"), folder / "dataparser_transforms.json");
   EXPECT_EQ(find_dataparser(folder.path()), folder / "dataparser_transforms.json");
   EXPECT_FALSE(find_dataparser("/no/such/model.ply"));
-  write_text(
-      folder / "transforms.json",
-      R"({"w":64,"h":48,"fl_x":50,"frames":[{"file_path":"a","transform_matrix":[[1,0,0,0],[0,1,0,0],[0,0,1,0]]}]})");
-  for (const auto& [text, said] : std::map<std::string, std::string>{
-           {"{}", "transform"},
-           {R"({"transform":[[1,0,0,0],[0,1,0,0],[0,0,1,0]]})", "scale"},
-           {R"({"transform":[[1,0,0,0],[0,1,0,0],[0,0,1,0]],"scale":0})", "above 0"},
-           {R"({"transform":[[2,0,0,0],[0,1,0,0],[0,0,1,0]],"scale":1})", "key 'transform'"}}) {
+  write_text(folder / "transforms.json", transforms().dump());
+  const std::string identity = R"("transform": [[1,0,0,0],[0,1,0,0],[0,0,1,0]])";
+  const std::vector<test::BrokenFile> refusals = {
+      {"{}", {"transform"}},
+      {"{" + identity + "}", {"scale"}},
+      {"{" + identity + ", \"scale\": 0}", {"above 0"}},
+      {R"({"transform": [[2,0,0,0],[0,1,0,0],[0,0,1,0]], "scale": 1})", {"key 'transform'"}},
+  };
+  test::expect_refusals("dataparser_transforms.json", refusals, [&](const std::string& text) {
     write_text(folder / "dataparser_transforms.json", text);
-    std::vector<Camera> cameras = load_cameras(folder / "transforms.json");
-    EXPECT_TRUE(test::fails_saying(
-        [&] {
-          move_into_training(folder / "dataparser_transforms.json", folder / "transforms.json", cameras);
-        },
-        {"dataparser_transforms.json", said}));
-  }
+    moved(folder / "transforms.json");
+  });
 }
 
 TEST(ModelsIn, AFolderIsTheModelThatItsTrainerLeft) {

@@ -1,19 +1,23 @@
+// OpenEXR as it is written: pictures and pairs, with colours, depths and notes.
+
 #include "formats/exr.h"
 
 #include <ImfChannelList.h>
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
 #include <ImfInputFile.h>
-#include <ImfOutputFile.h>
+#include <ImfMultiView.h>
+#include <ImfStandardAttributes.h>
 #include <ImfStringAttribute.h>
 #include <gtest/gtest.h>
 #include <half.h>
 
 #include <cmath>
+#include <cstdlib>
 #include <limits>
 #include <map>
 
-#include "support/errors.h"
+#include "support/broken.h"
 #include "support/full_disk.h"
 #include "support/models.h"
 #include "support/program.h"
@@ -167,7 +171,12 @@ TEST(Exr, RoundTripGivesTheDisplayValues) {
   for (const Background& background : {Background(), Background(glm::vec3(0.2f, 0.0f, 1.0f))}) {
     for (const bool half : {false, true}) {
       for (const bool display : {false, true}) {
-        save_exr(path, picture, {.half = half, .display = display, .background = background});
+        save_exr(path, picture,
+                 {.half = half,
+                  .display = display,
+                  .background = background,
+                  .notes = {{"unitsPerMetre", "0.5"}}});
+        EXPECT_EQ(attribute(path, "unitsPerMetre"), "0.5");
         EXPECT_EQ(attribute(path, "binosplatEncoding"), display ? "display" : "linear");
         const Image loaded = load_image(path);
         const Image shown = composite(picture, background);
@@ -188,111 +197,31 @@ TEST(Exr, RoundTripGivesTheDisplayValues) {
   }
 }
 
-TEST(Exr, AgreesWithPngOfTheSameFrame) {
-  const test::TempFolder folder;
-  Picture picture = random_picture();
-  for (glm::vec4& colour : picture.colour) colour = glm::vec4(glm::vec3(colour) / 4.0f, colour.a);
-  for (const Background& background : {Background(), Background(glm::vec3(0.5f))}) {
-    save_exr(folder / "a.exr", picture, {.half = false, .background = background});
-    save_png(folder / "a.png", composite(picture, background), {.bits = 16});
-    const Image exr = load_image(folder / "a.exr");
-    const Image png = load_image(folder / "a.png");
-    EXPECT_EQ(exr.channels, png.channels);
-    EXPECT_LE(relative_difference(exr.data, png.data), 0.51 / 65535);
-  }
-}
-
-TEST(Exr, CarriesNotes) {
-  const test::TempFolder folder;
-  save_exr(folder / "a.exr", random_picture(), {.notes = {{"unitsPerMetre", "0.5"}}});
-  EXPECT_EQ(attribute(folder / "a.exr", "unitsPerMetre"), "0.5");
-}
-
-/// A file as another program writes it: channels of FLOAT, all of `values`, in a window that begins
-/// elsewhere.
-void write_foreign(const fs::path& path, const std::map<std::string, float>& values, int sampling = 1) {
-  const Imath::Box2i window({-2, 3}, {1, 4});  // 4 x 2
-  Imf::Header header(window, window);
-  std::map<std::string, std::vector<float>> pixels;
-  Imf::FrameBuffer frame;
-  for (const auto& [name, value] : values) {
-    header.channels().insert(name, Imf::Channel(Imf::FLOAT, sampling, 1));
-    pixels[name].assign(8, value);
-    pixels[name][7] = 2 * value;
-    frame.insert(name, Imf::Slice::Make(Imf::FLOAT, pixels[name].data(), window, 0, 0, sampling, 1));
-  }
-  Imf::OutputFile file(path.c_str(), header);
-  file.setFrameBuffer(frame);
-  file.writePixels(2);
-}
-
-TEST(Exr, ForeignFilesAreSceneLinear) {
-  const test::TempFolder folder;
-  const fs::path path = folder / "a.exr";
-  write_foreign(path, {{"R", 0.1f}, {"G", 0.2f}, {"B", 0.3f}, {"A", 0.5f}, {"depth.Z", 7.0f}});
-  Image image = load_image(path);
-  ASSERT_EQ(image.channels, 4);
-  ASSERT_EQ(image.width, 4);
-  ASSERT_EQ(image.height, 2);
-  EXPECT_FLOAT_EQ(image.at(0, 0, 0), static_cast<float>(linear_to_srgb(0.2)));
-  EXPECT_FLOAT_EQ(image.at(2, 1, 2), static_cast<float>(linear_to_srgb(0.6)));
-  EXPECT_FLOAT_EQ(image.at(0, 0, 3), 0.5f);
-  EXPECT_FLOAT_EQ(image.at(3, 1, 3), 1.0f);
-
-  write_foreign(path, {{"Y", 0.4f}});
-  image = load_image(path);
-  ASSERT_EQ(image.channels, 1);
-  EXPECT_FLOAT_EQ(image.at(0, 0, 0), static_cast<float>(linear_to_srgb(0.4)));
-  EXPECT_FLOAT_EQ(image.at(3, 1, 0), static_cast<float>(linear_to_srgb(0.8)));
-
-  write_foreign(path, {{"Y", 0.4f}, {"A", 0.5f}});
-  image = load_image(path);
-  ASSERT_EQ(image.channels, 4);
-  for (int c = 0; c < 3; ++c) EXPECT_FLOAT_EQ(image.at(1, 1, c), static_cast<float>(linear_to_srgb(0.8)));
-
-  write_foreign(path, {{"R", 0.4f}, {"Z", 0.5f}});
-  EXPECT_TRUE(test::fails_saying([&] { load_image(path); }, {"a.exr", "no channels R, G, B or Y", "R Z"}));
-  write_foreign(path, {{"R", 1}, {"G", 1}, {"B", 1}}, 2);
-  EXPECT_TRUE(test::fails_saying([&] { load_image(path); }, {"a.exr", "channel R", "lower resolution"}));
-}
-
 TEST(Exr, BrokenFilesAreRefused) {
   const test::TempFolder folder;
   save_exr(folder / "a.exr", random_picture(), {.compression = ExrCompression::zip});
   const std::string good = test::read_text(folder / "a.exr");
-  const auto refuses = [&](const std::string& bytes, const char* reason = "") {
-    test::write_text(folder / "b.exr", bytes);
-    return test::fails_saying([&] { load_image(folder / "b.exr"); }, {"b.exr", reason});
+  const auto with = [&](std::size_t at, const char* bytes, std::size_t count = 4) {
+    return test::patched(good, at, std::string(bytes, count));
   };
-  for (std::size_t size = 4; size < good.size(); size += good.size() / 50)
-    EXPECT_TRUE(refuses(good.substr(0, size)));
-  EXPECT_TRUE(refuses(good.substr(0, good.size() - 1)));
-
-  // An attribute of nearly 2^31 bytes.
-  std::string endless = good;
-  endless.replace(good.find("string") + 7, 4, "\xf0\xff\xff\x7f");
-  EXPECT_TRUE(refuses(endless));
-
-  // A number of five bytes: OpenEXR would read four and take the rest for the next attribute's name.
-  std::string shifted = good;
-  shifted[good.find("float") + 6] = 5;
-  EXPECT_TRUE(refuses(shifted, "broken OpenEXR"));
-
-  // The data window's far corner at 2^31 - 2 and at 60,000.
   const std::size_t window = good.find("box2i") + 10;
-  for (const char* side : {"\xfe\xff\xff\x7f", "\x60\xea\x00\x00"}) {
-    std::string forged = good;
-    for (const std::size_t at : {window + 8, window + 12}) forged.replace(at, 4, std::string(side, 4));
-    EXPECT_TRUE(refuses(forged));
-  }
-  // One line of 2^24 px, for which OpenEXR would make room in blocks of 16; lines without a place in the
-  // file.
-  std::string forged = good;
-  forged.replace(window + 8, 8, std::string("\xff\xff\xff\0\0\0\0\0", 8));
-  EXPECT_TRUE(refuses(forged, "16777216 x 1 px, which"));
-  forged = good;
-  forged.replace(window + 12, 4, std::string("\x20\x4e\0\0", 4));
-  EXPECT_TRUE(refuses(forged, "1251 blocks, which"));
+  const std::vector<test::BrokenFile> refusals = {
+      // An attribute of nearly 2^31 bytes.
+      {with(good.find("string") + 7, "\xf0\xff\xff\x7f"), {}},
+      // A number of five bytes: OpenEXR would read four and take the rest for the next attribute's name.
+      {with(good.find("float") + 6, "\5", 1), {"broken OpenEXR"}},
+      // The data window's far corner at 2^31 - 2 and at 60,000.
+      {with(window + 8, "\xfe\xff\xff\x7f\xfe\xff\xff\x7f", 8), {}},
+      {with(window + 8, "\x60\xea\0\0\x60\xea\0\0", 8), {}},
+      // One line of 2^24 px, for which OpenEXR would make room in blocks of 16; lines without a place in the
+      // file.
+      {with(window + 8, "\xff\xff\xff\0\0\0\0\0", 8), {"16777216 x 1 px, which"}},
+      {with(window + 12, "\x20\x4e\0\0"), {"1251 blocks, which"}},
+  };
+  test::expect_refusals("b.exr", refusals, [&](const std::string& bytes) {
+    test::write_text(folder / "b.exr", bytes);
+    load_image(folder / "b.exr");
+  });
 }
 
 TEST(Exr, FullDisksAreReported) {
@@ -309,6 +238,97 @@ TEST(Exr, FullDisksAreReported) {
   }
   test::write_text(folder / "file", "");
   EXPECT_TRUE(test::fails_saying([&] { save_exr(folder / "file/a.exr", picture, {}); }, {"Not a directory"}));
+}
+
+/// Half covered, one colour, depth 1 to 2.
+Picture flat_picture(const glm::vec3& colour, int width = 13) {
+  Picture picture(width, 7);
+  for (std::size_t k = 0; k < picture.colour.size(); ++k) {
+    picture.colour[k] = glm::vec4(0.75f * colour, 0.25f);
+    picture.z_sum[k] = 0.75f * (1.0f + static_cast<float>(k) / 91.0f);
+  }
+  return picture;
+}
+
+const Picture left = flat_picture({0.9f, 0.2f, 0.1f}), right = flat_picture({0.1f, 0.3f, 0.8f});
+
+/// A channel's first pixel, or a number that none has.
+float first_value(const fs::path& path, const char* name) {
+  const Channel channel = read_channel(path, name);
+  return channel.values.empty() ? -1.0f : channel.values[0];
+}
+
+float stored(float display) { return static_cast<float>(0.75 * srgb_to_linear(display)); }
+
+TEST(ExrViews, LeftIsTheDefaultAndRightHasAPrefix) {
+  const test::TempFolder folder;
+  const fs::path path = folder / "pair.exr";
+  save_exr(path, left, right, {.half = false});
+  {
+    const Imf::InputFile file(path.c_str());
+    ASSERT_TRUE(Imf::hasMultiView(file.header()));
+    EXPECT_EQ(Imf::multiView(file.header()), (Imf::StringVector{"left", "right"}));
+    for (const char* name : {"R", "G", "B", "A", "Z"}) {
+      EXPECT_EQ(Imf::viewFromChannelName(name, Imf::multiView(file.header())), "left") << name;
+      const std::string other = std::string("right.") + name;
+      EXPECT_NE(file.header().channels().findChannel(other), nullptr) << other;
+      EXPECT_EQ(Imf::viewFromChannelName(other, Imf::multiView(file.header())), "right") << other;
+    }
+    EXPECT_EQ(file.header().channels().findChannel("right.Z")->type, Imf::FLOAT);
+  }
+  EXPECT_NEAR(first_value(path, "R"), stored(0.9f), 1e-6);
+  EXPECT_NEAR(first_value(path, "right.R"), stored(0.1f), 1e-6);
+  EXPECT_NEAR(first_value(path, "right.B"), stored(0.8f), 1e-6);
+  EXPECT_GT(std::abs(first_value(path, "right.B") - stored(0.1f)), 0.1) << "swapped eyes go unnoticed";
+  EXPECT_EQ(first_value(path, "A"), 0.75f);
+  EXPECT_EQ(first_value(path, "right.A"), 0.75f);
+  EXPECT_EQ(first_value(path, "right.Z"), 1.0f);
+  // load_image reads the default view.
+  EXPECT_NEAR(load_image(path).at(0, 0, 0), 0.9f, 1e-5);
+
+  save_exr(path, left, right, {.background = glm::vec3(0.0f)});
+  EXPECT_EQ(first_value(path, "coverage"), 0.75f);
+  EXPECT_EQ(first_value(path, "right.coverage"), 0.75f);
+  save_exr(path, left, {});
+  EXPECT_FALSE(Imf::hasMultiView(Imf::InputFile(path.c_str()).header())) << "one picture has no views";
+}
+
+TEST(ExrViews, HaveOneSize) {
+  const test::TempFolder folder;
+  const Picture wider = flat_picture({1, 1, 1}, 14);
+  EXPECT_TRUE(test::fails_saying([&] { save_exr(folder / "pair.exr", left, wider, {}); },
+                                 {"pair.exr", "13 x 7", "14 x 7"}));
+  EXPECT_TRUE(folder.names().empty());
+}
+
+/// What a command says; its exit code must be 0.
+std::string said_by(const test::TempFolder& folder, const std::string& command) {
+  const fs::path out = folder / "said";
+  const int code = std::system((command + " > " + out.string() + " 2>&1").c_str());
+  EXPECT_EQ(code, 0) << command << ": " << test::read_text(out);
+  return test::read_text(out);
+}
+
+TEST(ExrViews, OpenExrsOwnToolsSplitThem) {
+  if (std::system("exrheader > /dev/null 2>&1; test $? -ne 127") != 0)
+    GTEST_SKIP() << "Debian's package openexr is not installed";
+  const test::TempFolder folder;
+  const std::string pair = (folder / "pair.exr").string(), parts = (folder / "parts.exr").string();
+  save_exr(pair, left, right, {.half = false});
+  const std::string header = said_by(folder, "exrheader " + pair);
+  for (const char* expected : {"multiView", "\"left\"", "\"right\"", "right.R,", "right.Z, 32-bit float"})
+    EXPECT_NE(header.find(expected), std::string::npos) << expected << " is not in " << header;
+
+  said_by(folder, "exrmultipart -convert -i " + pair + " -o " + parts);
+  said_by(folder, "exrmultipart -separate -i " + parts + " -o " + (folder / "eye").string());
+  const auto channel = [&](const char* part, const char* of_left, const char* of_right) {
+    const fs::path path = folder / part;
+    const float value = first_value(path, of_left);
+    return value >= 0 ? value : first_value(path, of_right);
+  };
+  EXPECT_NEAR(channel("eye.1.exr", "R", "left.R"), stored(0.9f), 1e-6) << folder.names().size();
+  EXPECT_NEAR(channel("eye.2.exr", "R", "right.R"), stored(0.1f), 1e-6);
+  EXPECT_EQ(channel("eye.2.exr", "Z", "right.Z"), 1.0f);
 }
 
 }  // namespace

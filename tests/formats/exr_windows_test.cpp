@@ -1,4 +1,5 @@
-// OpenEXR files whose data window is not their display window, which is the picture.
+// OpenEXR files of other programs: scene-linear, and their data window is not always their display window,
+// which is the picture.
 
 #include <ImfChannelList.h>
 #include <ImfFrameBuffer.h>
@@ -7,8 +8,8 @@
 #include <ImfTiledOutputFile.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
-#include <functional>
 
 #include "formats/exr.h"
 #include "formats/image_file.h"
@@ -30,27 +31,25 @@ float light(int channel, int x, int y) {
 
 struct ExrFile {
   Box2i display, data;
-  std::string channels = "RGB";  // a letter each
-  float alpha = 0.5f;            // of A
+  std::vector<std::string> channels = {"R", "G", "B"};
+  float alpha = 0.5f;  // of A
   bool tiled = false;
+  int sampling = 1;
 };
 
 void write_exr(const fs::path& path, const ExrFile& file) {
   const Box2i& w = file.data;
-  const auto width = static_cast<std::size_t>(w.max.x - w.min.x + 1),
-             height = static_cast<std::size_t>(w.max.y - w.min.y + 1);
   Imf::Header header(file.display, w);
   Imf::FrameBuffer frame;
   std::vector<std::vector<float>> planes(file.channels.size());
   for (std::size_t c = 0; c < planes.size(); ++c) {
-    const std::string name(1, file.channels[c]);
+    const std::string& name = file.channels[c];
     for (int y = w.min.y; y <= w.max.y; ++y) {
       for (int x = w.min.x; x <= w.max.x; ++x)
         planes[c].push_back(name == "A" ? file.alpha : light(static_cast<int>(c), x, y));
     }
-    header.channels().insert(name, Imf::Channel(Imf::FLOAT));
-    frame.insert(name,
-                 Imf::Slice::Make(Imf::FLOAT, planes[c].data(), w, sizeof(float), sizeof(float) * width));
+    header.channels().insert(name, Imf::Channel(Imf::FLOAT, file.sampling, 1));
+    frame.insert(name, Imf::Slice::Make(Imf::FLOAT, planes[c].data(), w, 0, 0, file.sampling, 1));
   }
   if (file.tiled) {
     header.setTileDescription(Imf::TileDescription(16, 16));
@@ -60,13 +59,13 @@ void write_exr(const fs::path& path, const ExrFile& file) {
   } else {
     Imf::OutputFile out(path.c_str(), header);
     out.setFrameBuffer(frame);
-    out.writePixels(static_cast<int>(height));
+    out.writePixels(w.max.y - w.min.y + 1);
   }
 }
 
 /// What a file's picture is, from its windows alone.
 Image expected_window(const ExrFile& file) {
-  const bool alpha = file.channels.find('A') != std::string::npos, grey = file.channels[0] == 'Y';
+  const bool alpha = std::ranges::count(file.channels, "A") > 0, grey = file.channels[0] == "Y";
   const V2i size = file.display.size();
   Image image(size.x + 1, size.y + 1, alpha ? 4 : grey ? 1 : 3);
   for (int y = 0; y < image.height; ++y) {
@@ -104,13 +103,14 @@ TEST(ExrWindows, ThePictureIsTheDisplayWindow) {
   const test::TempFolder folder;
   for (const Box2i& display : {frame_window, Box2i({-3, 4}, {36, 33})}) {
     for (const Box2i& data : windows) {
-      for (const char* channels : {"RGB", "RGBA", "Y", "YA"}) {
+      for (const std::vector<std::string>& channels : std::vector<std::vector<std::string>>{
+               {"R", "G", "B"}, {"R", "G", "B", "A", "depth.Z"}, {"Y"}, {"Y", "A"}}) {
         for (const bool tiled : {false, true}) {
           const ExrFile file{.display = display, .data = data, .channels = channels, .tiled = tiled};
           write_exr(folder / "a.exr", file);
           const Image image = load_image(folder / "a.exr");
           EXPECT_LE(picture_difference(image, expected_window(file)), 1e-5)
-              << channels << " x " << data.min.x << " to " << data.max.x;
+              << channels.size() << " channels, x " << data.min.x << " to " << data.max.x;
           EXPECT_EQ(picture_size(folder / "a.exr"), glm::ivec2(40, 30));
           if (data == frame_window || !display.intersects(data)) continue;
           // Planted fault: the display window one pixel to the right.
@@ -126,7 +126,8 @@ TEST(ExrWindows, ThePictureIsTheDisplayWindow) {
 
 TEST(ExrWindows, ThatDoNotMeetShowNothing) {
   const test::TempFolder folder;
-  const ExrFile file{.display = frame_window, .data = Box2i({100, 100}, {120, 110}), .channels = "RGBA"};
+  const ExrFile file{
+      .display = frame_window, .data = Box2i({100, 100}, {120, 110}), .channels = {"R", "G", "B", "A"}};
   write_exr(folder / "a.exr", file);
   testing::internal::CaptureStderr();
   const Image image = load_image(folder / "a.exr");
@@ -170,23 +171,20 @@ TEST(ExrWindows, HugeOnesTakeNoMemory) {
   }
 }
 
-TEST(ExrWindows, ColourBesideLuminanceIsRefused) {
+TEST(ExrWindows, ChannelsThatMakeNoPictureAreRefused) {
   const test::TempFolder folder;
-  Imf::Header header(8, 8);
-  std::vector<float> values(64, 0.5f);
-  Imf::FrameBuffer frame;
-  for (const char* name : {"Y", "RY", "BY"}) {
-    header.channels().insert(name, Imf::Channel(Imf::FLOAT));
-    frame.insert(name, Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(values.data()), 4, 32));
-  }
-  {
-    Imf::OutputFile out((folder / "a.exr").c_str(), header);
-    out.setFrameBuffer(frame);
-    out.writePixels(8);
-  }
-  for (const auto& read : {std::function<void()>([&] { load_image(folder / "a.exr"); }),
-                           std::function<void()>([&] { picture_size(folder / "a.exr"); })})
-    EXPECT_TRUE(test::fails_saying(read, {"a.exr", "Y, RY, BY", "convert it to RGB"}));
+  const auto refuses = [&](const ExrFile& file, const std::vector<std::string>& said) {
+    write_exr(folder / "a.exr", file);
+    return test::fails_saying([&] { load_image(folder / "a.exr"); }, said) &&
+           test::fails_saying([&] { picture_size(folder / "a.exr"); }, said);
+  };
+  ExrFile file{.display = frame_window, .data = frame_window, .channels = {"R", "Z"}};
+  EXPECT_TRUE(refuses(file, {"a.exr", "no channels R, G, B or Y", "R Z"}));
+  file.channels = {"Y", "RY", "BY"};
+  EXPECT_TRUE(refuses(file, {"a.exr", "Y, RY, BY", "convert it to RGB"}));
+  file.channels = {"R", "G", "B"};
+  file.sampling = 2;
+  EXPECT_TRUE(refuses(file, {"a.exr", "channel R", "lower resolution"}));
 }
 
 }  // namespace

@@ -1,8 +1,10 @@
-// glTF as files: containers, buffers and their URIs, versions and extensions, a rule a test.
+// glTF as files: containers, buffers and their URIs, versions and extensions, a rule a test. That values are
+// decoded right is real_files_test's matter.
 
 #include <gtest/gtest.h>
 
 #include "base/text.h"
+#include "support/fixtures.h"
 #include "support/gltf.h"
 #include "support/models.h"
 
@@ -27,7 +29,7 @@ struct GltfFiles : testing::Test {
     return load_model(folder / "a.gltf");
   }
   bool is_right(const Model& found) const { return found.position == model.position && found.sh == model.sh; }
-  testing::AssertionResult refuses(std::initializer_list<std::string> parts) const {
+  testing::AssertionResult refuses(const std::vector<std::string>& parts) const {
     return test::fails_saying([&] { load(); }, parts);
   }
 };
@@ -38,11 +40,6 @@ TEST_F(GltfFiles, ChunksOfOtherTypesArePassedOver) {
   for (const std::string& chunks :
        {json + binary, json + binary + other, json + other + binary, json + other + other + binary + other})
     EXPECT_TRUE(is_right(load_gltf_bytes(Glb::whole(chunks))));
-  EXPECT_TRUE(refuses_gltf(Glb::whole(json + other), {"key 'buffers[0]'", "no binary chunk"}));
-  EXPECT_TRUE(refuses_gltf(Glb::whole(other + json + binary), {"the first chunk", "no JSON"}));
-  EXPECT_TRUE(refuses_gltf(Glb::whole(binary + json), {"the first chunk", "no JSON"}));
-  EXPECT_TRUE(refuses_gltf(Glb::whole(json + other.substr(0, 12) + "cut"),
-                           {"cut short: its chunk has 16 bytes, and 7 are there"}));
 }
 
 TEST_F(GltfFiles, ChunksMayBeFilledUp) {
@@ -51,11 +48,34 @@ TEST_F(GltfFiles, ChunksMayBeFilledUp) {
   EXPECT_TRUE(is_right(load_gltf_bytes(Glb::whole(Glb::chunk("JSON", text, ' ') + glb.binary_chunk()))));
   // What comes behind the length in the header is not of the file.
   EXPECT_TRUE(is_right(load_gltf_bytes(glb.bytes() + "more")));
-  std::string low = glb.bytes();
-  low.replace(8, 4, little(std::uint32_t{12}));
-  EXPECT_TRUE(refuses_gltf(low, {"its header says 12 bytes"}));
-  low.replace(8, 4, little(static_cast<std::uint32_t>(low.size() - 400)));
-  EXPECT_TRUE(refuses_gltf(low, {"cut short: its binary chunk"}));
+}
+
+TEST_F(GltfFiles, BrokenContainers) {
+  const std::string good = glb.bytes(), text = glb.json_chunk(), binary = glb.binary_chunk();
+  const std::string other = Glb::chunk("MORE", "of another kind", 'x');
+  const auto length = static_cast<std::uint32_t>(good.size());
+  const auto with = [&](std::size_t at, std::uint32_t number) {
+    return test::patched(good, at, little(number));
+  };
+  std::vector<test::BrokenFile> refusals = {
+      {Glb::whole(text + other), {"key 'buffers[0]'", "no binary chunk"}},
+      {Glb::whole(other + text + binary), {"the first chunk", "no JSON"}},
+      {Glb::whole(binary + text), {"the first chunk", "no JSON"}},
+      {Glb::whole(text + other.substr(0, 12) + "cut"),
+       {"cut short: its chunk has 16 bytes, and 7 are there"}},
+      {with(8, 12), {"its header says 12 bytes"}},
+      {with(8, length - 400), {"cut short: its binary chunk"}},
+      {with(8, length + 1), {"a.glb is cut short: its header says " + std::to_string(length + 1) + " bytes"}},
+      {with(4, 1), {"glTF of version 1"}},
+      {with(12, 4545), {"the first chunk, 4545 bytes"}},
+      {with(12, 0x7ffffffc), {"the first chunk"}},
+      {with(12 + text.size(), 0x7fffffff), {"its binary chunk has 2147483647 bytes"}},
+      {test::patched(good, 16, "NOSJ"), {"is no JSON that fits"}},
+      {test::patched(good, 30, "{{{{"), {"not valid JSON"}},
+  };
+  for (const std::size_t size : {std::size_t{5}, std::size_t{19}, std::size_t{24}, good.size() / 2})
+    refusals.push_back({good.substr(0, size), {"cut short"}});
+  test::expect_no_models("a.glb", refusals);
 }
 
 // A chunk has up to 3 bytes more than its buffer, never fewer.
@@ -83,14 +103,18 @@ TEST_F(GltfFiles, BuffersMayBeSeveral) {
   const auto bytes_of = [&](std::size_t i) {
     return glb.binary.substr(views[i]["byteOffset"], views[i]["byteLength"]);
   };
-  for (const std::size_t i : {1u, 2u}) {
+  for (const std::size_t i : {1u, 2u, 3u}) {
     glb.root["bufferViews"][i]["byteOffset"] = 0;
     glb.root["bufferViews"][i]["buffer"] = i;
   }
   glb.root["buffers"].push_back({{"byteLength", bytes_of(1).size()}, {"uri", "b.bin"}});
   glb.root["buffers"].push_back({{"byteLength", bytes_of(2).size()},
                                  {"uri", "data:application/octet-stream;base64," + base64(bytes_of(2))}});
-  test::write_text(folder / "b.bin", bytes_of(1));
+  // The same file by another name, behind what is the first one's.
+  glb.root["buffers"].push_back(
+      {{"byteLength", bytes_of(1).size() + bytes_of(3).size()}, {"uri", "./b.bin"}});
+  glb.root["bufferViews"][3]["byteOffset"] = bytes_of(1).size();
+  test::write_text(folder / "b.bin", bytes_of(1) + bytes_of(3));
   test::write_text(folder / "a.glb", glb.bytes());
   EXPECT_TRUE(is_right(load_model(folder / "a.glb")));
   buffer(1).erase("uri");
@@ -125,23 +149,16 @@ TEST_F(GltfFiles, BuffersMayBeInDataUris) {
 }
 
 TEST_F(GltfFiles, UrisArePercentDecoded) {
-  struct Case {
-    const char *uri, *file;
-  };
-  const Case cases[] = {
+  const std::string umlaut =
+      "m\xc3\xb6"
+      "del.bin";
+  const std::pair<std::string, std::string> cases[] = {
       {"b.bin", "b.bin"},
       {"my%20model.bin", "my model.bin"},
       {"my model.bin", "my model.bin"},
-      {"m%C3%B6del.bin",
-       "m\xc3\xb6"
-       "del.bin"},
-      {"m%c3%b6del.bin",
-       "m\xc3\xb6"
-       "del.bin"},
-      {"m\xc3\xb6"
-       "del.bin",
-       "m\xc3\xb6"
-       "del.bin"},
+      {"m%C3%B6del.bin", umlaut},
+      {"m%c3%b6del.bin", umlaut},
+      {umlaut, umlaut},
       {"a%23b%3Fc%25d.bin", "a#b?c%d.bin"},
       {"%E7%AB%8B.bin", "\xe7\xab\x8b.bin"},
       {"sub/b.bin", "sub/b.bin"},
@@ -153,13 +170,13 @@ TEST_F(GltfFiles, UrisArePercentDecoded) {
       {"my%20model.bin", "my%20model.bin"},
       {"a#b.bin", "a#b.bin"},
   };
-  for (const Case& c : cases) {
+  for (const auto& [uri, file] : cases) {
     const test::TempFolder other;
-    std::filesystem::create_directories((other / c.file).parent_path());
-    test::write_text(other / c.file, glb.binary);
-    buffer()["uri"] = c.uri;
+    std::filesystem::create_directories((other / file).parent_path());
+    test::write_text(other / file, glb.binary);
+    buffer()["uri"] = uri;
     test::write_text(other / "a.gltf", glb.root.dump());
-    EXPECT_TRUE(is_right(load_model(other / "a.gltf"))) << c.uri << " " << c.file;
+    EXPECT_TRUE(is_right(load_model(other / "a.gltf"))) << uri << " " << file;
   }
   // The decoded name first.
   test::write_text(folder / "my model.bin", glb.binary);
@@ -185,42 +202,37 @@ TEST_F(GltfFiles, UrisNameFilesBeside) {
 }
 
 TEST_F(GltfFiles, VersionsAreRead) {
-  const auto with = [&](const json& asset) {
-    glb.root["asset"] = asset;
-    return glb.bytes();
-  };
+  const auto with = [&](const json& asset) { return glb.with("/asset", asset); };
   for (const json& asset :
        {json{{"version", "2.0"}}, json{{"version", "2.1"}}, json{{"version", "2.1"}, {"minVersion", "2.0"}}})
     EXPECT_TRUE(is_right(load_gltf_bytes(with(asset))));
-  EXPECT_TRUE(refuses_gltf(with({{"version", "1.0"}}), {"key 'asset.version'", "version 1.0 is not known"}));
-  EXPECT_TRUE(refuses_gltf(with({{"version", "3.0"}}), {"key 'asset.version'", "version 3.0 is not known"}));
-  EXPECT_TRUE(refuses_gltf(with({{"version", "2.1"}, {"minVersion", "2.1"}}),
-                           {"key 'asset.minVersion'", "version 2.1 is not known; 2.0 is"}));
-  EXPECT_TRUE(refuses_gltf(with({{"version", "two"}}), {"key 'asset.version'", "as in 2.0, found 'two'"}));
-  EXPECT_TRUE(refuses_gltf(with(json::object()), {"asset.version' is missing"}));
+  const std::vector<test::BrokenFile> refusals = {
+      {with({{"version", "1.0"}}), {"key 'asset.version'", "version 1.0 is not known"}},
+      {with({{"version", "3.0"}}), {"key 'asset.version'", "version 3.0 is not known"}},
+      {with({{"version", "2.1"}, {"minVersion", "2.1"}}),
+       {"key 'asset.minVersion'", "version 2.1 is not known; 2.0 is"}},
+      {with({{"version", "two"}}), {"key 'asset.version'", "as in 2.0, found 'two'"}},
+      {with(json::object()), {"asset.version' is missing"}},
+  };
+  test::expect_no_models("a.glb", refusals);
 }
 
 TEST_F(GltfFiles, RequiredExtensionsAreKnown) {
-  const auto with = [&](const std::vector<std::string>& names) {
-    glb.root["extensionsRequired"] = names;
-    return glb.bytes();
-  };
-  EXPECT_TRUE(is_right(load_gltf_bytes(with({}))));
+  const auto with = [&](const json& names) { return glb.with("/extensionsRequired", names); };
+  EXPECT_TRUE(is_right(load_gltf_bytes(with(json::array()))));
   EXPECT_TRUE(is_right(load_gltf_bytes(with({"KHR_gaussian_splatting", "KHR_node_visibility",
                                              "EXT_mesh_gpu_instancing", "KHR_mesh_quantization"}))));
-  for (const char* name : {"VENDOR_unknown", "KHR_draco_mesh_compression", "EXT_meshopt_compression",
-                           "KHR_meshopt_compression", "KHR_materials_unlit"}) {
-    EXPECT_TRUE(refuses_gltf(with({"KHR_gaussian_splatting", name}),
-                             {"key 'extensionsRequired[1]'", std::string("'") + name + "'", "not known"}));
+  std::vector<test::BrokenFile> refusals = {
+      {with(json::array({7})), {"key 'extensionsRequired[0]'", "text in quotes"}},
+      {with("KHR_gaussian_splatting"), {"key 'extensionsRequired'", "expected a list"}}};
+  for (const std::string name : {"VENDOR_unknown", "KHR_draco_mesh_compression", "EXT_meshopt_compression",
+                                 "KHR_meshopt_compression", "KHR_materials_unlit"}) {
+    refusals.push_back({with({"KHR_gaussian_splatting", name}),
+                        {"key 'extensionsRequired[1]'", "'" + name + "'", "not known"}});
     // One that is only used is passed over.
-    glb.root["extensionsRequired"] = json::array();
-    glb.root["extensionsUsed"] = {"KHR_gaussian_splatting", name};
-    EXPECT_TRUE(is_right(load_gltf_bytes(glb.bytes())));
+    EXPECT_TRUE(is_right(load_gltf_bytes(glb.with("/extensionsUsed", {"KHR_gaussian_splatting", name}))));
   }
-  glb.root["extensionsRequired"] = {7};
-  EXPECT_TRUE(refuses_gltf(glb.bytes(), {"key 'extensionsRequired[0]'", "text in quotes"}));
-  glb.root["extensionsRequired"] = "KHR_gaussian_splatting";
-  EXPECT_TRUE(refuses_gltf(glb.bytes(), {"key 'extensionsRequired'", "expected a list"}));
+  test::expect_no_models("a.glb", refusals);
 }
 
 // A view that is compressed, too, is read as it is; without such bytes it cannot be.
@@ -238,15 +250,48 @@ TEST_F(GltfFiles, MeshoptIsReadWhereItIsNotNeeded) {
 }
 
 TEST_F(GltfFiles, AreToldFromOthers) {
-  const auto refuses_json = [&](const json& root, const char* part) {
-    return test::fails_saying([&] { load_gltf_bytes(root.dump(), "a.gltf"); }, {"a.gltf", part});
-  };
-  EXPECT_TRUE(refuses_json({{"asset", {{"version", "1.0"}}}, {"root", json::object()}, {"geometricError", 1}},
-                           "no glTF"));  // of 3D Tiles
+  const json tiles = {{"asset", {{"version", "1.0"}}}, {"root", json::object()}, {"geometricError", 1}};
   // Without buffers all numbers are zeros, and no rotation is one.
   glb.root.erase("buffers");
   for (json& accessor : glb.root["accessors"]) accessor.erase("bufferView");
-  EXPECT_TRUE(refuses_json(glb.root, "zero quaternions"));
+  test::expect_no_models("a.gltf", {{tiles.dump(), {"no glTF"}}, {glb.root.dump(), {"zero quaternions"}}});
+}
+
+TEST_F(GltfFiles, SayHowTheyAreSeen) {
+  const auto seen = [&](const json& words) {
+    Glb other = glb;
+    other.root["meshes"][0]["primitives"][0]["extensions"][test::splatting].update(words);
+    return load_gltf_bytes(other.bytes()).perspective;
+  };
+  const Perspective by_distance{.order = ORDER_DISTANCE};
+  EXPECT_EQ(seen({{"sortingMethod", "cameraDistance"}}), by_distance);
+  EXPECT_EQ(seen({{"sortingMethod", "zDepth"}, {"projection", "perspective"}}), Perspective{});
+  EXPECT_EQ(seen({{"sortingMethod", "zDepth"}, {"projection", "tangential"}}),
+            (Perspective{.projection = PROJECTION_TANGENT}));
+  EXPECT_EQ(seen({{"sortingMethod", "byColour"}}), by_distance);  // with a warning
+  EXPECT_EQ(seen(json::object()), by_distance);                   // glTF's default
+  EXPECT_THROW(seen({{"projection", 3}}), Error);
+  testing::internal::CaptureStderr();
+  seen({{"colorSpace", "lin_rec709_display"}});
+  EXPECT_NE(testing::internal::GetCapturedStderr().find("linear light"), std::string::npos);
+}
+
+TEST_F(GltfFiles, WithoutGaussiansSayWhatIsThere) {
+  const std::string primitive = "/meshes/0/primitives/0/";
+  Glb mesh = glb;
+  mesh.root["meshes"][0]["primitives"][0]["mode"] = 4;
+  const std::vector<test::BrokenFile> refusals = {
+      {glb.with(primitive + "extensions/KHR_gaussian_splatting/kernel", "box"), {"'box' is not known"}},
+      {glb.with(primitive + "extensions", nullptr), {"a glTF scene without Gaussians", "0 meshes, 1 points"}},
+      {mesh.with(primitive + "extensions", nullptr), {"1 meshes, 0 points"}},
+  };
+  test::expect_no_models("a.glb", refusals);
+}
+
+TEST(GltfSpz, CutShortIsNamed) {
+  REQUIRE_FIXTURES(folder);
+  const Glb spz(test::read_text(folder / "gltf/synthetic-spz2-train-sh3.glb"));
+  EXPECT_TRUE(refuses_gltf(spz.with("/bufferViews/0/byteLength", 20000), {"its spz data is cut short"}));
 }
 
 // Meshes and points are no Gaussians; nobody should look for them in vain.

@@ -190,19 +190,17 @@ std::string png_bytes() {
   return test::read_text(folder / "image.png");
 }
 
-testing::AssertionResult refuses_picture(const std::string& bytes, std::initializer_list<std::string> parts) {
-  return test::refuses_file(bytes, "picture", parts, [](const auto& path) { load_image(path); });
+testing::AssertionResult refuses_picture(const std::string& bytes, const std::vector<std::string>& said) {
+  const test::TempFolder folder;
+  test::write_text(folder / "picture", bytes);
+  return test::fails_saying([&] { load_image(folder / "picture"); }, said);
 }
 
 TEST(Png, BrokenFilesAreRefused) {
   const std::string good = png_bytes();
-  for (std::size_t size = 8; size < good.size(); size += size < 200 ? 1 : 97) {
-    EXPECT_TRUE(refuses_picture(good.substr(0, size), {"broken PNG"})) << size;
-  }
   EXPECT_TRUE(refuses_picture(good.substr(0, 1000), {"broken PNG: the file is cut short"}));
-  std::string flipped = good;
-  flipped[1000] = static_cast<char>(flipped[1000] ^ 1);
-  EXPECT_TRUE(refuses_picture(flipped, {"broken PNG"}));
+  EXPECT_TRUE(refuses_picture(test::patched(good, 1000, std::string(1, static_cast<char>(good[1000] ^ 1))),
+                              {"broken PNG"}));
 }
 
 TEST(Png, ForgedSizesTakeNoMemory) {
@@ -283,9 +281,6 @@ TEST(Jpeg, IsReadInColourAndGrey) {
 TEST(Jpeg, BrokenFilesAreRefused) {
   Image image;
   const std::string good = jpeg_bytes(TJPF_RGB, TJSAMP_420, image);
-  for (std::size_t size = 3; size + 2 < good.size(); size += 13) {
-    EXPECT_TRUE(refuses_picture(good.substr(0, size), {"broken JPEG"})) << size;
-  }
   // A header of 65,500 x 65,500 px.
   std::string forged = good;
   const std::size_t frame = forged.find("\xff\xc0");

@@ -4,10 +4,8 @@
 
 #include <cmath>
 
-#include "formats/cameras_file.h"
 #include "scene/key_path.h"
-#include "support/broken.h"
-#include "support/program.h"
+#include "support/load.h"
 
 namespace binosplat {
 namespace {
@@ -33,11 +31,7 @@ json path_json() {
              {"easing", 0}}}}};
 }
 
-std::vector<Camera> load(const json& root) {
-  const test::TempFolder folder;
-  test::write_text(folder / "path.json", root.dump());
-  return load_cameras(folder / "path.json");
-}
+std::vector<Camera> load(const json& root) { return test::load_cameras_of(root.dump(), "path.json"); }
 
 bool is_near(const glm::dvec3& a, const glm::dvec3& b) { return glm::distance(a, b) < 1e-12; }
 
@@ -70,21 +64,18 @@ TEST(LichtFeld, SaysWhatIsLeftOut) {
 }
 
 TEST(LichtFeld, BrokenOnesNameTheKey) {
-  const auto refuses = [](const auto& change, std::initializer_list<std::string> parts) {
-    json path = path_json();
-    change(path);
-    return test::refuses_file(path.dump(), "bad.json", parts, [](const auto& file) { load_cameras(file); });
+  const auto with = [](const std::string& pointer, const json& value) {
+    return test::with_value(path_json(), pointer, value);
   };
-  EXPECT_TRUE(refuses([](json& p) { p["version"] = 5; }, {"key 'version'", "up to version 4 are known"}));
-  EXPECT_TRUE(refuses([](json& p) { p["keyframes"][1].erase("rotation"); }, {"keyframes[1]", "rotation"}));
-  EXPECT_TRUE(refuses(
-      [](json& p) {
-        p["keyframes"][1]["rotation"] = {0, 0, 0, 0};
-      },
-      {"key 'keyframes[1].rotation'", "length 0"}));
-  EXPECT_TRUE(refuses([](json& p) { p["keyframes"][1]["focal_length_mm"] = 0; },
-                      {"key 'keyframes[1].focal_length_mm'"}));
-  EXPECT_TRUE(refuses([](json& p) { p["keyframes"][1]["position"] = {1, 2}; }, {"keyframes[1].position"}));
+  const std::string key = "/keyframes/1/";
+  const std::vector<test::BrokenFile> refusals = {
+      {with("/version", 5), {"key 'version'", "up to version 4 are known"}},
+      {with(key + "rotation", nullptr), {"keyframes[1]", "rotation"}},
+      {with(key + "rotation", {0, 0, 0, 0}), {"key 'keyframes[1].rotation'", "length 0"}},
+      {with(key + "focal_length_mm", 0), {"key 'keyframes[1].focal_length_mm'"}},
+      {with(key + "position", {1, 2}), {"keyframes[1].position"}},
+  };
+  test::expect_no_cameras("bad.json", refusals);
 }
 
 }  // namespace

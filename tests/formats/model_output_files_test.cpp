@@ -36,6 +36,8 @@ TEST(ModelOutputFiles, OthersModelsStayWithinTheSteps) {
   for (const auto& [name, truth] : models.items()) {
     const Model read = load_model(folder / name);
     for (const ModelFormat format : formats) {
+      // Models of every kind in every format are ModelOutput's.
+      if (own_format(read) != format && !test::switched_on("BINOSPLAT_LONG")) continue;
       const Model model = in_axes_of(read, format);
       const Written written = round_trip(model, format);
       EXPECT_EQ(difference(model, written.model, format), "") << name << " as " << name_of(format);

@@ -22,14 +22,12 @@ using test::Written;
 
 TEST(ModelOutput, PlyGivesTheSameBits) {
   for (int degree = 0; degree <= 3; ++degree) {
-    for (const std::size_t count : {std::size_t{1}, std::size_t{200000}}) {
-      Model model = hard_model(degree, count);
-      const Written written = round_trip(model, ModelFormat::ply);
-      EXPECT_TRUE(same_bits(written.model, model)) << "degree " << degree;
-      EXPECT_TRUE(written.losses.empty());
-      model.sh[model.sh.size() - 1] = std::nextafter(model.sh[model.sh.size() - 1], 9.0f);
-      EXPECT_FALSE(same_bits(written.model, model));
-    }
+    Model model = hard_model(degree, degree == 1 ? 200000 : 1);
+    const Written written = round_trip(model, ModelFormat::ply);
+    EXPECT_TRUE(same_bits(written.model, model)) << "degree " << degree;
+    EXPECT_TRUE(written.losses.empty());
+    model.sh[model.sh.size() - 1] = std::nextafter(model.sh[model.sh.size() - 1], 9.0f);
+    EXPECT_FALSE(same_bits(written.model, model));
   }
 }
 
@@ -64,11 +62,14 @@ TEST(ModelOutput, EveryFormatStaysWithinItsSteps) {
   for (const ModelFormat format : formats) {
     for (int degree = 0; degree <= 3; ++degree) {
       for (const std::size_t count : {1u, 255u, 256u, 257u, 3000u}) {
+        if (count == 3000 && degree != 3) continue;
         const Model model = in_axes_of(hard_model(degree, count), format);
         const Written written = round_trip(model, format);
         EXPECT_EQ(difference(model, written.model, format), "")
             << name_of(format) << ", degree " << degree << ", " << count;
-        EXPECT_EQ(round_trip(model, format).bytes, written.bytes) << name_of(format);
+        if (count == 3000) {
+          EXPECT_EQ(round_trip(model, format).bytes, written.bytes) << name_of(format);
+        }
       }
     }
   }

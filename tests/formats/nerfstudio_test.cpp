@@ -4,12 +4,10 @@
 
 #include <gtest/gtest.h>
 
-#include "formats/cameras_file.h"
 #include "formats/dataparser.h"
 #include "formats/image_file.h"
 #include "scene/key_path.h"
-#include "support/broken.h"
-#include "support/program.h"
+#include "support/load.h"
 
 namespace binosplat {
 namespace {
@@ -42,16 +40,7 @@ json path_of(int frames) {
   return path;
 }
 
-std::vector<Camera> load_path(const json& root) {
-  const TempFolder folder;
-  write_text(folder / "camera_path.json", root.dump());
-  return load_cameras(folder / "camera_path.json");
-}
-
-testing::AssertionResult refuses_path(const json& root, std::initializer_list<std::string> parts) {
-  if (auto named = test::fails_saying([&] { load_path(root); }, {"camera_path.json"}); !named) return named;
-  return test::fails_saying([&] { load_path(root); }, parts);
-}
+std::vector<Camera> load_path(const json& root) { return test::load_cameras_of(root.dump(), "path.json"); }
 
 TEST(CameraPath, FramesAreViews) {
   json path = path_of(4);
@@ -116,48 +105,39 @@ TEST(CameraPath, WithoutFramesIsItsKeyframes) {
 }
 
 TEST(CameraPath, ErrorsNameTheKeyAndWhatWasExpected) {
-  const auto with = [](auto edit) {
-    json path = path_of(2);
-    edit(path, path["camera_path"][1]);
-    return path;
+  const json path = path_of(2);
+  const auto with = [&](const std::string& pointer, const json& value) {
+    return test::with_value(path, pointer, value);
   };
-  EXPECT_TRUE(refuses_path(with([](json& p, json&) { p["camera_path"] = json::array(); }),
-                           {"'keyframes'", "no cameras"}));
-  EXPECT_TRUE(
-      refuses_path(with([](json& p, json&) { p["camera_path"] = 3; }), {"'camera_path'", "expected a list"}));
-  for (const char* key : {"camera_to_world", "fov"})
-    EXPECT_TRUE(refuses_path(with([&](json&, json& f) { f.erase(key); }),
-                             {fmt::format("'camera_path[1].{}' is missing", key)}));
-  for (const char* key : {"render_width", "render_height"}) {
-    EXPECT_TRUE(
-        refuses_path(with([&](json& p, json&) { p.erase(key); }), {fmt::format("'{}' is missing", key)}));
-    EXPECT_TRUE(refuses_path(with([&](json& p, json&) { p[key] = 0.5; }), {key, "expected a whole number"}));
-    EXPECT_TRUE(refuses_path(with([&](json& p, json&) { p[key] = 0; }), {"from 1 px"}));
+  const std::string frame = "/camera_path/1/", matrix = frame + "camera_to_world";
+  json keys = path;
+  keys.erase("camera_path");
+  const json in_quotes = {{{"matrix", "[1, 2]"}, {"fov", 50}}};
+  std::vector<test::BrokenFile> refusals = {
+      {with("/camera_path", json::array()), {"'keyframes'", "no cameras"}},
+      {with("/camera_path", 3), {"'camera_path'", "expected a list"}},
+      {with(matrix, nullptr), {"'camera_path[1].camera_to_world' is missing"}},
+      {with(matrix + "/0", nullptr), {"camera_path[1].camera_to_world", "expected 16 values, found 15"}},
+      {with(matrix + "/5", "x"), {"camera_path[1].camera_to_world[5]", "finite number"}},
+      {with(matrix, pose_columns), {"camera_to_world", "row by row, the last of which is 0 0 0 1"}},
+      {with(matrix + "/2", -2), {"camera_path[1].camera_to_world", "orthogonal"}},
+      {with(matrix + "/2", 1), {"camera_to_world", "mirrors"}},
+      {with(frame + "fov", nullptr), {"'camera_path[1].fov' is missing"}},
+      {with(frame + "fov", "50"), {"camera_path[1].fov", "finite number"}},
+      {with("/seconds", 0), {"'seconds'", "above 0"}},
+      {test::with_value(keys, "/keyframes", in_quotes), {"'keyframes[0].matrix'", "a list of 16 numbers"}},
+  };
+  for (const std::string key : {"render_width", "render_height"}) {
+    refusals.push_back({with("/" + key, nullptr), {"'" + key + "' is missing"}});
+    refusals.push_back({with("/" + key, 0.5), {key, "expected a whole number"}});
+    refusals.push_back({with("/" + key, 0), {"from 1 px"}});
   }
-  for (const json& fov : {json(0), json(180), json(-5)})
-    EXPECT_TRUE(refuses_path(with([&](json&, json& f) { f["fov"] = fov; }),
-                             {"'camera_path[1].fov'", "degrees between 0 and 180"}));
-  EXPECT_TRUE(
-      refuses_path(with([](json&, json& f) { f["fov"] = "50"; }), {"camera_path[1].fov", "finite number"}));
-  EXPECT_TRUE(refuses_path(with([](json&, json& f) { f["camera_to_world"].erase(0); }),
-                           {"camera_path[1].camera_to_world", "expected 16 values, found 15"}));
-  EXPECT_TRUE(refuses_path(with([](json&, json& f) { f["camera_to_world"][5] = "x"; }),
-                           {"camera_path[1].camera_to_world[5]", "finite number"}));
-  EXPECT_TRUE(refuses_path(with([](json&, json& f) { f["camera_to_world"] = pose_columns; }),
-                           {"camera_path[1].camera_to_world", "row by row, the last of which is 0 0 0 1"}));
-  EXPECT_TRUE(refuses_path(with([](json&, json& f) { f["camera_to_world"][2] = -2; }),
-                           {"camera_path[1].camera_to_world", "orthogonal"}));
-  EXPECT_TRUE(refuses_path(with([](json&, json& f) { f["camera_to_world"][2] = 1; }),
-                           {"camera_to_world", "mirrors"}));
-  EXPECT_TRUE(refuses_path(with([](json& p, json&) { p["seconds"] = 0; }), {"'seconds'", "above 0"}));
-  EXPECT_TRUE(refuses_path(with([](json& p, json&) {
-                             p.erase("camera_path");
-                             p["keyframes"] = {{{"matrix", "[1, 2]"}, {"fov", 50}}};
-                           }),
-                           {"'keyframes[0].matrix'", "a list of 16 numbers"}));
-  for (const char* type : {"fisheye", "equirectangular", "omnidirectional", "VR180"})
-    EXPECT_TRUE(refuses_path(with([&](json& p, json&) { p["camera_type"] = type; }),
-                             {"key 'camera_type'", type, "only pinhole lenses can be drawn"}));
+  for (const int fov : {0, 180, -5})
+    refusals.push_back({with(frame + "fov", fov), {"'camera_path[1].fov'", "degrees between 0 and 180"}});
+  for (const std::string type : {"fisheye", "equirectangular", "omnidirectional", "VR180"})
+    refusals.push_back(
+        {with("/camera_type", type), {"key 'camera_type'", type, "only pinhole lenses can be drawn"}});
+  test::expect_no_cameras("path.json", refusals);
 }
 
 json poses() {
@@ -186,16 +166,16 @@ TEST(Poses, HaveTheLensThatIsAskedFor) {
 }
 
 TEST(Poses, ErrorsNameTheKeyAndWhatWasExpected) {
-  const auto with = [](auto edit) {
-    json list = poses();
-    edit(list[1]);
-    return list;
+  const auto with = [](const std::string& pointer, const json& value) {
+    return test::with_value(poses(), "/1/" + pointer, value);
   };
-  EXPECT_TRUE(refuses_path(with([](json& p) { p.erase("file_path"); }), {"'[1].file_path' is missing"}));
-  EXPECT_TRUE(refuses_path(with([](json& p) { p.erase("transform"); }), {"'[1].transform' is missing"}));
-  EXPECT_TRUE(
-      refuses_path(with([](json& p) { p["transform"].erase(0); }), {"'[1].transform'", "3 or 4 rows"}));
-  EXPECT_TRUE(refuses_path(with([](json& p) { p["transform"][0][2] = 1; }), {"'[1].transform'", "mirrors"}));
+  const std::vector<test::BrokenFile> refusals = {
+      {with("file_path", nullptr), {"'[1].file_path' is missing"}},
+      {with("transform", nullptr), {"'[1].transform' is missing"}},
+      {with("transform/0", nullptr), {"'[1].transform'", "3 or 4 rows"}},
+      {with("transform/0/2", 1), {"'[1].transform'", "mirrors"}},
+  };
+  test::expect_no_cameras("poses.json", refusals);
 }
 
 TEST(Poses, AreInTheModelsWorldAlready) {

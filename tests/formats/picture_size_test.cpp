@@ -35,7 +35,7 @@ struct PictureSize : testing::Test {
     return picture_size(folder / "picture");
   }
   /// Whether both say so, the one that reads only the header and the other.
-  bool refused(const std::string& bytes, std::initializer_list<std::string> parts) const {
+  bool refused(const std::string& bytes, const std::vector<std::string>& parts) const {
     return test::fails_saying([&] { size_of(bytes); }, parts) &&
            test::fails_saying([&] { load_image(folder / "picture"); }, parts);
   }
@@ -65,10 +65,14 @@ TEST_F(PictureSize, WhatIsCutShortIsFound) {
   const std::string files[] = {png_bytes(noise_image(40, 30, 3)), jpeg_of(TJPF_RGB, TJSAMP_420),
                                jpeg_of(TJPF_RGB, TJSAMP_444, TJFLAG_PROGRESSIVE), exr_of({})};
   for (const std::string& good : files) {
-    for (const std::size_t left : {good.size() - 2, good.size() - 20, good.size() / 2, good.size() / 4}) {
-      EXPECT_TRUE(test::fails_saying([&] { size_of(good.substr(0, left)); }, {"picture"}))
-          << left << " of " << good.size() << ", " << good.substr(1, 3);
+    for (std::size_t left = 4; left + 2 < good.size(); left += left < 200 ? 1 : 97) {
+      const std::string cut = good.substr(0, left);
+      EXPECT_TRUE(test::fails_saying([&] { size_of(cut); }, {"picture"})) << left << " of " << good.size();
+      // What is cut between its scans libjpeg may show, with a warning.
+      if (&good == &files[2]) continue;
+      EXPECT_TRUE(refused(cut, {"picture"})) << left << " of " << good.size();
     }
+    EXPECT_TRUE(refused(good.substr(0, good.size() - 2), {"picture"}));
   }
   // Another picture before the pixels, as cameras keep a small one, is not the end of the one that is cut.
   const std::string jpeg = jpeg_of(TJPF_RGB, TJSAMP_420), small = jpeg_of(TJPF_GRAY, TJSAMP_GRAY);

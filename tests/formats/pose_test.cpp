@@ -5,8 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "formats/cameras_file.h"
-#include "support/errors.h"
-#include "support/program.h"
+#include "support/broken.h"
 
 namespace binosplat {
 namespace {
@@ -66,21 +65,20 @@ TEST(PoseFile, WhatCannotBeIsNamed) {
   const auto path = pose_path(folder / "room.ply");
   save_pose(path, some_pose());
   const std::string good = test::read_text(path);
-  const auto fails = [&](const std::string& was, const std::string& is, const std::string& said) {
-    std::string text = good;
-    text.replace(text.find(was), was.size(), is);
-    write_text(path, text);
-    return test::fails_saying([&] { find_pose(folder / "room.ply"); }, {"room.binosplat.json", said});
+  const auto with = [&](const char* from, const char* to) { return test::replaced(good, from, to); };
+  const std::vector<test::BrokenFile> refusals = {
+      {with("\"units_per_metre\": 2.5", "\"units_per_metre\": 0"), {"units_per_metre"}},
+      {with("\"ipd_metres\": 0.061", "\"ipd_metres\": -1"), {"ipd_metres"}},
+      {with("\"near\": 0.05", "\"near\": \"far\""), {"near"}},
+      {with("\"up\"", "\"down\""), {"up"}},
+      {with("0.6", "1e200"), {"up"}},
+      {with("\"fx\": 210.5", "\"fx\": -1"), {"fx"}},
+      {with("[", "{"), {"line"}},
   };
-  EXPECT_TRUE(fails("\"units_per_metre\": 2.5", "\"units_per_metre\": 0", "units_per_metre"));
-  EXPECT_TRUE(fails("\"ipd_metres\": 0.061", "\"ipd_metres\": -1", "ipd_metres"));
-  EXPECT_TRUE(fails("\"near\": 0.05", "\"near\": \"far\"", "near"));
-  EXPECT_TRUE(fails("\"up\"", "\"down\"", "up"));
-  EXPECT_TRUE(fails("0.6", "1e200", "up"));
-  EXPECT_TRUE(fails("\"fx\": 210.5", "\"fx\": -1", "fx"));
-  EXPECT_TRUE(fails("[", "{", "line"));
-  write_text(path, good);
-  EXPECT_TRUE(find_pose(folder / "room.ply"));
+  test::expect_refusals("room.binosplat.json", refusals, [&](const std::string& text) {
+    write_text(path, text);
+    find_pose(folder / "room.ply");
+  });
 }
 
 }  // namespace

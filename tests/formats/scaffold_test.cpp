@@ -6,8 +6,7 @@
 #include "formats/model_file.h"
 #include "formats/scaffold_file.h"
 #include "formats/torch_file.h"
-#include "support/errors.h"
-#include "support/program.h"
+#include "support/broken.h"
 #include "support/scaffold_files.h"
 #include "support/scenes.h"
 
@@ -138,22 +137,23 @@ TEST(ScaffoldFile, TheTrainersOwnFiles) {
 }
 
 /// A good model in a folder, to be broken.
-class BrokenScaffold : public testing::Test {
- protected:
-  BrokenScaffold() : good(test::random_scaffold(5, {.appearances = 3})) {
-    test::write_scaffold(folder.path(), good);
-  }
+struct BrokenScaffold : testing::Test {
+  BrokenScaffold() { test::write_scaffold(folder.path(), good); }
 
-  testing::AssertionResult refused(std::initializer_list<std::string> parts) const {
-    return test::fails_saying([&] { load_model(folder.path()); }, parts);
+  testing::AssertionResult refused(const std::vector<std::string>& said) const {
+    return test::fails_saying([&] { load_model(folder.path()); }, said);
   }
-  // The networks' file with some of its entries replaced.
-  void write(const std::string& name, const test::ZipEntries& entries, bool deflate = false) const {
-    test::write_zip(folder / name, entries, deflate);
+  void expect_refused(const std::string& file, const std::vector<test::BrokenFile>& refusals) const {
+    const std::string before = test::read_text(folder / file);
+    test::expect_refusals(file, refusals, [&](const std::string& bytes) {
+      test::write_text(folder / file, bytes);
+      load_model(folder.path());
+    });
+    test::write_text(folder / file, before);
   }
 
   test::TempFolder folder;
-  Scaffold good;
+  const Scaffold good = test::random_scaffold(5, {.appearances = 3});
 };
 
 TEST_F(BrokenScaffold, MissingFiles) {
@@ -161,142 +161,110 @@ TEST_F(BrokenScaffold, MissingFiles) {
   EXPECT_TRUE(refused({"cov_mlp.pt is missing"}));
   test::write_text(folder / "checkpoints.pth", "PK");
   EXPECT_TRUE(refused({"cov_mlp.pt is missing", "'split'"}));
-  write("cov_mlp.pt", test::entries_of(good.covariance));
+  test::write_zip(folder / "cov_mlp.pt", test::entries_of(good.covariance));
   fs::remove(folder / "embedding_appearance.pt");
   EXPECT_TRUE(refused({"embedding_appearance.pt is missing", "color_mlp.pt takes 5 inputs beyond"}));
 }
 
 TEST_F(BrokenScaffold, WrongSizes) {
-  const auto with = [&](const char* name, Network network, const auto& change) {
+  const auto with = [&](Network network, const auto& change) {
     change(network);
-    write(name, test::entries_of(network));
+    return test::zipped(test::entries_of(network));
   };
-  with("opacity_mlp.pt", good.opacity, [](Network& n) { n.first.pop_back(); });
-  EXPECT_TRUE(refused({"opacity_mlp.pt", "1119 weights and 32 biases make no first layer"}));
-  with("opacity_mlp.pt", good.opacity, [](Network& n) { n.first.resize(32 * 37); });
-  EXPECT_TRUE(refused({"opacity_mlp.pt", "37 inputs; expected 35", "or 36"}));
-  with("opacity_mlp.pt", good.opacity, [](Network& n) { n.first_bias.clear(); });
-  EXPECT_TRUE(refused({"opacity_mlp.pt", "0 biases"}));
-  with("opacity_mlp.pt", good.opacity, [](Network& n) { n.second_bias.pop_back(); });
-  EXPECT_TRUE(refused({"opacity_mlp.pt", "320 weights and 9 biases; expected 10 x 32 and 10"}));
-  write("opacity_mlp.pt", test::entries_of(good.opacity));
-  with("color_mlp.pt", good.colour, [](Network& n) { n.first.resize(32 * 34); });
-  EXPECT_TRUE(refused({"color_mlp.pt", "34 inputs; expected 35"}));
-  write("color_mlp.pt", test::entries_of(good.colour));
-  write("embedding_appearance.pt", test::torch_entries({std::vector<float>(13)}));
-  EXPECT_TRUE(refused({"embedding_appearance.pt", "13 values; expected rows of 5"}));
-  write("embedding_appearance.pt", test::torch_entries({good.appearances}));
-  write("feature_bank_mlp.pt", test::entries_of(good.opacity));
+  const Network& opacity = good.opacity;
+  expect_refused("opacity_mlp.pt", {{with(opacity, [](Network& n) { n.first.pop_back(); }),
+                                     {"1119 weights and 32 biases make no first layer"}},
+                                    {with(opacity, [](Network& n) { n.first.resize(32 * 37); }),
+                                     {"37 inputs; expected 35", "or 36"}},
+                                    {with(opacity, [](Network& n) { n.first_bias.clear(); }), {"0 biases"}},
+                                    {with(opacity, [](Network& n) { n.second_bias.pop_back(); }),
+                                     {"320 weights and 9 biases; expected 10 x 32 and 10"}},
+                                    {with(opacity, [](Network& n) { n.second[17] = NAN; }),
+                                     {"value 17 of tensor 'net/data/2' is not finite"}}});
+  expect_refused("color_mlp.pt", {{with(good.colour, [](Network& n) { n.first.resize(32 * 34); }),
+                                   {"34 inputs; expected 35"}}});
+  expect_refused("embedding_appearance.pt", {{test::zipped(test::torch_entries({std::vector<float>(13)})),
+                                              {"13 values; expected rows of 5"}}});
+  test::write_zip(folder / "feature_bank_mlp.pt", test::entries_of(opacity));
   EXPECT_TRUE(refused({"feature_bank_mlp.pt", "expected 3 x 32 and 3"}));
 }
 
-TEST_F(BrokenScaffold, WeightsThatAreNone) {
-  Network network = good.opacity;
-  network.second[17] = NAN;
-  write("opacity_mlp.pt", test::entries_of(network));
-  EXPECT_TRUE(refused({"opacity_mlp.pt", "value 17 of tensor 'net/data/2' is not finite"}));
-  test::ZipEntries entries = test::entries_of(good.opacity);
-  entries.pop_back();
-  write("opacity_mlp.pt", entries);
-  EXPECT_TRUE(refused({"opacity_mlp.pt", "no tensor 3; expected 4"}));
-  entries = test::entries_of(good.opacity);
-  entries[2].second += "x";
-  write("opacity_mlp.pt", entries);
-  EXPECT_TRUE(refused({"'net/data/0' has 4481 bytes, not a number of float32"}));
-  entries = test::entries_of(good.opacity);
-  entries.emplace_back("net/byteorder", "big");
-  write("opacity_mlp.pt", entries);
-  EXPECT_TRUE(refused({"opacity_mlp.pt", "byte order is 'big'"}));
-}
-
 TEST_F(BrokenScaffold, ArchivesThatAreNone) {
-  test::write_text(folder / "color_mlp.pt", "<html>not found</html>");
-  EXPECT_TRUE(refused({"color_mlp.pt", "expected a zip archive", "HTML"}));
-  write("color_mlp.pt", {{"hello", "you"}});
-  EXPECT_TRUE(refused({"color_mlp.pt", "without data.pkl"}));
-  write("color_mlp.pt", test::entries_of(good.colour));
-  const std::string whole = test::read_text(folder / "color_mlp.pt");
-  for (const std::size_t bytes : {whole.size() - 1, whole.size() / 2, std::size_t{30}, std::size_t{4}}) {
-    test::write_text(folder / "color_mlp.pt", whole.substr(0, bytes));
-    EXPECT_TRUE(refused({"color_mlp.pt", "zip archive is damaged or cut short", "fetch or export it again"}))
-        << bytes;
-  }
+  const auto with = [&](const auto& change, bool deflated = false) {
+    test::ZipEntries entries = test::entries_of(good.colour);
+    change(entries);
+    return test::zipped(entries, deflated);
+  };
+  const std::string whole = with([](test::ZipEntries&) {});
   std::string flipped = whole;
   flipped[flipped.find("net/data/0") + 100] ^= 1;
-  test::write_text(folder / "color_mlp.pt", flipped);
-  EXPECT_TRUE(refused({"color_mlp.pt", "'net/data/0' is damaged", "CRC"}));
-  for (const char* name : {"../data/0", "/etc/passwd", "a/../../b", "a\\b"}) {
-    test::ZipEntries entries = test::entries_of(good.colour);
-    entries.emplace_back(name, "x");
-    write("color_mlp.pt", entries);
-    EXPECT_TRUE(refused({"color_mlp.pt", "leads out of the archive", name})) << name;
-  }
-}
-
-TEST_F(BrokenScaffold, Bombs) {
-  test::ZipEntries entries = test::entries_of(good.colour);
-  entries[2].second.assign(std::size_t{65} << 20, '\0');
-  write("color_mlp.pt", entries, true);
-  EXPECT_LT(fs::file_size(folder / "color_mlp.pt"), 200000u);
-  EXPECT_TRUE(refused({"color_mlp.pt", "'net/data/0' promises 68157440 bytes; expected at most 67108864"}));
+  const std::string bomb = with([](auto& e) { e[2].second.assign(std::size_t{65} << 20, '\0'); }, true);
+  EXPECT_LT(bomb.size(), 200000u);
   // One that promises less than it holds.
-  entries[2].second.assign(4480000, '\0');
-  write("color_mlp.pt", entries, true);
-  std::string bytes = test::read_text(folder / "color_mlp.pt");
-  const std::uint32_t truth = 4480000, promise = 4480;
-  const std::string sought(reinterpret_cast<const char*>(&truth), 4);
-  for (std::size_t at = bytes.find(sought); at != std::string::npos; at = bytes.find(sought))
-    bytes.replace(at, 4, reinterpret_cast<const char*>(&promise), 4);
-  test::write_text(folder / "color_mlp.pt", bytes);
-  EXPECT_TRUE(refused({"color_mlp.pt", "'net/data/0'", "damaged"}));
+  std::string liar = with([](auto& e) { e[2].second.assign(4480000, '\0'); }, true);
+  const std::string truth = test::little(4480000u), promise = test::little(4480u);
+  while (liar.find(truth) != std::string::npos) liar = test::replaced(liar, truth, promise);
+  std::vector<test::BrokenFile> refusals = {
+      {with([](auto& entries) { entries.pop_back(); }), {"no tensor 3; expected 4"}},
+      {with([](auto& entries) { entries[2].second += "x"; }),
+       {"'net/data/0' has 5121 bytes, not a number of float32"}},
+      {with([](auto& entries) { entries.emplace_back("net/byteorder", "big"); }), {"byte order is 'big'"}},
+      {"<html>not found</html>", {"expected a zip archive", "HTML"}},
+      {test::zipped({{"hello", "you"}}), {"without data.pkl"}},
+      {flipped, {"'net/data/0' is damaged", "CRC"}},
+      {bomb, {"'net/data/0' promises 68157440 bytes; expected at most 67108864"}},
+      {liar, {"'net/data/0'", "damaged"}},
+  };
+  for (const std::size_t bytes : {whole.size() - 1, whole.size() / 2, std::size_t{30}, std::size_t{4}})
+    refusals.push_back(
+        {whole.substr(0, bytes), {"zip archive is damaged or cut short", "fetch or export it again"}});
+  for (const char* name : {"../data/0", "/etc/passwd", "a/../../b", "a\\b"})
+    refusals.push_back(
+        {with([&](auto& entries) { entries.emplace_back(name, "x"); }), {"leads out of the archive", name}});
+  expect_refused("color_mlp.pt", refusals);
 }
 
 TEST_F(BrokenScaffold, Anchors) {
-  const test::PlyFile file = test::anchor_file(good);
   const auto with = [&](const auto& change) {
-    test::PlyFile changed = file;
-    change(changed);
-    test::write_text(folder / "point_cloud.ply", to_bytes(changed));
+    test::PlyFile file = test::anchor_file(good);
+    change(file);
+    return to_bytes(file);
   };
-  const auto rename = [&](const char* from, const char* to) {
-    with([&](test::PlyFile& f) { f.columns[f.column(from)] = to; });
+  const auto renamed = [&](const char* from, const char* to) {
+    return with([&](test::PlyFile& f) { f.columns[f.column(from)] = to; });
   };
-  const std::string bytes = to_bytes(file);
-  test::write_text(folder / "point_cloud.ply", bytes.substr(0, bytes.size() - 1));
-  EXPECT_TRUE(refused({"point_cloud.ply is cut short", "element 'vertex' needs 40 x 316 = "}));
-  with([](test::PlyFile& f) { f.format = "ascii"; });
-  EXPECT_TRUE(refused({"point_cloud.ply", "Scaffold-GS", "binary_little_endian"}));
-  with([](test::PlyFile& f) { f.type = "double"; });
-  EXPECT_TRUE(refused({"point_cloud.ply", "property 'x' of element 'vertex' is not of type float"}));
-  with([](test::PlyFile& f) { f.rows.clear(); });
-  EXPECT_TRUE(refused({"holds no anchors"}));
-  rename("f_offset_7", "other");
-  EXPECT_TRUE(refused({"29 properties f_offset_*"}));
-  rename("f_offset_7", "f_offset_30");
-  EXPECT_TRUE(refused({"no property 'f_offset_7'"}));
-  with([](test::PlyFile& f) {
-    f.columns[f.column("f_anchor_feat_31")] = f.columns[f.column("f_anchor_feat_30")] = "a";
-  });
-  EXPECT_TRUE(refused({"point_cloud.ply", "'a' occurs twice"}));
-  with([](test::PlyFile& f) {
-    f.columns[f.column("f_anchor_feat_31")] = "a";
-    f.columns[f.column("f_anchor_feat_30")] = "b";
-  });
+  const auto without_two = [&](const char* a, const char* b) {
+    return with([&](test::PlyFile& f) {
+      f.columns[f.column("f_anchor_feat_31")] = a;
+      f.columns[f.column("f_anchor_feat_30")] = b;
+    });
+  };
+  const auto of_infinite = [](test::PlyFile& f) {
+    for (std::size_t n = 0; n < f.rows.size(); ++n) f.at(n, "f_anchor_feat_0") = INFINITY;
+  };
+  const std::string bytes = to_bytes(test::anchor_file(good));
+  expect_refused(
+      "point_cloud.ply",
+      {{bytes.substr(0, bytes.size() - 1), {"is cut short", "element 'vertex' needs 40 x 316 = "}},
+       {with([](test::PlyFile& f) { f.format = "ascii"; }), {"Scaffold-GS", "binary_little_endian"}},
+       {with([](test::PlyFile& f) { f.type = "double"; }),
+        {"property 'x' of element 'vertex' is not of type float"}},
+       {with([](test::PlyFile& f) { f.rows.clear(); }), {"holds no anchors"}},
+       {renamed("f_offset_7", "other"), {"29 properties f_offset_*"}},
+       {renamed("f_offset_7", "f_offset_30"), {"no property 'f_offset_7'"}},
+       {renamed("scale_5", "other"), {"no property 'scale_5'"}},
+       {without_two("a", "a"), {"'a' occurs twice"}},
+       {with(of_infinite), {"all of its 40 anchors"}}});
+  test::write_text(folder / "point_cloud.ply", without_two("a", "b"));
   EXPECT_TRUE(refused({"opacity_mlp.pt", "35 inputs; expected 33", "or 34"})) << "two features too few";
-  rename("scale_5", "other");
-  EXPECT_TRUE(refused({"no property 'scale_5'"}));
-  with([](test::PlyFile& f) {
-    f.at(3, "x") = NAN;
-    f.at(4, "scale_1") = 1000;
-  });
-  EXPECT_EQ(load_model(folder.path()).scaffold->left_out, 2u);
+  test::write_text(folder / "point_cloud.ply", with([](test::PlyFile& f) {
+                     f.at(3, "x") = NAN;
+                     f.at(4, "scale_1") = 1000;
+                   }));
   const auto kept = load_model(folder.path()).scaffold;
+  EXPECT_EQ(kept->left_out, 2u);
   EXPECT_EQ(kept->position[3], good.position[5]);
   EXPECT_EQ(kept->feature[3 * 32 + 1], good.feature[5 * 32 + 1]);
-  with([](test::PlyFile& f) {
-    for (std::size_t n = 0; n < f.rows.size(); ++n) f.at(n, "f_anchor_feat_0") = INFINITY;
-  });
-  EXPECT_TRUE(refused({"all of its 40 anchors"}));
 }
 
 }  // namespace

@@ -2,13 +2,12 @@
 
 #include <gtest/gtest.h>
 
-#include "formats/model_file.h"
 #include "formats/streamed_sog.h"
 #include "scene/reduce.h"
 #include "stream/load_within.h"
 #include "stream/lod_files.h"
-#include "support/broken.h"
 #include "support/fixtures.h"
+#include "support/load.h"
 #include "support/ply_models.h"
 
 namespace binosplat {
@@ -17,69 +16,64 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 using test::Copy;
-using ArchivedFiles = std::vector<std::pair<std::string, std::string>>;
+using test::ZipEntries;
 
 /// The files of a folder, their names after `before`.
-ArchivedFiles files_in(const fs::path& folder, const std::string& before = "") {
-  ArchivedFiles files;
+ZipEntries files_in(const fs::path& folder, const std::string& before = "") {
+  ZipEntries files;
   for (const auto& entry : fs::directory_iterator(folder))
     files.emplace_back(before + entry.path().filename().string(), test::read_text(entry.path()));
   return files;
 }
 
-void add(ArchivedFiles& files, const ArchivedFiles& more) {
-  files.insert(files.end(), more.begin(), more.end());
+void add(ZipEntries& files, const ZipEntries& more) { files.insert(files.end(), more.begin(), more.end()); }
+
+Model load_archive(const ZipEntries& files, bool deflated = false) {
+  return test::load_model_of(test::zipped(files, deflated), "m.sog");
 }
 
-struct SogArchive : testing::Test {
-  Model load(const ArchivedFiles& files, bool deflated = false) const {
-    test::write_text(folder / "m.sog", test::zipped(files, deflated));
-    return load_model(folder / "m.sog");
-  }
-  bool refused(const ArchivedFiles& files, std::initializer_list<std::string> parts) const {
-    return test::fails_saying([&] { load(files); }, parts);
-  }
-  const test::TempFolder folder;
-};
-
-TEST_F(SogArchive, FilesMayLieInAFolderOfIt) {
+TEST(SogArchive, FilesMayLieInAFolderOfIt) {
   REQUIRE_FIXTURES(fixtures);
   const fs::path sog = fixtures / "sog/playbot-lod6";
   const Model whole = load_model(sog);
   for (const char* before : {"", "./", "scene/", "./scene/", "a/b/c d/", "scene\\", ".\\a\\b\\", "/scene/"}) {
     for (const bool deflated : {false, true})
-      EXPECT_TRUE(test::equal(load(files_in(sog, before), deflated), whole)) << before;
+      EXPECT_TRUE(test::equal(load_archive(files_in(sog, before), deflated), whole)) << before;
     // Planted fault: the pictures of another folder.
-    ArchivedFiles files = files_in(sog, before);
+    ZipEntries files = files_in(sog, before);
     for (auto& [name, bytes] : files) {
       if (!name.ends_with("json")) name = "other/" + name;
     }
-    EXPECT_TRUE(refused(files, {"m.sog: there is no file", ".webp' in the archive"})) << before;
+    test::expect_no_models("m.sog",
+                           {{test::zipped(files), {"m.sog: there is no file", ".webp' in the archive"}}});
   }
 }
 
-TEST_F(SogArchive, MayHoldMoreThanItsModel) {
+TEST(SogArchive, MayHoldMoreThanItsModel) {
   REQUIRE_FIXTURES(fixtures);
   const fs::path sog = fixtures / "sog/playbot-lod6";
   const Model whole = load_model(sog);
-  ArchivedFiles files = {
-      {"__MACOSX/scene/._meta.json", "x"}, {"__MACOSX/meta.json", "x"}, {"read me.txt", "x"}};
+  ZipEntries files = {{"__MACOSX/scene/._meta.json", "x"}, {"__MACOSX/meta.json", "x"}, {"read me.txt", "x"}};
   add(files, files_in(sog, "scene/"));
-  EXPECT_TRUE(test::equal(load(files), whole));
+  EXPECT_TRUE(test::equal(load_archive(files), whole));
   // The one that lies least deep, wherever it stands.
   add(files, {{"scene/old/meta.json", "x"}, {"a/b/meta.json", "x"}});
-  EXPECT_TRUE(test::equal(load(files), whole));
+  EXPECT_TRUE(test::equal(load_archive(files), whole));
   files.emplace_back("other/meta.json", "x");
-  EXPECT_TRUE(refused(files, {"m.sog holds several SOG models", "'other/meta.json'", "'scene/meta.json'"}));
+  const std::vector<std::string> said = {"holds several SOG models", "'other/meta.json'",
+                                         "'scene/meta.json'"};
+  test::expect_no_models("m.sog", {{test::zipped(files), said}});
 }
 
-TEST_F(SogArchive, OfNoneOrOfSeveralModelsIsRefused) {
-  EXPECT_TRUE(refused({{"meta.json.txt", "x"}}, {"m.sog is a zip archive without a meta.json"}));
-  EXPECT_TRUE(refused({{"__MACOSX/meta.json", "x"}}, {"m.sog is a zip archive without a meta.json"}));
-  EXPECT_TRUE(refused({{"meta.json", "x"}, {"./meta.json", "x"}}, {"m.sog holds several SOG models"}));
-  EXPECT_TRUE(refused({{"a/meta.json", "x"}, {"a\\meta.json", "x"}}, {"m.sog holds several SOG models"}));
-  EXPECT_TRUE(
-      refused({{"lod-meta.json", "{}"}, {"0_0/meta.json", "{}"}}, {"holds a streamed SOG", "unpack"}));
+TEST(SogArchive, OfNoneOrOfSeveralModelsIsRefused) {
+  const std::vector<test::BrokenFile> refusals = {
+      {test::zipped({{"meta.json.txt", "x"}}), {"m.sog is a zip archive without a meta.json"}},
+      {test::zipped({{"__MACOSX/meta.json", "x"}}), {"m.sog is a zip archive without a meta.json"}},
+      {test::zipped({{"meta.json", "x"}, {"./meta.json", "x"}}), {"m.sog holds several SOG models"}},
+      {test::zipped({{"a/meta.json", "x"}, {"a\\meta.json", "x"}}), {"m.sog holds several SOG models"}},
+      {test::zipped({{"lod-meta.json", "{}"}, {"0_0/meta.json", "{}"}}), {"holds a streamed SOG", "unpack"}},
+  };
+  test::expect_no_models("m.sog", refusals);
 }
 
 /// Packs the SOG in each folder of a streamed one, and names the archives in its place.
@@ -135,7 +129,7 @@ TEST(StreamedSogArchives, ThatAreDamagedAreNamed) {
   const Copy copy(fixtures / "sog/st-lod");
   pack(copy, "");
   const std::string good = copy.read("0_0.sog");
-  const auto with = [&](const std::string& bytes, std::initializer_list<std::string> parts) {
+  const auto with = [&](const std::string& bytes, const std::vector<std::string>& parts) {
     copy.write(bytes, "0_0.sog");
     return test::fails_saying([&] { load_model(copy.path()); }, parts) &&
            test::fails_saying([&] { LodFiles files(copy.path()); }, parts);

@@ -2,11 +2,10 @@
 
 #include <gtest/gtest.h>
 
-#include "formats/model_file.h"
 #include "stream/load_within.h"
 #include "stream/lod_files.h"
-#include "support/broken.h"
 #include "support/fixtures.h"
+#include "support/load.h"
 
 namespace binosplat {
 namespace {
@@ -26,21 +25,6 @@ bool equal_from(const Model& a, std::size_t first, const Model& b) {
     if (!std::equal(&b.sh[i * values], &b.sh[(i + 1) * values - 1], &a.sh[k * values])) return false;
   }
   return true;
-}
-
-TEST(Sog, FoldersAndArchivesAreTheSame) {
-  REQUIRE_FIXTURES(folder);
-  const Model whole = load_model(folder / "sog/playbot-lod6");
-  for (const char* name :
-       {"sog/playbot-lod6/meta.json", "sog/playbot-lod6-stored.sog", "sog/playbot-lod6-deflated.sog"}) {
-    const Model other = load_model(folder / name);
-    ASSERT_EQ(other.count(), whole.count()) << name;
-    EXPECT_TRUE(equal_from(other, 0, whole)) << name;
-  }
-  // Planted fault.
-  Model faulty = whole;
-  faulty.sh[500] += 1e-6f;
-  EXPECT_FALSE(equal_from(faulty, 0, whole));
 }
 
 TEST(Sog, LevelsOfDetail) {
@@ -131,45 +115,45 @@ TEST(Sog, LevelsThatAreNotThere) {
                                  {"lod-meta.json", "no level of detail is complete"}));
 }
 
-/// Damages a copy of a file or folder and tells whether loading it ends in an error that says `parts`.
-template <typename Damage>
-testing::AssertionResult refuses_damaged(const fs::path& original, const Damage& damage,
-                                         std::initializer_list<std::string> parts) {
+/// Expects that a copy of a folder is refused with other bytes in the place of a file's.
+void expect_refused_with(const fs::path& original, const std::string& file,
+                         const std::vector<test::BrokenFile>& refusals) {
   const Copy copy(original);
-  damage(copy);
-  return test::fails_saying([&] { load_model(copy.path()); }, parts);
+  test::expect_refusals(file, refusals, [&](const std::string& bytes) {
+    copy.write(bytes, file);
+    load_model(copy.path());
+  });
+}
+
+/// A picture of one colour, which takes a few bytes, however large it is.
+std::string grey_webp(int width, int height) {
+  return test::webp(width, height,
+                    std::vector<std::uint8_t>(static_cast<std::size_t>(4 * width * height), 77));
 }
 
 TEST(SogErrors, Meta) {
   REQUIRE_FIXTURES(folder);
-  const auto edited = [&](auto edit, std::initializer_list<std::string> parts) {
-    return refuses_damaged(
-        folder / "sog/playbot-lod6", [&](const Copy& copy) { copy.edit("meta.json", edit); }, parts);
+  const json good = test::load_json(folder / "sog/playbot-lod6/meta.json");
+  const auto with = [&](const std::string& pointer, const json& value) {
+    return test::with_value(good, pointer, value);
   };
-  EXPECT_TRUE(edited([](json& m) { m["count"] = 5000; },
-                     {"meta.json: 5000 Gaussians are promised, but means_l.webp has 44 x 44 texels"}));
-  EXPECT_TRUE(edited([](json& m) { m["count"] = 1e300; }, {"key 'count'", "expected a whole number"}));
-  EXPECT_TRUE(edited([](json& m) { m["count"] = 0; }, {"its count is 0"}));
-  EXPECT_TRUE(edited([](json& m) { m.erase("quats"); }, {"the key 'quats' is missing"}));
-  EXPECT_TRUE(edited([](json& m) { m["scales"]["codebook"].erase(3); },
-                     {"key 'scales.codebook'", "expected 256 values, found 255"}));
-  EXPECT_TRUE(
-      edited([](json& m) { m["sh0"]["codebook"][7] = "x"; }, {"key 'sh0.codebook[7]'", "finite number"}));
-  EXPECT_TRUE(edited([](json& m) { m["quats"]["files"][0] = "../quats.webp"; },
-                     {"key 'quats.files[0]'", "beside meta.json"}));
-  EXPECT_TRUE(edited([](json& m) { m["quats"]["files"][0] = "/etc/passwd"; },
-                     {"key 'quats.files[0]'", "beside meta.json"}));
-  EXPECT_TRUE(edited([](json& m) { m["version"] = 3; }, {"key 'version'", "version 3 is not known"}));
-  EXPECT_TRUE(edited([](json& m) { m["means"]["mins"].erase(0); },
-                     {"key 'means.mins'", "expected 3 values, found 2"}));
-  EXPECT_TRUE(edited([](json& m) { m["shN"]["bands"] = 3; },
-                     {"shN_centroids.webp", "no palette of 1024 entries", "degree 3"}));
-  EXPECT_TRUE(edited([](json& m) { m["shN"]["bands"] = 4; }, {"key 'shN.bands'"}));
-  EXPECT_TRUE(edited([](json& m) { m["shN"]["count"] = 65536; }, {"no palette of 65536 entries"}));
-  EXPECT_TRUE(
-      refuses_damaged(folder / "sog/playbot-lod6",
-                      [](const Copy& c) { c.write(c.read("meta.json").substr(0, 7000), "meta.json"); },
-                      {"meta.json is not valid JSON at line 1, byte 7000"}));
+  const std::vector<test::BrokenFile> refusals = {
+      {with("/count", 5000), {"5000 Gaussians are promised, but means_l.webp has 44 x 44 texels"}},
+      {with("/count", 1e300), {"key 'count'", "expected a whole number"}},
+      {with("/count", 0), {"its count is 0"}},
+      {with("/quats", nullptr), {"the key 'quats' is missing"}},
+      {with("/scales/codebook/3", nullptr), {"key 'scales.codebook'", "expected 256 values, found 255"}},
+      {with("/sh0/codebook/7", "x"), {"key 'sh0.codebook[7]'", "finite number"}},
+      {with("/quats/files/0", "../quats.webp"), {"key 'quats.files[0]'", "beside meta.json"}},
+      {with("/quats/files/0", "/etc/passwd"), {"key 'quats.files[0]'", "beside meta.json"}},
+      {with("/version", 3), {"key 'version'", "version 3 is not known"}},
+      {with("/means/mins/0", nullptr), {"key 'means.mins'", "expected 3 values, found 2"}},
+      {with("/shN/bands", 3), {"shN_centroids.webp", "no palette of 1024 entries", "degree 3"}},
+      {with("/shN/bands", 4), {"key 'shN.bands'"}},
+      {with("/shN/count", 65536), {"no palette of 65536 entries"}},
+      {good.dump().substr(0, 7000), {"not valid JSON at line 1, byte 7000"}},
+  };
+  expect_refused_with(folder / "sog/playbot-lod6", "meta.json", refusals);
 }
 
 TEST(SogErrors, WhatIsOddButLoads) {
@@ -205,30 +189,27 @@ TEST(SogErrors, WhatIsOddButLoads) {
 
 TEST(SogErrors, Pictures) {
   REQUIRE_FIXTURES(folder);
-  const auto replaced = [&](const std::string& name, const std::string& bytes,
-                            std::initializer_list<std::string> parts) {
-    return refuses_damaged(
-        folder / "sog/playbot-lod6", [&](const Copy& copy) { copy.write(bytes, name); }, parts);
-  };
-  const std::vector<std::uint8_t> grey(std::size_t{4} * 128 * 128, 77);
-  EXPECT_TRUE(replaced("quats.webp", test::webp(4, 4, grey),
-                       {"meta.json: quats.webp", "4 x 4 texels do not fit 1873 Gaussians"}));
-  EXPECT_TRUE(replaced("means_l.webp", test::webp(4, 4, grey), {"means_l.webp has 4 x 4 texels"}));
-  EXPECT_TRUE(replaced("shN_centroids.webp", test::webp(4, 4, grey), {"shN_centroids.webp", "no palette"}));
-  EXPECT_TRUE(
-      replaced("quats.webp", test::webp(44, 44, grey, false), {"quats.webp", "compressed with losses"}));
-  EXPECT_TRUE(replaced("sh0.webp", "RIFF12345W", {"sh0.webp", "damaged or cut short"}));
-  EXPECT_TRUE(replaced("sh0.webp", "\x89PNG\r\n\x1a\n",
-                       {"sh0.webp", "expected a WebP picture, but it looks like a PNG picture"}));
-  const Copy whole(folder / "sog/playbot-lod6");
+  const fs::path sog = folder / "sog/playbot-lod6";
+  const std::string small = grey_webp(4, 4);
+  const std::vector<std::uint8_t> grey(std::size_t{4} * 44 * 44, 77);
+  const std::pair<std::string, std::vector<test::BrokenFile>> of_files[] = {
+      {"quats.webp",
+       {{small, {"meta.json: quats.webp", "4 x 4 texels do not fit 1873 Gaussians"}},
+        {test::webp(44, 44, grey, false), {"compressed with losses"}}}},
+      {"means_l.webp", {{small, {"means_l.webp has 4 x 4 texels"}}}},
+      {"shN_centroids.webp", {{small, {"no palette"}}}},
+      {"sh0.webp",
+       {{"RIFF12345W", {"damaged or cut short"}},
+        {"\x89PNG\r\n\x1a\n", {"expected a WebP picture, but it looks like a PNG picture"}}}}};
+  for (const auto& [name, refusals] : of_files) expect_refused_with(sog, name, refusals);
   for (const char* name : {"means_l.webp", "means_u.webp", "quats.webp", "scales.webp", "sh0.webp",
                            "shN_centroids.webp", "shN_labels.webp"}) {
-    const std::string bytes = whole.read(name);
-    EXPECT_TRUE(
-        replaced(name, bytes.substr(0, bytes.size() / 2), {"meta.json", name, "damaged or cut short"}));
-    EXPECT_TRUE(refuses_damaged(folder / "sog/playbot-lod6",
-                                [&](const Copy& copy) { fs::remove(copy.path() / name); },
-                                {"meta.json", name, "is missing"}));
+    const Copy copy(sog);
+    const std::string bytes = copy.read(name);
+    expect_refused_with(sog, name,
+                        {{bytes.substr(0, bytes.size() / 2), {"meta.json", "damaged or cut short"}}});
+    fs::remove(copy.path() / name);
+    EXPECT_TRUE(test::fails_saying([&] { load_model(copy.path()); }, {"meta.json", name, "is missing"}));
   }
 }
 
@@ -242,25 +223,17 @@ std::string meta_of(int count) {
   return meta.dump();
 }
 
-/// A picture of one colour, which takes a few bytes, however large it is.
-std::string grey_webp(int width, int height) {
-  return test::webp(width, height,
-                    std::vector<std::uint8_t>(static_cast<std::size_t>(4 * width * height), 77));
-}
-
 TEST(SogErrors, PromisesThatBytesCannotHold) {
-  const test::TempFolder folder;
-  const auto refuses_pictures = [&](int width, int height, std::size_t padding,
-                                    std::initializer_list<std::string> parts) {
+  const auto padded = [](int width, int height, std::size_t padding) {
     const std::string picture = grey_webp(width, height) + std::string(padding, '\0');
-    const std::string zip = test::zipped({{"meta.json", meta_of(width * height)}, {"a.webp", picture}}, true);
-    test::write_text(folder / "m.sog", zip);
-    return test::fails_saying([&] { load_model(folder / "m.sog"); }, parts);
+    return test::zipped({{"meta.json", meta_of(width * height)}, {"a.webp", picture}}, true);
   };
-  EXPECT_TRUE(refuses_pictures(4096, 4096, 0, {"m.sog: 16777216 Gaussians are promised"}));
-  // Padded with zeros, which take no room in an archive.
-  EXPECT_TRUE(refuses_pictures(2048, 1024, 100000, {"m.sog: 2097152 Gaussians are promised"}));
-  EXPECT_TRUE(refuses_pictures(2048, 1024, 3000000, {"m.sog: its file 'a.webp' promises 3000", "at most 2"}));
+  const std::vector<test::BrokenFile> refusals = {
+      {padded(4096, 4096, 0), {"m.sog: 16777216 Gaussians are promised"}},
+      // Padded with zeros, which take no room in an archive.
+      {padded(2048, 1024, 100000), {"m.sog: 2097152 Gaussians are promised"}},
+      {padded(2048, 1024, 3000000), {"m.sog: its file 'a.webp' promises 3000", "at most 2"}}};
+  test::expect_no_models("m.sog", refusals);
 }
 
 TEST(SogErrors, ManyFilesThatPromiseMuch) {
@@ -277,8 +250,7 @@ TEST(SogErrors, ManyFilesThatPromiseMuch) {
         {{"bound", {{"min", {0, 0, 0}}, {"max", {1, 1, 1}}}}, {"lods", {{"0", lod}}}});
   }
   test::write_text(folder / "lod-meta.json", levels.dump());
-  const std::initializer_list<std::string> parts = {"lod-meta.json: 1228800 Gaussians are wanted",
-                                                    "cannot hold them"};
+  const std::vector<std::string> parts = {"lod-meta.json: 1228800 Gaussians are wanted", "cannot hold them"};
   EXPECT_EQ(load_model(folder / "0").count(), 614400u);
   EXPECT_TRUE(test::fails_saying([&] { load_model(folder / "lod-meta.json"); }, parts));
   const LodFiles files(folder / "lod-meta.json");
@@ -289,79 +261,68 @@ TEST(SogErrors, ManyFilesThatPromiseMuch) {
 
 TEST(SogErrors, Archives) {
   REQUIRE_FIXTURES(folder);
-  const Copy copy(folder / "sog/playbot-lod6-stored.sog");
-  const std::string good = copy.read();
-  const auto with = [&](const std::string& bytes, std::initializer_list<std::string> parts) {
-    copy.write(bytes);
-    return test::fails_saying([&] { load_model(copy.path()); }, parts);
+  const std::string good = test::read_text(folder / "sog/playbot-lod6-stored.sog");
+  /// With a number at a place of each entry of the archive's table.
+  const auto with_each = [](std::string archive, std::size_t at, std::uint32_t number) {
+    for (std::size_t entry = archive.find("PK\x01\x02"); entry != std::string::npos;
+         entry = archive.find("PK\x01\x02", entry + 4))
+      archive = test::patched(archive, entry + at, test::little(number));
+    return archive;
   };
-  EXPECT_TRUE(
-      with(good.substr(0, good.size() - 10), {"stored.sog: the zip archive is damaged or cut short"}));
-  const std::size_t central = good.find("PK\x01\x02");
-  EXPECT_TRUE(
-      with(test::patched(good, central + 42, test::little(std::uint32_t{0x7fffffff})), {"stored.sog"}));
-  const std::string deflated = test::read_text(folder / "sog/playbot-lod6-deflated.sog");
-  std::string bomb = deflated;
-  for (std::size_t at = bomb.find("PK\x01\x02"); at != std::string::npos;
-       at = bomb.find("PK\x01\x02", at + 4))
-    bomb = test::patched(bomb, at + 24, test::little(std::uint32_t{0xfffffffe}));
-  EXPECT_TRUE(with(bomb, {"stored.sog", "promises 4294967294 bytes, which"}));
-  // The compressed size lies as well (found by fuzz_sog_archive).
-  for (std::size_t at = bomb.find("PK\x01\x02"); at != std::string::npos;
-       at = bomb.find("PK\x01\x02", at + 4))
-    bomb = test::patched(bomb, at + 20, test::little(std::uint32_t{0xf0000000}));
-  EXPECT_TRUE(with(bomb, {"stored.sog", "promises 4026531840 compressed bytes in an archive of"}));
-  EXPECT_TRUE(with(test::zipped({{"model/meta.txt", "{}"}}), {"without a meta.json", "'model/meta.txt'"}));
-  EXPECT_TRUE(with(test::zipped({{"meta.json", "{"}}), {"stored.sog: meta.json is not valid JSON"}));
-  EXPECT_TRUE(
-      with(test::zipped({{"meta.json", R"({"version": 2, "count": 5, "means": {"files": ["a", "b"]}})"}}),
-           {"stored.sog", "'quats' is missing"}));
+  const std::string bomb =
+      with_each(test::read_text(folder / "sog/playbot-lod6-deflated.sog"), 24, 0xfffffffe);
+  const std::string cut = R"({"version": 2, "count": 5, "means": {"files": ["a", "b"]}})";
+  std::vector<test::BrokenFile> refusals = {
+      {good.substr(0, good.size() - 10), {"m.sog: the zip archive is damaged or cut short"}},
+      {test::patched(good, good.find("PK\x01\x02") + 42, test::little(std::uint32_t{0x7fffffff})), {}},
+      {bomb, {"promises 4294967294 bytes, which"}},
+      // The compressed size lies as well (found by fuzz_sog_archive).
+      {with_each(bomb, 20, 0xf0000000), {"promises 4026531840 compressed bytes in an archive of"}},
+      {test::zipped({{"model/meta.txt", "{}"}}), {"without a meta.json", "'model/meta.txt'"}},
+      {test::zipped({{"meta.json", "{"}}), {"m.sog: meta.json is not valid JSON"}},
+      {test::zipped({{"meta.json", cut}}), {"'quats' is missing"}},
+  };
   // Truncation at every boundary, and within each file.
   for (std::size_t at = good.find("PK"); at != std::string::npos; at = good.find("PK", at + 2)) {
-    EXPECT_TRUE(with(good.substr(0, at), {"stored.sog"}));
-    EXPECT_TRUE(with(good.substr(0, at + 20), {"stored.sog"}));
+    refusals.push_back({good.substr(0, at), {}});
+    refusals.push_back({good.substr(0, at + 20), {}});
   }
-  for (const std::size_t at : {5000u, 20000u, 40000u, 60000u}) {
-    EXPECT_TRUE(with(test::patched(good, at, "?!?!"), {"stored.sog", "is damaged"}));
-  }
+  for (const std::size_t at : {5000u, 20000u, 40000u, 60000u})
+    refusals.push_back({test::patched(good, at, "?!?!"), {"is damaged"}});
+  test::expect_no_models("m.sog", refusals);
   // A name that climbs out is never asked for.
-  std::vector<std::pair<std::string, std::string>> files = {{"../../etc/x", "x"}};
+  test::ZipEntries files = {{"../../etc/x", "x"}};
   for (const auto& entry : fs::directory_iterator(folder / "sog/playbot-lod6"))
     files.emplace_back(entry.path().filename(), test::read_text(entry.path()));
-  copy.write(test::zipped(files, true));
-  EXPECT_EQ(load_model(copy.path()).count(), 1873u);
+  EXPECT_EQ(test::load_model_of(test::zipped(files, true), "m.sog").count(), 1873u);
 }
 
 TEST(SogErrors, Levels) {
   REQUIRE_FIXTURES(folder);
-  const auto edited = [&](auto edit, std::initializer_list<std::string> parts) {
-    return refuses_damaged(
-        folder / "sog/st-lod", [&](const Copy& copy) { copy.edit("lod-meta.json", edit); }, parts);
+  const json good = test::load_json(folder / "sog/st-lod/lod-meta.json");
+  const auto with = [&](const std::string& pointer, const json& value) {
+    return test::with_value(good, pointer, value);
   };
-  const auto leaf = [](json& m) -> json& { return m["tree"]["children"][0]["lods"]["0"]; };
-  EXPECT_TRUE(edited([&](json& m) { leaf(m)["file"] = 9; },
-                     {"key 'tree.children[0].lods.0.file'", "there is no file 9"}));
-  EXPECT_TRUE(edited([&](json& m) { leaf(m)["count"] = -1; }, {"lods.0.count'", "whole number"}));
-  EXPECT_TRUE(edited([&](json& m) { leaf(m)["offset"] = 1e10; }, {"lods.0.offset'", "whole number"}));
-  EXPECT_TRUE(edited([&](json& m) { leaf(m)["count"] = 506; },
-                     {"two leaves of the tree share Gaussian 505 of", "0_0/meta.json"}));
-  EXPECT_TRUE(edited([](json& m) { m["tree"]["children"][1]["children"][1]["lods"]["0"]["count"] = 249; },
-                     {"Gaussians 752 to 1000 of", "0_0/meta.json", "which has 1000"}));
-  EXPECT_TRUE(edited([](json& m) { m["filenames"][0] = "../0_0/meta.json"; },
-                     {"key 'filenames[0]'", "must lie below"}));
-  EXPECT_TRUE(edited([](json& m) { m["filenames"].push_back("./" + m["filenames"][0].get<std::string>()); },
-                     {"key 'filenames[", "named twice"}));
-  EXPECT_TRUE(edited([](json& m) { m["lodLevels"] = 1000000; }, {"key 'lodLevels'", "from 0 to 100"}));
-  EXPECT_TRUE(edited([](json& m) { m["lodLevels"] = 0; }, {"key 'lodLevels'", "one level at least"}));
-  EXPECT_TRUE(edited([](json& m) { m.erase("tree"); }, {"the key 'tree' is missing"}));
-  EXPECT_TRUE(edited([](json& m) { m["tree"].erase("children"); },
-                     {"holds no Gaussians (streamed SOG, level 0 of 2)"}));
+  const std::string leaf = "/tree/children/0/lods/0/", twin = "./" + good["filenames"][0].get<std::string>();
   std::string deep = R"({"lodLevels": 1, "filenames": [], "tree": )";
   for (int i = 0; i < 100000; ++i) deep += R"({"children":[)";
   for (int i = 0; i < 100000; ++i) deep += "]}";
-  EXPECT_TRUE(refuses_damaged(folder / "sog/st-lod",
-                              [&](const Copy& copy) { copy.write(deep + "}", "lod-meta.json"); },
-                              {"lod-meta.json", "nested more than 500 deep"}));
+  const std::vector<test::BrokenFile> refusals = {
+      {with(leaf + "file", 9), {"key 'tree.children[0].lods.0.file'", "there is no file 9"}},
+      {with(leaf + "count", -1), {"lods.0.count'", "whole number"}},
+      {with(leaf + "offset", 1e10), {"lods.0.offset'", "whole number"}},
+      {with(leaf + "count", 506), {"two leaves of the tree share Gaussian 505 of", "0_0/meta.json"}},
+      {with("/tree/children/1/children/1/lods/0/count", 249),
+       {"Gaussians 752 to 1000 of", "0_0/meta.json", "which has 1000"}},
+      {with("/filenames/0", "../0_0/meta.json"), {"key 'filenames[0]'", "must lie below"}},
+      {with("/filenames/-", twin), {"key 'filenames[", "named twice"}},
+      {with("/lodLevels", 1000000), {"key 'lodLevels'", "from 0 to 100"}},
+      {with("/lodLevels", 0), {"key 'lodLevels'", "one level at least"}},
+      {with("/tree", nullptr), {"the key 'tree' is missing"}},
+      {with("/tree/children", nullptr), {"holds no Gaussians (streamed SOG, level 0 of 2)"}},
+      {deep + "}", {"nested more than 500 deep"}},
+  };
+  expect_refused_with(folder / "sog/st-lod", "lod-meta.json", refusals);
 }
 
 }  // namespace

@@ -3,10 +3,9 @@
 #include <gtest/gtest.h>
 
 #include "base/image.h"
-#include "formats/cameras_file.h"
 #include "formats/image_file.h"
-#include "support/broken.h"
 #include "support/fixtures.h"
+#include "support/load.h"
 #include "support/truth.h"
 
 namespace binosplat {
@@ -14,7 +13,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using nlohmann::json;
-using test::Copy;
 using test::near3;
 
 bool agrees_in_pose(const Camera& camera, const json& truth) {
@@ -27,7 +25,10 @@ TEST(Transforms, AgreeWithAnIndependentReader) {
   const json truth = test::load_json(folder / "truth.json")["cameras"];
   for (const char* name :
        {"cameras/brush-test-transforms.json", "cameras/synthetic-nerfstudio-transforms.json"}) {
+    testing::internal::CaptureStderr();
     const std::vector<Camera> cameras = load_cameras(folder / name);
+    const std::string said = testing::internal::GetCapturedStderr();
+    EXPECT_EQ(said.find("lenses are distorted") != std::string::npos, name[8] == 's') << said;
     ASSERT_EQ(cameras.size(), truth[name]["count"].get<std::size_t>()) << name;
     for (std::size_t i = 0; i < cameras.size(); ++i) {
       const json& expected = truth[name]["cameras"][i];
@@ -99,62 +100,34 @@ TEST(Transforms, OfTheFileOrOfTheFrame) {
 
 TEST(Transforms, Errors) {
   REQUIRE_FIXTURES(folder);
-  const auto edited = [&](auto edit, std::initializer_list<std::string> parts) {
-    const Copy copy(folder / "cameras/brush-test-transforms.json");
-    copy.edit("", edit);
-    if (auto named = test::fails_saying([&] { load_cameras(copy.path()); }, {"brush-test-transforms.json"});
-        !named)
-      return named;
-    return test::fails_saying([&] { load_cameras(copy.path()); }, parts);
+  const json good = test::load_json(folder / "cameras/brush-test-transforms.json");
+  const auto with = [&](const std::string& pointer, const json& value) {
+    return test::with_value(good, pointer, value);
   };
-  const auto frame = [](json& root) -> json& { return root["frames"][0]; };
-  EXPECT_TRUE(edited([&](json& r) { r["frames"] = json::array(); }, {"key 'frames'", "no cameras"}));
-  EXPECT_TRUE(edited([&](json& r) { r["frames"] = 1; }, {"key 'frames'", "expected a list"}));
-  EXPECT_TRUE(edited([&](json& r) { r["frames"] = {1}; }, {"key 'frames[0]'", "expected an object"}));
-  EXPECT_TRUE(edited(
-      [&](json& r) {
-        frame(r)["transform_matrix"] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-      },
-      {"key 'frames[0].transform_matrix[0]'", "expected 4 values, found 3"}));
-  EXPECT_TRUE(edited(
-      [&](json& r) {
-        frame(r)["transform_matrix"].erase(0);
-        frame(r)["transform_matrix"].erase(0);
-      },
-      {"expected 3 or 4 rows"}));
-  EXPECT_TRUE(edited([&](json& r) { frame(r)["transform_matrix"][0][0] = 0.1; },
-                     {"transform_matrix'", "orthogonal"}));
-  EXPECT_TRUE(edited(
-      [&](json& r) {
-        for (int i = 0; i < 3; ++i)
-          frame(r)["transform_matrix"][i][0] = -frame(r)["transform_matrix"][i][0].get<double>();
-      },
-      {"transform_matrix'", "mirrors"}));
-  EXPECT_TRUE(edited(
-      [&](json& r) {
-        for (const char* k : {"fl_x", "fl_y", "camera_angle_x", "camera_angle_y"}) frame(r).erase(k);
-      },
-      {"key 'frames[0]'", "neither fl_x nor camera_angle_x"}));
-  EXPECT_TRUE(edited([&](json& r) { frame(r)["w"] = 0; }, {"frame 'train/r_0.png'", "0 x 50 px"}));
-  EXPECT_TRUE(edited([&](json& r) { frame(r)["h"] = 50.5; }, {"key 'frames[0].h'", "whole number"}));
-  EXPECT_TRUE(edited([&](json& r) { frame(r)["fl_x"] = "50"; }, {"key 'frames[0].fl_x'", "finite number"}));
-  EXPECT_TRUE(edited([&](json& r) { frame(r)["fl_x"] = -50; }, {"focal lengths of -50"}));
-  EXPECT_TRUE(edited([&](json& r) { r["camera_model"] = "OPENCV_FISHEYE"; },
-                     {"key 'camera_model'", "only pinhole lenses"}));
-  EXPECT_TRUE(edited([&](json& r) { r["is_fisheye"] = true; }, {"key 'is_fisheye'", "only pinhole lenses"}));
-  EXPECT_TRUE(
-      edited([&](json& r) { frame(r).erase("file_path"); }, {"key 'frames[0].file_path' is missing"}));
-}
-
-TEST(Transforms, WarnOfDistortion) {
-  REQUIRE_FIXTURES(folder);
-  const auto said = [&](const char* name) {
-    testing::internal::CaptureStderr();
-    load_cameras(folder / "cameras" / name);
-    return testing::internal::GetCapturedStderr();
+  const std::string frame = "/frames/0/", matrix = frame + "transform_matrix";
+  json mirrored = good, without_lens = good;
+  for (json& row : mirrored["frames"][0]["transform_matrix"]) row[0] = -row[0].get<double>();
+  for (const char* key : {"fl_x", "fl_y", "camera_angle_x", "camera_angle_y"})
+    without_lens["frames"][0].erase(key);
+  const std::vector<test::BrokenFile> refusals = {
+      {with("/frames", json::array()), {"key 'frames'", "no cameras"}},
+      {with("/frames", 1), {"key 'frames'", "expected a list"}},
+      {with("/frames", json::array({1})), {"key 'frames[0]'", "expected an object"}},
+      {with(matrix, {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}),
+       {"transform_matrix[0]'", "expected 4 values, found 3"}},
+      {with(matrix, {{1, 0, 0, 0}, {0, 1, 0, 0}}), {"expected 3 or 4 rows"}},
+      {with(matrix + "/0/0", 0.1), {"transform_matrix'", "orthogonal"}},
+      {mirrored.dump(), {"transform_matrix'", "mirrors"}},
+      {without_lens.dump(), {"key 'frames[0]'", "neither fl_x nor camera_angle_x"}},
+      {with(frame + "w", 0), {"frame 'train/r_0.png'", "0 x 50 px"}},
+      {with(frame + "h", 50.5), {"key 'frames[0].h'", "whole number"}},
+      {with(frame + "fl_x", "50"), {"key 'frames[0].fl_x'", "finite number"}},
+      {with(frame + "fl_x", -50), {"focal lengths of -50"}},
+      {with("/camera_model", "OPENCV_FISHEYE"), {"key 'camera_model'", "only pinhole lenses"}},
+      {with("/is_fisheye", true), {"key 'is_fisheye'", "only pinhole lenses"}},
+      {with(frame + "file_path", nullptr), {"key 'frames[0].file_path' is missing"}},
   };
-  EXPECT_NE(said("synthetic-nerfstudio-transforms.json").find("lenses are distorted"), std::string::npos);
-  EXPECT_EQ(said("brush-test-transforms.json"), "");
+  test::expect_no_cameras("transforms.json", refusals);
 }
 
 }  // namespace

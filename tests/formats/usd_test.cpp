@@ -7,7 +7,7 @@
 #include "formats/usd.h"
 #include "scene/axes.h"
 #include "scene/transform.h"
-#include "support/broken.h"
+#include "support/load.h"
 #include "support/models.h"
 #include "support/ply_models.h"
 #include "support/round_trip.h"
@@ -26,9 +26,9 @@ using test::load_usd_text;
 using test::usd_file;
 using test::usd_prim;
 
-testing::AssertionResult refuses_usd(const std::string& text, std::initializer_list<std::string> parts,
-                                     const std::string& name = "bad.usda") {
-  return test::refuses_file(text, name, parts, [](const auto& path) { load_model(path); });
+testing::AssertionResult refuses_usd(const std::string& text, std::vector<std::string> parts) {
+  parts.emplace_back("bad.usda");
+  return test::fails_saying([&] { test::load_model_of(text, "bad.usda"); }, parts);
 }
 
 Model some_model(int degree = 3, std::size_t count = 20) { return test::hard_model(degree, count); }
@@ -115,56 +115,53 @@ TEST(Usd, FlatGaussiansOf3dgrut) {
                           {"line 8", "'surfels' is a ParticleField with another kernel"}));
 }
 
+/// The order in which a prim's transforms move it.
+std::string order_of(const std::string& names) { return "uniform token[] xformOpOrder = [" + names + "]\n"; }
+
 TEST(Usd, Transforms) {
-  EXPECT_TRUE(lies_at(placed(""), {1, 2, 3}));
-  // The last of the order moves first.
-  EXPECT_TRUE(lies_at(placed("double3 xformOp:translate = (10, 0, 0)\nfloat3 xformOp:scale = (2, 2, 2)\n"
-                             "uniform token[] xformOpOrder = [\"xformOp:translate\", \"xformOp:scale\"]"),
-                      {12, 4, 6}));
-  EXPECT_TRUE(lies_at(placed("double3 xformOp:translate = (10, 0, 0)\nfloat3 xformOp:scale = (2, 2, 2)\n"
-                             "uniform token[] xformOpOrder = [\"xformOp:scale\", \"xformOp:translate\"]"),
-                      {22, 4, 6}));
-  // Not in the order: not moved.
-  EXPECT_TRUE(lies_at(placed("double3 xformOp:translate = (10, 0, 0)"), {1, 2, 3}));
-  // A quarter turn around x, then one around y.
-  EXPECT_TRUE(lies_at(placed("float3 xformOp:rotateXYZ = (90, 90, 0)\n"
-                             "uniform token[] xformOpOrder = [\"xformOp:rotateXYZ\"]"),
-                      {2, -3, -1}));
-  EXPECT_TRUE(lies_at(placed("float3 xformOp:rotateYXZ = (90, 90, 0)\n"
-                             "uniform token[] xformOpOrder = [\"xformOp:rotateYXZ\"]"),
-                      {3, 1, 2}));
-  EXPECT_TRUE(lies_at(placed("float xformOp:rotateZ:a = 90\nuniform token[] xformOpOrder = "
-                             "[\"xformOp:rotateZ:a\"]"),
-                      {-2, 1, 3}));
-  EXPECT_TRUE(lies_at(placed("quatf xformOp:orient = (0.70710678, 0, 0, 0.70710678)\n"
-                             "uniform token[] xformOpOrder = [\"xformOp:orient\"]"),
-                      {-2, 1, 3}));
-  // Rows: the translation is the last one.
-  EXPECT_TRUE(lies_at(placed("matrix4d xformOp:transform = ( (0, 1, 0, 0), (-1, 0, 0, 0), (0, 0, 1, 0), "
-                             "(5, 6, 7, 1) )\nuniform token[] xformOpOrder = [\"xformOp:transform\"]"),
-                      {3, 7, 10}));
-  // Around a pivot.
-  EXPECT_TRUE(lies_at(placed("float3 xformOp:translate:pivot = (1, 2, 0)\nfloat xformOp:rotateZ = 90\n"
-                             "uniform token[] xformOpOrder = [\"xformOp:translate:pivot\", "
-                             "\"xformOp:rotateZ\", \"!invert!xformOp:translate:pivot\"]"),
-                      {1, 2, 3}));
-  // Of its own, in the parent's, and without the parent's.
-  const std::string parent =
-      "float3 xformOp:scale = (2, 2, 2)\nuniform token[] xformOpOrder = [\"xformOp:scale\"]";
+  const std::string translate = "double3 xformOp:translate = (10, 0, 0)\n";
+  const std::string scale = "float3 xformOp:scale = (2, 2, 2)\n";
   const std::string own = "float3 xformOp:translate = (1, 1, 1)\n";
-  EXPECT_TRUE(
-      lies_at(placed(parent, own + "uniform token[] xformOpOrder = [\"xformOp:translate\"]\n"), {4, 6, 8}));
-  EXPECT_TRUE(lies_at(placed(parent, own + "uniform token[] xformOpOrder = [\"!resetXformStack!\", "
-                                           "\"xformOp:translate\"]\n"),
-                      {2, 3, 4}));
+  const std::string parent = scale + order_of("\"xformOp:scale\"");
+  const struct {
+    std::string outer, inner;
+    glm::vec3 place;
+  } cases[] = {
+      {"", "", {1, 2, 3}},
+      // The last of the order moves first.
+      {translate + scale + order_of("\"xformOp:translate\", \"xformOp:scale\""), "", {12, 4, 6}},
+      {translate + scale + order_of("\"xformOp:scale\", \"xformOp:translate\""), "", {22, 4, 6}},
+      // Not in the order: not moved.
+      {translate, "", {1, 2, 3}},
+      // A quarter turn around x, then one around y.
+      {"float3 xformOp:rotateXYZ = (90, 90, 0)\n" + order_of("\"xformOp:rotateXYZ\""), "", {2, -3, -1}},
+      {"float3 xformOp:rotateYXZ = (90, 90, 0)\n" + order_of("\"xformOp:rotateYXZ\""), "", {3, 1, 2}},
+      {"float xformOp:rotateZ:a = 90\n" + order_of("\"xformOp:rotateZ:a\""), "", {-2, 1, 3}},
+      {"quatf xformOp:orient = (0.70710678, 0, 0, 0.70710678)\n" + order_of("\"xformOp:orient\""),
+       "",
+       {-2, 1, 3}},
+      // Rows: the translation is the last one.
+      {"matrix4d xformOp:transform = ( (0, 1, 0, 0), (-1, 0, 0, 0), (0, 0, 1, 0), (5, 6, 7, 1) )\n" +
+           order_of("\"xformOp:transform\""),
+       "",
+       {3, 7, 10}},
+      // Around a pivot.
+      {"float3 xformOp:translate:pivot = (1, 2, 0)\nfloat xformOp:rotateZ = 90\n" +
+           order_of("\"xformOp:translate:pivot\", \"xformOp:rotateZ\", \"!invert!xformOp:translate:pivot\""),
+       "",
+       {1, 2, 3}},
+      // Of its own, in the parent's, and without the parent's.
+      {parent, own + order_of("\"xformOp:translate\""), {4, 6, 8}},
+      {parent, own + order_of("\"!resetXformStack!\", \"xformOp:translate\""), {2, 3, 4}},
+  };
+  for (const auto& [outer, inner, place] : cases) EXPECT_TRUE(lies_at(placed(outer, inner), place)) << outer;
 }
 
 TEST(Usd, PlacesKeepTheirDigits) {
   const glm::dvec3 far(455000.25, 5411000.5, 312.125);
   const Model model = some_model(0);
   const auto worst = [&](const std::string& place) {
-    const Model read = load_usd_text(
-        usd_file(usd_prim(model, place + "uniform token[] xformOpOrder = [\"xformOp:translate\"]\n")));
+    const Model read = load_usd_text(usd_file(usd_prim(model, place + order_of("\"xformOp:translate\""))));
     double worst_of = 0.0;
     for (std::size_t i = 0; i < model.count(); ++i)
       worst_of = std::max(worst_of, glm::distance(read.axes.origin + glm::dvec3(read.position[i]),
@@ -193,7 +190,7 @@ TEST(Usd, OneTimeSampleIsEveryTime) {
     EXPECT_TRUE(refuses_usd(with("1: " + value + ", 2: " + value_in(other)), {name + " changes with time"}))
         << "planted fault";
   }
-  const std::string order = "uniform token[] xformOpOrder = [\"xformOp:translate\"]";
+  const std::string order = order_of("\"xformOp:translate\"");
   // Stronger than the default, wherever that stands.
   EXPECT_TRUE(lies_at(placed("double3 xformOp:translate.timeSamples = { 1: (10, 0, 0), }\n"
                              "double3 xformOp:translate = (0, 7, 0)\n" +
@@ -320,41 +317,38 @@ TEST(Usd, ErrorsNameTheLine) {
   const std::string good =
       usd_file("def ParticleField3DGaussianSplat \"a\"\n{\n  point3f[] positions = [(1, 2, 3)]\n}\n");
   ASSERT_EQ(load_usd_text(good).count(), 1u);
-  const auto refuses = [&](const std::string& from, const std::string& to,
-                           std::initializer_list<std::string> parts) {
-    return refuses_usd(test::replaced(good, from, to), parts);
-  };
-  EXPECT_TRUE(refuses("(1, 2, 3)", "(1, 2)", {"line 10", "expected ',', found ')]'"}));
-  EXPECT_TRUE(refuses("(1, 2, 3)", "(1, two, 3)", {"line 10", "expected a number, found 'two, 3)]'"}));
-  EXPECT_TRUE(refuses("(1, 2, 3)", "1, 2", {"line 10", "expected '('"}));
-  EXPECT_TRUE(refuses("(1, 2, 3)]", "(1, 2, 3)", {"line 11", "expected ']', found '}'"}));
-  EXPECT_TRUE(refuses("]\n}\n", "", {"line 10", "this value does not end: the file is cut short"}));
-  EXPECT_TRUE(refuses(
-      "}\n", "", {"line 11", "expected a prim or an attribute, found the end of the file: it is cut short"}));
-  EXPECT_TRUE(refuses("positions =", "= ", {"line 10", "the type and the name of an attribute"}));
-  EXPECT_TRUE(refuses("def Part", "define Part", {"line 8", "expected def, over or class"}));
-  EXPECT_TRUE(refuses("\"a\"", "\"a", {"line 8", "text in quotes does not end"}));
-  EXPECT_TRUE(refuses("\"Y\"", "\"X\"", {"line 4", "upAxis 'X'"}));
-  EXPECT_TRUE(refuses("}\n", "float[] opacities = []}\n",
-                      {"line 11", "opacities has 0 values; expected 1, 1 for each of 1 positions"}));
-  EXPECT_TRUE(refuses("}\n", "float3[] radiance:sphericalHarmonicsCoefficients = [(1, 1, 1)]}\n",
-                      {"has 1 values; expected 16"}));
-  EXPECT_TRUE(refuses("}\n", "uniform int radiance:sphericalHarmonicsDegree = 7}\n",
-                      {"line 11", "harmonics of degree 7"}));
-  EXPECT_TRUE(refuses("positions = [(1, 2, 3)]", "positions.timeSamples = { 1: [(1, 2, 3)], 2: [] }",
-                      {"line 10", "positions changes with time"}));
-  EXPECT_TRUE(refuses("positions =", "positions.timeSamples =", {"line 10", "expected '{'"}));
-  EXPECT_TRUE(refuses("}\n", "uniform token[] xformOpOrder = [\"xformOp:shear\"]}\n",
-                      {"line 11", "'xformOp:shear' of 'a' is not there"}));
-  EXPECT_TRUE(refuses("}\n", "float xformOp:shear = 1\nuniform token[] xformOpOrder = [\"xformOp:shear\"]}\n",
-                      {"line 11", "xformOp:shear is not known"}));
-  EXPECT_TRUE(refuses(
-      "}\n", "float3 xformOp:scale = (1e300, 1, 1)\nuniform token[] xformOpOrder = [\"xformOp:scale\"]}\n",
-      {"line 8", "beyond the largest number"}));
-  EXPECT_TRUE(refuses("Field3DGaussianSplat", "s", {"is an OpenUSD scene without Gaussians", "Particles"}));
+  const auto with = [&](const char* from, const std::string& to) { return test::replaced(good, from, to); };
   std::string deep = "#usda 1.0\n";
   for (int k = 0; k < 100000; ++k) deep += "def \"a\" {\n";
-  EXPECT_TRUE(refuses_usd(deep, {"line 502", "nested more than 500 deep"}));
+  const std::string shear = order_of("\"xformOp:shear\"") + "}\n";
+  const std::vector<test::BrokenFile> refusals = {
+      {with("(1, 2, 3)", "(1, 2)"), {"line 10", "expected ',', found ')]'"}},
+      {with("(1, 2, 3)", "(1, two, 3)"), {"line 10", "expected a number, found 'two, 3)]'"}},
+      {with("(1, 2, 3)", "1, 2"), {"line 10", "expected '('"}},
+      {with("(1, 2, 3)]", "(1, 2, 3)"), {"line 11", "expected ']', found '}'"}},
+      {with("]\n}\n", ""), {"line 10", "this value does not end: the file is cut short"}},
+      {with("}\n", ""), {"line 11", "a prim or an attribute, found the end of the file: it is cut short"}},
+      {with("positions =", "= "), {"line 10", "the type and the name of an attribute"}},
+      {with("def Part", "define Part"), {"line 8", "expected def, over or class"}},
+      {with("\"a\"", "\"a"), {"line 8", "text in quotes does not end"}},
+      {with("\"Y\"", "\"X\""), {"line 4", "upAxis 'X'"}},
+      {with("}\n", "float[] opacities = []}\n"),
+       {"line 11", "opacities has 0 values; expected 1, 1 for each of 1 positions"}},
+      {with("}\n", "float3[] radiance:sphericalHarmonicsCoefficients = [(1, 1, 1)]}\n"),
+       {"has 1 values; expected 16"}},
+      {with("}\n", "uniform int radiance:sphericalHarmonicsDegree = 7}\n"),
+       {"line 11", "harmonics of degree 7"}},
+      {with("positions = [(1, 2, 3)]", "positions.timeSamples = { 1: [(1, 2, 3)], 2: [] }"),
+       {"line 10", "positions changes with time"}},
+      {with("positions =", "positions.timeSamples ="), {"line 10", "expected '{'"}},
+      {with("}\n", shear), {"line 11", "'xformOp:shear' of 'a' is not there"}},
+      {with("}\n", "float xformOp:shear = 1\n" + shear), {"line 11", "xformOp:shear is not known"}},
+      {with("}\n", "float3 xformOp:scale = (1e300, 1, 1)\n" + order_of("\"xformOp:scale\"") + "}\n"),
+       {"line 8", "beyond the largest number"}},
+      {with("Field3DGaussianSplat", "s"), {"is an OpenUSD scene without Gaussians", "Particles"}},
+      {deep, {"line 502", "nested more than 500 deep"}},
+  };
+  test::expect_no_models("bad.usda", refusals);
 }
 
 TEST(Usd, Archives) {
@@ -362,18 +356,19 @@ TEST(Usd, Archives) {
   const std::string text = usd_file(usd_prim(some_model()));
   test::write_zip(folder / "a.usdz", {{"default.usda", text}, {"picture.png", "x"}});
   EXPECT_TRUE(test::equal(load_model(folder / "a.usdz"), some_model()));
-  const auto refuses = [&](const std::string& name, const std::string& content,
-                           std::initializer_list<std::string> parts) {
-    test::write_zip(folder / "b.usdz", {{name, content}});
-    return test::fails_saying([&] { load_model(folder / "b.usdz"); }, parts);
+  const auto packed = [](const char* name, const std::string& content) {
+    return test::zipped({{name, content}});
   };
-  EXPECT_TRUE(refuses("a.usdc", "PXR-USDC and more",
-                      {"b.usdz", "a binary OpenUSD scene", "usdcat --flatten b.usdz -o b.flat.usda"}));
-  EXPECT_TRUE(refuses("a.usda", "#usda 1.0\ndef X", {"b.usdz: its file a.usda, line 2"}));
-  EXPECT_TRUE(refuses("a.usda", "words", {"a.usda", "looks like a text file"}));
-  EXPECT_TRUE(refuses("a.usda", usd_file("def \"a\" (references = @b.usdc@) {}"),
-                      {"usdcat --flatten b.usdz -o b.flat.usda"}));
-  EXPECT_TRUE(refuses_usd("PXR-USDC and more", {"usdcat --flatten bad.usd -o bad.flat.usda"}, "bad.usd"));
+  const std::vector<test::BrokenFile> refusals = {
+      {packed("a.usdc", "PXR-USDC and more"),
+       {"a binary OpenUSD scene", "usdcat --flatten b.usdz -o b.flat.usda"}},
+      {packed("a.usda", "#usda 1.0\ndef X"), {"b.usdz: its file a.usda, line 2"}},
+      {packed("a.usda", "words"), {"a.usda", "looks like a text file"}},
+      {packed("a.usda", usd_file("def \"a\" (references = @b.usdc@) {}")),
+       {"usdcat --flatten b.usdz -o b.flat.usda"}},
+  };
+  test::expect_no_models("b.usdz", refusals);
+  test::expect_no_models("bad.usd", {{"PXR-USDC and more", {"usdcat --flatten bad.usd -o bad.flat.usda"}}});
 }
 
 }  // namespace

@@ -2,7 +2,6 @@
 // Damaging copies of good files: the recipes of the tests that say what a reader makes of broken ones.
 
 #include <webp/encode.h>
-#include <zip.h>
 #include <zlib.h>
 
 #include <nlohmann/json.hpp>
@@ -10,6 +9,7 @@
 
 #include "support/errors.h"
 #include "support/program.h"
+#include "support/zip.h"
 
 namespace binosplat::test {
 
@@ -45,16 +45,21 @@ class Copy {
   std::string name_;
 };
 
-/// Whether load(path) of a file called `name` with these bytes ends in an error that names it and says
-/// `parts`.
-template <typename Load>
-testing::AssertionResult refuses_file(const std::string& bytes, const std::string& name,
-                                      std::initializer_list<std::string> parts, const Load& load) {
-  const TempFolder folder;
-  write_text(folder / name, bytes);
-  const auto read = [&] { load(folder / name); };
-  if (auto named = fails_saying(read, {name}); !named) return named;
-  return fails_saying(read, parts);
+/// A damaged file, and what the error must say of it.
+struct BrokenFile {
+  std::string bytes;
+  std::vector<std::string> said;
+};
+
+/// Expects that attempt(bytes) ends each time in an error that says so, and names the file `name`.
+template <typename Attempt>
+void expect_refusals(const std::string& name, const std::vector<BrokenFile>& refusals,
+                     const Attempt& attempt) {
+  for (const BrokenFile& refusal : refusals) {
+    std::vector<std::string> said = refusal.said;
+    said.push_back(name);
+    EXPECT_TRUE(fails_saying([&] { attempt(refusal.bytes); }, said));
+  }
 }
 
 /// `text` with the first `from` replaced.
@@ -66,6 +71,13 @@ inline std::string replaced(std::string text, const std::string& from, const std
 inline std::string patched(std::string text, std::size_t at, const std::string& bytes) {
   if (at + bytes.size() > text.size()) throw std::out_of_range("patch beyond the end");
   return text.replace(at, bytes.size(), bytes);
+}
+
+/// JSON with a value in another's place, by its pointer; null takes it away.
+inline std::string with_value(nlohmann::json good, const std::string& pointer, const nlohmann::json& value) {
+  if (value.is_null()) return good.patch({{{"op", "remove"}, {"path", pointer}}}).dump();
+  good[nlohmann::json::json_pointer(pointer)] = value;
+  return good.dump();
 }
 
 /// A number as a file has it, least byte first.
@@ -114,22 +126,6 @@ inline std::string gzipped(const std::string& bytes) {
   packed.resize(stream.total_out);
   deflateEnd(&stream);
   return packed;
-}
-
-/// A zip archive of named files.
-inline std::string zipped(const std::vector<std::pair<std::string, std::string>>& files,
-                          bool deflated = false) {
-  const TempFolder folder;
-  int error = 0;
-  zip_t* archive = zip_open((folder / "a.zip").c_str(), ZIP_CREATE, &error);
-  for (const auto& [name, bytes] : files) {
-    const zip_int64_t at =
-        zip_file_add(archive, name.c_str(), zip_source_buffer(archive, bytes.data(), bytes.size(), 0), 0);
-    zip_set_file_compression(archive, static_cast<zip_uint64_t>(at), deflated ? ZIP_CM_DEFLATE : ZIP_CM_STORE,
-                             0);
-  }
-  if (zip_close(archive) != 0) throw std::runtime_error("no zip");
-  return read_text(folder / "a.zip");
 }
 
 }  // namespace binosplat::test

@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include <initializer_list>
 #include <string>
+#include <vector>
 
 #include "base/error.h"
 
@@ -12,7 +12,7 @@ namespace binosplat::test {
 
 /// Whether `action` throws an Error of that code whose text holds all of `parts`.
 template <typename Action>
-testing::AssertionResult fails_saying(Action action, std::initializer_list<std::string> parts,
+testing::AssertionResult fails_saying(Action action, const std::vector<std::string>& parts,
                                       ExitCode code = ExitCode::bad_input) {
   try {
     action();
@@ -28,7 +28,7 @@ testing::AssertionResult fails_saying(Action action, std::initializer_list<std::
   } catch (const std::exception& error) {
     return testing::AssertionFailure() << "not an Error: " << error.what();
   }
-  return testing::AssertionFailure() << "nothing was thrown";
+  return testing::AssertionFailure() << "nothing was thrown that says " << testing::PrintToString(parts);
 }
 
 }  // namespace binosplat::test

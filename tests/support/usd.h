@@ -5,9 +5,7 @@
 
 #include <string>
 
-#include "formats/model_file.h"
-#include "scene/model.h"
-#include "support/program.h"
+#include "support/load.h"
 
 namespace binosplat::test {
 
@@ -52,10 +50,6 @@ inline std::string usd_file(const std::string& prims, const std::string& metadat
          metadata + ")\n\n" + prims;
 }
 
-inline Model load_usd_text(const std::string& text, const std::string& name = "a.usda") {
-  const TempFolder folder;
-  write_text(folder / name, text);
-  return load_model(folder / name);
-}
+inline Model load_usd_text(const std::string& text) { return load_model_of(text, "a.usda"); }
 
 }  // namespace binosplat::test

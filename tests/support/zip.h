@@ -9,6 +9,8 @@
 #include <utility>
 #include <vector>
 
+#include "support/program.h"
+
 namespace binosplat::test {
 
 using ZipEntries = std::vector<std::pair<std::string, std::string>>;  // name, content
@@ -24,6 +26,13 @@ inline void write_zip(const std::filesystem::path& path, const ZipEntries& entri
                              0);
   }
   if (zip_close(archive) != 0) throw std::runtime_error("cannot write " + path.string());
+}
+
+/// The same as bytes.
+inline std::string zipped(const ZipEntries& entries, bool deflate = false) {
+  const TempFolder folder;
+  write_zip(folder / "a.zip", entries, deflate);
+  return read_text(folder / "a.zip");
 }
 
 /// Floats as bytes.
