@@ -2,12 +2,10 @@
 
 #include <gtest/gtest.h>
 
-#include <glm/gtc/quaternion.hpp>
-
 #include "scene/framing.h"
-#include "scene/harmonics.h"
 #include "support/errors.h"
 #include "support/models.h"
+#include "support/moved.h"
 
 namespace binosplat {
 namespace {
@@ -58,34 +56,9 @@ TEST(Axes, FramesAreFoundInTheWorld) {
   }
 }
 
-/// R S S R^T.
-glm::dmat3 covariance_of(const Model& model, std::size_t i) {
-  const glm::vec4& q = model.rotation[i];
-  const glm::dmat3 r = glm::mat3_cast(glm::dquat(q.x, q.y, q.z, q.w));
-  const glm::dvec3 s(model.scale[i]);
-  return r * glm::dmat3(s.x * s.x, 0, 0, 0, s.y * s.y, 0, 0, 0, s.z * s.z) * glm::transpose(r);
-}
-
-/// Red towards a direction, without the clamp.
-double red(const Model& model, std::size_t i, const glm::dvec3& direction) {
-  const auto basis = sh_basis(direction);
-  double sum = 0.5;
-  for (std::size_t k = 0; k < 16; ++k) sum += basis[k] * model.sh[i * 48 + 3 * k];
-  return sum;
-}
-
 TEST(Axes, ModelsLookTheSameInEveryFrame) {
   const Model model = test::random_model(1, 20, 3);
-  const glm::dvec3 direction = glm::normalize(glm::dvec3(0.3, -0.7, 0.5));
   int frames = 0;
-  const auto same = [&](const Model& turned, std::size_t i) {
-    const glm::dmat3 world = world_from_axes(turned.axes.letters);
-    const glm::dmat3 there = world * covariance_of(turned, i) * glm::transpose(world);
-    double apart = glm::length(world * glm::dvec3(turned.position[i]) - glm::dvec3(model.position[i])) +
-                   std::abs(red(turned, i, glm::transpose(world) * direction) - red(model, i, direction));
-    for (int c = 0; c < 3; ++c) apart += glm::length(there[c] - covariance_of(model, i)[c]);
-    return apart < 1e-6;
-  };
   for (const char x : std::string("RLUDFB")) {
     for (const char y : std::string("RLUDFB")) {
       for (const char z : std::string("RLUDFB")) {
@@ -97,16 +70,20 @@ TEST(Axes, ModelsLookTheSameInEveryFrame) {
           continue;  // not three axes
         }
         ++frames;
-        for (std::size_t i = 0; i < model.count(); ++i) EXPECT_TRUE(same(turned, i)) << to << " " << i;
+        const glm::dmat3 map = glm::transpose(world_from_axes(to));
+        const auto is_turned = [&](const Model& found) {
+          return test::follows(test::apart(model, found, glm::dmat4(map), map));
+        };
+        EXPECT_TRUE(is_turned(turned)) << to;
         Model faulty = turned;  // as if only places had been turned
         faulty.sh = model.sh;
-        EXPECT_EQ(same(faulty, 0), to == "RDF") << to;
+        EXPECT_EQ(is_turned(faulty), to == "RDF") << to;
         faulty = turned;
         faulty.rotation = model.rotation;
         // Mirrored through a point an ellipsoid stays what it is.
-        EXPECT_EQ(same(faulty, 0), to == "RDF" || to == "LUB") << to;
+        EXPECT_EQ(is_turned(faulty), to == "RDF" || to == "LUB") << to;
         bring_into_axes(turned, "RDF");
-        for (std::size_t i = 0; i < model.count(); ++i) EXPECT_TRUE(same(turned, i)) << to << " and back";
+        EXPECT_TRUE(test::follows(test::apart(model, turned, glm::dmat4(1.0), glm::dmat3(1.0)))) << to;
       }
     }
   }

