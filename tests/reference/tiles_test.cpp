@@ -12,9 +12,11 @@ namespace {
 
 /// The columns of tiles, as 'first..last', that a splat of variance `variance` at x touches in row 1 of 64 x
 /// 64 px.
-std::string columns(double x, double variance, int tiles, double opacity = 1.0, int tile_size = 16) {
+std::string columns(double x, double variance, int tiles, double opacity = 1.0, int tile_size = 16,
+                    double threshold = ALPHA_MIN) {
   const shared::View view = view_of(64, 64);
-  const Splat splat = make_splat({x, 24}, {variance, 0, variance}, opacity);
+  Splat splat = make_splat({x, 24}, {variance, 0, variance}, opacity);
+  splat.threshold = threshold;
   std::string text;
   for (int tx = 0; tx * tile_size < 64; ++tx) {
     if (touches(splat, tiles, tile_size, tx, 24 / tile_size, view)) text += std::to_string(tx);
@@ -41,19 +43,31 @@ TEST(Tiles, AabbByHand) {
   EXPECT_EQ(columns(24, 4.0, TILES_AABB, 1.0, 8), "23");  // int(17 / 8) up to int(38 / 8)
 }
 
-TEST(Tiles, EllipseByHand) {
-  // sigma 1, variance 4: q reaches 2 ln 255 at sqrt(4 * 11.0825) = 6.6581 px.
-  EXPECT_EQ(columns(24, 4.0, TILES_ELLIPSE), "1");
-  EXPECT_EQ(columns(15 + 6.66, 4.0, TILES_ELLIPSE), "1");  // tile 0 ends with the centre at 15
-  EXPECT_EQ(columns(15 + 6.65, 4.0, TILES_ELLIPSE), "01");
-  EXPECT_EQ(columns(32 - 6.65, 4.0, TILES_ELLIPSE), "12");
-  EXPECT_EQ(columns(32 - 6.66, 4.0, TILES_ELLIPSE), "1");
-  EXPECT_EQ(columns(-6.66, 4.0, TILES_ELLIPSE), "");
-  EXPECT_EQ(columns(-6.65, 4.0, TILES_ELLIPSE), "0");
-  EXPECT_EQ(columns(24, 4.0, TILES_ELLIPSE, 0.0), "");
-  EXPECT_EQ(columns(24, 4.0, TILES_ELLIPSE, 0.00392), "") << "just below tau";
-  EXPECT_EQ(columns(24, 4.0, TILES_ELLIPSE, 0.003922), "1") << "just above tau";
-  EXPECT_EQ(columns(15.5, 4.0, TILES_ELLIPSE, 0.003922), "") << "between the pixel centres of two tiles";
+TEST(Tiles, SnugAndEllipseByHand) {
+  // Where the mean lies in the row of tiles both have the same columns. sigma 1, variance 4: q reaches 2 ln
+  // 255 at sqrt(4 * 11.0825) = 6.6581 px.
+  for (const int tiles : {TILES_SNUG, TILES_ELLIPSE}) {
+    EXPECT_EQ(columns(24, 4.0, tiles), "1");
+    EXPECT_EQ(columns(15 + 6.66, 4.0, tiles), "1");  // tile 0 ends with the centre at 15
+    EXPECT_EQ(columns(15 + 6.65, 4.0, tiles), "01");
+    EXPECT_EQ(columns(32 - 6.65, 4.0, tiles), "12");
+    EXPECT_EQ(columns(32 - 6.66, 4.0, tiles), "1");
+    EXPECT_EQ(columns(-6.66, 4.0, tiles), "");
+    EXPECT_EQ(columns(-6.65, 4.0, tiles), "0");
+    EXPECT_EQ(columns(1e30, 4.0, tiles), "");
+    EXPECT_EQ(columns(30, 1e30, tiles), "0123");
+    EXPECT_EQ(columns(24, 4.0, tiles, 0.0), "");
+    EXPECT_EQ(columns(24, 4.0, tiles, 0.00392), "") << "just below tau";
+    // Just above tau alpha reaches it within 0.02 px of the mean.
+    EXPECT_EQ(columns(24.01, 4.0, tiles, 0.003922), "1");
+    EXPECT_EQ(columns(24.5, 4.0, tiles, 0.003922), "") << "between pixel centres of one tile";
+    EXPECT_EQ(columns(15.5, 4.0, tiles, 0.003922), "") << "between the pixel centres of two tiles";
+    // Th = 1/e^2: q reaches 4 at 4 px.
+    EXPECT_EQ(columns(15 + 3.99, 4.0, tiles, 1.0, 16, std::exp(-2.0)), "01");
+    EXPECT_EQ(columns(15 + 4.01, 4.0, tiles, 1.0, 16, std::exp(-2.0)), "1");
+    EXPECT_EQ(columns(32 - 3.99, 4.0, tiles, 1.0, 16, std::exp(-2.0)), "12");
+    EXPECT_EQ(columns(24, 4.0, tiles, 0.5, 16, 0.51), "") << "Th exceeds it";
+  }
   EXPECT_EQ(columns(24, 4.0, TILES_ALL, 0.0), "0123");
 }
 
@@ -69,6 +83,8 @@ TEST(Tiles, ObbByHand) {
   EXPECT_EQ(columns(24, 4.0, TILES_OBB, 0.00392), "") << "just below tau";
   EXPECT_EQ(columns(24, 4.0, TILES_OBB, 0.003922), "1") << "the shape does not depend on the opacity";
   EXPECT_EQ(columns(21, 4.0, TILES_OBB, 0.003922), "01");
+  EXPECT_EQ(columns(21, 4.0, TILES_OBB, 0.5, 16, 0.49), "01") << "nor on Th";
+  EXPECT_EQ(columns(21, 4.0, TILES_OBB, 0.5, 16, 0.51), "") << "but leaves out what Th exceeds";
 }
 
 /// The tiles of 64 x 64 px that a splat touches, row by row.
@@ -94,50 +110,6 @@ TEST(Tiles, NeedlesByHand) {
   EXPECT_EQ(map_of(make_splat({24, 24}, {100, 0, 1}, 1.0), TILES_OBB), "....####........");
   EXPECT_EQ(map_of(make_splat({24, 24}, {100, 0, 1}, 1.0), TILES_SNUG), "....####........");
   EXPECT_EQ(map_of(make_splat({24, 24}, {1, 0, 100}, 1.0), TILES_OBB), ".#...#...#...#..");
-}
-
-TEST(Tiles, SnugByHand) {
-  // The same columns as the ellipse where the mean lies in the row of tiles.
-  EXPECT_EQ(columns(15 + 6.66, 4.0, TILES_SNUG), "1");
-  EXPECT_EQ(columns(15 + 6.65, 4.0, TILES_SNUG), "01");
-  EXPECT_EQ(columns(32 - 6.65, 4.0, TILES_SNUG), "12");
-  EXPECT_EQ(columns(32 - 6.66, 4.0, TILES_SNUG), "1");
-  EXPECT_EQ(columns(24, 4.0, TILES_SNUG, 0.00392), "") << "just below tau";
-  EXPECT_EQ(columns(24, 4.0, TILES_SNUG, 0.003922), "1") << "just above tau";
-  EXPECT_EQ(columns(1e30, 4.0, TILES_SNUG), "");
-  EXPECT_EQ(columns(30, 1e30, TILES_SNUG), "0123");
-}
-
-TEST(Tiles, WhatReachesNoPixelCentreMakesNoPair) {
-  // sigma just above tau: alpha reaches tau within 0.02 px of the mean.
-  for (const int tiles : {TILES_SNUG, TILES_ELLIPSE}) {
-    EXPECT_EQ(columns(24.01, 4.0, tiles, 0.003922), "1");
-    EXPECT_EQ(columns(24.5, 4.0, tiles, 0.003922), "") << "between pixel centres of one tile";
-  }
-  EXPECT_EQ(columns(24.5, 4.0, TILES_OBB, 0.003922), "1");
-}
-
-TEST(Tiles, TheReachIsThatOfTh) {
-  // Th = 1/e^2: q reaches 4 at 4 px.
-  for (const int tiles : {TILES_SNUG, TILES_ELLIPSE}) {
-    for (const auto& [x, wanted] : {std::pair(15 + 3.99, "01"), {15 + 4.01, "1"}, {32 - 3.99, "12"}}) {
-      Splat splat = make_splat({x, 24}, {4, 0, 4}, 1.0);
-      splat.threshold = std::exp(-2.0);
-      const std::string row = map_of(splat, tiles).substr(4, 4);
-      std::string got;
-      for (int tx = 0; tx < 4; ++tx) got += row[tx] == '#' ? std::to_string(tx) : "";
-      EXPECT_EQ(got, wanted) << x;
-    }
-  }
-  // The other shapes do not depend on it, but obb leaves out what Th exceeds.
-  Splat splat = make_splat({21, 24}, {4, 0, 4}, 0.5);
-  const std::string at_tau = map_of(splat, TILES_OBB);
-  splat.threshold = 0.49;
-  EXPECT_EQ(map_of(splat, TILES_OBB), at_tau);
-  splat.threshold = 0.51;
-  for (const int tiles : {TILES_OBB, TILES_SNUG, TILES_ELLIPSE}) {
-    EXPECT_EQ(map_of(splat, tiles), "................");
-  }
 }
 
 TEST(Tiles, ShapesStopAtThePicturesEdge) {
@@ -222,14 +194,11 @@ int disagreements(int tiles, int shift) {
   return wrong;
 }
 
-TEST(Tiles, EllipseAgreesWithADenseSearch) {
-  EXPECT_EQ(disagreements(TILES_ELLIPSE, 0), 0);
-  EXPECT_GT(disagreements(TILES_ELLIPSE, 1), 100) << "a tile off by one goes unnoticed";
-}
-
-TEST(Tiles, ObbAgreesWithADenseSearch) {
-  EXPECT_EQ(disagreements(TILES_OBB, 0), 0);
-  EXPECT_GT(disagreements(TILES_OBB, 1), 100) << "a tile off by one goes unnoticed";
+TEST(Tiles, EllipseAndObbAgreeWithADenseSearch) {
+  for (const int tiles : {TILES_ELLIPSE, TILES_OBB}) {
+    EXPECT_EQ(disagreements(tiles, 0), 0);
+    EXPECT_GT(disagreements(tiles, 1), 100) << "a tile off by one goes unnoticed";
+  }
 }
 
 /// How many answers of snug disagree with asking every pixel centre of the tile whether it lies in the box.
@@ -268,7 +237,7 @@ TEST(Tiles, DepthOrderBreaksTiesByIndex) {
 }
 
 TEST(Tiles, ListsHoldWhatTouchesInDepthOrder) {
-  for (const int tiles : {TILES_AABB, TILES_OBB, TILES_SNUG, TILES_ELLIPSE, TILES_ALL}) {
+  for (int tiles = 0; tiles < std::ssize(tiles_choices); ++tiles) {
     for (const int size : {8, 16, 32}) {
       const shared::View view = view_of(75, 53);
       const std::vector<Splat> splats = with_thresholds(random_splats(5, 300, 75, 53));
@@ -333,7 +302,7 @@ TEST(Tiles, AabbAndObbCutVisibleTails) {
 TEST(Tiles, RenderIsItsStagesInOrder) {
   const Model model = test::random_model(2, 400, 2);
   const shared::View view = view_of(75, 53);
-  for (const int tiles : {TILES_AABB, TILES_OBB, TILES_SNUG, TILES_ELLIPSE, TILES_ALL}) {
+  for (int tiles = 0; tiles < std::ssize(tiles_choices); ++tiles) {
     const Picture rendered = render(model, view, {tiles, 16});
     EXPECT_TRUE(equal_bits(rendered, picture_of(project_all(model, view), view, tiles)));
     EXPECT_TRUE(equal_bits(rendered, render(model, view, {tiles, 16}))) << "two runs differ";
