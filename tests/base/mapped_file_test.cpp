@@ -20,12 +20,8 @@ TEST(MappedFile, HoldsTheBytes) {
   ASSERT_EQ(file.bytes().size(), text.size());
   EXPECT_TRUE(std::equal(text.begin(), text.end(), file.bytes().begin(),
                          [](char a, std::byte b) { return std::byte(a) == b; }));
-}
-
-TEST(MappedFile, MayBeEmpty) {
-  const test::TempFolder folder;
-  test::write_text(folder / "file", "");
-  EXPECT_TRUE(MappedFile(folder / "file").bytes().empty());
+  test::write_text(folder / "empty", "");
+  EXPECT_TRUE(MappedFile(folder / "empty").bytes().empty());
 }
 
 TEST(MappedFile, NamesWhatCannotBeRead) {

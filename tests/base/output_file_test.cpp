@@ -140,15 +140,6 @@ TEST(OutputFile, IsTheFirstOfMany) {
   EXPECT_EQ(read_text(folder / "0"), "late");
 }
 
-TEST(OutputFile, ReplacesWhatStoodThere) {
-  const test::TempFolder folder;
-  test::write_text(folder / "out.txt", "old and longer");
-  OutputFile file(folder / "out.txt");
-  file.write("new");
-  file.commit();
-  EXPECT_EQ(read_text(folder / "out.txt"), "new");
-}
-
 TEST(OutputFile, FollowsSymbolicLinks) {
   const test::TempFolder folder;
   test::write_text(folder / "target.txt", "old");
