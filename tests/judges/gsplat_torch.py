@@ -1,8 +1,7 @@
 """gsplat_torch.py CHECKOUT MODEL CAMERAS [NUMBERS]: gsplat's plain torch code as a judge, on the CPU and in float64.
 
-Its measure along rays must be the twin's. Its projection and harmonics, blended by the twin, must be our exact
-picture: of Gaussians all around a wide view with its principal point off the middle, and of each fourth camera of a
-model at a quarter of its size. With NUMBERS, a file,
+Its projection and harmonics, blended by the twin, must be our exact picture: of Gaussians all around a wide view with
+its principal point off the middle, and of each fourth camera of a model at a quarter of its size. With NUMBERS, a file,
 what it says of 12 Gaussians is written there, for a test of the float64 reference.
 """
 import importlib
@@ -15,7 +14,6 @@ import binosplat
 import numpy as np
 import torch
 
-import edges
 import twin
 
 
@@ -66,23 +64,6 @@ def against(gsplat, name, model, camera, antialiased=False):
               f"{np.abs(ours - theirs).max():.1e} at most", twin.psnr(ours, theirs) > 90)
 
 
-def along_rays(model, camera):
-    """The twin's measure of a Gaussian along a ray, which edges.py and rays.py take for the truth."""
-    eval3d = importlib.import_module("gsplat.cuda._torch_impl_eval3d")
-    of = lambda array: torch.tensor(np.asarray(array, np.float64))
-    measure = edges.rays(model, camera)
-    y, x = np.mgrid[0:camera.height, 0:camera.width]
-    way = np.stack([(x + 0.5 - camera.cx) / camera.fx, (y + 0.5 - camera.cy) / camera.fy, np.ones(x.shape)], axis=-1)
-    inverse = eval3d._compute_gaussian_transform(of(model.quats), of(model.scales))
-    largest = 0.0
-    for i in range(len(model.means)):
-        theirs, _ = eval3d._compute_ray_gaussian_distance(
-            of(np.zeros(way.shape)), of(way), of(model.means[i]), inverse[i], of(model.scales[i]))
-        ours, theirs = np.exp(-0.5 * measure(i)[1]), np.exp(-0.5 * theirs.numpy())
-        largest = max(largest, np.abs(ours - theirs).max())
-    twin.tell(f"exp(-q/2) along rays: {largest:.1e} at most", largest < 1e-9)
-
-
 def write_numbers(gsplat, path):
     model = around(12)
     camera = binosplat.Camera(640, 480, 200, fy=210, cx=290, cy=260)
@@ -100,7 +81,6 @@ def write_numbers(gsplat, path):
 def main(checkout, model_file, camera_file, numbers=None):
     gsplat = load_gsplat(checkout)
     wide = binosplat.Camera(320, 240, 100, fy=105, cx=145, cy=130)
-    along_rays(around(200), wide)
     for antialiased in (False, True):
         against(gsplat, "2,000 Gaussians around 116 x 98 degrees", around(2000), wide, antialiased)
     model = binosplat.load_model(model_file)
