@@ -93,20 +93,6 @@ TEST(Colmap, LensesAgreeWithAnIndependentReader) {
   }
 }
 
-TEST(Colmap, OfARealSceneIsItsCamerasJson) {
-  REQUIRE_SCENE("fox", folder);
-  const std::vector<Camera> expected = load_cameras(folder / "cameras.json");
-  const std::vector<Camera> cameras = load_cameras(folder / "sparse/0");
-  EXPECT_GE(cameras.size(), 20u);
-  for (const Camera& camera : cameras) {
-    const Camera& same = named(expected, fs::path(camera.name).stem().string());
-    EXPECT_LT(glm::length(camera.position - same.position), 1e-6) << camera.name;
-    EXPECT_LT(glm::length(camera.rotation[2] - same.rotation[2]), 1e-6) << camera.name;
-    EXPECT_NEAR(camera.fx, same.fx, 1e-3 * same.fx) << camera.name;
-  }
-  EXPECT_EQ(find_photos(folder / "sparse/0"), folder / "photos");
-}
-
 TEST(Colmap, IsFoundBesideTheModel) {
   REQUIRE_FIXTURES(folder);
   const test::TempFolder temporary;

@@ -39,13 +39,6 @@ struct GltfNodes : testing::Test {
 
 const glm::dmat3 quarter(glm::dvec3(0, 1, 0), glm::dvec3(-1, 0, 0), glm::dvec3(0, 0, 1));  // about z
 
-TEST_F(GltfNodes, AreReadAsTheyAre) {
-  const Model found = load();
-  EXPECT_EQ(found.position, model.position);
-  EXPECT_EQ(found.sh, model.sh);
-  EXPECT_EQ(found.axes.letters, "LUF");
-}
-
 TEST_F(GltfNodes, TurnWhatIsInThem) {
   const double half = std::sqrt(0.5);
   glb.node()["rotation"] = {0, 0, half, half};
@@ -54,6 +47,7 @@ TEST_F(GltfNodes, TurnWhatIsInThem) {
   glm::dmat4 map(2.0 * quarter);
   map[3] = glm::dvec4(1, 2, 3, 1);
   const Model found = load();
+  EXPECT_EQ(found.axes.letters, "LUF");
   EXPECT_TRUE(follows_at(found, 0, map, quarter));
   // Planted faults: turned the other way, and not at all.
   EXPECT_FALSE(follows_at(found, 0, map, glm::transpose(quarter)));
@@ -114,24 +108,6 @@ TEST_F(GltfNodes, ApplyTransformsInOrder) {
   const Model found = load();
   EXPECT_TRUE(follows_at(found, 0, parent * child, quarter));
   EXPECT_FALSE(follows_at(found, 0, child * parent, quarter));  // planted fault
-}
-
-TEST_F(GltfNodes, MayMirrorAndShear) {
-  glb.node()["scale"] = {1, 1, -2};
-  glm::dmat3 mirror(1.0);
-  mirror[2][2] = -1.0;
-  glm::dmat4 map(1.0);
-  map[2][2] = -2.0;
-  EXPECT_TRUE(follows_at(load(), 0, map, mirror));
-  EXPECT_FALSE(follows_at(load(), 0, map, glm::dmat3(1.0)));  // planted fault: harmonics not mirrored
-  // Uneven scales above a turn shear: a matrix of its own cannot, nodes together can.
-  glb.node() = {{"children", {1}}, {"scale", {1, 3, 1}}};
-  glb.root["nodes"].push_back({{"mesh", 0}, {"rotation", {0, 0, std::sin(0.3), std::cos(0.3)}}});
-  const glm::dmat3 turned(glm::rotate(glm::dmat4(1.0), 0.6, glm::dvec3(0, 0, 1)));
-  glm::dmat3 stretch(1.0);
-  stretch[1][1] = 3.0;
-  // Of S R the orthogonal factor is R, and the other one R^T S R.
-  EXPECT_TRUE(follows_at(load(), 0, glm::dmat4(stretch * turned), turned));
 }
 
 TEST_F(GltfNodes, OfNoSizeShowNothing) {
@@ -289,18 +265,13 @@ TEST_F(GltfInstances, AreTurnedAndScaled) {
   EXPECT_TRUE(follows_at(found, 0, map, quarter));
   EXPECT_TRUE(follows_at(found, model.count(), glm::dmat4(glm::dmat3(0.5)), glm::dmat3(1.0)));
   EXPECT_FALSE(follows_at(found, 0, map, glm::dmat3(1.0)));  // planted fault
-  // Turned by less exact numbers: bytes and shorts, brought to length 1.
+  // Turned by less exact numbers, brought to length 1.
   attributes().erase("TRANSLATION");
   attributes().erase("SCALE");
-  const std::vector<int> bytes = {0, 0, 90, 90, 0, 0, 0, 127}, shorts = {0, 0, 23170, 23170, 0, 0, 0, 32767};
-  for (const bool wide : {false, true}) {
-    attributes()["ROTATION"] = wide ? glb.add_accessor(test::packed<std::int16_t>(shorts), 2, "VEC4",
-                                                       test::gltf_int16, {{"normalized", true}})
-                                    : glb.add_accessor(test::packed<std::int8_t>(bytes), 2, "VEC4",
-                                                       test::gltf_int8, {{"normalized", true}});
-    EXPECT_TRUE(follows_at(load(), 0, glm::dmat4(quarter), quarter)) << wide;
-    EXPECT_EQ(load().count(), 2 * model.count());
-  }
+  attributes()["ROTATION"] =
+      glb.add_accessor(test::packed<std::int8_t>(std::vector<int>{0, 0, 90, 90, 0, 0, 0, 127}), 2, "VEC4",
+                       test::gltf_int8, {{"normalized", true}});
+  EXPECT_TRUE(follows_at(load(), 0, glm::dmat4(quarter), quarter));
 }
 
 TEST_F(GltfInstances, MayHaveAnyAttributes) {

@@ -229,7 +229,7 @@ TEST(SogErrors, PromisesThatBytesCannotHold) {
     return test::zipped({{"meta.json", meta_of(width * height)}, {"a.webp", picture}}, true);
   };
   const std::vector<test::BrokenFile> refusals = {
-      {padded(4096, 4096, 0), {"m.sog: 16777216 Gaussians are promised"}},
+      {padded(2048, 2048, 0), {"m.sog: 4194304 Gaussians are promised"}},
       // Padded with zeros, which take no room in an archive.
       {padded(2048, 1024, 100000), {"m.sog: 2097152 Gaussians are promised"}},
       {padded(2048, 1024, 3000000), {"m.sog: its file 'a.webp' promises 3000", "at most 2"}}};
