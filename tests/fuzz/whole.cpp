@@ -14,11 +14,11 @@
 #include <fstream>
 #include <map>
 #include <mutex>
-#include <random>
 #include <thread>
 
 #include "base/text.h"
 #include "formats/registry.h"
+#include "support/damage.h"
 #include "support/program.h"
 
 namespace {
@@ -27,6 +27,7 @@ namespace fs = std::filesystem;
 using binosplat::test::Outcome;
 using binosplat::test::run_program;
 using binosplat::test::TempFolder;
+using binosplat::test::Uniform;
 
 constexpr std::size_t seed_most = 300000;  // bytes
 constexpr double seconds_most = 20.0;      // a run, on a busy machine
@@ -43,19 +44,6 @@ struct Tally {
   int files = 0, taken = 0, converted = 0;
   double seconds = 0.0;  // the most of a run
   long kib = 0;
-};
-
-class Random {
- public:
-  explicit Random(std::uint64_t seed) : engine_(seed) {}
-  std::size_t below(std::size_t end) { return end == 0 ? 0 : engine_() % end; }
-  template <typename T, std::size_t N>
-  T of(const T (&choices)[N]) {
-    return choices[below(N)];
-  }
-
- private:
-  std::mt19937_64 engine_;
 };
 
 std::string kind_of(const fs::path& path) {
@@ -79,63 +67,6 @@ void add_seeds(const fs::path& folder, std::vector<Seed>& seeds) {
   }
 }
 
-void replace_number(std::string& bytes, Random& random) {
-  const std::size_t from = random.below(bytes.size());
-  const auto digit = [](char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0; };
-  const auto begin = std::find_if(bytes.begin() + static_cast<std::ptrdiff_t>(from), bytes.end(), digit);
-  const auto end = std::find_if_not(begin, bytes.end(), digit);
-  const char* numbers[] = {"0",   "-1",     "1e39", "-1e400", "4294967296", "99999999999999999999",
-                           "nan", "1e-320", ""};
-  bytes.replace(begin, end, random.of(numbers));
-}
-
-std::string mutated(std::string bytes, const std::vector<Seed>& seeds, Random& random) {
-  const float floats[] = {0.0f, -0.0f, 1e38f, -1e38f, 1e-40f, INFINITY, NAN, 1e6f, -700.0f, 88.0f};
-  const std::uint32_t words[] = {0, 1, 0x7fffffff, 0x80000000, 0xffffffff, 0x10000, 1000000};
-  // Most changes are of values, behind the header, so that files are taken; the others may be of anything.
-  const bool gentle = random.below(10) < 6;
-  for (std::size_t n = 1 + random.below(gentle ? 3 : 6); n > 0 && !bytes.empty(); --n) {
-    const std::size_t header = gentle ? std::min(bytes.size() - bytes.size() / 4, bytes.size() - 1) : 0;
-    const std::size_t at = header + random.below(bytes.size() - header);
-    const std::size_t length = 1 + random.below(std::min<std::size_t>(64, bytes.size() - at));
-    const auto put = [&](auto number) {
-      for (std::size_t k = 0; k < sizeof(number) && at + k < bytes.size(); ++k)
-        bytes[at + k] = reinterpret_cast<const char*>(&number)[k];
-    };
-    switch (random.below(gentle ? 4 : 9)) {
-      case 0:
-        bytes[at] = static_cast<char>(bytes[at] ^ 1 << random.below(8));
-        break;
-      case 1:
-        bytes[at] = static_cast<char>(random.below(256));
-        break;
-      case 2:
-        put(random.of(floats));
-        break;
-      case 3:
-        put(random.of(words));
-        break;
-      case 4:
-        bytes.resize(at);
-        break;
-      case 5:
-        bytes.erase(at, length);
-        break;
-      case 6:
-        bytes.insert(random.below(bytes.size()), bytes.substr(at, length));
-        break;
-      case 7:
-        replace_number(bytes, random);
-        break;
-      default: {
-        const std::string& other = seeds[random.below(seeds.size())].bytes;
-        bytes.replace(at, length, other.substr(random.below(other.size()), length));
-      }
-    }
-  }
-  return bytes;
-}
-
 class Campaign {
  public:
   Campaign(std::uint64_t seed, fs::path findings) : seed_(seed), findings_(std::move(findings)) {
@@ -156,16 +87,17 @@ class Campaign {
 
   // File number n, whichever thread takes it.
   void try_file(int n) {
-    Random random(seed_ * 1000003 + static_cast<std::uint64_t>(n));
+    Uniform random(static_cast<std::uint32_t>(seed_ * 1000003 + static_cast<std::uint64_t>(n)));
     const Seed& seed = seeds_[static_cast<std::size_t>(n) % seeds_.size()];
     const TempFolder folder;
     const fs::path file = folder / seed.name;
-    const std::string bytes = mutated(seed.bytes, seeds_, random);
+    const std::string bytes = binosplat::test::damaged(seed.bytes, random, random(0, 10) < 6);
     binosplat::test::write_text(file, bytes);
     Tally tally{.files = 1};
     std::string problem;
     if (seed.kind == "model") {
-      problem = try_model(file, folder, word_of(written_[random.below(written_.size())]), tally);
+      const auto format = static_cast<std::size_t>(random(0.0, static_cast<double>(written_.size())));
+      problem = try_model(file, folder, word_of(written_[format]), tally);
     } else if (seed.kind == "picture") {
       Outcome outcome;
       problem = run({"compare", file, file}, {0, 1, 2, 4}, tally, outcome);
@@ -228,7 +160,7 @@ class Campaign {
   }
 
   static long gaussians(const Outcome& info) {
-    const std::string label = "Gaussians";
+    const std::string label = "\nGaussians";  // not those of a title
     std::size_t at = info.out.find(label);
     if (at == std::string::npos) return -1;
     at = info.out.find_first_not_of(' ', at + label.size());

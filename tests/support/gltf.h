@@ -122,7 +122,7 @@ inline Model load_gltf_bytes(const std::string& bytes) { return load_model_of(by
 
 /// Whether a file ends in an error that names it and says `parts`.
 inline testing::AssertionResult refuses_gltf(const std::string& bytes, std::vector<std::string> parts) {
-  parts.push_back("a.glb");
+  parts.emplace_back("a.glb");
   return fails_saying([&] { load_gltf_bytes(bytes); }, parts);
 }
 
