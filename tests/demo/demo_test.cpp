@@ -44,16 +44,13 @@ std::uint64_t hash_of(const Model& m) {
 }
 
 TEST(Demo, IsTheSameEveryTimeOnAnyNumberOfThreads) {
+  const Model &of_room = room().model, &of_city = city().model;
+  const auto alone = without_helpers();
   Model again = demo_room().model;
-  EXPECT_TRUE(test::same_bits(room().model, again));
-  EXPECT_TRUE(test::same_bits(demo_city({.count = small}).model, city().model));
-  {
-    const auto alone = without_helpers();
-    EXPECT_TRUE(test::same_bits(demo_room().model, room().model));
-    EXPECT_TRUE(test::same_bits(demo_city({.count = small}).model, city().model));
-  }
+  EXPECT_TRUE(test::same_bits(of_room, again));
+  EXPECT_TRUE(test::same_bits(of_city, demo_city({.count = small}).model));
   again.sh.back() = std::nextafter(again.sh.back(), 1.0f);
-  EXPECT_FALSE(test::same_bits(room().model, again)) << "a difference in the last bit goes unnoticed";
+  EXPECT_FALSE(test::same_bits(of_room, again)) << "a difference in the last bit goes unnoticed";
 }
 
 TEST(Demo, TheCityIsTheSameWithEveryCompiler) {
@@ -64,7 +61,6 @@ TEST(Demo, TheCityIsTheSameWithEveryCompiler) {
 TEST(Demo, SeedsAreDifferentCities) {
   const Demo other = demo_city({.seed = 2, .count = small});
   EXPECT_EQ(other.model.count(), small);
-  EXPECT_NE(hash_of(other.model), hash_of(city().model));
   std::size_t elsewhere = 0;
   for (std::size_t i = 0; i < small; ++i)
     elsewhere += glm::distance(other.model.position[i], city().model.position[i]) > 0.1f;

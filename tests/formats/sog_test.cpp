@@ -22,7 +22,7 @@ bool equal_from(const Model& a, std::size_t first, const Model& b) {
     if (a.position[k] != b.position[i] || a.scale[k] != b.scale[i] || a.rotation[k] != b.rotation[i])
       return false;
     if (a.opacity[k] != b.opacity[i]) return false;
-    if (!std::equal(&b.sh[i * values], &b.sh[(i + 1) * values - 1], &a.sh[k * values])) return false;
+    if (!std::equal(&b.sh[i * values], &b.sh[i * values] + values, &a.sh[k * values])) return false;
   }
   return true;
 }
@@ -34,6 +34,7 @@ TEST(Sog, LevelsOfDetail) {
   const Model chosen = load_model(lod);
   ASSERT_EQ(chosen.count(), 1000u);
   EXPECT_TRUE(equal_from(chosen, 0, fine));
+  EXPECT_FALSE(equal_from(chosen, 0, coarse)) << "planted: the other level";
   EXPECT_TRUE(equal_from(load_model(lod / "lod-meta.json", {.lod = 0}), 0, fine));
   const Model level = load_model(lod, {.lod = 1});
   ASSERT_EQ(level.count(), 250u);
