@@ -53,12 +53,11 @@ struct BrokenFile {
 
 /// Expects that attempt(bytes) ends each time in an error that says so, and names the file `name`.
 template <typename Attempt>
-void expect_refusals(const std::string& name, const std::vector<BrokenFile>& refusals,
-                     const Attempt& attempt) {
-  for (const BrokenFile& refusal : refusals) {
-    std::vector<std::string> said = refusal.said;
+void expect_refusals(const std::string& name, const std::vector<BrokenFile>& files, const Attempt& attempt) {
+  for (const BrokenFile& file : files) {
+    std::vector<std::string> said = file.said;
     said.push_back(name);
-    EXPECT_TRUE(fails_saying([&] { attempt(refusal.bytes); }, said));
+    EXPECT_TRUE(fails_saying([&] { attempt(file.bytes); }, said));
   }
 }
 

@@ -21,12 +21,12 @@ inline std::vector<Camera> load_cameras_of(const std::string& text, const std::s
 }
 
 /// Expects that no model is read of these, and each time an error names the file and says what is wrong.
-inline void expect_no_models(const std::string& name, const std::vector<BrokenFile>& refusals) {
-  expect_refusals(name, refusals, [&](const std::string& bytes) { load_model_of(bytes, name); });
+inline void expect_no_models(const std::string& name, const std::vector<BrokenFile>& files) {
+  expect_refusals(name, files, [&](const std::string& bytes) { load_model_of(bytes, name); });
 }
 
-inline void expect_no_cameras(const std::string& name, const std::vector<BrokenFile>& refusals) {
-  expect_refusals(name, refusals, [&](const std::string& text) { load_cameras_of(text, name); });
+inline void expect_no_cameras(const std::string& name, const std::vector<BrokenFile>& files) {
+  expect_refusals(name, files, [&](const std::string& text) { load_cameras_of(text, name); });
 }
 
 }  // namespace binosplat::test
