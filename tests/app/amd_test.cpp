@@ -7,17 +7,12 @@
 #include <algorithm>
 
 #include "app/scene.h"
+#include "shared/axes.h"
 #include "support/scaffold_files.h"
 #include "support/scenes.h"
 
 namespace binosplat {
 namespace {
-
-using test::has;
-namespace fs = std::filesystem;
-using test::Outcome;
-using test::read_text;
-using test::write_text;
 
 /// One line of each generation whose compiler differs, as Mesa's shim calls them.
 constexpr const char* amd_names[] = {"navi31", "navi21", "navi10", "vega10", "polaris10", "gfx1150"};
@@ -44,8 +39,8 @@ struct AmdRun {
 };
 
 /// What `render` can be asked for; the models and cameras are those of AmdTest.
-std::vector<std::string> amd_drawings() {
-  std::vector<std::string> all = {
+Words amd_drawings() {
+  Words all = {
       "",
       "--mono --antialias",
       "--order distance",
@@ -68,17 +63,18 @@ std::vector<std::string> amd_drawings() {
       "--vr180 --size 64x64",
       "--reference-until order",
   };
-  for (const char* tiles : {"aabb", "all", "obb", "snug", "ellipse"}) {
+  for (const auto& tiles : tiles_choices) {
     for (const char* more : {"", "--projection tangent --order distance", "--frames 3 --tolerance 0.1"})
-      all.push_back(fmt::format("--tiles {} {}", tiles, more));
+      all.push_back(fmt::format("--tiles {} {}", tiles.name, more));
   }
-  for (const char* th : {"peripheral", "squared"}) {
-    for (const char* from : {"one", "depth", "last"})
-      all.push_back(fmt::format("--frames 3 --tolerance 0.1 --th {} --transmittance {}", th, from));
+  for (const auto& th : th_choices) {
+    if (&th == &th_choices[TH_TAU]) continue;  // exact
+    for (const auto& from : transmittance_choices)
+      all.push_back(fmt::format("--frames 3 --tolerance 0.1 --th {} --transmittance {}", th.name, from.name));
   }
-  for (const char* view : {"split", "difference", "disagreement", "depth", "alphas", "visible", "pairs",
-                           "light", "median-depth"}) {
-    for (const char* more : {"", "--tolerance 0.1"}) all.push_back(fmt::format("--show {} {}", view, more));
+  for (const auto& view : show_choices) {
+    for (const char* more : {"", "--tolerance 0.1"})
+      all.push_back(fmt::format("--show {} {}", view.name, more));
   }
   return all;
 }
@@ -107,7 +103,7 @@ constexpr AmdRun amd_runs[] = {
 // OpenGL has them, and what llvmpipe blends by.
 constexpr const char* amd_never[] = {"blend_blocks.comp", "blend_subgroups.comp", "subgroups_check.comp"};
 
-struct AmdTest : test::SceneTest, testing::WithParamInterface<const char*> {
+struct AmdTest : SceneTest, testing::WithParamInterface<const char*> {
   void SetUp() override {
     if (!test::switched_on("BINOSPLAT_LONG")) GTEST_SKIP() << "some minutes: set BINOSPLAT_LONG=1";
 #if defined(__SANITIZE_ADDRESS__)
@@ -130,20 +126,20 @@ struct AmdTest : test::SceneTest, testing::WithParamInterface<const char*> {
 
   /// A run on this GPU of AMD's. What it compiles is kept below `cache`, which is new: each program is
   /// compiled once, by Mesa and by its compiler for the GPU.
-  Outcome run(const std::vector<std::string>& arguments, const fs::path& program = BINOSPLAT_PROGRAM) const {
-    return test::run_program(arguments, {.folder = folder.path(),
-                                         .variables = {{"LD_PRELOAD", amd_shim().string()},
-                                                       {"AMDGPU_GPU_ID", GetParam()},
-                                                       {"__EGL_VENDOR_LIBRARY_FILENAMES", amd_egl},
-                                                       {"MESA_SHADER_CACHE_DISABLE", "false"},
-                                                       {"MESA_SHADER_CACHE_DIR", folder / "cache"},
-                                                       {"XDG_CACHE_HOME", folder / "cache"}},
-                                         .program = program});
+  Outcome run(const Words& arguments, const fs::path& program = BINOSPLAT_PROGRAM) const {
+    return run_program(arguments, {.folder = folder.path(),
+                                   .variables = {{"LD_PRELOAD", amd_shim().string()},
+                                                 {"AMDGPU_GPU_ID", GetParam()},
+                                                 {"__EGL_VENDOR_LIBRARY_FILENAMES", amd_egl},
+                                                 {"MESA_SHADER_CACHE_DISABLE", "false"},
+                                                 {"MESA_SHADER_CACHE_DIR", folder / "cache"},
+                                                 {"XDG_CACHE_HOME", folder / "cache"}},
+                                   .program = program});
   }
 
   Outcome run(const std::string& line) const {
     std::istringstream in(line);
-    std::vector<std::string> words;
+    Words words;
     for (std::string word; in >> word;) words.push_back(word);
     return run(words);
   }
@@ -169,7 +165,7 @@ struct AmdTest : test::SceneTest, testing::WithParamInterface<const char*> {
 
   void expect_devices_name_it() const {
     EXPECT_EQ(trouble(run("devices --json devices.json"), 0), "");
-    const auto list = nlohmann::json::parse(read_text(folder / "devices.json"));
+    const auto list = json::parse(read_text(folder / "devices.json"));
     const auto& device = list.at(0);
     EXPECT_EQ(device.at("options"), "--backend device --device 0");
     EXPECT_TRUE(has(device.at("renderer").get<std::string>(), "AMD")) << device;
@@ -193,8 +189,8 @@ struct AmdTest : test::SceneTest, testing::WithParamInterface<const char*> {
   }
 
   /// The programs of shaders/ that no run has compiled: a kept one stands behind its whole source.
-  std::vector<std::string> never_compiled() const {
-    std::vector<std::string> kept, missing;
+  Words never_compiled() const {
+    Words kept, missing;
     for (const auto& entry : fs::recursive_directory_iterator(folder / "cache/binosplat"))
       if (entry.is_regular_file()) kept.push_back(read_text(entry.path()));
     const fs::path shaders = fs::path(BINOSPLAT_SOURCE_DIR) / "shaders";
@@ -221,7 +217,7 @@ TEST_P(AmdTest, EveryModeCompiles) {
 #if defined(BINOSPLAT_PRESENT_BENCH)
   // What the window and headsets draw with.
   EXPECT_EQ(trouble(run({"--frames", "1", "--shrink", "64"}, BINOSPLAT_PRESENT_BENCH), 0), "");
-  EXPECT_EQ(never_compiled(), std::vector<std::string>(std::begin(amd_never), std::end(amd_never)));
+  EXPECT_EQ(never_compiled(), Words(std::begin(amd_never), std::end(amd_never)));
 #endif
 }
 

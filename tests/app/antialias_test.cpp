@@ -1,15 +1,12 @@
-// Models that were trained with anti-aliasing, by their tags and by --antialias.
-
-#include <gtest/gtest.h>
+// Models that were trained with anti-aliasing, or with hardly a low-pass, by their tags, by the run beside
+// them and by options.
 
 #include "app/scene.h"
-#include "formats/image_file.h"
 
 namespace binosplat {
 namespace {
 
-using test::has;
-struct Antialias : test::SceneTest {
+struct Antialias : SceneTest {
   Antialias() {
     add_cameras();
     // Far away, so that all are smaller than a pixel.
@@ -19,16 +16,16 @@ struct Antialias : test::SceneTest {
   }
 
   /// The picture of `file` with the options; what was said goes to `said`.
-  Image drawn(const test::Words& more = {}) {
-    test::write_text(model, to_bytes(file));
-    const test::Outcome outcome =
+  Image drawn(const Words& more = {}) {
+    write_text(model, to_bytes(file));
+    const Outcome outcome =
         render(joined(more, {"--view", "front", "--mono", "-o", folder / "a.png", "--bits", "16"}));
-    EXPECT_TRUE(test::good(outcome));
+    EXPECT_TRUE(good(outcome));
     said = outcome.err;
     return load_image(folder / "a.png");
   }
 
-  test::PlyFile file = test::small_model();
+  PlyFile file = small_model();
   std::string said;
 };
 
@@ -38,54 +35,50 @@ double sum(const Image& image) {
   return total;
 }
 
-TEST_F(Antialias, TagsAndOptionsMeanTheSame) {
+TEST_F(Antialias, GoesByTheFileThenByTheRunBesideItAndByOptionsBeforeAll) {
   const Image plain = drawn();
   EXPECT_FALSE(has(said, "anti-aliasing"));
-  const Image forced = drawn({"--antialias"});
+  const Image forced = drawn({"--antialias"}), thin = drawn({"--kernel-px2", "0.001"});
   EXPECT_LT(sum(forced), 0.5 * sum(plain));
-  file.comments = "comment SplatRenderMode: mip\n";
-  EXPECT_EQ(drawn().data, forced.data);
-  EXPECT_TRUE(has(said, "was trained with anti-aliasing, says a comment of the ply, and is drawn so"));
-  EXPECT_EQ(drawn({"--no-antialias"}).data, plain.data);
-  const Image narrow = drawn({"--kernel-px2", "0.1"});
-  EXPECT_NE(narrow.data, forced.data);
-  // Mip-Splatting's files say by their filter that their kernel is the narrow one.
-  file.comments = "";
+  EXPECT_NE(plain.data, thin.data);
+  const std::string run = folder / "cfg.yml", ours = "\nresult_dir: results\n",
+                    mip = "comment SplatRenderMode: mip\n", usual = "comment SplatRenderMode: default\n",
+                    aliased = "antialiased: true" + ours, unaliased = "antialiased: false" + ours,
+                    along_rays = unaliased + "with_eval3d: true\n";
+  const struct {
+    std::string comments, run;
+    Words options;
+    const Image& expected;
+    std::string said;
+  } cases[] = {
+      {mip, "", {}, forced, "was trained with anti-aliasing, says a comment of the ply, and is drawn so"},
+      {mip, "", {"--no-antialias"}, plain, ""},
+      {"", aliased, {}, forced, "was trained with anti-aliasing, says " + run},
+      {"", aliased, {"--no-antialias"}, plain, ""},
+      {usual, aliased, {}, plain, "a comment of the ply says that it was trained without anti-aliasing"},
+      {"", unaliased, {}, plain, ""},
+      {"", unaliased, {"--antialias"}, forced, ""},
+      {"", "antialiased: true\n", {}, plain, ""},  // of another program
+      {"", along_rays, {}, thin, "warning: " + run + ": it was trained by 3DGUT"},
+      {"", along_rays, {"--kernel-px2", "0.3"}, plain, ""},
+  };
+  for (const auto& one : cases) {
+    file.comments = one.comments;
+    write_text(run, one.run);
+    if (one.run.empty()) fs::remove(run);
+    EXPECT_EQ(drawn(one.options).data, one.expected.data) << one.comments << one.run;
+    EXPECT_TRUE(has(said, one.said));
+  }
+}
+
+// Mip-Splatting's files say by their filter that their kernel is the narrow one.
+TEST_F(Antialias, FiltersMeanANarrowKernel) {
+  const Image wide = drawn({"--antialias"}), narrow = drawn({"--antialias", "--kernel-px2", "0.1"});
+  EXPECT_NE(narrow.data, wide.data);
   file.columns.emplace_back("filter_3D");
   for (auto& row : file.rows) row.push_back(0.0);
   EXPECT_EQ(drawn().data, narrow.data);
-  EXPECT_EQ(drawn({"--kernel-px2", "0.3"}).data, forced.data);
-}
-
-TEST_F(Antialias, OfAFileThatSaysNothingIsThatOfTheRunBesideIt) {
-  const Image plain = drawn(), forced = drawn({"--antialias"});
-  const std::string run = folder / "cfg.yml";
-  const auto trained = [&](const char* how) {
-    test::write_text(run, std::string("antialiased: ") + how + "\nresult_dir: results\n");
-  };
-  trained("true");
-  EXPECT_EQ(drawn().data, forced.data);
-  EXPECT_TRUE(has(said, "was trained with anti-aliasing, says " + run));
-  EXPECT_EQ(drawn({"--no-antialias"}).data, plain.data);
-  file.comments = "comment SplatRenderMode: default\n";
-  EXPECT_EQ(drawn().data, plain.data);
-  EXPECT_TRUE(has(said, "a comment of the ply says that it was trained without anti-aliasing"));
-  file.comments = "";
-  trained("false");
-  EXPECT_EQ(drawn().data, plain.data);
-  EXPECT_EQ(drawn({"--antialias"}).data, forced.data);
-  test::write_text(run, "antialiased: true\n");  // of another program
-  EXPECT_EQ(drawn().data, plain.data);
-}
-
-TEST_F(Antialias, WhatWasTrainedAlongRaysHasHardlyALowPass) {
-  const Image plain = drawn(), narrow = drawn({"--kernel-px2", "0.001"});
-  EXPECT_NE(plain.data, narrow.data);
-  const std::string run = folder / "cfg.yml";
-  test::write_text(run, "antialiased: false\nresult_dir: results\nwith_eval3d: true\n");
-  EXPECT_EQ(drawn().data, narrow.data);
-  EXPECT_TRUE(has(said, "warning: " + run + ": it was trained by 3DGUT"));
-  EXPECT_EQ(drawn({"--kernel-px2", "0.3"}).data, plain.data);
+  EXPECT_EQ(drawn({"--kernel-px2", "0.3"}).data, wide.data);
 }
 
 }  // namespace

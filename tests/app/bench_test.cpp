@@ -1,21 +1,11 @@
 // binosplat bench: what it measures, that it goes on where it was, and that shards join to the same table.
 
-#include <chrono>
-#include <thread>
-
 #include "app/scene.h"
 
 namespace binosplat {
 namespace {
 
-using nlohmann::ordered_json;
-using test::ended;
-using test::good;
-using test::Outcome;
-using test::read_text;
-using test::write_text;
-
-struct BenchTest : test::SceneTest {
+struct BenchTest : SceneTest {
   const std::string axes = folder / "axes.json";
 
   BenchTest() {
@@ -30,22 +20,18 @@ struct BenchTest : test::SceneTest {
       {"th": "squared", "transmittance": "last", "tolerance": [0.05, 2]}], "sizes": )" +
             sizes + "}");
   }
-  Outcome bench(std::vector<std::string> arguments, const std::string& to) const {
-    arguments.insert(arguments.begin(), {"bench", "-o", to});
-    return test::run_program(arguments);
+  static Outcome bench(const Words& words, const std::string& to) {
+    return run_program(joined({"bench", "-o", to}, words));
   }
-  Outcome measure(const std::string& to, std::vector<std::string> more = {}) const {
-    more.insert(more.begin(), {model, "--axes", axes});
-    return bench(more, to);
+  Outcome measure(const std::string& to, const Words& more = {}) const {
+    return bench(joined({model, "--axes", axes}, more), to);
   }
-  static ordered_json results(const std::string& of) {
-    return ordered_json::parse(read_text(of + "/results.json"));
-  }
+  static json results(const std::string& of) { return load_json(of + "/results.json"); }
 };
 
 /// Results without what another run measures differently: times, and what follows from them.
-ordered_json without_times(ordered_json results) {
-  for (ordered_json& point : results["points"]) {
+json without_times(json results) {
+  for (json& point : results["points"]) {
     for (const char* key : {"frame_ms", "p99_ms", "most_ms", "noise_ms", "repeats_ms", "cpu_ms",
                             "cpu_repeats_ms", "waited", "settled", "submit_ms", "stage_project_ms",
                             "stage_bin_ms", "stage_sort_ms", "stage_blend_ms", "pareto", "speed"}) {
@@ -60,9 +46,9 @@ TEST_F(BenchTest, MeasuresEveryPoint) {
   write_axes(R"(["own", "36x24"])");
   const Outcome outcome = measure(out);
   ASSERT_TRUE(good(outcome));
-  const ordered_json found = results(out);
+  const json found = results(out);
   ASSERT_EQ(found["points"].size(), 16);
-  for (const ordered_json& point : found["points"]) {
+  for (const json& point : found["points"]) {
     EXPECT_GT(point["frame_ms"].get<double>(), 0.0);
     EXPECT_GE(point["p99_ms"], point["frame_ms"]);
     EXPECT_EQ(point["frames"], 8);
@@ -84,36 +70,29 @@ TEST_F(BenchTest, MeasuresEveryPoint) {
   EXPECT_EQ(found["points"][4]["size"], "36x24");
   EXPECT_LT(found["points"][5]["pairs"], found["points"][1]["pairs"]);
   EXPECT_EQ(found["points"][8]["eyes"], 2);
-  EXPECT_NE(outcome.out.find("model, both eyes, size 36x24"), std::string::npos) << outcome.out;
-  EXPECT_NE(read_text(out + "/report.html").find("<!doctype html>"), std::string::npos);
-  EXPECT_NE(read_text(out + "/results.csv").find("\"squared, last, 2\""), std::string::npos);
+  EXPECT_TRUE(has(outcome.out, "model, both eyes, size 36x24"));
+  EXPECT_TRUE(has(read_text(out + "/report.html"), "<!doctype html>"));
+  EXPECT_TRUE(has(read_text(out + "/results.csv"), "\"squared, last, 2\""));
 }
 
 TEST_F(BenchTest, GoesOnWhereItWas) {
-  test::Program run({"bench", model, "--axes", axes, "-o", out});
-  // Ended once it has finished some points.
-  while (!std::filesystem::exists(out + "/points/00002.json"))
-    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  Program run({"bench", model, "--axes", axes, "-o", out});
+  wait_for_file(out + "/points/00002.json");
   run.send(SIGINT);
   EXPECT_EQ(run.wait().code, -SIGINT);
-  EXPECT_FALSE(std::filesystem::exists(out + "/results.json"));
+  EXPECT_FALSE(fs::exists(out + "/results.json"));
   const std::string finished = read_text(out + "/points/00001.json");
   std::size_t points = 0;
   for (const std::string& name : folder.files()) {
     points += name.find("points/") != std::string::npos && name.ends_with(".json");
-    EXPECT_EQ(name.find(".part"), std::string::npos) << "half a file is left";
+    EXPECT_FALSE(has(name, ".part")) << "half a file is left";
   }
   ASSERT_LT(points, 8);
   const Outcome again = measure(out);
-  ASSERT_TRUE(good(again));
-  EXPECT_NE(again.err.find(fmt::format("{} points to measure; {} are in", 8 - points, points)),
-            std::string::npos)
-      << again.err;
+  ASSERT_TRUE(ended(again, 0, fmt::format("{} points to measure; {} are in", 8 - points, points)));
   EXPECT_EQ(read_text(out + "/points/00001.json"), finished) << "measured again";
   EXPECT_EQ(results(out)["points"].size(), 8);
-  const Outcome third = measure(out);
-  ASSERT_TRUE(good(third));
-  EXPECT_NE(third.err.find("0 points to measure; 8 are in"), std::string::npos) << third.err;
+  EXPECT_TRUE(ended(measure(out), 0, "0 points to measure; 8 are in"));
 }
 
 TEST_F(BenchTest, ShardsJoinToOneRun) {
@@ -122,7 +101,7 @@ TEST_F(BenchTest, ShardsJoinToOneRun) {
   ASSERT_TRUE(good(measure(one, {"--shard", "1/2"})));
   ASSERT_TRUE(good(measure(two, {"--shard", "2/2"})));
   EXPECT_FALSE(results(one)["points"][1].contains("frame_ms"));
-  EXPECT_NE(read_text(one + "/report.html").find("not measured yet"), std::string::npos);
+  EXPECT_TRUE(has(read_text(one + "/report.html"), "not measured yet"));
   ASSERT_TRUE(good(bench({"--merge", one, "--merge", two}, out)));
   EXPECT_EQ(without_times(results(out)), without_times(results(whole)));
   // One shard alone is not the table.
@@ -131,34 +110,31 @@ TEST_F(BenchTest, ShardsJoinToOneRun) {
 
   // Compared with itself nothing has changed; with pairs that are not its own, each point has.
   ASSERT_TRUE(good(bench({"--merge", out, "--compare", out + "/results.json"}, out)));
-  ordered_json old = results(out);
-  for (ordered_json& point : old["points"]) point["pairs"] = 1.0;
-  write_text(folder / "old.json", old.dump());
-  const Outcome compared = bench({"--merge", out, "--compare", folder / "old.json"}, out);
-  EXPECT_NE(compared.out.find("8 numbers of 8 points in both runs changed beyond noise"), std::string::npos)
-      << compared.out;
+  json old = results(out);
+  for (json& point : old["points"]) point["pairs"] = 1.0;
+  const Outcome compared = bench({"--merge", out, "--compare", save("old.json", old)}, out);
+  EXPECT_TRUE(has(compared.out, "8 numbers of 8 points in both runs changed beyond noise"));
 }
 
 TEST_F(BenchTest, FailsWhereItHasBecomeSlower) {
   ASSERT_TRUE(good(measure(out)));
-  ordered_json old = results(out);
+  json old = results(out);
   const auto compared = [&](const std::string& percent) {
-    write_text(folder / "old.json", old.dump());
-    return bench({"--merge", out, "--compare", folder / "old.json", "--fail-if-slower", percent}, out);
+    return bench({"--merge", out, "--compare", save("old.json", old), "--fail-if-slower", percent}, out);
   };
   EXPECT_TRUE(good(compared("0"))) << "than itself";
-  for (ordered_json& point : old["points"]) {
+  for (json& point : old["points"]) {
     for (const char* list : {"repeats_ms", "cpu_repeats_ms"}) {
-      for (ordered_json& ms : point[list]) ms = ms.get<double>() / 1000.0;
+      for (json& ms : point[list]) ms = ms.get<double>() / 1000.0;
     }
   }
   EXPECT_TRUE(ended(compared("50"), 1, "more than --fail-if-slower 50"));
   EXPECT_TRUE(good(compared("1e9")));
-  const ordered_json whole = old;
+  const json whole = old;
   old["points"][0]["cpu_repeats_ms"][0] = 0;
   EXPECT_TRUE(ended(compared("1e9"), 1, "could not be compared"));
   old = whole;
-  for (ordered_json& point : old["points"]) point["scene"] = "another";
+  for (json& point : old["points"]) point["scene"] = "another";
   EXPECT_TRUE(ended(compared("50"), 2, "no point of this run is in"));
   EXPECT_TRUE(ended(bench({"--merge", out, "--fail-if-slower", "3"}, out), 2,
                     "--fail-if-slower goes with --compare"));
@@ -167,13 +143,13 @@ TEST_F(BenchTest, FailsWhereItHasBecomeSlower) {
 TEST_F(BenchTest, MeasuresWhatWasCalibrated) {
   const std::string calibration = folder / "c.json";
   ASSERT_TRUE(
-      good(test::run_program({"calibrate", model, "-o", calibration, "--quality", "38", "--view", "front"})));
+      good(run_program({"calibrate", model, "-o", calibration, "--quality", "38", "--view", "front"})));
   write_text(axes, R"({"views": 1, "frames": 1, "repeats": 1, "settings": [{}]})");
   const Outcome outcome = measure(out, {"--calibration", calibration, "--view", "front"});
   ASSERT_TRUE(good(outcome)) << outcome.out;
-  const ordered_json points = results(out)["points"];
+  const json points = results(out)["points"];
   ASSERT_EQ(points.size(), 7) << "exact, and six that were calibrated";
-  const ordered_json entries = ordered_json::parse(read_text(calibration))["entries"];
+  const json entries = load_json(calibration)["entries"];
   for (std::size_t i = 0; i < entries.size(); ++i) {
     EXPECT_EQ(points[i + 1]["th"], entries[i]["th"]);
     EXPECT_NEAR(points[i + 1]["tolerance"].get<double>(), entries[i]["tolerance"].get<double>(), 1e-5);
@@ -190,50 +166,35 @@ TEST_F(BenchTest, GoesOnWithTheSameContentOnly) {
   write_text(model, other);
   EXPECT_TRUE(ended(measure(out, {"--shard", "6/8"}), 2, "holds points of another run"));
   write_text(model, bytes);
-  std::string moved = cameras;
-  const std::size_t position = moved.find("position");
-  ASSERT_NE(position, std::string::npos);
-  const std::size_t digit = moved.find_first_of("0123456789", position);
-  moved[digit] = moved[digit] == '9' ? '8' : static_cast<char>(moved[digit] + 1);
-  write_text(folder / "cameras.json", moved);  // the same names
+  json moved = json::parse(cameras);
+  moved[0]["position"][1] = 0.25;
+  save("cameras.json", moved);  // the same names
   EXPECT_TRUE(ended(measure(out, {"--shard", "6/8"}), 2, "holds points of another run"));
   write_text(folder / "cameras.json", cameras);
   EXPECT_TRUE(good(measure(out, {"--shard", "6/8"})));
 }
 
 TEST_F(BenchTest, ErrorsSayWhatToDo) {
-  write_axes(R"(["own", "36x24"])");  // photos are of pictures of the cameras' own size
-  ASSERT_TRUE(good(measure(out, {"--shard", "16/16"})));
-  write_text(folder / "other.json", R"({"settings": [{}], "views": 1, "frames": 1, "repeats": 1})");
-  write_text(folder / "list.json", "[1, 2]");
-  write_text(folder / "text.json", "{\"points\"");
-  const struct {
-    std::vector<std::string> arguments;
-    const char* said;
-  } cases[] = {
-      {{model, "--axes", folder / "other.json", "-o", out}, "holds points of another run"},
-      {{model, "--axes", folder / "none.json", "-o", folder / "new"}, "none.json"},
-      {{model, "--axes", folder / "list.json", "-o", folder / "new"}, "list.json: expected an object"},
-      {{model, "--axes", axes, "--shard", "3/2", "-o", folder / "new"}, "--shard 3/2: expected I/N"},
-      {{model, "--axes", axes, "--shard", "0/2", "-o", folder / "new"}, "--shard 0/2: expected I/N"},
-      {{model, model, "--axes", axes, "-o", folder / "new"}, "two scenes are called model"},
-      {{model, "demo:room", "--photos", folder.path(), "-o", folder / "new"}, "are of one scene"},
-      {{"-o", folder / "new"}, "needs scenes to measure, or --merge"},
-      {{model, "--merge", out, "-o", folder / "new"}, "needs scenes to measure, or --merge"},
-      {{"--merge", folder.path(), "-o", folder / "new"}, "plan.json"},
-      {{"--merge", out, "--compare", folder / "text.json", "-o", out}, "text.json: not JSON"},
-      {{"--merge", out, "--compare", folder / "list.json", "-o", out},
-       "not the results.json of a measurement"},
-      {{folder / "missing.ply", "--axes", axes, "-o", folder / "new"}, "missing.ply"},
-      {{model, "--axes", axes, "--photos", folder.path(), "-o", folder / "new"},
-       "there is no photo of any view"},
-      {{model, "--axes", axes, "-o", model}, "is a file where a folder is needed"},
-  };
-  for (const auto& c : cases) {
-    std::vector<std::string> arguments = c.arguments;
-    arguments.insert(arguments.begin(), "bench");
-    EXPECT_TRUE(ended(test::run_program(arguments), 2, c.said));
-  }
+  const std::string whole = folder / "whole", text = folder / "text.json", list = folder / "list.json",
+                    other = folder / "other.json";
+  ASSERT_TRUE(good(measure(whole, {"--shard", "16/16"})));
+  write_text(other, R"({"settings": [{}], "views": 1, "frames": 1, "repeats": 1})");
+  write_text(list, "[1, 2]");
+  write_text(text, "{\"points\"");
+  expect_refused_after({"bench"},
+                       {{{model, "--axes", other, "-o", whole}, "holds points of another run"},
+                        {{model, "--axes", folder / "none.json"}, "none.json"},
+                        {{model, "--axes", list}, "list.json: expected an object"},
+                        {{model, "--axes", axes, "--shard", "3/2"}, "--shard 3/2: expected I/N"},
+                        {{model, model, "--axes", axes}, "two scenes are called model"},
+                        {{model, "demo:room", "--photos", folder.path()}, "are of one scene"},
+                        {{}, "needs scenes to measure, or --merge"},
+                        {{model, "--merge", whole}, "needs scenes to measure, or --merge"},
+                        {{"--merge", folder.path()}, "plan.json"},
+                        {{"--merge", whole, "--compare", text, "-o", whole}, "text.json: not JSON"},
+                        {{"--merge", whole, "--compare", list, "-o", whole}, "not the results.json of a"},
+                        {{folder / "missing.ply", "--axes", axes}, "missing.ply"},
+                        {{model, "--axes", axes, "-o", model}, "is a file where a folder is needed"}});
 }
 
 }  // namespace

@@ -1,22 +1,13 @@
 // binosplat render of scenes that the program makes, and of repeated ones.
 
 #include "app/scene.h"
-#include "formats/image_file.h"
 
 namespace binosplat {
 namespace {
 
-using nlohmann::json;
-using test::good;
-using test::has;
-using test::load_json;
-using test::Outcome;
-using test::read_text;
-using test::Words;
-
-struct BuiltIn : test::SceneTest {
+struct BuiltIn : SceneTest {
   Outcome draw(const std::string& scene, const Words& words) const {
-    return test::run_program(joined({"render", scene, "--json", folder / "r.json"}, words));
+    return run_into_out(joined({"render", scene, "--json", folder / "r.json"}, words));
   }
   json report() const { return load_json(folder / "r.json"); }
 };
@@ -30,7 +21,7 @@ double open_share(const Image& image) {
 }
 
 TEST_F(BuiltIn, TheCityIsClosed) {
-  const Words what = {"--count", "20000", "--mono", "--size", "160x90", "--background", "none", "-o", out};
+  const Words what = {"--count", "20000", "--mono", "--size", "160x90", "--background", "none"};
   ASSERT_TRUE(good(draw("demo:city", joined(what, {"--view", "all"}))));
   for (const char* view : {"street", "air", "corner"})
     EXPECT_EQ(open_share(load_image(out + "/" + view + ".png")), 0.0) << view;
@@ -53,7 +44,7 @@ TEST_F(BuiltIn, TheCityIsClosed) {
 
 TEST_F(BuiltIn, PairsAreComfortableAsTheyCome) {
   const auto comfortable = [&](const std::string& scene, const Words& words) {
-    const Outcome outcome = draw(scene, joined(words, {"--view", "all", "--size", "160x90", "-o", out}));
+    const Outcome outcome = draw(scene, joined(words, {"--view", "all", "--size", "160x90"}));
     EXPECT_TRUE(good(outcome));
     bool all = true;
     const json views = report()["views"];

@@ -1,163 +1,120 @@
 // binosplat calibrate, and render with what it found.
 
-#include <chrono>
-#include <csignal>
-#include <thread>
-
 #include "app/scene.h"
-#include "formats/image_file.h"
-#include "measure/metrics.h"
 #include "support/scenes.h"
 
 namespace binosplat {
 namespace {
 
-using nlohmann::ordered_json;
-using test::ended;
-using test::good;
-using test::Outcome;
-using test::read_text;
-using test::write_text;
-
-struct CalibrateTest : test::SceneTest {
+struct CalibrateTest : SceneTest {
   const std::string file = folder / "calib.json";
 
   CalibrateTest() { add_cameras(); }
-  Outcome calibrate(std::vector<std::string> more) const {
-    more.insert(more.begin(), {"calibrate", model, "-o", file});
-    return test::run_program(more);
-  }
-  ordered_json report() const { return ordered_json::parse(read_text(folder / "r.json")); }
+  Words line(const Words& more) const { return joined({"calibrate", model, "-o", file}, more); }
+  Outcome calibrate(const Words& more) const { return run_program(line(more)); }
+  json report() const { return load_json(folder / "r.json"); }
 };
 
 TEST_F(CalibrateTest, ViewsThatSeeNothingHaveNoSay) {
-  ordered_json cameras = ordered_json::parse(read_text(folder / "cameras.json"));
+  json cameras = load_json(folder / "cameras.json");
   const auto turn = [&](std::size_t k) {
     cameras[k]["rotation"] = {{-1, 0, 0}, {0, 1, 0}, {0, 0, -1}};
-    write_text(folder / "cameras.json", cameras.dump());
+    save("cameras.json", cameras);
   };
   turn(1);
   const Outcome outcome = calibrate({"--quality", "38", "--size", "36x24"});
   ASSERT_TRUE(ended(outcome, 0, "1 of 3 views see nothing of the model and are left out (side)"));
-  const ordered_json found = ordered_json::parse(read_text(file));
+  const json found = load_json(file);
   EXPECT_EQ(found["views"].size(), 2);
   for (const auto& entry : found["entries"]) EXPECT_LT(entry["tolerance"], 1e3) << entry;
-  std::filesystem::remove(file);
+  fs::remove(file);
   for (const std::size_t k : {0u, 2u, 3u}) turn(k);
-  EXPECT_TRUE(ended(calibrate({"--quality", "38"}), 2,
-                    "calibrate: none of its views sees anything of the model, so that all would look equal: "
-                    "view side looks away from the model"));
-  EXPECT_FALSE(std::filesystem::exists(file));
-  for (const std::vector<std::string>& words : std::vector<std::vector<std::string>>{
-           {"bench", model, "--axes", "quick", "-o", folder / "chart"},
-           {"bench", model, "--axes", "paper", "--size", "36x24", "-o", folder / "page"},
-           {"bench", model, "--motion", "walk", "--size", "36x24", "-o", folder / "walk"},
-       })
-    EXPECT_TRUE(ended(test::run_program(words), 2, "sees anything of the model")) << words[0];
+  const char* const none = "none of its views sees anything of the model";
+  expect_refused_after({},
+                       {{line({"--quality", "38"}),
+                         "calibrate: none of its views sees anything of the model, so that all would look "
+                         "equal: view side looks away from the model"},
+                        {{"trim", model, "--quality", "25", "-o", folder / "t.ply"}, none},
+                        {{"refit", model, "--against", "exact", "-o", folder / "t.ply"}, none}});
+  for (const Words& axes : {Words{"--axes", "quick"}, {"--axes", "paper"}, {"--motion", "walk"}}) {
+    fs::remove_all(out);
+    EXPECT_TRUE(ended(run_into_out(joined({"bench", model, "--size", "36x24"}, axes)), 2,
+                      "sees anything of the model"))
+        << axes[1];
+  }
   // The file is what convert is for.
-  const Outcome converted = test::run_program({"convert", model, "--report", "2", "-o", folder / "m.ply"});
+  const Outcome converted = run_program({"convert", model, "--report", "2", "-o", folder / "m.ply"});
   EXPECT_TRUE(ended(converted, 0, "2 of 2 views see nothing of the model and are left out"));
-  EXPECT_EQ(converted.out.find("equal"), std::string::npos) << converted.out;
+  EXPECT_FALSE(has(converted.out, "equal"));
 }
 
 TEST_F(CalibrateTest, GoesOnWhereItWasEnded) {
-  const std::vector<std::string> words = {"--quality", "38",          "--size", "36x24",
-                                          "--rule",    "squared,one", "--rule", "squared,last"};
+  const Words words = {"--quality", "38",          "--size", "36x24",
+                       "--rule",    "squared,one", "--rule", "squared,last"};
   const auto result = [&] {
-    ordered_json json = ordered_json::parse(read_text(file));
-    json["depth_table"].erase("seconds");
-    for (ordered_json& entry : json["entries"]) entry.erase("seconds");
-    return json;
+    json found = load_json(file);
+    found["depth_table"].erase("seconds");
+    for (json& entry : found["entries"]) entry.erase("seconds");
+    return found;
   };
   const auto before = folder.files();
   ASSERT_TRUE(good(calibrate(words)));
-  const ordered_json whole = result();
+  const json whole = result();
   EXPECT_EQ(whole["entries"].size(), 2);
-  std::filesystem::remove(file);
-  std::vector<std::string> all = {"calibrate", model, "-o", file};
-  all.insert(all.end(), words.begin(), words.end());
-  test::Program program(all);
-  const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(60);
+  fs::remove(file);
+  /// The steps that are kept of a run under way.
   const auto kept = [&] {
-    std::size_t count = 0;
-    for (const std::string& name : folder.files()) count += name.find(".unfinished/") != std::string::npos;
-    return count;
+    Names steps = folder.files();
+    std::erase_if(steps,
+                  [](const std::string& name) { return name.find(".unfinished/") == std::string::npos; });
+    return steps;
   };
-  while (kept() < 2 && std::chrono::steady_clock::now() < end)
-    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  Program program(line(words));
+  wait_until([&] { return kept().size() >= 2; });
   program.send(SIGINT);
   ASSERT_EQ(program.wait().code, -SIGINT);
-  EXPECT_FALSE(std::filesystem::exists(file));
-  const auto there = folder.files();
-  ASSERT_GT(there.size(), before.size());
-  const std::string step = *std::ranges::find_if(
-      there, [](const std::string& name) { return name.find(".unfinished/") != std::string::npos; });
-  const auto written = std::filesystem::last_write_time(folder / step);
+  EXPECT_FALSE(fs::exists(file));
+  ASSERT_FALSE(kept().empty());
+  const fs::path step = folder / *kept().begin();
+  const auto written = fs::last_write_time(step);
   // Other options go on from none of it, and leave it.
-  ASSERT_TRUE(good(test::run_program({"calibrate", model, "-o", folder / "other.json", "--quality", "38",
-                                      "--size", "36x24", "--rule", "squared,one"})));
-  EXPECT_EQ(std::filesystem::last_write_time(folder / step), written);
-  std::filesystem::remove(folder / "other.json");
+  ASSERT_TRUE(good(run_program({"calibrate", model, "-o", folder / "other.json", "--quality", "38", "--size",
+                                "36x24", "--rule", "squared,one"})));
+  EXPECT_EQ(fs::last_write_time(step), written);
+  fs::remove(folder / "other.json");
   ASSERT_TRUE(good(calibrate(words)));
   EXPECT_EQ(result(), whole);
-  std::filesystem::remove(file);
+  fs::remove(file);
   EXPECT_EQ(folder.files(), before) << "what was kept is gone";
 }
 
 TEST_F(CalibrateTest, RenderGoesByIt) {
   const Outcome outcome = calibrate({"--quality", "38", "--views", "2"});
   ASSERT_TRUE(good(outcome));
-  EXPECT_NE(outcome.out.find("target: 38 dB against the exact pictures"), std::string::npos) << outcome.out;
-  const ordered_json found = ordered_json::parse(read_text(file));
+  EXPECT_TRUE(has(outcome.out, "target: 38 dB against the exact pictures"));
+  const json found = load_json(file);
   EXPECT_EQ(found["views"].size(), 2);
   EXPECT_EQ(found["entries"].size(), 6);
-  ASSERT_TRUE(good(render({"--mono", "--view", "front", "-o", folder / "exact.png", "--bits", "16"})));
-  ASSERT_TRUE(good(render({"--mono", "--view", "front", "-o", folder / "lossy.png", "--bits", "16",
-                           "--calibration", file, "--transmittance", "depth", "--json", folder / "r.json"})));
-  EXPECT_NEAR(report()["views"][0]["tolerance"].get<double>(), found["entries"][4]["tolerance"].get<double>(),
+  const Words front = {"--mono", "--view", "front"}, calibrated = joined(front, {"--calibration", file});
+  ASSERT_TRUE(good(render(joined(front, {"-o", folder / "exact.png", "--bits", "16"}))));
+  const json run =
+      reported(joined(calibrated, {"-o", folder / "lossy.png", "--bits", "16", "--transmittance", "depth"}));
+  EXPECT_NEAR(run["views"][0]["tolerance"].get<double>(), found["entries"][4]["tolerance"].get<double>(),
               1e-6);
-  EXPECT_EQ(report()["settings"]["th"], "squared");
-  const double db = measure::psnr(load_image(folder / "exact.png"), load_image(folder / "lossy.png"));
+  EXPECT_EQ(run["settings"]["th"], "squared");
+  const double db = psnr_of_files(folder / "exact.png", folder / "lossy.png");
   EXPECT_GT(db, 34.0);
   EXPECT_LT(db, 60.0) << "drawn exactly";
 
   // A camera far away: a warning, and the exact picture. Another model is refused.
-  const Outcome far = render(
-      {"--mono", "--eye", "0,0,-40", "--at", "0,0,0", "-o", folder / "far.png", "--calibration", file});
-  ASSERT_TRUE(good(far));
-  EXPECT_NE(far.err.find("is far from the calibrated views"), std::string::npos) << far.err;
-  ordered_json other = found;
+  EXPECT_TRUE(ended(render({"--mono", "--eye", "0,0,-40", "--at", "0,0,0", "--calibration", file}), 0,
+                    "is far from the calibrated views"));
+  json other = found;
   other["model"]["hash"] = "0123456789abcdef";
-  write_text(folder / "other.json", other.dump());
-  EXPECT_TRUE(ended(render({"--mono", "--view", "front", "-o", folder / "again.png", "--calibration",
-                            folder / "other.json", "--transmittance", "last"}),
-                    2, "is of another model"));
-  const Outcome small = render(
-      {"--mono", "--view", "front", "--size", "36x24", "-o", folder / "small.png", "--calibration", file});
-  ASSERT_TRUE(good(small));
-  EXPECT_NE(small.err.find("the tolerance is scaled"), std::string::npos) << small.err;
-}
-
-// Of small models the tests above hold it, and what measured light is worth on fox those of the reference.
-TEST(CalibrateFox, PrunedAndAtAQuarterOfItsSize) {
-  if (!test::switched_on("BINOSPLAT_LONG")) GTEST_SKIP() << "a quarter of a minute: set BINOSPLAT_LONG=1";
-  REQUIRE_SCENE("fox", fox);
-  const test::TempFolder folder;
-  const Outcome outcome = test::run_program({"calibrate", fox / "fox_pruned.ply", "--view", "0003", "--size",
-                                             "129x236", "--quality", "40", "-o", folder / "fox.json"});
-  ASSERT_TRUE(good(outcome));
-  const ordered_json found = ordered_json::parse(read_text(folder / "fox.json"));
-  ASSERT_EQ(found["entries"].size(), 6);
-  double paper = 0.0, ours = 0.0;  // pairs removed at 40 dB
-  for (const ordered_json& entry : found["entries"]) {
-    EXPECT_GE(entry["reached_db"].get<double>(), 40.0) << entry;
-    EXPECT_LT(entry["reached_db"].get<double>(), 40.6) << entry;
-    if (entry["th"] == "peripheral" && entry["transmittance"] == "one") paper = entry["pairs_removed"];
-    if (entry["th"] == "squared" && entry["transmittance"] == "last") ours = entry["pairs_removed"];
-  }
-  EXPECT_GT(paper, 0.1);
-  EXPECT_GT(ours, paper + 0.1)
-      << "docs/method.md 8: squared with measured light removes far more at equal error";
+  EXPECT_TRUE(
+      ended(render(joined(front, {"--calibration", save("other.json", other), "--transmittance", "last"})), 2,
+            "is of another model"));
+  EXPECT_TRUE(ended(render(joined(calibrated, {"--size", "36x24"})), 0, "the tolerance is scaled"));
 }
 
 TEST_F(CalibrateTest, DropsAreAgainstPhotos) {
@@ -170,10 +127,10 @@ TEST_F(CalibrateTest, DropsAreAgainstPhotos) {
       ASSERT_TRUE(good(render({"--mono", "--view", view, "--background", background, "-o",
                                folder / "photos" / (std::string(view) + ".png")})));
     ASSERT_TRUE(good(calibrate({"--photos", folder / "photos", "--max-drop", "0.5"})));
-    const ordered_json found = ordered_json::parse(read_text(file));
+    const json found = load_json(file);
     EXPECT_EQ(found["views"].size(), 1) << "the pair has no photos, and front is for tests";
     EXPECT_EQ(found["target"]["drop_db"], 0.5);
-    for (const ordered_json& entry : found["entries"]) {
+    for (const json& entry : found["entries"]) {
       EXPECT_LE(entry["reached_db"].get<double>(), 0.5);
       if (background == backgrounds[0]) {
         EXPECT_GT(entry["reached_db"].get<double>(), 0.3) << entry;
@@ -184,18 +141,17 @@ TEST_F(CalibrateTest, DropsAreAgainstPhotos) {
 
 // Tests are every Nth view by the order of names, whatever the file's order is: no tolerance may see them.
 TEST_F(CalibrateTest, ViewsForTestsHaveNoSay) {
-  nlohmann::json cameras;
+  json cameras;
   for (const char* name : {"c", "b", "a", "e", "d", "i", "h", "g", "f"})
-    cameras.push_back(test::camera_json(name, 0.02 * static_cast<double>(cameras.size())));
-  write_text(folder / "cameras.json", cameras.dump());
-  const auto taken = [&](std::vector<std::string> more) {
-    more.insert(more.end(), {"--quality", "30", "--size", "18x12"});
-    const Outcome outcome = calibrate(more);
-    EXPECT_TRUE(good(outcome));
-    EXPECT_NE(outcome.err.find("training views; for tests are"), std::string::npos) << outcome.err;
+    cameras.push_back(camera_json(name, 0.02 * static_cast<double>(cameras.size())));
+  save("cameras.json", cameras);
+  const auto taken = [&](const Words& more) {
+    EXPECT_TRUE(
+        ended(calibrate(joined({"--quality", "30", "--size", "18x12", "--rule", "squared,one"}, more)), 0,
+              "training views; for tests are"));
     std::string names;
-    const ordered_json found = ordered_json::parse(read_text(file));
-    for (const ordered_json& view : found["views"]) names += view["name"].get<std::string>();
+    const json found = load_json(file);
+    for (const json& view : found["views"]) names += view["name"].get<std::string>();
     return names;
   };
   EXPECT_EQ(taken({}), "cbedhgf") << "a and i are for tests";
@@ -205,47 +161,40 @@ TEST_F(CalibrateTest, ViewsForTestsHaveNoSay) {
 TEST_F(CalibrateTest, GoesWithItsOrderAndProjection) {
   ASSERT_TRUE(good(calibrate({"--quality", "38", "--view", "front", "--order", "distance", "--projection",
                               "tangent", "--size", "36x24"})));
-  EXPECT_EQ(ordered_json::parse(read_text(file))["projection"], "tangent");
-  const std::vector<std::string> by = {"--mono",         "--view",        "front", "--size", "36x24",    "-o",
-                                       folder / "p.png", "--calibration", file,    "--th",   "adagscale"};
+  EXPECT_EQ(load_json(file)["projection"], "tangent");
+  const Words by = {"--mono",        "--view", "front", "--size",   "36x24",
+                    "--calibration", file,     "--th",  "adagscale"};
   EXPECT_TRUE(ended(render(by), 2,
                     "is for order distance and projection tangent, and this is drawn with order depth and "
                     "projection affine"));
-  std::vector<std::string> same = by;
-  same.insert(same.end(), {"--order", "distance", "--projection", "tangent", "--json", folder / "r.json"});
-  ASSERT_TRUE(good(render(same)));
-  EXPECT_EQ(report()["settings"]["th"], "peripheral");
-  EXPECT_EQ(report()["settings"]["transmittance"], "depth");
+  const Words same = joined(by, {"--order", "distance", "--projection", "tangent"});
+  const json settings = reported(same)["settings"];
+  EXPECT_EQ(settings["th"], "peripheral");
+  EXPECT_EQ(settings["transmittance"], "depth");
   // Its table goes with a tolerance of the user's, too.
-  same.insert(same.end(), {"--tolerance", "0.5"});
-  ASSERT_TRUE(good(render(same)));
-  EXPECT_EQ(report()["views"][0]["tolerance"], 0.5);
-  same.insert(same.end(), {"--transmittance", "last"});
-  EXPECT_TRUE(ended(render(same), 2, "--th adagscale goes by its table by depth"));
+  const Words by_tolerance = joined(same, {"--tolerance", "0.5"});
+  EXPECT_EQ(reported(by_tolerance)["views"][0]["tolerance"], 0.5);
+  EXPECT_TRUE(ended(render(joined(by_tolerance, {"--transmittance", "last"})), 2,
+                    "--th adagscale goes by its table by depth"));
 }
 
 TEST_F(CalibrateTest, ErrorsSayWhatToDo) {
   ASSERT_TRUE(good(calibrate({"--quality", "30", "--view", "front"})));
-  const std::string none = folder / "none.json";
-  EXPECT_TRUE(ended(calibrate({}), 2, "calibrate needs a target"));
-  EXPECT_TRUE(ended(calibrate({"--quality", "40", "--max-drop", "1"}), 2, "calibrate needs a target"));
-  EXPECT_TRUE(ended(calibrate({"--max-drop", "1"}), 2, "--max-drop and --photos go together"));
-  EXPECT_TRUE(
-      ended(calibrate({"--max-drop", "1", "--photos", folder.path()}), 2, "there is no photo of any view"));
-  EXPECT_TRUE(ended(calibrate({"--quality", "40", "--view", "nowhere"}), 2, "nowhere"));
-  EXPECT_TRUE(ended(calibrate({"--quality", "0"}), 2, "--help"));
-  EXPECT_TRUE(ended(calibrate({"--quality", "40", "--size", "big"}), 2, "--size big: expected pixels"));
-  EXPECT_TRUE(ended(render({"-o", out, "--calibration", none}), 2, "none.json"));
-  EXPECT_TRUE(ended(render({"-o", out, "--calibration", model}), 2, "not valid JSON"));
-  EXPECT_TRUE(
-      ended(render({"-o", out, "--calibration", file, "--tolerance", "1"}), 2, "leave one of them out"));
-  EXPECT_TRUE(
-      ended(render({"-o", out, "--calibration", file, "--th", "tau"}), 2, "has no effect with --th tau"));
-  ordered_json cut = ordered_json::parse(read_text(file));
+  json cut = load_json(file);
   cut["entries"].clear();
-  write_text(none, cut.dump());
-  EXPECT_TRUE(ended(render({"-o", out, "--calibration", none}), 2,
-                    "has no entry for threshold squared with transmittance one"));
+  save("cut.json", cut);
+  expect_refused_after({"calibrate", model},
+                       {{{}, "calibrate needs a target"},
+                        {{"--quality", "40", "--max-drop", "1"}, "calibrate needs a target"},
+                        {{"--max-drop", "1"}, "--max-drop and --photos go together"},
+                        {{"--quality", "40", "--view", "nowhere"}, "nowhere"},
+                        {{"--quality", "40", "--size", "big"}, "--size big: expected pixels"}});
+  expect_refused({{{"--calibration", folder / "none.json"}, "none.json"},
+                  {{"--calibration", model}, "not valid JSON"},
+                  {{"--calibration", file, "--tolerance", "1"}, "leave one of them out"},
+                  {{"--calibration", file, "--th", "tau"}, "has no effect with --th tau"},
+                  {{"--calibration", folder / "cut.json"},
+                   "has no entry for threshold squared with transmittance one"}});
 }
 
 }  // namespace

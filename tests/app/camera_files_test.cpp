@@ -4,25 +4,15 @@
 #include <cmath>
 
 #include "app/scene.h"
-#include "formats/image_file.h"
 
 namespace binosplat {
 namespace {
 
-using test::ended;
-using test::good;
-using test::has;
-using test::Outcome;
-using test::write_text;
-
-namespace fs = std::filesystem;
-using nlohmann::json;
-
-struct CameraFiles : test::SceneTest {
-  const std::string report = folder / "r.json";
+struct CameraFiles : SceneTest {
+  const std::string report = folder / "r.json", ply = folder / "t.ply";
 
   /// A reconstruction with a lens of COLMAP's, of views 0.3 apart that look along z.
-  void save_colmap(const std::string& lens, const std::vector<std::string>& names) const {
+  void save_colmap(const std::string& lens, const Words& names) const {
     fs::create_directories(folder / "sparse/0");
     write_text(folder / "sparse/0/cameras.txt", "1 " + lens + "\n");
     std::string images;
@@ -34,11 +24,11 @@ struct CameraFiles : test::SceneTest {
   /// Photos in `images`: what the views themselves show.
   void take_photos() const { ASSERT_TRUE(good(mono({"--view", "all", "-o", folder / "images"}))); }
 
-  Outcome mono(const test::Words& words) const { return render(joined(words, {"--mono", "--json", report})); }
+  Outcome mono(const Words& words) const { return render(joined(words, {"--mono", "--json", report})); }
 
   /// The PSNR of each view against its photo; -1 without one.
   std::vector<double> photo_psnr() const {
-    const json drawn = test::load_json(report);
+    const json drawn = load_json(report);
     std::vector<double> all;
     for (const json& view : drawn.at("views")) {
       const auto db = view.find("photo_psnr_db");
@@ -48,7 +38,7 @@ struct CameraFiles : test::SceneTest {
   }
 
   /// The one picture of a run, in a folder that is then gone.
-  std::vector<float> picture(const std::vector<std::string>& arguments) const {
+  std::vector<float> picture(const Words& arguments) const {
     EXPECT_TRUE(good(mono(arguments)));
     std::vector<float> pixels;
     for (const auto& entry : fs::directory_iterator(out)) {
@@ -62,60 +52,47 @@ struct CameraFiles : test::SceneTest {
 const std::string pinhole = "PINHOLE 72 48 60 60 36 24";
 const std::string fisheye = "OPENCV_FISHEYE 72 48 60 60 36 24 0 0 0 0";
 
-TEST_F(CameraFiles, NamesWithBlanksHavePhotosOfTheirOwn) {
-  save_colmap(pinhole, {"IMG.png", "IMG (1).png", "IMG (2).png"});
-  take_photos();
-  ASSERT_TRUE(good(mono({"--view", "all", "--photos", "beside"})));
-  EXPECT_EQ(photo_psnr(), (std::vector<double>(3, INFINITY)));
+TEST_F(CameraFiles, EveryViewHasItsOwnPhoto) {
+  const Words views = {"IMG.png", "IMG (1).png", "left/1.png", "right/1.png", "left_1.png"};
+  save_colmap(pinhole, views);
+  // All are written, and as photos under their own names each is its view's.
+  ASSERT_TRUE(good(mono({"--view", "all", "-o", folder / "drawn"})));
+  for (const char* side : {"left", "right"}) fs::create_directories(folder / "images" / side);
+  const Words drawn = {"IMG.png", "IMG (1).png", "left_1.png", "right_1.png", "left_1_2.png"};
+  for (std::size_t i = 0; i < views.size(); ++i)
+    fs::copy(folder / "drawn" / drawn[i], folder / "images" / views[i]);
+  const auto others = [&] {
+    EXPECT_TRUE(good(mono({"--view", "all", "--photos", "beside"})));
+    return std::ranges::count_if(photo_psnr(), [](double db) { return db != INFINITY; });
+  };
+  EXPECT_EQ(others(), 0);
   // Planted fault: one view's photo in the place of another's.
   fs::copy(folder / "images/IMG.png", folder / "images/IMG (1).png", fs::copy_options::overwrite_existing);
-  ASSERT_TRUE(good(mono({"--view", "all", "--photos", "beside"})));
-  std::size_t others = 0;
-  for (const double db : photo_psnr()) others += db > 0.0 && db < 60.0 ? 1 : 0;
-  EXPECT_EQ(others, 1u);
-}
-
-TEST_F(CameraFiles, FoldersAndEndingsTellViewsApart) {
-  save_colmap(pinhole, {"left/1.png", "right/1.png", "left_1.png"});
-  // All three are written, and as photos under their own names each is its view's.
-  ASSERT_TRUE(good(mono({"--view", "all", "-o", folder / "drawn"})));
-  fs::create_directories(folder / "images/left");
-  fs::create_directories(folder / "images/right");
-  for (const auto& [file, view] : std::map<std::string, std::string>{
-           {"left_1.png", "left/1.png"}, {"left_1_2.png", "left_1.png"}, {"right_1.png", "right/1.png"}})
-    fs::copy(folder / "drawn" / file, folder / "images" / view);
-  ASSERT_TRUE(good(mono({"--view", "all", "--photos", "beside"})));
-  EXPECT_EQ(photo_psnr(), (std::vector<double>(3, INFINITY)));
+  EXPECT_EQ(others(), 1);
 }
 
 TEST_F(CameraFiles, TwoViewsOfOnePhotoStopAllThatMeasuresByPhotos) {
   save_colmap(pinhole, {"a.png", "b.png", "c.png", "d.png"});
-  take_photos();
   const std::string photos = folder / "images";
+  ASSERT_TRUE(good(mono({"--view", "all", "-o", photos})));
   save_colmap(pinhole, {"a.png", "b.png", "c.png", "a.jpg"});
-  const auto stops = [](const Outcome& outcome) {
-    return ended(outcome, 2, "a.png would be the photo of both views 'a.jpg' and 'a.png'");
-  };
-  EXPECT_TRUE(stops(mono({"--view", "all", "--photos", "beside"})));
-  EXPECT_TRUE(stops(mono({"--view", "a.jpg", "--photos", photos}))) << "though only one is drawn";
-  for (const char* command : {"trim", "calibrate"}) {
-    EXPECT_TRUE(stops(test::run_program({command, model, "--photos", photos, "--max-drop", "1", "-o",
-                                         folder / (std::string(command) == "trim" ? "t.ply" : "t.json")})))
-        << command;
-  }
-  EXPECT_TRUE(stops(test::run_program({"refit", model, "--photos", photos, "-o", folder / "t.ply"})));
+  const std::string said = "a.png would be the photo of both views 'a.jpg' and 'a.png'";
+  expect_refused({{{"--view", "all", "--photos", "beside"}, said},
+                  {{"--view", "a.jpg", "--photos", photos}, said}},  // though only one is drawn
+                 {"--mono"});
+  expect_refused_after({}, {{{"trim", model, "--photos", photos, "--max-drop", "1", "-o", ply}, said},
+                            {{"calibrate", model, "--photos", photos, "--max-drop", "1"}, said},
+                            {{"refit", model, "--photos", photos, "-o", ply}, said}});
 }
 
 // Of NeRF's synthetic scenes INRIA's trainer writes r_0 twice.
 TEST_F(CameraFiles, TwoViewsOfOneNameAreBothDrawn) {
-  const json cameras = {test::camera_json("r_0", 0.0), test::camera_json("r_1", 0.2),
-                        test::camera_json("r_0", 0.4)};
-  write_text(folder / "cameras.json", cameras.dump());
+  const json cameras = {camera_json("r_0", 0.0), camera_json("r_1", 0.2), camera_json("r_0", 0.4)};
+  save("cameras.json", cameras);
   const std::vector<float> first = picture({"--view", "r_0"}), other = picture({"--view", "r_0_2"});
   EXPECT_TRUE(first != other);
   EXPECT_TRUE(picture({}) == first);
-  write_text(folder / "third.json", json{cameras[2]}.dump());
-  EXPECT_TRUE(picture({"--cameras", folder / "third.json"}) == other);
+  EXPECT_TRUE(picture({"--cameras", save("third.json", json{cameras[2]})}) == other);
   ASSERT_TRUE(good(mono({"--view", "all", "--cameras", folder / "cameras.json"})));
   for (const char* name : {"r_0", "r_1", "r_0_2"}) EXPECT_TRUE(fs::exists(out + "/" + name + ".png")) << name;
 }
@@ -141,48 +118,41 @@ TEST_F(CameraFiles, CamerasThatNobodyNamedStopNoPicture) {
     EXPECT_TRUE(ended(drawn, 0, "; cameras are made up instead"));
     EXPECT_TRUE(ended(drawn, 0, "warning: " + (folder.path() / "").string()));
     EXPECT_EQ(drawn.err.find("warning:"), drawn.err.rfind("warning:")) << drawn.err;
-    // Whatever needs them, or names their file, does not go on without.
-    EXPECT_TRUE(ended(mono({"--view", "a"}), 2, cannot)) << text;
-    EXPECT_TRUE(ended(mono({"--tour", "walk"}), 2, cannot)) << text;
-    EXPECT_TRUE(ended(mono({"--photos", folder / "images"}), 2, "the model cannot be used: ")) << text;
+    // Whoever names their file does not go on without.
     const std::string named = std::string(name) == "cameras.bin" ? folder.path().string() : file;
     EXPECT_EQ(mono({"--cameras", named}).code, 2) << text;
     fs::remove(file);
   }
   write_text(folder / "cameras.json", "[]");
-  const auto run = [](const test::Words& words) { return test::run_program(words); };
-  EXPECT_TRUE(ended(run({"info", model, "--views"}), 0, "holds no cameras; cameras are made up instead"));
-  EXPECT_TRUE(ended(run({"convert", model, "-o", folder / "c.spz", "--report", "1", "--size", "36x24"}), 0,
-                    "holds no cameras; cameras are made up instead"));
+  fs::remove_all(out);
+  const std::string photos = folder / "images";
+  expect_refused({{{"--view", "a"}, cannot},
+                  {{"--tour", "walk"}, cannot},
+                  {{"--photos", photos}, "the model cannot be used: "}},
+                 {"--mono"});
+  expect_refused_after({},
+                       {{{"trim", model, "--quality", "40", "-o", ply}, cannot},
+                        {{"refit", model, "--against", "exact", "-o", ply}, cannot},
+                        {{"bench", model, "--photos", photos}, "cannot be used: "},
+                        {{"calibrate", model, "--photos", photos, "--max-drop", "1"}, "cannot be used: "}});
+  const char* const instead = "holds no cameras; cameras are made up instead";
+  EXPECT_TRUE(ended(run_program({"info", model, "--views"}), 0, instead));
   EXPECT_TRUE(
-      ended(run({"levels", model, "-o", folder / "levels"}), 0, "no cameras are left beside the levels"));
-  EXPECT_TRUE(ended(run({"trim", model, "--quality", "40", "-o", folder / "t.ply"}), 2, cannot));
-  EXPECT_TRUE(ended(run({"refit", model, "--against", "exact", "-o", folder / "t.ply"}), 2, cannot));
-  for (const char* command : {"bench", "calibrate"}) {
-    test::Words words = {command, model, "--photos", folder / "images", "-o", folder / "o.json"};
-    if (std::string(command) == "calibrate") words.insert(words.end(), {"--max-drop", "1"});
-    EXPECT_TRUE(ended(run(words), 2, "cannot be used: ")) << command;
-  }
+      ended(run_program({"convert", model, "-o", folder / "c.spz", "--report", "1", "--size", "36x24"}), 0,
+            instead));
 }
 
+// Whose pictures' size the photo alone tells.
 TEST_F(CameraFiles, PhotosOfPathsThatOtherProgramsWrote) {
   save_colmap(pinhole, {"v.png"});
-  take_photos();
+  ASSERT_TRUE(good(mono({"-o", folder / "images/v.png"})));
   fs::remove_all(folder / "sparse");
-  for (const char* path : {"images/v.png", "images\\v.png", "C:\\data\\images\\v.png"}) {
-    json frames = {
-        {"frames",
-         {{{"file_path", path}, {"transform_matrix", json::parse("[[1,0,0,0],[0,-1,0,0],[0,0,-1,0]]")}}}},
-        {"fl_x", 60}};
-    for (const bool sized : {true, false}) {
-      if (sized) frames["w"] = 72, frames["h"] = 48;
-      write_text(folder / "transforms.json", frames.dump());
-      frames.erase("w");
-      for (const std::string& photos : {std::string(folder / "images"), std::string("beside")}) {
-        ASSERT_TRUE(good(mono({"--photos", photos}))) << path;
-        EXPECT_EQ(photo_psnr(), std::vector<double>{INFINITY}) << path;
-      }
-    }
+  const json pose = json::parse("[[1,0,0,0],[0,-1,0,0],[0,0,-1,0]]");
+  save("transforms.json",
+       {{"frames", {{{"file_path", "C:\\data\\images\\v.png"}, {"transform_matrix", pose}}}}, {"fl_x", 60}});
+  for (const std::string& photos : {std::string(folder / "images"), std::string("beside")}) {
+    ASSERT_TRUE(good(mono({"--photos", photos})));
+    EXPECT_EQ(photo_psnr(), std::vector<double>{INFINITY}) << photos;
   }
 }
 
@@ -191,14 +161,14 @@ TEST_F(CameraFiles, LensesThatCannotBeDrawnAreAWarningWhereOthersWillDo) {
   const char* what = "lens of the model OPENCV_FISHEYE, which is no pinhole's";
   EXPECT_TRUE(ended(mono({"--size", "36x24"}), 0, what));
   EXPECT_TRUE(ended(mono({"--size", "36x24", "--eye", "0,0,0", "--at", "0,0,4"}), 0, what));
-  write_text(folder / "other.json", json{test::camera_json("front", 0.0)}.dump());
+  save("other.json", json{camera_json("front", 0.0)});
   EXPECT_EQ(mono({"--cameras", folder / "other.json"}).code, 0);
   // Where they are asked for, they are an error.
-  EXPECT_TRUE(ended(mono({"--view", "a.jpg"}), 2, what));
-  EXPECT_TRUE(ended(mono({"--view", "all"}), 2, what));
-  EXPECT_TRUE(ended(mono({"--tour", "walk"}), 2, what));
-  EXPECT_TRUE(ended(mono({"--cameras", folder / "sparse/0"}), 2, what));
-  EXPECT_EQ(mono({"--photos", folder.path()}).code, 2);
+  expect_refused({{{"--view", "a.jpg"}, what},
+                  {{"--tour", "walk"}, what},
+                  {{"--cameras", folder / "sparse/0"}, what},
+                  {{"--photos", folder.path()}, ""}},
+                 {"--mono"});
 }
 
 TEST_F(CameraFiles, DistortionOfZeroIsDrawnAndMoreIsDrawnWithAWarning) {
@@ -219,7 +189,7 @@ TEST_F(CameraFiles, DistortionOfZeroIsDrawnAndMoreIsDrawnWithAWarning) {
 const json opengl_rows = {1, 0, 0, 0, 0, -1, 0, 0, 0, 0, -1, 0, 0, 0, 0, 1};
 
 TEST_F(CameraFiles, PathsOfNerfstudioAreViewsAndPaths) {
-  write_text(folder / "front.json", json{test::camera_json("front", 0.0)}.dump());
+  save("front.json", json{camera_json("front", 0.0)});
   const std::vector<float> expected = picture({"--cameras", folder / "front.json"});
   json path = {{"render_width", 72},
                {"render_height", 48},
@@ -232,8 +202,7 @@ TEST_F(CameraFiles, PathsOfNerfstudioAreViewsAndPaths) {
     frame["camera_to_world"][3] = x;
     path["camera_path"].push_back(frame);
   }
-  const std::string file = folder / "camera_path.json";
-  write_text(file, path.dump());
+  const std::string file = save("camera_path.json", path);
   EXPECT_TRUE(picture({"--cameras", file}) == expected);
   EXPECT_TRUE(picture({"--cameras", file, "--view", "00001"}) != expected)
       << "the planted fault: another frame";
@@ -243,7 +212,7 @@ TEST_F(CameraFiles, PathsOfNerfstudioAreViewsAndPaths) {
 }
 
 TEST_F(CameraFiles, PosesTakeTheLensThatIsAskedFor) {
-  write_text(folder / "front.json", json{test::camera_json("front", 0.0)}.dump());
+  save("front.json", json{camera_json("front", 0.0)});
   const std::vector<float> expected = picture({"--cameras", folder / "front.json"});
   const std::string file = folder / "poses.json";
   write_text(file,
@@ -259,7 +228,7 @@ TEST_F(CameraFiles, PosesTakeTheLensThatIsAskedFor) {
 TEST_F(CameraFiles, TheCameraInAModelsPlyIsItsFirstView) {
   add_cameras();
   const std::vector<float> expected = picture({"--view", "side"});
-  test::PlyFile file = test::small_model();
+  PlyFile file = small_model();
   const auto add = [&](const char* name, const std::vector<double>& numbers) {
     file.header_after += fmt::format("element {0} {1}\nproperty float {0}\n", name, numbers.size());
     for (const double number : numbers) test::append_value(file.data_after, file.format, "float", number);
@@ -271,6 +240,30 @@ TEST_F(CameraFiles, TheCameraInAModelsPlyIsItsFirstView) {
   EXPECT_TRUE(picture({}) == expected);
   EXPECT_TRUE(picture({"--cameras", folder / "cameras.json"}) != expected)
       << "the planted fault: another camera";
+}
+
+// A model with nothing but COLMAP's reconstruction and the photos beside it.
+TEST_F(CameraFiles, OfColmapGiveThePublishedPsnr) {
+  REQUIRE_SCENE("fox", scene);
+  fs::create_directories(folder / "fox");
+  for (const char* name : {"fox.ply", "sparse", "photos"})
+    fs::create_symlink(scene / name, folder / "fox" / name);
+  const bool all = test::switched_on("BINOSPLAT_LONG");
+  Words words = {"render", folder / "fox/fox.ply", "--mono", "--photos", "beside", "--json", report};
+  const json published = load_json(scene / "psnr.json");
+  for (const auto& [view, psnr] : published.items()) {
+    if (all || view == "0001" || view == "0110") words.insert(words.end(), {"--view", view + ".jpg"});
+  }
+  ASSERT_TRUE(good(run_into_out(words)));
+  const json views = load_json(report)["views"];
+  EXPECT_EQ(views.size(), all ? 7u : 2u);
+  for (const json& view : views) {
+    const std::string name = fs::path(view["name"].get<std::string>()).stem();
+    const double psnr = view["photo_psnr_db"];
+    EXPECT_NEAR(psnr, published[name].get<double>(), 0.02) << name;
+    // Planted fault: another view's figure.
+    EXPECT_GT(std::abs(psnr - published[name == "0001" ? "0110" : "0001"].get<double>()), 0.02);
+  }
 }
 
 }  // namespace

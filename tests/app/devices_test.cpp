@@ -5,16 +5,25 @@
 namespace binosplat {
 namespace {
 
-using test::has;
+struct Devices : SceneTest {
+  /// With libraries of these names which are none before the real ones.
+  Surroundings without(const Words& libraries) const {
+    for (const std::string& name : libraries) write_text(folder / name, "no library");
+    return {.variables = {{"LD_LIBRARY_PATH", folder.path().string()}}};
+  }
+  Outcome devices(const Surroundings& surroundings = {}) const {
+    return run_program({"devices", "--json", folder / "devices.json"}, surroundings);
+  }
+  json list() const { return load_json(folder / "devices.json"); }
+};
 
-TEST(Devices, ListsWaysToDrawThatRenderTakes) {
-  const test::TempFolder folder;
-  const test::Outcome outcome = test::run_program({"devices", "--json", folder / "devices.json"});
-  ASSERT_EQ(outcome.code, 0) << outcome.err;
+TEST_F(Devices, ListsWaysToDrawThatRenderTakes) {
+  const Outcome outcome = devices();
+  ASSERT_TRUE(good(outcome));
   EXPECT_TRUE(has(outcome.out, "--backend surfaceless"));
-  const auto list = test::load_json(folder / "devices.json");
   bool any = false;
-  for (const auto& device : list) {
+  const json all = list();
+  for (const auto& device : all) {
     if (!device.at("usable").get<bool>()) continue;
     any = true;
     EXPECT_GE(device.at("limits").at("storage_blocks").get<int>(), 13);
@@ -23,41 +32,31 @@ TEST(Devices, ListsWaysToDrawThatRenderTakes) {
   EXPECT_TRUE(any);
 }
 
-TEST(Devices, WithoutEglOsMesaDraws) {
-  const test::TempFolder folder;
-  test::write_text(folder / "libEGL.so.1", "no library");
-  const test::Surroundings none = {.variables = {{"LD_LIBRARY_PATH", folder.path().string()}}};
-  const test::Outcome outcome = test::run_program({"devices", "--json", folder / "devices.json"}, none);
+TEST_F(Devices, WithoutEglOsMesaDraws) {
+  const Surroundings none = without({"libEGL.so.1"});
+  const Outcome outcome = devices(none);
   if (outcome.code == 3) GTEST_SKIP() << "no OSMesa: apt install libosmesa6";
-  ASSERT_EQ(outcome.code, 0) << outcome.out << outcome.err;
-  const auto list = test::load_json(folder / "devices.json");
-  ASSERT_EQ(list.size(), 2u);
-  EXPECT_FALSE(list[0].at("usable").get<bool>());
-  EXPECT_EQ(list[1].at("options"), "--backend osmesa");
-  const test::Outcome render =
-      test::run_program({"render", "demo:room", "--size", "48x32", "-o", folder / "out"}, none);
-  EXPECT_EQ(render.code, 0) << render.err;
-  EXPECT_TRUE(has(render.err, "(OSMesa,"));
+  ASSERT_TRUE(good(outcome));
+  ASSERT_EQ(list().size(), 2u);
+  EXPECT_FALSE(list()[0].at("usable").get<bool>());
+  EXPECT_EQ(list()[1].at("options"), "--backend osmesa");
+  EXPECT_TRUE(ended(render({"--size", "48x32"}, none), 0, "(OSMesa,"));
 }
 
-TEST(Devices, WithoutAnySaysWhatToInstall) {
-  // Libraries of those names which are none stand before the real ones.
-  const test::TempFolder folder;
-  test::write_text(folder / "libEGL.so.1", "no library");
-  test::write_text(folder / "libOSMesa.so.8", "no library");
-  const test::Surroundings none = {.variables = {{"LD_LIBRARY_PATH", folder.path().string()}}};
-  const test::Outcome devices = test::run_program({"devices"}, none);
-  EXPECT_EQ(devices.code, 3) << devices.out << devices.err;
-  EXPECT_TRUE(has(devices.out, "apt install libegl1"));
-  const test::Outcome render = test::run_program({"render", "demo:room", "-o", folder / "out"}, none);
-  EXPECT_EQ(render.code, 3) << render.err;
-  EXPECT_TRUE(has(render.err, "apt install libegl1"));
-  EXPECT_TRUE(has(render.err, "apt install libosmesa6"));
+TEST_F(Devices, WithoutAnySaysWhatToInstall) {
+  const Surroundings none = without({"libEGL.so.1", "libOSMesa.so.8"});
+  const Outcome outcome = devices(none);
+  EXPECT_EQ(outcome.code, 3) << outcome.out << outcome.err;
+  EXPECT_TRUE(has(outcome.out, "apt install libegl1"));
+  const Outcome drawn = render({}, none);
+  EXPECT_TRUE(ended(drawn, 3, "apt install libegl1"));
+  EXPECT_TRUE(ended(drawn, 3, "no usable OpenGL"));
+  EXPECT_TRUE(ended(render({"--backend", "osmesa"}, none), 3, "apt install libosmesa6"));
+  EXPECT_FALSE(fs::exists(out));
 }
 
-TEST(Devices, WithoutProgramBinariesSaysWhatThatCosts) {
-  const test::Outcome outcome =
-      test::run_program({"devices"}, {.variables = {{"MESA_SHADER_CACHE_DISABLE", "true"}}});
+TEST_F(Devices, WithoutProgramBinariesSaysWhatThatCosts) {
+  const Outcome outcome = devices({.variables = {{"MESA_SHADER_CACHE_DISABLE", "true"}}});
   EXPECT_EQ(outcome.code, 0);
   if (outcome.out.find("llvmpipe") == std::string::npos) GTEST_SKIP() << "no Mesa here";
   if (outcome.out.find("Mesa 22") == std::string::npos)

@@ -5,16 +5,7 @@
 namespace binosplat {
 namespace {
 
-namespace fs = std::filesystem;
-using test::ended;
-using test::good;
-using test::has;
-using test::read_text;
-using test::run_program;
-using test::Words;
-using test::write_text;
-
-struct Edges : test::SceneTest {
+struct Edges : SceneTest {
   Edges() { add_cameras(); }
   const Words one = {"--view", "front", "--mono", "--size", "36x24"};
 };
@@ -56,10 +47,8 @@ TEST_F(Edges, InputsAreNeverOverwritten) {
       {"compare", a, b, "--json", b},
   };
   const auto contents = [&] {
-    std::map<std::string, std::string> all;
-    for (const std::string& name : folder.files()) {
-      if (!name.starts_with("out/")) all[name] = read_text(folder / name);
-    }
+    auto all = contents_of(folder.path());
+    std::erase_if(all, [](const auto& file) { return file.first.starts_with("out/"); });
     return all;
   };
   const auto before = contents();
@@ -94,21 +83,20 @@ TEST_F(Edges, LinksInACircleAreNamed) {
   fs::create_symlink(folder / "b", folder / "a");
   fs::create_symlink(folder / "a", folder / "b");
   fs::create_symlink(folder / "nowhere", folder / "dangling");
-  for (const char* to : {"a", "a/deeper", "dangling", "dangling/deeper"}) {
-    EXPECT_TRUE(ended(run_program({"levels", model, "-o", folder / to}), 2, "symbolic link")) << to;
-    EXPECT_TRUE(ended(run_program({"bench", model, "-o", folder / to}), 2, "symbolic link")) << to;
-    EXPECT_TRUE(ended(render({"--resume", "-o", folder / to}), 2, "symbolic link")) << to;
+  for (const char* to : {"a", "dangling/deeper"}) {
+    for (const Words& line : {Words{"levels", model}, {"bench", model}, {"render", model, "--resume"}})
+      EXPECT_TRUE(ended(run_program(joined(line, {"-o", folder / to})), 2, "symbolic link")) << to;
   }
   fs::create_symlink(folder / "c.png", folder / "c.png");
   EXPECT_TRUE(ended(render({"--mono", "-o", folder / "c.png"}), 2, "lead in a circle"));
 }
 
 TEST_F(Edges, EveryViewHasAFileOfItsOwn) {
-  nlohmann::json cameras;
+  json cameras;
   for (const char* name :
        {"a_left", "a_right", "a", "a.jpg", "a_2", "a.png", "A", "b/c", "b_c", "b_c_2", ".", ".."})
-    cameras.push_back(test::camera_json(name, 0.1 * static_cast<double>(cameras.size())));
-  write_text(folder / "cameras.json", cameras.dump());
+    cameras.push_back(camera_json(name, 0.1 * static_cast<double>(cameras.size())));
+  save("cameras.json", cameras);
   const auto files = [&](const Words& words) {
     fs::remove_all(out);
     EXPECT_TRUE(good(render(joined(words, {"--view", "all"}))));
@@ -128,12 +116,12 @@ TEST_F(Edges, AFullStandardOutputIsAnError) {
 
 // Programs are kept in a folder of caches, by this program and by the driver, which has one of its own.
 TEST_F(Edges, FoldersOfCaches) {
-  const test::TempFolder here, home, mesa;  // Mesa keeps what it compiled: ours are what this is about
+  const TempFolder here, home, mesa;  // Mesa keeps what it compiled: ours are what this is about
   const auto draw = [&](const std::string& caches) {
-    const test::Outcome outcome = render(one, {.folder = here.path(),
-                                               .variables = {{"HOME", home.path()},
-                                                             {"XDG_CACHE_HOME", caches},
-                                                             {"MESA_SHADER_CACHE_DIR", mesa.path()}}});
+    const Outcome outcome = render(one, {.folder = here.path(),
+                                         .variables = {{"HOME", home.path()},
+                                                       {"XDG_CACHE_HOME", caches},
+                                                       {"MESA_SHADER_CACHE_DIR", mesa.path()}}});
     EXPECT_TRUE(good(outcome));
     return outcome.err;
   };
@@ -141,28 +129,21 @@ TEST_F(Edges, FoldersOfCaches) {
   EXPECT_TRUE(has(draw("/proc"), full));
   // Nothing can be written below a file; that is said once, and by no driver.
   write_text(here / "file", "");
-  for (const char* below : {"file", "file/caches"}) {
-    const std::string said = draw(here / below);
-    EXPECT_TRUE(has(said, "file: nothing can be written there; drivers keep no shaders there in this run"));
-    EXPECT_FALSE(has(said, "disabling"));
-  }
+  const std::string said = draw(here / "file/caches");
+  EXPECT_TRUE(has(said, "file: nothing can be written there; drivers keep no shaders there in this run"));
+  EXPECT_FALSE(has(said, "disabling"));
   fs::remove(here / "file");
   // What is no whole path is ignored.
-  for (const char* relative : {"./caches", ""}) {
-    EXPECT_FALSE(has(draw(relative), full));
-    EXPECT_TRUE(here.names().empty()) << relative;
-  }
-  EXPECT_TRUE(fs::exists(home / ".cache/binosplat/programs"));
-  draw(here / "caches");
+  EXPECT_FALSE(has(draw("./caches"), full));
+  EXPECT_TRUE(here.names().empty());
+  const fs::path programs = home / ".cache/binosplat/programs";
+  EXPECT_FALSE(fs::is_empty(programs));
   // A folder in the place of a program is none.
-  int programs = 0;
-  for (const auto& entry : fs::directory_iterator(here / "caches/binosplat/programs")) {
+  for (const auto& entry : fs::directory_iterator(programs)) {
     fs::remove(entry.path());
     fs::create_directory(entry.path());
-    ++programs;
   }
-  EXPECT_GT(programs, 0);
-  draw(here / "caches");
+  draw("");
 }
 
 }  // namespace

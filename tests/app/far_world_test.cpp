@@ -1,24 +1,16 @@
 // Models so far away from zero that floats would round what is seen of them: drawn, converted, and as levels.
 
-#include <gtest/gtest.h>
-
 #include "app/scene.h"
-#include "formats/image_file.h"
-#include "formats/model_file.h"
-#include "measure/metrics.h"
 
 namespace binosplat {
 namespace {
 
-using test::good;
-using test::has;
-
-struct FarWorld : test::SceneTest {
+struct FarWorld : SceneTest {
   static constexpr double far[] = {455000.25, 5411000.5, 312.125};
 
   /// The small model there, with positions in doubles.
-  static test::PlyFile far_model() {
-    test::PlyFile file = test::small_model();
+  static PlyFile far_model() {
+    PlyFile file = small_model();
     for (const char* name : {"x", "y", "z"}) file.types[name] = "double";
     for (std::size_t i = 0; i < file.rows.size(); ++i)
       for (int c = 0; c < 3; ++c) file.at(i, std::string(1, static_cast<char>('x' + c))) += far[c];
@@ -26,15 +18,15 @@ struct FarWorld : test::SceneTest {
   }
 
   FarWorld() {
-    nlohmann::json camera = test::camera_json("near", 0.0);
-    test::write_text(folder / "near.json", nlohmann::json{camera}.dump());
+    json camera = camera_json("near", 0.0);
+    save("near.json", json{camera});
     camera["position"] = far;
-    test::write_text(folder / "far.json", nlohmann::json{camera}.dump());
+    save("far.json", json{camera});
   }
 
-  Image drawn(const std::string& scene, const std::string& cameras, const test::Words& more = {}) const {
+  Image drawn(const std::string& scene, const std::string& cameras, const Words& more = {}) const {
     const std::string picture = folder / "drawn.png";
-    EXPECT_TRUE(good(test::run_program(joined(
+    EXPECT_TRUE(good(run_program(joined(
         {"render", scene, "--cameras", folder / cameras, "--mono", "--view", "all", "-o", picture}, more))));
     return load_image(picture);
   }
@@ -42,11 +34,11 @@ struct FarWorld : test::SceneTest {
 
 TEST_F(FarWorld, IsDrawnAsANearOne) {
   const Image expected = drawn(model, "near.json");
-  const auto psnr = [&](const test::PlyFile& file, const std::string& cameras) {
-    test::write_text(folder / "far.ply", to_bytes(file));
+  const auto psnr = [&](const PlyFile& file, const std::string& cameras) {
+    write_text(folder / "far.ply", to_bytes(file));
     return measure::psnr(drawn(folder / "far.ply", cameras), expected);
   };
-  test::PlyFile file = far_model();
+  PlyFile file = far_model();
   EXPECT_GT(psnr(file, "far.json"), 60.0);
   // Planted faults: an origin of which cameras do not know, and floats.
   EXPECT_LT(psnr(file, "near.json"), 40.0);
@@ -62,10 +54,10 @@ TEST_F(FarWorld, IsDrawnAsANearOne) {
   std::string text = to_bytes(file);
   for (const char* name : {" x", " y", " z"})
     text.replace(text.find(std::string("double") + name), 6, "float");
-  test::write_text(folder / "far.ply", text);
+  write_text(folder / "far.ply", text);
   EXPECT_GT(measure::psnr(drawn(folder / "far.ply", "far.json"), expected), 60.0);
   // Near doubles are what floats are.
-  file = test::small_model();
+  file = small_model();
   file.type = "double";
   EXPECT_EQ(psnr(file, "near.json"), INFINITY);
 }
@@ -73,45 +65,41 @@ TEST_F(FarWorld, IsDrawnAsANearOne) {
 TEST_F(FarWorld, IsKeptByWhatCanHoldIt) {
   const Image expected = drawn(model, "near.json");
   const std::string there = folder / "far.ply";
-  test::write_text(there, to_bytes(far_model()));
+  write_text(there, to_bytes(far_model()));
   const auto converted = [&](const std::string& from, const std::string& to) {
-    return test::run_program({"convert", from, "-o", folder / to});
+    return run_program({"convert", from, "-o", folder / to});
   };
   ASSERT_TRUE(good(converted(model, "near.sog")));
   const double of_near = measure::psnr(drawn(folder / "near.sog", "near.json"), expected);
-  const test::Outcome ply = converted(there, "again.ply"), sog = converted(there, "far.sog");
+  const Outcome ply = converted(there, "again.ply"), sog = converted(there, "far.sog");
   EXPECT_TRUE(has(ply.err, "written as doubles"));
   EXPECT_GT(measure::psnr(drawn(folder / "again.ply", "far.json"), expected), 60.0);
   EXPECT_FALSE(has(sog.err, "so far from zero"));
   EXPECT_GT(measure::psnr(drawn(folder / "far.sog", "far.json"), expected), of_near - 1.0);
   EXPECT_TRUE(has(converted(there, "far.spz").err, "positions so far from zero are rounded by up to 0."));
-  const test::Outcome info = test::run_program({"info", there});
+  const Outcome info = run_program({"info", there});
   EXPECT_TRUE(has(info.out, "origin         4550"));
 }
 
 TEST_F(FarWorld, HasLevels) {
   const Image expected = drawn(model, "near.json");
-  const auto psnr_of_levels = [&](const std::string& of, const std::string& cameras, const test::Words& how) {
-    std::filesystem::remove_all(folder / "levels");
-    EXPECT_TRUE(
-        good(test::run_program({"levels", of, "-o", folder / "levels", "--leaf", "64", "--levels", "2"})));
-    return measure::psnr(drawn(folder / "levels", cameras, how), expected);
-  };
-  test::write_text(folder / "far.ply", to_bytes(far_model()));
-  for (const test::Words& how :
-       {test::Words{}, test::Words{"--detail", "0.01"}, test::Words{"--detail", "45dB"}}) {
-    const double of_near = psnr_of_levels(model, "near.json", how);
+  write_text(folder / "far.ply", to_bytes(far_model()));
+  for (const char* name : {"model", "far"})
+    EXPECT_TRUE(good(run_program({"levels", folder / (std::string(name) + ".ply"), "-o",
+                                  folder / "levels" / name, "--leaf", "64", "--levels", "2"})));
+  for (const Words& how : {Words{}, Words{"--detail", "0.01"}, Words{"--detail", "45dB"}}) {
+    const double of_near = measure::psnr(drawn(folder / "levels/model", "near.json", how), expected);
     EXPECT_GT(of_near, 35.0);
-    EXPECT_GT(psnr_of_levels(folder / "far.ply", "far.json", how), of_near - 2.0);
+    EXPECT_GT(measure::psnr(drawn(folder / "levels/far", "far.json", how), expected), of_near - 2.0);
   }
 }
 
 // What is made up for a model stands before it, wherever it is.
 TEST_F(FarWorld, IsFramed) {
-  test::write_text(folder / "far.ply", to_bytes(far_model()));
+  write_text(folder / "far.ply", to_bytes(far_model()));
   const auto framed = [&](const std::string& scene) {
     EXPECT_TRUE(
-        good(test::run_program({"render", scene, "--mono", "--size", "72x48", "-o", folder / "framed.png"})));
+        good(run_program({"render", scene, "--mono", "--size", "72x48", "-o", folder / "framed.png"})));
     return load_image(folder / "framed.png");
   };
   EXPECT_GT(measure::psnr(framed(folder / "far.ply"), framed(model)), 60.0);

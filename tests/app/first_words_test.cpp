@@ -1,24 +1,14 @@
 // What a new user types first, right or wrong: the program does what is meant, or says what was not.
 
 #include <cmath>
-#include <set>
 
 #include "app/scene.h"
-#include "formats/image_file.h"
 
 namespace binosplat {
 namespace {
 
-namespace fs = std::filesystem;
-using nlohmann::json;
-using test::ended;
-using test::good;
-using test::has;
-using test::Outcome;
-using test::Words;
-
-struct FirstWords : test::SceneTest {
-  test::Surroundings here;
+struct FirstWords : SceneTest {
+  Surroundings here;
   const Words small = {"--size", "36x24"};
 
   FirstWords() {
@@ -27,7 +17,7 @@ struct FirstWords : test::SceneTest {
     here.variables = {{"DISPLAY", ""}, {"WAYLAND_DISPLAY", ""}};
   }
 
-  Outcome run(const Words& words) const { return test::run_program(words, here); }
+  Outcome run(const Words& words) const { return run_program(words, here); }
 
   /// What drawing a picture said.
   std::string said(const Words& words) const {
@@ -56,10 +46,9 @@ TEST_F(FirstWords, MistakesInWordsGetASuggestion) {
 
 // Every option takes one word, so that the scene may stand anywhere.
 TEST_F(FirstWords, NamesAreRepeatedOrHaveCommas) {
-  const json cameras = {test::camera_json("front", 0.0), test::camera_json("side", 0.5),
-                        test::camera_json("a,b", 0.1)};
-  test::write_text(folder / "cameras.json", cameras.dump());
-  const std::vector<std::pair<Words, std::set<std::string>>> cases = {
+  const json cameras = {camera_json("front", 0.0), camera_json("side", 0.5), camera_json("a,b", 0.1)};
+  save("cameras.json", cameras);
+  const std::vector<std::pair<Words, Names>> cases = {
       {{"--view", "side"}, {"side"}},
       {{"--view=side"}, {"side"}},
       {{"--view", "front", "--view", "side"}, {"front", "side"}},
@@ -68,9 +57,8 @@ TEST_F(FirstWords, NamesAreRepeatedOrHaveCommas) {
       {{"--view", "a,b", "--view", "front,side"}, {"a,b", "front", "side"}}};
   for (const auto& [names, drawn] : cases) {
     fs::remove_all(out);
-    ASSERT_TRUE(
-        good(run(joined(joined({"render", "--mono", "--size", "36x24"}, names), {model, "-o", out}))));
-    std::set<std::string> stems;
+    ASSERT_TRUE(good(run(joined(joined({"render", "--mono", "-o", out}, joined(small, names)), {model}))));
+    Names stems;
     for (const auto& file : fs::directory_iterator(out)) stems.insert(file.path().stem().string());
     EXPECT_EQ(stems, drawn) << names.back();
   }
@@ -102,7 +90,7 @@ TEST_F(FirstWords, QuietIsQuiet) {
 }
 
 TEST_F(FirstWords, CheapChecksComeBeforeTheModelIsRead) {
-  test::write_text(model, "no model");
+  write_text(model, "no model");
   EXPECT_TRUE(ended(render({"--view", "nobody"}), 2, "has no camera of this name"));
   EXPECT_TRUE(ended(render({"--view", "front"}), 2, "model.ply is not a model"));
 }
@@ -124,7 +112,7 @@ TEST_F(FirstWords, PicturesOfEachModelLieInAFolderOfTheirOwn) {
   EXPECT_TRUE(good(run({"convert", "a/bike.ply", "-o", "a/bike.spz"})));
   // A built-in scene's folder is its own, too.
   fs::create_directories(folder / "out/city");
-  test::write_text(folder / "out/city/model.txt", (folder / "city.ply").string() + "\n");
+  write_text(folder / "out/city/model.txt", (folder / "city.ply").string() + "\n");
   const std::pair<const char*, const char*> cases[] = {
       {"garden/point_cloud/iteration_7000/point_cloud.ply", "garden_iteration_7000"},
       {"garden", "garden"},
@@ -145,27 +133,25 @@ TEST_F(FirstWords, PicturesOfEachModelLieInAFolderOfTheirOwn) {
     EXPECT_TRUE(good(run(words)));
     EXPECT_TRUE(fs::exists(folder / "out" / name / "model.txt")) << scene;
   }
-  EXPECT_EQ(test::read_text(folder / "out/b_bike/model.txt"), (folder / "b/bike.ply").string() + "\n");
-  EXPECT_EQ(test::read_text(folder / "out/city/model.txt"), (folder / "city.ply").string() + "\n");
+  EXPECT_EQ(read_text(folder / "out/b_bike/model.txt"), (folder / "b/bike.ply").string() + "\n");
+  EXPECT_EQ(read_text(folder / "out/city/model.txt"), (folder / "city.ply").string() + "\n");
 }
 
 TEST_F(FirstWords, FoldersMayHaveDotsInTheirNames) {
-  for (const char* name : {"v1.2", "run.v2"}) {
-    EXPECT_TRUE(good(render(joined(small, {"-o", folder / name}))));
-    EXPECT_TRUE(fs::exists(folder / name / "front_left.png")) << name;
-  }
+  EXPECT_TRUE(good(render(joined(small, {"-o", folder / "v1.2"}))));
+  EXPECT_TRUE(fs::exists(folder / "v1.2/front_left.png"));
 }
 
 TEST_F(FirstWords, TheJudgeHasNoGpuTimes) {
   const auto printed = [&](const std::string& stage) {
-    return render({"--mono", "--size", "36x24", "--frames", "2", "--reference-until", stage, "--json",
-                   folder / "r.json"})
+    return render(joined(small, {"--mono", "--frames", "2", "--reference-until", stage, "--json",
+                                 folder / "r.json"}))
         .out;
   };
   const std::string judged = printed("blend");
   EXPECT_TRUE(has(judged, "(by the float64 reference, on the CPU)"));
   EXPECT_FALSE(has(judged, " ms"));
-  EXPECT_TRUE(test::load_json(folder / "r.json")["views"][0]["gpu_ms"].is_null());
+  EXPECT_TRUE(load_json(folder / "r.json")["views"][0]["gpu_ms"].is_null());
   EXPECT_TRUE(has(printed("project"), "blend  ")) << "the GPU's stages keep their times";
 }
 
@@ -174,18 +160,18 @@ TEST_F(FirstWords, ViewsAreListed) {
   ASSERT_TRUE(good(outcome));
   EXPECT_TRUE(has(outcome.out, "cameras.json: 4 views"));
   EXPECT_TRUE(has(outcome.out, "side        72 x 48 px, 43.6 degrees high, at 0.5,0,0"));
-  EXPECT_EQ(test::load_json(folder / "views.json").size(), 4u);
+  EXPECT_EQ(load_json(folder / "views.json").size(), 4u);
 }
 
 TEST_F(FirstWords, AnOrbitGoesByTheCameras) {
   // Around (0, 0, 4), 4 away from each; up is -y.
-  json cameras = {test::camera_json("back", 0.0), test::camera_json("front", 0.0)};
+  json cameras = {camera_json("back", 0.0), camera_json("front", 0.0)};
   cameras[1]["position"] = {0.0, 0.0, 8.0};
   cameras[1]["rotation"] = {{-1, 0, 0}, {0, 1, 0}, {0, 0, -1}};
-  cameras.push_back(test::camera_json("side", -4.0));
+  cameras.push_back(camera_json("side", -4.0));
   cameras[2]["position"] = {-4.0, 0.0, 4.0};
   cameras[2]["rotation"] = {{0, 0, 1}, {0, 1, 0}, {-1, 0, 0}};
-  test::write_text(folder / "cameras.json", cameras.dump());
+  save("cameras.json", cameras);
   const Words orbit = joined(small, {"--orbit", "4", "--mono"});
   const json drawn = reported(orbit)["views"];
   ASSERT_EQ(drawn.size(), 4u);
@@ -193,17 +179,17 @@ TEST_F(FirstWords, AnOrbitGoesByTheCameras) {
     const auto at = view["eyes"][0]["position"].get<std::vector<double>>();
     EXPECT_NEAR(std::hypot(at[0], at[1], at[2] - 4.0), 4.0, 1e-5) << view.dump();
   }
-  test::write_text(folder / "cameras.json", "no cameras");
+  write_text(folder / "cameras.json", "no cameras");
   EXPECT_TRUE(ended(render(orbit), 0, "warning"));
 }
 
 TEST_F(FirstWords, WithoutCamerasOneStandsOnTheGround) {
   fs::remove(folder / "cameras.json");
   EXPECT_TRUE(has(said(small), "from outside; up is 0.00,-1.00,0.00, since nothing in it tells"));
-  test::save_ply(model, test::floor_model());
+  save_ply(model, floor_model());
   const auto drawn = [&](const Words& words) {
     const std::string text = said(joined(joined(small, words), {"--mono", "--json", folder / "r.json"}));
-    const json eye = test::load_json(folder / "r.json")["views"][0]["eyes"][0];
+    const json eye = load_json(folder / "r.json")["views"][0]["eyes"][0];
     return std::pair(text, eye["position"][2].get<double>());
   };
   const auto [text, height] = drawn({});

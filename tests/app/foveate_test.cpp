@@ -4,26 +4,21 @@
 
 #include "app/scene.h"
 #include "formats/exr.h"
-#include "formats/image_file.h"
 
 namespace binosplat {
 namespace {
 
-using test::good;
-using test::has;
-using test::Words;
-
-struct Foveate : test::SceneTest {
+struct Foveate : SceneTest {
   Foveate() { add_cameras(); }
 
-  test::Outcome draw(const std::string& file, const Words& words) const {
+  Outcome draw(const std::string& file, const Words& words) const {
     return render(joined(words, {"--size", "216x144", "-o", folder / file}));
   }
 
   /// What compare says of the two pictures that were drawn, and an eye that looks there.
-  test::Outcome compared(const std::string& gaze) const {
-    return test::run_program({"compare", folder / "drawn.png", folder / "exact.png", "--foveate-at", gaze,
-                              "--json", folder / "c.json"});
+  Outcome compared(const std::string& gaze) const {
+    return run_program({"compare", folder / "drawn.png", folder / "exact.png", "--foveate-at", gaze, "--json",
+                        folder / "c.json"});
   }
 };
 
@@ -47,9 +42,9 @@ TEST_F(Foveate, WritesBothEyesWithTheirInsetsExact) {
   EXPECT_TRUE(has(run.out, "\ncompose "));
   const Image exact = load_image(folder / "exact.png"), drawn = load_image(folder / "drawn.png");
   EXPECT_NE(exact.data, drawn.data);
-  const auto view = test::load_json(folder / "run.json").at("views").at(0);
+  const json view = load_json(folder / "run.json").at("views").at(0);
   EXPECT_EQ(view.at("depth_orders"), 1);
-  EXPECT_EQ(view.at("foveated").at(0).at("context"), (nlohmann::json{86, 58}));
+  EXPECT_EQ(view.at("foveated").at(0).at("context"), (json{86, 58}));
   std::vector<std::vector<int>> begins;
   for (int eye = 0; eye < 2; ++eye) {
     const auto part = view.at("foveated").at(static_cast<std::size_t>(eye));
@@ -86,7 +81,7 @@ TEST_F(Foveate, CompareTellsWhatIsSeenAndWhere) {
   ASSERT_TRUE(good(run));
   EXPECT_TRUE(has(run.out, "0 to 5 degrees"));
   EXPECT_TRUE(has(run.out, "infinite"));
-  const auto rings = test::load_json(folder / "c.json").at("foveated").at("rings");
+  const auto rings = load_json(folder / "c.json").at("foveated").at("rings");
   ASSERT_GE(rings.size(), 4u);
   EXPECT_TRUE(rings[0].at("psnr_db").is_null());  // the inset
   EXPECT_TRUE(rings[1].at("psnr_db").is_null());
@@ -94,9 +89,9 @@ TEST_F(Foveate, CompareTellsWhatIsSeenAndWhere) {
   EXPECT_LT(rings[3].at("psnr_db").get<double>(), 60.0);  // the context
   // Planted: an eye that looks at the edge.
   ASSERT_TRUE(good(compared("5" + fov)));
-  EXPECT_FALSE(test::load_json(folder / "c.json")["foveated"]["rings"][0]["psnr_db"].is_null());
-  EXPECT_TRUE(test::ended(compared("1000,72,60"), 2, "outside the picture of 216 x 144"));
-  EXPECT_TRUE(test::ended(compared("60"), 2, "three numbers"));
+  EXPECT_FALSE(load_json(folder / "c.json")["foveated"]["rings"][0]["psnr_db"].is_null());
+  EXPECT_TRUE(ended(compared("1000,72,60"), 2, "outside the picture of 216 x 144"));
+  EXPECT_TRUE(ended(compared("60"), 2, "three numbers"));
 }
 
 }  // namespace

@@ -1,21 +1,17 @@
 // binosplat info, from the command line.
 
-#include <gtest/gtest.h>
-
 #include "app/scene.h"
 #include "base/clock.h"
-#include "support/fixtures.h"
 
 namespace binosplat {
 namespace {
 
-using test::has;
-using Info = test::SceneTest;
+using Info = SceneTest;
 
 TEST_F(Info, SaysTheSameInTextAndJson) {
-  const test::Outcome outcome = test::run_program({"info", model, "--json", folder / "info.json"});
+  const Outcome outcome = run_program({"info", model, "--json", folder / "info.json"});
   ASSERT_EQ(outcome.code, 0) << outcome.err;
-  const nlohmann::json json = test::load_json(folder / "info.json");
+  const json json = load_json(folder / "info.json");
   EXPECT_EQ(json["gaussians"], 300);
   EXPECT_EQ(json["format"], "ply");
   EXPECT_EQ(json["degree"], 1);
@@ -37,10 +33,10 @@ TEST_F(Info, TreesTakeNoMoreThanTheirNodes) {
   std::string tree = "{}";
   for (int i = 0; i < 400000; ++i) tree += ",{}";
   for (int i = 0; i < 240; ++i) tree = R"({"children":[)" + tree + "]}";
-  test::write_text(folder / "lod-meta.json",
-                   R"({"lodLevels":100,"filenames":["0/meta.json"],"tree":)" + tree + "}");
+  write_text(folder / "lod-meta.json",
+             R"({"lodLevels":100,"filenames":["0/meta.json"],"tree":)" + tree + "}");
   const Clock::time_point start = Clock::now();
-  const test::Outcome outcome = test::run_program({"info", folder / "lod-meta.json"});
+  const Outcome outcome = run_program({"info", folder / "lod-meta.json"});
   const double ms = ms_since(start);
   EXPECT_EQ(outcome.code, 2);
   EXPECT_TRUE(has(outcome.err, "lod-meta.json holds no Gaussians"));
@@ -51,9 +47,7 @@ TEST_F(Info, TreesTakeNoMoreThanTheirNodes) {
 }
 
 TEST_F(Info, OfABuiltInScene) {
-  const test::Outcome outcome = test::run_program({"info", "demo:room"});
-  ASSERT_TRUE(good(outcome));
-  EXPECT_TRUE(test::has(outcome.out, "demo:room (built in)\nGaussians      98230\n"));
+  EXPECT_TRUE(has(run_program({"info", "demo:room"}).out, "demo:room (built in)\nGaussians      98230\n"));
 }
 
 TEST(InfoOfFixtures, KnowsTheirFormats) {
@@ -67,9 +61,7 @@ TEST(InfoOfFixtures, KnowsTheirFormats) {
       {"sog/playbot-lod6", "(SOG)"},
       {"sog/st-lod", "(streamed SOG, level 0 of 2)"}};
   for (const auto& [file, part] : expected) {
-    const test::Outcome outcome = test::run_program({"info", folder / file});
-    EXPECT_EQ(outcome.code, 0) << outcome.err;
-    EXPECT_TRUE(has(outcome.out, part)) << file << ":\n";
+    EXPECT_TRUE(has(run_program({"info", folder / file}).out, part)) << file << ":\n";
   }
 }
 

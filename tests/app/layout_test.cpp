@@ -1,21 +1,13 @@
 // render --layout: both eyes in one OpenEXR, and what is said of their disparities.
 
 #include "app/scene.h"
-#include "formats/image_file.h"
-#include "measure/metrics.h"
 
 namespace binosplat {
 namespace {
 
-using test::good;
-using test::has;
-using test::Outcome;
-using test::Words;
-using Names = std::set<std::string>;
-
-struct LayoutOption : test::SceneTest {
+struct LayoutOption : SceneTest {
   LayoutOption() { add_cameras(); }
-  nlohmann::json view(std::size_t k = 0) const { return test::load_json(folder / "r.json")["views"][k]; }
+  json view(std::size_t k = 0) const { return load_json(folder / "r.json")["views"][k]; }
   Outcome draw(const Words& words) const {
     Outcome outcome = render(joined(words, {"--json", folder / "r.json"}));
     EXPECT_TRUE(good(outcome));
@@ -28,11 +20,9 @@ TEST_F(LayoutOption, AnExrFileHasBothEyesAsViews) {
   draw({"--layout", "multi-view", "--background", "none"});
   EXPECT_EQ(folder.files(), (Names{"cameras.json", "model.ply", "pair.exr", "out/front.exr", "r.json"}));
   for (const char* name : {"multiView", "right.R", "right.Z", "right.coverage"})
-    EXPECT_NE(test::read_text(folder / "pair.exr").find(name), std::string::npos) << name;
+    EXPECT_TRUE(has(read_text(folder / "pair.exr"), name)) << name;
   draw({"--bits", "16"});
-  const auto psnr = [&](const std::string& eye) {
-    return measure::psnr(load_image(folder / "pair.exr"), load_image(out + eye));
-  };
+  const auto psnr = [&](const std::string& eye) { return psnr_of_files(folder / "pair.exr", out + eye); };
   EXPECT_GT(psnr("/front_left.png"), 90.0);
   EXPECT_LT(psnr("/front_right.png"), 60.0) << "the right eye as the default view goes unnoticed";
 }
@@ -42,7 +32,7 @@ TEST_F(LayoutOption, DisparityIsToldAndWarnedOf) {
   const Outcome plain = draw({"--ipd", "0.03"});
   EXPECT_TRUE(has(plain.out, "disparity"));
   EXPECT_FALSE(has(plain.err, "tire most eyes"));
-  nlohmann::json disparity = view()["disparity"];
+  json disparity = view()["disparity"];
   EXPECT_GT(disparity["near_px"].get<double>(), 60.0 * 0.03 / 3.0);
   EXPECT_LT(disparity["near_px"].get<double>(), 60.0 * 0.03 / 2.5);
   EXPECT_TRUE(disparity["comfortable"].get<bool>());
@@ -71,7 +61,7 @@ TEST_F(LayoutOption, AScreenStandsWhereItSuitsTheFirstView) {
   EXPECT_TRUE(has(plain.err, "--convergence METRES for another"));
   EXPECT_FALSE(has(plain.err, "tire most eyes"));
   ASSERT_TRUE(metres(0).is_number());
-  const nlohmann::json disparity = view()["disparity"];
+  const json disparity = view()["disparity"];
   EXPECT_TRUE(disparity["comfortable"].get<bool>()) << disparity;
   EXPECT_NEAR(disparity["focus_metres"].get<double>(), metres(0).get<double>(), 1e-9);
   EXPECT_GT(disparity["near_degrees"].get<double>(), 0.0);

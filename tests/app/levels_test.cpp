@@ -1,14 +1,7 @@
 // binosplat levels, from the command line.
 
-#include <gtest/gtest.h>
-
-#include <chrono>
-#include <thread>
-
 #include "app/scene.h"
-#include "formats/image_file.h"
 #include "formats/model_file.h"
-#include "measure/metrics.h"
 #include "support/models.h"
 #include "support/scaffold_files.h"
 #include "support/scenes.h"
@@ -16,59 +9,31 @@
 namespace binosplat {
 namespace {
 
-using test::ended;
-using test::good;
-using test::Outcome;
-using test::run_program;
-namespace fs = std::filesystem;
-
-using Files = std::map<std::string, std::string>;
-
-/// Names of files, and the lengths and hashes of what is in them.
-Files hashed_contents(const fs::path& folder) {
-  Files files;
-  for (const auto& entry : fs::recursive_directory_iterator(folder)) {
-    if (!entry.is_regular_file()) continue;
-    const std::string text = test::read_text(entry.path());
-    files[entry.path().lexically_relative(folder).string()] =
-        fmt::format("{} {:x}", text.size(), std::hash<std::string>()(text));
+struct LevelsTest : SceneTest {
+  Words line(const std::string& to, const Words& more = {}) const {
+    return joined({"levels", model, "-o", to, "--leaf", "64", "--levels", "3"}, more);
   }
-  return files;
-}
-
-struct LevelsTest : test::SceneTest {
-  using Arguments = std::vector<std::string>;
-
-  Arguments line(const std::string& to, const Arguments& more = {}) const {
-    Arguments all = {"levels", model, "-o", to, "--leaf", "64", "--levels", "3"};
-    all.insert(all.end(), more.begin(), more.end());
-    return all;
-  }
-  Outcome levels(const std::string& to, const Arguments& more = {}) const {
-    return run_program(line(to, more));
-  }
+  Outcome levels(const std::string& to, const Words& more = {}) const { return run_program(line(to, more)); }
 };
 
 TEST_F(LevelsTest, AreReadAndDrawn) {
-  test::save_ply(model, test::floor_model());
+  save_ply(model, floor_model());
   const Outcome outcome = levels(out);
   ASSERT_TRUE(good(outcome));
-  EXPECT_NE(outcome.out.find("    0        2000\n    1        1004\n    2         516\n"), std::string::npos)
-      << outcome.out;
+  EXPECT_TRUE(has(outcome.out, "    0        2000\n    1        1004\n    2         516\n"));
   EXPECT_EQ(load_model(out).count(), 2000u);
   const Outcome info = run_program({"info", out, "--lod", "1"});
   ASSERT_TRUE(good(info));
-  EXPECT_NE(info.out.find("1004"), std::string::npos) << info.out;
+  EXPECT_TRUE(has(info.out, "1004"));
 
-  const auto picture = [&](const std::string& scene, const Arguments& more) {
-    Arguments all = {"render", scene,    "--eye", "0,-12,8", "--at", "0,0,0",         "--up",
-                     "0,0,1",  "--size", "64x48", "--mono",  "-o",   folder / "p.png"};
-    all.insert(all.end(), more.begin(), more.end());
-    EXPECT_TRUE(good(run_program(all)));
+  const auto picture = [&](const std::string& scene, const Words& more) {
+    EXPECT_TRUE(good(run_program(joined({"render", scene, "--eye", "0,-12,8", "--at", "0,0,0", "--up",
+                                         "0,0,1", "--size", "64x48", "--mono", "-o", folder / "p.png"},
+                                        more))));
     return load_image(folder / "p.png");
   };
   const Image exact = picture(model, {});
-  const auto psnr = [&](const Arguments& more) { return measure::psnr(exact, picture(out, more)); };
+  const auto psnr = [&](const Words& more) { return measure::psnr(exact, picture(out, more)); };
   const double finest = psnr({"--lod", "0"}), second = psnr({"--lod", "1"}), third = psnr({"--lod", "2"});
   EXPECT_GT(finest, 50.0) << "but for the format's rounding";
   EXPECT_GT(finest, second);
@@ -77,12 +42,10 @@ TEST_F(LevelsTest, AreReadAndDrawn) {
 }
 
 TEST_F(LevelsTest, GoOnAfterAnInterruption) {
-  test::save_ply(model, test::random_model(4, 1200, 2));
   const std::string whole = folder / "whole";
   ASSERT_TRUE(good(levels(whole)));
-  test::Program run(line(out));
-  while (!fs::exists(out + "/levels-run.json")) std::this_thread::sleep_for(std::chrono::milliseconds(1));
-  std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  Program run(line(out));
+  wait_for_file(out + "/levels-run.json");
   run.send(SIGINT);
   run.wait();
   // However far it came: one SOG is complete, and one is not.
@@ -95,36 +58,27 @@ TEST_F(LevelsTest, GoOnAfterAnInterruption) {
   fs::remove(out + "/lod-meta.json");
   for (const std::string& of : {whole, out}) {
     const std::string meta = of + "/0_0/meta.json";
-    test::write_text(meta, test::read_text(meta) + "  \n");  // which stays as it was
+    write_text(meta, read_text(meta) + "  \n");  // which stays as it was
   }
-  const Outcome outcome = levels(out);
-  ASSERT_TRUE(good(outcome));
-  EXPECT_NE(outcome.err.find("of 3 SOGs were in"), std::string::npos) << outcome.err;
-  EXPECT_EQ(hashed_contents(out), hashed_contents(whole));
-  const Outcome again = levels(out);
-  ASSERT_TRUE(good(again));
-  EXPECT_NE(again.err.find("3 of 3 SOGs were in"), std::string::npos) << again.err;
+  EXPECT_TRUE(ended(levels(out), 0, "of 3 SOGs were in"));
+  EXPECT_EQ(contents_of(out), contents_of(whole));
+  EXPECT_TRUE(ended(levels(out), 0, "3 of 3 SOGs were in"));
 }
 
 TEST_F(LevelsTest, TakeNoFolderOfOthers) {
   ASSERT_TRUE(good(levels(out)));
-  const Files before = hashed_contents(out);
-  const auto refused = [&](const Arguments& more, const std::string& said) {
-    EXPECT_TRUE(ended(levels(out, more), 2, said));
-    EXPECT_EQ(hashed_contents(out), before);
-  };
-  refused({"--axes", "rub"}, "says other axes");
+  const auto before = contents_of(out);
+  EXPECT_TRUE(ended(levels(out, {"--axes", "rub"}), 2, "says other axes"));
   EXPECT_TRUE(ended(run_program({"levels", model, "-o", out}), 2, "says other leaf, levels"));
-  std::string other = test::read_text(model);
+  std::string other = read_text(model);
   ++other[other.size() - 100];
-  test::write_text(model, other);
-  refused({}, "says other model");
+  write_text(model, other);
+  EXPECT_TRUE(ended(levels(out), 2, "says other model"));
 
-  test::write_text(folder / "mine/notes.txt", "");
   EXPECT_TRUE(ended(levels(folder.path()), 2, "has other files"));
   EXPECT_TRUE(ended(levels(model), 2, "is a file where a folder is needed"));
   EXPECT_TRUE(ended(run_program({"levels", out, "-o", out}), 2, ""));
-  EXPECT_EQ(hashed_contents(out), before);
+  EXPECT_EQ(contents_of(out), before);
 }
 
 // 35.4 and 30.7 dB; where areas leave the low-pass out 32.5 and less.
@@ -132,12 +86,11 @@ TEST(LevelsScenes, LookLikeFox) {
   if (!test::switched_on("BINOSPLAT_LONG"))
     GTEST_SKIP() << "140,000 Gaussians take long on llvmpipe: BINOSPLAT_LONG=1";
   REQUIRE_SCENE("fox", scene);
-  const test::TempFolder folder;
+  const TempFolder folder;
   ASSERT_TRUE(good(run_program({"levels", scene / "fox.ply", "-o", folder / "fox", "--levels", "3"})));
   const auto picture = [&](const std::string& model, const char* lod) {
-    std::vector<std::string> line = {"render",  model,  "--cameras",     scene / "cameras.json",
-                                     "--view",  "0001", "--mono",        "--size",
-                                     "176x320", "-o",   folder / "p.png"};
+    Words line = {"render", model,     "--cameras", scene / "cameras.json", "--view", "0001", "--mono",
+                  "--size", "176x320", "-o",        folder / "p.png"};
     if (lod != nullptr) line.insert(line.end(), {"--lod", lod});
     EXPECT_TRUE(good(run_program(line)));
     return load_image(folder / "p.png");
@@ -147,18 +100,10 @@ TEST(LevelsScenes, LookLikeFox) {
   EXPECT_GT(measure::psnr(exact, picture(folder / "fox", "2")), 30.3);
 }
 
-TEST(LevelsScaffold, AreRefused) {
-  const test::TempFolder folder;
-  fs::create_directories(folder / "model");
-  test::write_scaffold(folder / "model", test::random_scaffold(1, {.anchors = 10}));
-  EXPECT_TRUE(ended(run_program({"levels", folder / "model", "-o", folder / "out"}), 2,
-                    "is a Scaffold-GS model, which makes its Gaussians anew for each eye"));
-}
-
 TEST_F(LevelsTest, HaveTheCamerasOfTheModelBesideThem) {
   add_cameras();
   ASSERT_TRUE(good(levels(out)));
-  const auto beside = nlohmann::json::parse(test::read_text(out + "/cameras.json"));
+  const auto beside = load_json(out + "/cameras.json");
   ASSERT_EQ(beside.size(), 4u);
   EXPECT_FALSE(beside[0].contains("time"));
   const auto picture = [&](const std::string& scene) {
@@ -167,10 +112,10 @@ TEST_F(LevelsTest, HaveTheCamerasOfTheModelBesideThem) {
   };
   EXPECT_GT(measure::psnr(picture(model), picture(out)), 25.0);
   // They stay where they are somebody's own by now, and broken ones are no reason to fail.
-  test::write_text(out + "/cameras.json", nlohmann::json({test::camera_json("mine", 0)}).dump());
+  save("out/cameras.json", json({camera_json("mine", 0)}));
   ASSERT_TRUE(good(levels(out)));
-  EXPECT_EQ(nlohmann::json::parse(test::read_text(out + "/cameras.json"))[0]["img_name"], "mine");
-  test::write_text(folder / "cameras.json", "[");
+  EXPECT_EQ(load_json(out + "/cameras.json")[0]["img_name"], "mine");
+  write_text(folder / "cameras.json", "[");
   const std::string other = folder / "other";
   EXPECT_TRUE(ended(levels(other), 0, "no cameras are left beside the levels"));
   EXPECT_FALSE(fs::exists(other + "/cameras.json"));
@@ -183,29 +128,31 @@ TEST_F(LevelsTest, OfACityAndOfCopies) {
   };
   const Outcome first = city("10000");
   ASSERT_TRUE(good(first));
-  EXPECT_NE(first.out.find("    0       10000\n"), std::string::npos) << first.out;
+  EXPECT_TRUE(has(first.out, "    0       10000\n"));
   EXPECT_TRUE(ended(city("10001"), 2, "says other count"));
   const Outcome copies = levels(folder / "copies", {"--repeat", "2x1", "--spacing", "20"});
   ASSERT_TRUE(good(copies));
-  EXPECT_NE(copies.out.find("    0         600\n"), std::string::npos) << copies.out;
+  EXPECT_TRUE(has(copies.out, "    0         600\n"));
   EXPECT_TRUE(
       ended(levels(folder / "copies", {"--repeat", "2x1", "--spacing", "21"}), 2, "says other spacing"));
 }
 
 TEST_F(LevelsTest, SayWhatTheyCannotTake) {
-  EXPECT_TRUE(ended(levels(out, {"--levels", "0"}), 2, "--levels"));
-  EXPECT_TRUE(ended(run_program({"levels", model, "-o", out, "--leaf", "1"}), 2, "--leaf"));
-  EXPECT_TRUE(ended(levels(out, {"--lod", "1"}), 2, "level of detail 1: "));
-  EXPECT_TRUE(ended(levels(out, {"--count", "10000"}), 2, "--count is for demo:city"));
-  EXPECT_TRUE(ended(levels(out, {"--repeat", "2x2"}), 2, "--repeat and --spacing go together"));
-  EXPECT_TRUE(ended(run_program({"levels", folder / "none.ply", "-o", out}), 2, "none.ply"));
-  test::write_text(model, test::to_bytes(test::inria_file(0, 0)));
-  EXPECT_TRUE(ended(levels(out), 2, "holds no Gaussians"));
-  test::PlyFile none = test::small_model();
+  fs::create_directories(folder / "scaffold");
+  test::write_scaffold(folder / "scaffold", test::random_scaffold(1, {.anchors = 10}));
+  expect_refused_after({"levels"}, {{{model, "--levels", "0"}, "--levels"},
+                                    {{model, "--leaf", "1"}, "--leaf"},
+                                    {{model, "--lod", "1"}, "level of detail 1: "},
+                                    {{model, "--count", "10000"}, "--count is for demo:city"},
+                                    {{folder / "none.ply"}, "none.ply"},
+                                    {{folder / "scaffold"},
+                                     "is a Scaffold-GS model, which makes its Gaussians anew for each eye"}});
+  write_text(model, to_bytes(test::inria_file(0, 0)));
+  expect_refused_after({"levels"}, {{{model}, "holds no Gaussians"}});
+  PlyFile none = small_model();
   for (std::size_t i = 0; i < none.rows.size(); ++i) none.at(i, "x") = NAN;
-  test::write_text(model, test::to_bytes(none));
-  EXPECT_TRUE(ended(levels(out), 2, "all of its 300 Gaussians have values that are not finite"));
-  EXPECT_FALSE(fs::exists(out));
+  write_text(model, to_bytes(none));
+  expect_refused_after({"levels"}, {{{model}, "all of its 300 Gaussians have values that are not finite"}});
 }
 
 }  // namespace

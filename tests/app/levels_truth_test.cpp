@@ -1,22 +1,15 @@
 // What --detail and --quality promise of levels of detail, of models that are hard to divide: a few Gaussians
 // as wide as all of the scene, others smaller than a pixel.
 
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <optional>
 
 #include "app/scene.h"
-#include "formats/image_file.h"
-#include "measure/metrics.h"
 #include "support/models.h"
 #include "support/scenes.h"
 
 namespace binosplat {
 namespace {
-
-using test::good;
-using test::run_program;
 
 /// 800 Gaussians around the origin with scales over eight orders of magnitude: of all of them, of each axis
 /// of its own, of a fifth of them, or of some giants.
@@ -52,52 +45,49 @@ Model wild_model(std::uint32_t seed) {
   return model;
 }
 
-/// The first number of a name in a JSON, wherever it stands.
-std::optional<double> number_of(const nlohmann::json& json, const std::string& name) {
-  const nlohmann::json flat = json.flatten();
-  for (const auto& [pointer, value] : flat.items())
-    if (pointer.ends_with("/" + name) && value.is_number()) return value.get<double>();
-  return std::nullopt;
-}
-
 /// Of all leaves of a tree.
-void make_errors_small(nlohmann::json& node) {
-  for (nlohmann::json& child : node["children"]) make_errors_small(child);
+void make_errors_small(json& node) {
+  for (json& child : node["children"]) make_errors_small(child);
   if (!node.contains("lods")) return;
-  for (nlohmann::json& level : node["lods"])
-    for (nlohmann::json& of_direction : level["errors"])
-      for (nlohmann::json& error : of_direction) error = 1e-6 * error.get<double>();
+  for (json& level : node["lods"])
+    for (json& of_direction : level["errors"])
+      for (json& error : of_direction) error = 1e-6 * error.get<double>();
 }
 
 struct Promise {
   double told = 0.0, finest = 0.0;  // dB, and against the finest levels
 };
 
-struct LevelsTruth : test::SceneTest {
-  using Words = std::vector<std::string>;
+struct LevelsTruth : SceneTest {
+  void make_levels(std::uint32_t seed) const {
+    save_ply(model, wild_model(seed));
+    fs::remove_all(out);
+    ASSERT_TRUE(good(run_program({"levels", model, "-o", out, "--leaf", "64", "--levels", "4"})));
+  }
 
   /// A picture from 4 units away.
   Image picture(int turn, const std::string& size, const Words& more) const {
     const double angle = 0.3 * turn;
     const std::string eye = fmt::format("{},0.2,{}", 4.0 * std::sin(angle), -4.0 * std::cos(angle));
-    Words line = {"render", out,      "--eye", eye,      "--at", "0,0,0",         "--up",
-                  "0,-1,0", "--size", size,    "--mono", "-o",   folder / "r.png"};
-    line.insert(line.end(), more.begin(), more.end());
-    EXPECT_TRUE(good(run_program(line)));
+    EXPECT_TRUE(good(run_program(joined({"render", out, "--eye", eye, "--at", "0,0,0", "--up", "0,-1,0",
+                                         "--size", size, "--mono", "-o", folder / "r.png"},
+                                        more))));
     return load_image(folder / "r.png");
   }
   double coarsest_psnr(int turn, const std::string& size) const {
     return measure::psnr(picture(turn, size, {"--lod", "0"}), picture(turn, size, {"--lod", "3"}));
   }
 
-  Promise render(int turn, const std::string& size, Words more) const {
-    for (const std::string& word : Words{"--detail-report", "--json", folder / "r.json"})
-      more.push_back(word);
-    picture(turn, size, more);
-    const auto json = nlohmann::json::parse(test::read_text(folder / "r.json"));
-    const std::optional<double> told = number_of(json, "told_psnr_db");
-    return {told ? *told : number_of(json, "predicted_psnr_db").value_or(INFINITY),
-            number_of(json, "finest_psnr_db").value_or(INFINITY)};
+  Promise promise(int turn, const std::string& size, const Words& asked) const {
+    picture(turn, size, joined(asked, {"--detail-report", "--json", folder / "r.json"}));
+    const json view = load_json(folder / "r.json")["views"][0],
+               levels = view.value("levels_of_detail", json());
+    const auto number = [](const json& of, const char* name) {
+      return of.contains(name) && of[name].is_number() ? of[name].get<double>() : INFINITY;
+    };
+    return {
+        view.contains("told_psnr_db") ? number(view, "told_psnr_db") : number(levels, "predicted_psnr_db"),
+        number(levels, "finest_psnr_db")};
   }
 };
 
@@ -108,18 +98,16 @@ TEST_F(LevelsTruth, HoldsWhateverTheScales) {
   for (std::uint32_t seed = 0; seed < 20; ++seed) {
     if (!all && seed != 1) continue;
     SCOPED_TRACE(seed);
-    test::save_ply(model, wild_model(seed));
-    std::filesystem::remove_all(out);
-    ASSERT_TRUE(good(run_program({"levels", model, "-o", out, "--leaf", "64", "--levels", "4"})));
+    make_levels(seed);
     for (const int turn : all ? std::vector{0, 3, 7} : std::vector{static_cast<int>(seed)}) {
       for (const char* size : {"40x30", "80x60", "320x240"}) {
         if (!all && std::string(size) != "80x60") continue;
         SCOPED_TRACE(fmt::format("{} {}", turn, size));
         for (const Words& asked : {Words{"--quality", "40"}, Words{"--detail", "40dB"}}) {
           SCOPED_TRACE(asked[0]);
-          const Promise promise = render(turn, size, asked);
-          EXPECT_GE(promise.finest, 38.0);
-          EXPECT_NEAR(std::min(promise.told, 60.0), std::min(promise.finest, 60.0), 2.0);
+          const Promise promised = promise(turn, size, asked);
+          EXPECT_GE(promised.finest, 38.0);
+          EXPECT_NEAR(std::min(promised.told, 60.0), std::min(promised.finest, 60.0), 2.0);
         }
         // Planted: what the coarsest levels look like.
         EXPECT_LT(coarsest_psnr(turn, size), 38.0);
@@ -130,15 +118,13 @@ TEST_F(LevelsTruth, HoldsWhateverTheScales) {
 
 // A file that says that its levels lose a millionth of what they do is found out.
 TEST_F(LevelsTruth, IsNotWhatAFileSays) {
-  test::save_ply(model, wild_model(3));
-  ASSERT_TRUE(good(run_program({"levels", model, "-o", out, "--leaf", "64", "--levels", "4"})));
-  const std::string path = out + "/lod-meta.json";
-  nlohmann::json meta = nlohmann::json::parse(test::read_text(path));
+  make_levels(3);
+  json meta = load_json(out + "/lod-meta.json");
   make_errors_small(meta["tree"]);
-  test::write_text(path, meta.dump());
-  const Promise promise = render(1, "80x60", {"--detail", "40dB"});
-  EXPECT_GE(promise.finest, 38.0);
-  EXPECT_NEAR(promise.told, promise.finest, 2.0);
+  save("out/lod-meta.json", meta);
+  const Promise promised = promise(1, "80x60", {"--detail", "40dB"});
+  EXPECT_GE(promised.finest, 38.0);
+  EXPECT_NEAR(promised.told, promised.finest, 2.0);
 }
 
 }  // namespace

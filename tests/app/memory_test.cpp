@@ -7,15 +7,8 @@
 namespace binosplat {
 namespace {
 
-namespace fs = std::filesystem;
-using test::good;
-using test::has;
-using test::Outcome;
-using test::read_text;
-using test::run_program;
-
-struct Memory : test::SceneTest {
-  Memory() { test::save_ply(model, test::random_model(1, 600, 1)); }
+struct Memory : SceneTest {
+  Memory() { save_ply(model, test::random_model(1, 200, 1)); }
 
   void SetUp() override {
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
@@ -24,8 +17,8 @@ struct Memory : test::SceneTest {
   }
 
   /// With no more than so many MB of addresses.
-  static Outcome with_memory(const std::vector<std::string>& line, rlim_t megabytes) {
-    test::Surroundings surroundings;
+  static Outcome with_memory(const Words& line, rlim_t megabytes) {
+    Surroundings surroundings;
     surroundings.limits[RLIMIT_AS] = megabytes << 20;
     return run_program(line, surroundings);
   }
@@ -41,7 +34,7 @@ struct Memory : test::SceneTest {
 };
 
 TEST_F(Memory, LevelsSayWhatTheyLeaveOut) {
-  const std::vector<std::string> line = {"levels", model, "-o", out, "--leaf", "64", "--levels", "3"};
+  const Words line = {"levels", model, "-o", out, "--leaf", "64", "--levels", "3"};
   ASSERT_TRUE(good(run_program(line)));
   const std::string whole = read_text(out + "/lod-meta.json");
   int short_of_memory = 0;
@@ -65,13 +58,25 @@ TEST_F(Memory, LevelsSayWhatTheyLeaveOut) {
 TEST_F(Memory, OtherCommandsEndWithALine) {
   // One of them once did not end within ten minutes; which, and where it waited, is not known.
   if (!test::switched_on("BINOSPLAT_LONG")) GTEST_SKIP() << "may take long: set BINOSPLAT_LONG=1";
-  for (const std::vector<std::string>& line :
-       {std::vector<std::string>{"render", model, "--mono", "--size", "64x48", "-o", out},
-        {"calibrate", model, "--quality", "40", "--views", "1", "-o", folder / "c.json"},
-        {"devices"}}) {
+  for (const Words& line : {Words{"render", model, "--mono", "--size", "64x48", "-o", out},
+                            {"calibrate", model, "--quality", "40", "--views", "1", "-o", folder / "c.json"},
+                            {"devices"}}) {
     for (const rlim_t megabytes : {60, 200, 250, 300, 350, 450, 600})
       EXPECT_TRUE(ends_well(with_memory(line, megabytes))) << line[0] << " " << megabytes;
   }
+}
+
+// The sizes that matter, on whatever draws here.
+TEST_F(Memory, ACityOfFourMillionAtHeadsetSizeFitsIntoEightGigabytes) {
+  if (!test::switched_on("BINOSPLAT_LONG")) GTEST_SKIP() << "a minute or two: set BINOSPLAT_LONG=1";
+  const Outcome outcome =
+      run_program({"render", "demo:city", "--count", "4250000", "--mono", "--size", "4608x3456", "-o",
+                   folder / "city.png", "--json", folder / "run.json"});
+  ASSERT_TRUE(good(outcome));
+  const json run = load_json(folder / "run.json");
+  EXPECT_EQ(run.at("scene").at("gaussians"), 4'250'000);
+  EXPECT_GT(run.at("views")[0].at("pairs"), 10'000'000);
+  EXPECT_LT(outcome.peak_kib, 8 << 20);
 }
 
 }  // namespace

@@ -7,14 +7,7 @@
 namespace binosplat {
 namespace {
 
-using nlohmann::json;
-using test::ended;
-using test::good;
-using test::Outcome;
-using test::Words;
-using test::write_text;
-
-struct KeysPath : test::SceneTest {
+struct KeysPath : SceneTest {
   const std::string path = folder / "path.json";
 
   /// Four cameras along x that slow down, the last with half the field of view; `step` is the time from each
@@ -22,11 +15,11 @@ struct KeysPath : test::SceneTest {
   void save_cameras(double step) const {
     json cameras;
     for (int k = 0; k < 4; ++k) {
-      cameras.push_back(test::camera_json("key_" + std::to_string(k), 0.9 * std::sqrt(k / 3.0)));
+      cameras.push_back(camera_json("key_" + std::to_string(k), 0.9 * std::sqrt(k / 3.0)));
       cameras.back()["time"] = step * k;
     }
     cameras.back()["fx"] = cameras.back()["fy"] = 120.0;
-    write_text(path, cameras.dump());
+    save("path.json", cameras);
   }
 
   Outcome along(const Words& words) const {
@@ -35,7 +28,7 @@ struct KeysPath : test::SceneTest {
 
   /// Of the frames along x.
   std::vector<double> places() const {
-    const json report = test::load_json(folder / "r.json");
+    const json report = load_json(folder / "r.json");
     std::vector<double> all;
     for (const json& view : report.at("views")) all.push_back(view.at("eyes").at(0).at("position").at(0));
     return all;
@@ -48,11 +41,11 @@ TEST_F(KeysPath, GoesThroughKeys) {
                     "smoothly through the 4 keys of " + path + " in 1.5 s, by their times"));
   std::vector<double> x = places();
   ASSERT_EQ(x.size(), 13u);
-  EXPECT_TRUE(std::filesystem::exists(out + "/path_00012.png"));
+  EXPECT_TRUE(fs::exists(out + "/path_00012.png"));
   for (const std::size_t k : {0, 1, 2, 3})
     EXPECT_NEAR(x[4 * k], 0.9 * std::sqrt(static_cast<double>(k) / 3.0), 1e-6);
   EXPECT_GT(x[1] - x[0], 2.0 * (x[12] - x[11])) << "by the times, and not at an even pace";
-  EXPECT_NE(test::read_text(out + "/path_00011.png"), test::read_text(out + "/path_00012.png"));
+  EXPECT_NE(read_text(out + "/path_00011.png"), read_text(out + "/path_00012.png"));
 
   EXPECT_TRUE(ended(along({"--fps", "8", "--seconds", "1"}), 0, "in 1 s: 9 frames"));
   x = places();
@@ -75,7 +68,7 @@ TEST_F(KeysPath, ManyFramesAreToldInAFewLines) {
   const auto few = lines("4", false);
   EXPECT_LT(lines("8", true), few);
   EXPECT_EQ(places().size(), 13u) << "each by itself";
-  const json report = test::load_json(folder / "r.json");
+  const json report = load_json(folder / "r.json");
   const bool by_cpu = report["device"]["renderer"].get<std::string>().starts_with("llvmpipe");
   EXPECT_TRUE(!by_cpu || report.contains("exact_frame_ms")) << "whether --quality pays is not known";
   EXPECT_TRUE(
@@ -94,7 +87,7 @@ TEST_F(KeysPath, FramesAreFrames) {
   save_cameras(0.5);
   EXPECT_TRUE(good(along({"--keys"})));
   EXPECT_EQ(places().size(), 4u);
-  EXPECT_TRUE(std::filesystem::exists(out + "/key_3.png"));
+  EXPECT_TRUE(fs::exists(out + "/key_3.png"));
 }
 
 TEST_F(KeysPath, APairOfEyesIsOneKey) {
@@ -102,11 +95,11 @@ TEST_F(KeysPath, APairOfEyesIsOneKey) {
   for (int k = 0; k < 3; ++k) {
     for (const int side : {1, -1}) {  // the right eye first
       const std::string name = fmt::format("head{}_{}", k, side < 0 ? "left" : "right");
-      cameras.push_back(test::camera_json(name, 0.3 * k + 0.03 * side));
+      cameras.push_back(camera_json(name, 0.3 * k + 0.03 * side));
       cameras.back()["time"] = 0.5 * k;
     }
   }
-  write_text(path, cameras.dump());
+  save("path.json", cameras);
   for (const Words& more : {Words{"--fps", "4"}, {"--fps", "4", "--seconds", "1"}}) {
     EXPECT_TRUE(ended(along(more), 0, "through the 3 keys of " + path + " in 1 s"));
     const std::vector<double> x = places();

@@ -4,29 +4,22 @@
 
 #include "app/scene.h"
 #include "formats/exr.h"
-#include "formats/image_file.h"
 #include "measure/comparison.h"
 
 namespace binosplat {
 namespace {
 
-using test::ended;
-using test::good;
-using test::has;
-using test::run_program;
-using test::Words;
-
-struct Photos : test::SceneTest {
+struct Photos : SceneTest {
   Photos() {
     // Colours within 0 to 1: files of 8 bits have no others.
-    test::PlyFile file = test::small_model();
+    PlyFile file = small_model();
     for (std::size_t i = 0; i < file.rows.size(); ++i) {
       for (std::size_t k = 0; k < file.columns.size(); ++k)
         file.rows[i][k] *= file.columns[k].starts_with("f_") ? 0.2 : 1.0;
     }
-    test::write_text(model, to_bytes(file));
+    write_text(model, to_bytes(file));
     add_cameras();
-    std::filesystem::create_directories(photos);
+    fs::create_directories(photos);
     EXPECT_TRUE(good(render(joined(front, {"-o", folder / "exact.png"}))));
     exact = load_image(folder / "exact.png");
   }
@@ -78,7 +71,7 @@ TEST_F(Photos, WithAlphaAreBeforeTheBackgroundOfThePictures) {
   EXPECT_EQ(run_program({"compare", folder / "1,1,1.png", photo, "--min-psnr", "45"}).code, 1);
   EXPECT_TRUE(ended(run_program({"compare", folder / "exact.png", photo, "--json", folder / "c.json"}), 0,
                     "before the background 0,0,0"));
-  EXPECT_EQ(test::load_json(folder / "c.json")["background"], nlohmann::json({0, 0, 0}));
+  EXPECT_EQ(load_json(folder / "c.json")["background"], json({0, 0, 0}));
 }
 
 TEST_F(Photos, MayBeGreyOrOpenExr) {
@@ -88,54 +81,42 @@ TEST_F(Photos, MayBeGreyOrOpenExr) {
   Image a = exact, b = grey;
   measure::make_shown(a, b);
   EXPECT_NEAR(psnr(), measure::psnr(a, b), 1e-3);
-  std::filesystem::remove(photo);
+  fs::remove(photo);
   ASSERT_TRUE(good(render(joined(front, {"--exr", "float", "-o", photos + "/front.exr"}))));
   EXPECT_GT(psnr(), 57.0);  // but for the rounding of the picture
 }
 
 TEST_F(Photos, WhatCannotBeReadIsFoundBeforeTheModel) {
   const std::string whole = png_bytes(exact), cameras = folder / "cameras2.json";
-  test::write_text(folder / "broken.ply", "no model");
-  std::filesystem::copy(folder / "cameras.json", cameras);
+  write_text(folder / "broken.ply", "no model");
+  fs::copy(folder / "cameras.json", cameras);
   const auto run = [&](const char* command, const Words& more) {
+    fs::remove_all(folder / "new");
     return run_program(
         joined({command, folder / "broken.ply", "--photos", photos, "--cameras", cameras}, more));
   };
+  const std::pair<const char*, Words> commands[] = {
+      {"render", {"--view", "front", "--mono", "-o", out}},
+      {"calibrate", {"--max-drop", "1", "-o", folder / "c.json"}},
+      {"trim", {"--max-drop", "1", "-o", folder / "t.ply"}},
+      {"refit", {"-o", folder / "f.ply"}},
+      {"bench", {"-o", folder / "new"}},
+      {"bench", {"--axes", "paper", "-o", folder / "new"}},
+  };
   const auto refused = [&](const std::string& bytes, const std::string& said) {
-    test::write_text(photo, bytes);
-    const std::pair<const char*, Words> commands[] = {
-        {"render", {"--view", "front", "--mono", "-o", out}},
-        {"calibrate", {"--max-drop", "1", "-o", folder / "c.json"}},
-        {"trim", {"--max-drop", "1", "-o", folder / "t.ply"}},
-        {"refit", {"-o", folder / "f.ply"}},
-        {"bench", {"-o", folder / "new"}},
-    };
+    write_text(photo, bytes);
     for (const auto& [command, more] : commands) EXPECT_TRUE(ended(run(command, more), 2, said)) << command;
   };
   refused("no picture", "front.png is not a picture that can be read");
-  refused(whole.substr(0, whole.size() / 2), "front.png: broken PNG: the file is cut short");
   refused(png_bytes(Image(5, 5, 4)), "front.png has 5 x 5 px");
   // Planted fault: one that can be read, so that the model is what is wrong.
   refused(whole, "broken.ply");
-  std::filesystem::rename(photo, photos + "/other.png");
-  EXPECT_TRUE(ended(run("render", {"--mono", "--view", "front", "-o", out}), 2,
-                    "there is no photo of any view drawn, for one front.jpg"));
-}
-
-TEST_F(Photos, CalibrationTakesThemToo) {
-  const auto entries = [&] {
-    EXPECT_TRUE(good(
-        run_program({"calibrate", model, "--photos", photos, "--max-drop", "0.5", "-o", folder / "c.json"})));
-    nlohmann::json found = test::load_json(folder / "c.json")["entries"];
-    for (nlohmann::json& entry : found) entry.erase("seconds");
-    return found;
-  };
-  // Not the exact picture itself: a search for what it may lose would go on to its end.
-  ASSERT_TRUE(good(render(joined(front, {"--background", "0.1,0.1,0.1", "-o", photo}))));
-  exact = load_image(photo);
-  const nlohmann::json expected = entries();
-  save_png(photo, rgba(1.0f));
-  EXPECT_EQ(entries(), expected);
+  // None, where all else is well.
+  fs::remove(photo);
+  fs::copy_file(model, folder / "broken.ply", fs::copy_options::overwrite_existing);
+  for (const auto& [command, more] : commands)
+    EXPECT_TRUE(ended(run(command, more), 2, "there is no photo of any view")) << command;
+  EXPECT_TRUE(ended(run("render", commands[0].second), 2, "drawn, for one front.jpg"));
 }
 
 }  // namespace

@@ -1,39 +1,28 @@
 // binosplat profile, as a user runs it.
 
-#include <gtest/gtest.h>
-
-#include <nlohmann/json.hpp>
-
 #include "app/scene.h"
 #include "lab/trace_rules.h"
-#include "support/program.h"
 
 namespace binosplat {
 namespace {
 
-using nlohmann::json;
-
-struct ProfileCommand : test::SceneTest {
+struct ProfileCommand : SceneTest {
   ProfileCommand() { add_row_of_cameras(4); }
 
-  test::Outcome profile(std::vector<std::string> more) const {
-    more.insert(more.begin(), {"profile", model, "-o", out});
-    return test::run_program(more);
-  }
+  Outcome profile(const Words& more) const { return run_into_out(joined({"profile", model}, more)); }
   /// The run's one row.
-  json row() const { return test::load_json(out + "/results.json").at("points").at(0); }
-  lab::Table frames() const { return test::frames_of(test::read_text(out + "/frames.csv")); }
+  json row() const { return load_json(out + "/results.json").at("points").at(0); }
+  lab::Table frames() const { return test::frames_of(read_text(out + "/frames.csv")); }
 };
 
 TEST_F(ProfileCommand, LeavesAReportATraceAndATable) {
-  const test::Outcome outcome = profile({"--tour", "calm", "--seconds", "0.2", "--size", "48x32"});
-  ASSERT_TRUE(test::good(outcome));
-  EXPECT_EQ(folder.files(),
-            (std::set<std::string>{"cameras.json", "model.ply", "out/frames.csv", "out/report.html",
+  const Outcome outcome = profile({"--tour", "calm", "--seconds", "0.2", "--size", "48x32"});
+  ASSERT_TRUE(good(outcome));
+  EXPECT_EQ(folder.files(), (Names{"cameras.json", "model.ply", "out/frames.csv", "out/report.html",
                                    "out/results.csv", "out/results.json", "out/trace.json"}));
-  const json trace = json::parse(test::read_text(out + "/trace.json"));
-  EXPECT_EQ(test::faults_of_trace(trace), std::vector<std::string>());
-  EXPECT_EQ(test::differences_of(trace, frames()), std::vector<std::string>());
+  const json trace = json::parse(read_text(out + "/trace.json"));
+  EXPECT_EQ(test::faults_of_trace(trace), Words());
+  EXPECT_EQ(test::differences_of(trace, frames()), Words());
   EXPECT_EQ(frames().rows.size(), 18u) << "90 a second";
   const json numbers = row();
   EXPECT_EQ(numbers["frames"], 18);
@@ -41,94 +30,81 @@ TEST_F(ProfileCommand, LeavesAReportATraceAndATable) {
   EXPECT_EQ(numbers["size"], "48x32");
   EXPECT_EQ(numbers["along"], "tour calm");
   EXPECT_EQ(numbers["details"].size(), 10u) << "the worst";
-  EXPECT_TRUE(test::has(outcome.out, "18 frames of 2 x 48 x 32 px, exact"));
-  EXPECT_TRUE(test::has(outcome.out, "missed  "));
+  EXPECT_TRUE(has(outcome.out, "18 frames of 2 x 48 x 32 px, exact"));
+  EXPECT_TRUE(has(outcome.out, "missed  "));
   const lab::Table table = frames();
   for (const auto& [name, px] : {std::pair{"width", 48.0}, {"height", 32.0}}) {
     const auto at = std::ranges::find(table.columns, name) - table.columns.begin();
     ASSERT_LT(at, std::ssize(table.columns));
     EXPECT_EQ(table.rows[0][static_cast<std::size_t>(at)], lab::Cell(px));
   }
-  EXPECT_TRUE(test::has(outcome.out, "\nbound   the CPU, which draws ("));
+  EXPECT_TRUE(has(outcome.out, "\nbound   the CPU, which draws ("));
   EXPECT_LE(std::count(outcome.out.begin(), outcome.out.end(), '\n'), 11);
-  const std::string page = test::read_text(out + "/report.html");
-  EXPECT_TRUE(page.find("The frames that took longest") != page.npos);
-  EXPECT_TRUE(page.find("binosplat profile ") != page.npos) << "the command";
+  const std::string page = read_text(out + "/report.html");
+  EXPECT_TRUE(has(page, "The frames that took longest"));
+  EXPECT_TRUE(has(page, "binosplat profile ")) << "the command";
 }
 
 TEST_F(ProfileCommand, WalksThroughTheCamerasWhereNothingElseIsAskedFor) {
-  ASSERT_TRUE(test::good(profile({"--seconds", "0.1", "--size", "24x16", "--fps", "0", "--no-clock"})));
+  ASSERT_TRUE(good(profile({"--seconds", "0.1", "--size", "24x16", "--fps", "0", "--no-clock"})));
   const json numbers = row();
   EXPECT_EQ(numbers["along"], "tour walk");
   EXPECT_EQ(numbers["frames"], 9) << "poses are 90 a second";
   EXPECT_EQ(numbers["missed"], 0) << "nothing is due";
-  std::filesystem::remove(folder / "cameras.json");
-  ASSERT_TRUE(test::good(profile({"--seconds", "0.1", "--size", "24x16", "--fps", "20"})));
+  fs::remove(folder / "cameras.json");
+  ASSERT_TRUE(good(profile({"--seconds", "0.1", "--size", "24x16", "--fps", "20"})));
   EXPECT_EQ(row()["frames"], 2) << "without cameras it stands";
   add_row_of_cameras(1);
-  ASSERT_TRUE(test::good(profile({"--seconds", "0.1", "--size", "24x16", "--fps", "20"})));
+  ASSERT_TRUE(good(profile({"--seconds", "0.1", "--size", "24x16", "--fps", "20"})));
   EXPECT_EQ(row()["along"], "standing at view0");
-  EXPECT_TRUE(test::ended(profile({"--path", folder / "none.json"}), 2, "none.json"));
-  ASSERT_TRUE(test::good(profile({"--path", folder / "cameras.json", "--size", "24x16"})));
+  EXPECT_TRUE(ended(profile({"--path", folder / "none.json"}), 2, "none.json"));
+  ASSERT_TRUE(good(profile({"--path", folder / "cameras.json", "--size", "24x16"})));
   EXPECT_EQ(row()["frames"], 1);
 }
 
 TEST_F(ProfileCommand, StandsAtAViewAndComparesWithTheRunBefore) {
-  const std::vector<std::string> still = {"--view", "view1", "--seconds", "0.4",       "--fps", "0",
-                                          "--size", "36x24", "--mono",    "--quality", "40"};
-  ASSERT_TRUE(test::good(profile(still)));
+  const Words still = {"--view", "view1", "--seconds", "0.4",       "--fps", "0",
+                       "--size", "36x24", "--mono",    "--quality", "40"};
+  ASSERT_TRUE(good(profile(still)));
   EXPECT_EQ(row()["along"], "standing at view1");
-  const std::string text = test::read_text(out + "/frames.csv");
-  EXPECT_TRUE(text.find("measured its error") != text.npos);
+  EXPECT_TRUE(has(read_text(out + "/frames.csv"), "measured its error"));
   const std::string before = folder / "before.json";
-  std::filesystem::copy(out + "/results.json", before);
-  const auto more = [&](std::vector<std::string> words) {
-    words.insert(words.begin(), still.begin(), still.end());
-    return words;
-  };
-  const test::Outcome same = profile(more({"--compare", before}));
-  ASSERT_TRUE(test::good(same));
-  EXPECT_TRUE(test::has(same.out, "numbers of 1 points in both runs changed beyond noise"));
+  fs::copy(out + "/results.json", before);
+  const Words compared = joined(still, {"--compare", before});
+  const Outcome same = profile(compared);
+  ASSERT_TRUE(good(same));
+  EXPECT_TRUE(has(same.out, "numbers of 1 points in both runs changed beyond noise"));
   // The same frames, had they ten times as many pairs: a count, which no load on this machine moves.
-  json old = test::load_json(before);
+  json old = load_json(before);
   old["points"][0]["pairs"] = 10.0 * old["points"][0]["pairs"].get<double>();
   for (auto& ms : old["points"][0]["cpu_repeats_ms"]) ms = 1e-3 * ms.get<double>();
-  test::write_text(before, old.dump());
-  EXPECT_TRUE(test::has(profile(more({"--compare", before})).out, " pairs -> "));
-  EXPECT_TRUE(
-      test::ended(profile(more({"--compare", before, "--fail-if-slower", "50"})), 1, "slower than in"));
+  save("before.json", old);
+  EXPECT_TRUE(has(profile(compared).out, " pairs -> "));
+  EXPECT_TRUE(ended(profile(joined(compared, {"--fail-if-slower", "50"})), 1, "slower than in"));
 }
 
 TEST_F(ProfileCommand, WhatMakesNoSenseIsNamedAndLeavesNothing) {
-  const auto before = folder.files();
-  const std::string old = folder / "model.ply";  // no JSON
-  const std::vector<std::pair<std::vector<std::string>, std::string>> wrong = {
-      {{"--tour", "calm", "--view", "view1"}, "--tour with --view"},
-      {{"--view", "all"}, "--view stands at one camera: name one"},
-      {{"--view", "nobody"}, "nobody"},
-      {{"--tour", "crawl"}, "--tour crawl"},
-      {{"--frames", "3"}, "--frames: binosplat profile has no such option"},
-      {{"--fps", "-1"}, "frames a second from 0 to 1000"},
-      {{"--fps", "1e-9"}, "--fps 1e-09: expected 0, or 0.01 to 1000"},
-      {{"--seconds", "1e18"}, "--seconds: 1e18: expected seconds above zero (0.000001 to 1000000)"},
-      {{"--seconds", "1e6", "--view", "view1"}, "fewer --seconds, at most"},
-      {{"--compare", folder / "none.json"}, "none.json"},
-      {{"--compare", old}, "not JSON"},
-      {{"--fail-if-slower", "3"}, "--fail-if-slower goes with --compare"},
-      {{"-o", model}, "model.ply"},
-      {{"--eye", "0,0,0"}, "--eye needs --at"}};
-  for (const auto& [options, message] : wrong) {
-    std::vector<std::string> all = {"profile", model, "--size", "36x24"};
-    if (options[0] != "-o") all.insert(all.end(), {"-o", out});
-    all.insert(all.end(), options.begin(), options.end());
-    EXPECT_TRUE(test::ended(test::run_program(all), 2, message)) << options[0];
-  }
-  EXPECT_EQ(folder.files(), before);
+  expect_refused_after(
+      {"profile", model, "--size", "36x24"},
+      {{{"--tour", "calm", "--view", "view1"}, "--tour with --view"},
+       {{"--view", "all"}, "--view stands at one camera: name one"},
+       {{"--view", "nobody"}, "nobody"},
+       {{"--tour", "crawl"}, "--tour crawl"},
+       {{"--frames", "3"}, "--frames: binosplat profile has no such option"},
+       {{"--fps", "-1"}, "frames a second from 0 to 1000"},
+       {{"--fps", "1e-9"}, "--fps 1e-09: expected 0, or 0.01 to 1000"},
+       {{"--seconds", "1e18"}, "--seconds: 1e18: expected seconds above zero (0.000001 to 1000000)"},
+       {{"--seconds", "1e6", "--view", "view1"}, "fewer --seconds, at most"},
+       {{"--compare", folder / "none.json"}, "none.json"},
+       {{"--compare", model}, "not JSON"},
+       {{"--fail-if-slower", "3"}, "--fail-if-slower goes with --compare"},
+       {{"-o", model}, "model.ply"},
+       {{"--eye", "0,0,0"}, "--eye needs --at"}});
   // The table is small, the page is not: neither is left.
-  const test::Outcome full =
-      test::run_program({"profile", model, "--size", "36x24", "--seconds", "0.1", "-o", out},
-                        {.limits = {{RLIMIT_FSIZE, 100'000}}});
-  EXPECT_TRUE(test::ended(full, 2, "report.html"));
+  const auto before = folder.files();
+  EXPECT_TRUE(ended(run_into_out({"profile", model, "--size", "36x24", "--seconds", "0.1"},
+                                 {.limits = {{RLIMIT_FSIZE, 100'000}}}),
+                    2, "report.html"));
   EXPECT_EQ(folder.files(), before);
 }
 

@@ -7,11 +7,7 @@
 namespace binosplat {
 namespace {
 
-using test::ended;
-using test::run_program;
-using test::Words;
-
-struct Refusals : test::SceneTest {
+struct Refusals : SceneTest {
   Refusals() { add_cameras(); }
   const std::string cameras = folder / "cameras.json", png = folder / "a.png", exr = folder / "a.exr";
 };
@@ -24,13 +20,9 @@ TEST_F(Refusals, Cameras) {
        "--eye with --view: it makes a camera of its own"},
       {{"--orbit", "3", "--eye", "0,0,0", "--at", "0,0,1"}, "--eye with --orbit"},
       {{"--up", "0,0,1"}, "--up and --fov are for cameras that are made up"},
-      {{"--cameras", cameras, "--fov", "50"}, "--up and --fov are for cameras"},
       {{"--eye", "1,2", "--at", "0,0,0"}, "three numbers"},
-      {{"--eye", "1,2,nan", "--at", "0,0,0"}, "three numbers"},
       {{"--fov", "200", "--orbit", "1"}, "between 0 and 180"},
-      {{"--near", "0"}, "above zero"},
       {{"--size", "0x10"}, "WIDTHxHEIGHT"},
-      {{"--size", "10"}, "WIDTHxHEIGHT"},
       {{"--size", "99999999999x2"}, "WIDTHxHEIGHT"},
       {{"--size", "2000000000x2000000000", "--mono"}, "2^31 pixels"},
       {{"--view", "frnt"}, "has no camera of this name. It has:\n  front\n  side\n"},
@@ -39,10 +31,9 @@ TEST_F(Refusals, Cameras) {
       {{"--view", "pair", "--preset", "headset"}, "use --size"},
       {{"--view", "all", "-o", png}, "name a folder"},
       {{"--view", "front,side", "-o", png}, "is one file, and 2 views are to be drawn (front, side)"},
-      {{"--cameras", folder / "no.json"}, "no.json"},
       {{"--axes", "xyz"}, "axes 'XYZ': expected three letters"},
   });
-  std::filesystem::remove(cameras);
+  fs::remove(cameras);
   expect_refused({{{"--view", "front"}, "no cameras beside"}});
 }
 
@@ -56,27 +47,21 @@ TEST_F(Refusals, Eyes) {
       {{"--ipd", "0.063x"}, "its unit may be m, cm or mm"},
       {{"--convergence", "3ft"}, "its unit may be m, cm or mm"},
       {{"--convergence", "near"}, "--convergence near: expected metres"},
-      {{"--convergence", "-3cm"}, "--convergence"},
-      {{"--units-per-metre", "0"}, "above zero"},
   });
 }
 
 TEST_F(Refusals, Outputs) {
-  test::write_text(folder / "file", "in the way");
-  std::filesystem::create_directories(folder / "taken.png");
+  write_text(folder / "file", "in the way");
+  fs::create_directories(folder / "taken.png");
   expect_refused({
       {{"-o", folder / "a.gif"}, "pictures are written as .png or .exr"},
       {{"-o", folder / "a.vr.jpg"}, "pictures are written as .png"},
-      {{"-o", folder / "a.avi"}, "videos as .mp4"},
       {{"-o", "-"}, "-o -: pictures are files"},
-      {{"-o", folder / "file"}, "is a file where a folder is needed"},
       {{"-o", folder / "file/deep/out"}, "is a file where a folder is needed"},
-      {{"-o", folder / "file/a.png"}, "is a file where a folder is needed"},
       {{"-o", folder / "taken.png"}, "it is a folder"},
       {{"--json", folder / "file/r.json"}, "is a file where a folder is needed"},
       {{"-o", "/proc/nowhere"}, "cannot write /proc/nowhere"},
       {{"--photos", folder.path()}, "--photos needs --mono"},
-      {{"--photos", folder.path(), "--mono"}, "no photo of any view"},
       {{"-o", exr, "--bits", "16"}, "--bits is for PNG"},
       {{"--exr-encoding", "display"}, "--exr-encoding is for OpenEXR"},
       {{"--background", "2,0,0"}, "from 0 to 1, or none"},
@@ -87,25 +72,22 @@ TEST_F(Refusals, Outputs) {
 TEST_F(Refusals, Layouts) {
   expect_refused({
       {{"--layout", "rows", "--mono"}, "--layout rows needs both eyes"},
-      {{"--layout", "rows", "--only", "left"}, "--layout rows needs both eyes"},
       {{"--layout", "separate", "-o", png}, "must be a folder"},
       {{"--layout", "multi-view", "-o", png}, "is OpenEXR's"},
       {{"--layout", "multi-view", "--bits", "8"}, "--bits is for PNG"},
       {{"--layout", "anaglyph", "-o", exr}, "write PNG only"},
       {{"--layout", "grey", "--exr", "half"}, "write PNG only"},
       {{"--layout", "half-colour", "--background", "none"}, "--background none is not for it"},
-      {{"--layout", "half-width", "--size", "75x48"}, "even width"},
       {{"--layout", "sideways"}, "sideways"},
       {{"--layout", "quad-buffer"}, "binosplat view"},
       {{"--show", "colour"}, "colour"},
       {{"--show", "disagreement", "--mono"}, "both eyes"},
       {{"--show", "alphas", "--reference-until", "blend"}, "--show alphas"},
       {{"--show", "depth", "-o", exr}, "PNG and videos"},
-      {{"--show", "depth", "--exr", "half"}, "PNG and videos"},
   });
-  nlohmann::json odd = {test::camera_json("odd_left", -0.1), test::camera_json("odd_right", 0.1)};
+  json odd = {camera_json("odd_left", -0.1), camera_json("odd_right", 0.1)};
   odd[1]["width"] = 70;
-  test::write_text(cameras, odd.dump());
+  write_text(cameras, odd.dump());
   expect_refused({{{"-o", png}, "72 x 48 and 70 x 48 px"}});
 }
 
@@ -114,24 +96,15 @@ TEST_F(Refusals, Drawing) {
       {{"--th", "squared"}, "needs --tolerance, --quality or --calibration"},
       {{"--th", "tau", "--quality", "40"}, "--quality has no effect"},
       {{"--tolerance", "1", "--quality", "40"}, "--tolerance with --quality"},
-      {{"--quality", "-3"}, "--quality"},
       {{"--quality", "40", "--reference-until", "project"}, "--reference-until"},
-      {{"--th", "tau", "--tolerance", "1"}, "--tolerance has no effect"},
-      {{"--tolerance", "-1"}, "--tolerance"},
-      {{"--transmittance", "last"}, "--transmittance has no effect with --th tau"},
       {{"--tolerance", "1", "--transmittance", "last", "--reference-until", "project"}, "--reference-until"},
       {{"--path", "x.json", "--frames", "3"}, "--path with --frames: it names its own cameras"},
       {{"--tiles", "round"}, "see: binosplat render --help"},
-      {{"--tile", "12"}, "see: binosplat render --help"},
       {{"--frames", "0"}, "see: binosplat render --help"},
-      {{"--no-such-option"}, "see: binosplat render --help"},
       {{"--reference-until", "lunch"}, "see: binosplat render --help"},
       {{"--shader-dir", "/no/such/folder"}, "/no/such/folder"},
       {{"--device", "0", "--backend", "surfaceless"}, "surfaceless has none"},
-      {{"--device", "0", "--backend", "osmesa"}, "osmesa has none"},
-      {{"--calibration", "nosuch.json"}, "cannot read nosuch.json"},
       {{"--kernel-px2", "0"}, "--kernel-px2"},
-      {{"--kernel-px2", "x"}, "--kernel-px2"},
   });
 }
 
@@ -139,15 +112,11 @@ TEST_F(Refusals, Foveation) {
   expect_refused({
       {{"--foveate", "inset=0"}, "--foveate inset 0: expected 1 to 120"},
       {{"--foveate", "inset=20px"}, "inset=20px: expected degrees"},
-      {{"--foveate", "inset=nan"}, "inset nan"},
-      {{"--foveate", "context=2"}, "context 2: expected 0.05 to 1"},
       {{"--foveate", "contxt=0.4"}, "there is no contxt; did you mean context?"},
       {{"--foveate", "20"}, "'20' is no WORD=NUMBER"},
       {{"--foveate", "inset=20,inset=30"}, "inset is given twice"},
       {{"--foveate", "gaze=3"}, "gaze=3: expected degrees to the right and up"},
       {{"--foveate", "gaze=3,up"}, "gaze=up: expected degrees"},
-      {{"--foveate", "gaze=60,0", "--size", "216x144"}, "the inset lies outside the picture of 216 x 144"},
-      {{"--foveate", "inset=20,0.4"}, "'0.4' is no WORD=NUMBER"},
       {{"--foveate", "gaze=1,1,2,2", "--mono"}, "two are for both eyes"},
       {{"--foveate", "inset=20", "--vr180"}, "--vr180 with --foveate"},
       {{"--foveate", "inset=20", "--quality", "40"}, "--foveate with --quality"},
@@ -174,13 +143,8 @@ TEST_F(Refusals, Panoramas) {
 TEST_F(Refusals, ToursAndPaths) {
   expect_refused({
       {{"--tour", "trot"}, "--tour trot: expected calm, walk, fast, or metres and degrees a second"},
-      {{"--tour", "1.5"}, "as in 1.5,45"},
       {{"--tour", "1.5,45,3"}, "as in 1.5,45"},
       {{"--tour", "0,45"}, "above 0"},
-      {{"--tour", "1,-45"}, "above 0"},
-      {{"--tour", "inf,45"}, "above 0"},
-      {{"--tour", "walk", "--seconds", "0"}, "above zero"},
-      {{"--tour", "walk", "--fps", "-1"}, "above zero"},
       {{"--seconds", "1"}, "--seconds is for --tour, how much of it is drawn, and for --path"},
       {{"--fps", "30"}, "--fps is for videos, --tour, --path"},
       {{"--tour", "walk", "--view", "front"}, "--tour with --view: it goes through all cameras"},
@@ -198,9 +162,9 @@ TEST_F(Refusals, ToursAndPaths) {
       {{"--path", cameras, "--keys", "--seconds", "2"}, "--keys with --seconds"},
       {{"--keys"}, "--keys needs --path"},
   });
-  test::write_text(cameras, nlohmann::json({test::camera_json("lonely", 0.0)}).dump());
+  write_text(cameras, json({camera_json("lonely", 0.0)}).dump());
   expect_refused({{{"--tour", "walk"}, "there is 1: name a file of more with --cameras"}});
-  std::filesystem::remove(cameras);
+  fs::remove(cameras);
   expect_refused(
       {{{"--tour", "walk"}, "--tour goes through cameras: no cameras beside " + model + "; name their"}});
 }
@@ -227,72 +191,58 @@ TEST_F(Refusals, Scenes) {
       {{"--repeat", "2x2"}, "--repeat and --spacing go together"},
       {{"--spacing", "2"}, "--repeat and --spacing go together"},
       {{"--repeat", "0x2", "--spacing", "1"}, "NXxNZ, for one 4x4"},
-      {{"--repeat", "4", "--spacing", "1"}, "NXxNZ, for one 4x4"},
-      {{"--repeat", "99999999999x2", "--spacing", "1"}, "NXxNZ, for one 4x4"},
       {{"--repeat", "65536x65536", "--spacing", "1"}, "--repeat 65536x65536 of 300 Gaussians"},
-      {{"--repeat", "2x2", "--spacing", "0"}, "above zero"},
       {{"--repeat", "2x2", "--spacing", "1e300"}, "--spacing: 1e300: expected a number above zero"},
       {{"--appearance", "0"}, "no Scaffold-GS"},
   });
-  const test::Refusal others[] = {
-      {{"https://example.org/a.ply"}, "download it first"},
-      {{"demo:town"}, "are called demo:room and demo:city"},
-      {{"demo:room", "--seed", "3"}, "--seed is for demo:city"},
-      {{"demo:room", "--axes", "rub"}, "--axes is for model files"},
-      {{"demo:room", "--appearance", "0"}, "--appearance is for model files"},
-      {{"demo:room", "--decode", "eyes"}, "no Scaffold-GS"},
-      {{"demo:city", "--count", "9999"}, "--count 9999: demo:city is made of 10000 to 100000000 Gaussians"},
-      {{"demo:city", "--count", "-5"}, "expected a whole number"},
-      {{"demo:city", "--count", "99999999999999999999999"}, "expected a whole number"},
-      {{"demo:city", "--seed", "many"}, "see: binosplat render --help"},
-  };
-  for (const auto& [words, said] : others)
-    EXPECT_TRUE(ended(run_program(joined({"render", "-o", out}, words)), 2, said));
-  EXPECT_FALSE(std::filesystem::exists(out));
+  expect_refused_after(
+      {"render"},
+      {{{"https://example.org/a.ply"}, "download it first"},
+       {{"demo:town"}, "are called demo:room and demo:city"},
+       {{"demo:room", "--axes", "rub"}, "--axes is for model files"},
+       {{"demo:room", "--appearance", "0"}, "--appearance is for model files"},
+       {{"demo:room", "--decode", "eyes"}, "no Scaffold-GS"},
+       {{"demo:city", "--count", "9999"}, "--count 9999: demo:city is made of 10000 to 100000000 Gaussians"},
+       {{"demo:city", "--count", "-5"}, "expected a whole number"},
+       {{"demo:city", "--count", "99999999999999999999999"}, "expected a whole number"},
+       {{"demo:city", "--seed", "many"}, "see: binosplat render --help"}});
 }
 
 TEST_F(Refusals, Scaffolds) {
-  const auto trained = folder / "trained";
-  std::filesystem::create_directories(trained);
+  const std::string trained = folder / "trained", none = "is a Scaffold-GS model";
+  fs::create_directories(trained);
   test::write_scaffold(trained, test::random_scaffold(1, {.anchors = 10, .appearances = 3}));
-  const auto refused = [&](const char* command, const Words& more, const std::string& said) {
-    return ended(run_program(joined({command, trained}, more)), 2, said);
-  };
-  EXPECT_TRUE(refused("convert", {"-o", folder / "m.ply"},
-                      "is a Scaffold-GS model, which makes its Gaussians anew for each eye"));
-  EXPECT_TRUE(refused("render", {"--appearance", "3", "-o", out}, "has appearances 0 to 2"));
-  EXPECT_TRUE(refused("render", {"--decode", "cyclopean", "--mono", "-o", out}, "--decode cyclopean"));
-  std::filesystem::remove(trained / "cov_mlp.pt");
-  EXPECT_TRUE(refused("render", {"-o", out}, "cov_mlp.pt is missing"));
-  EXPECT_FALSE(std::filesystem::exists(folder / "m.ply") || std::filesystem::exists(out));
+  expect_refused_after(
+      {}, {{{"convert", trained, "-o", folder / "m.ply"}, none},
+           {{"trim", trained, "-o", folder / "m.ply", "--quality", "40", "--cameras", cameras}, none},
+           {{"info", trained, "--cameras", cameras}, none},
+           {{"render", trained, "--appearance", "3"}, "has appearances 0 to 2"},
+           {{"render", trained, "--decode", "cyclopean", "--mono"}, "--decode cyclopean"}});
+  fs::remove(trained + "/cov_mlp.pt");
+  expect_refused_after({"render", trained}, {{{}, "cov_mlp.pt is missing"}});
 }
 
 // Every number of every command.
 TEST_F(Refusals, Numbers) {
   const std::string to = folder / "to.ply";
-  for (Words line : {Words{"render", model, "-o", out, "--quality"},
-                     {"trim", model, "-o", to, "--quality"},
-                     {"calibrate", model, "-o", to, "--quality"}}) {
-    line.emplace_back();
-    for (const char* number : {"nan", "inf", "4000", "-40", "9.9", "100.1"}) {
-      line.back() = number;
-      EXPECT_TRUE(ended(run_program(line), 2, "expected decibels from 10 to 100")) << line[0] << number;
-    }
+  const Words render = {"render", model}, trim = {"trim", model, "-o", to},
+              calibrate = {"calibrate", model, "-o", to}, compare = {"compare", model, model};
+  for (const char* number : {"nan", "inf", "4000", "-40", "9.9", "100.1"}) {
+    for (const Words& line : {render, trim, calibrate})
+      expect_refused_after(line, {{{"--quality", number}, "expected decibels from 10 to 100"}});
   }
-  const std::vector<std::pair<Words, Words>> others = {
-      {{"render", model, "-o", out},
+  const std::pair<Words, Words> options_of[] = {
+      {render,
        {"--tolerance", "--near", "--fov", "--fps", "--kernel-px2", "--gpu-memory", "--max-memory",
         "--units-per-metre", "--ipd", "--cant", "--convergence", "--spacing", "--detail", "--seconds"}},
-      {{"trim", model, "-o", to}, {"--max-drop"}},
-      {{"calibrate", model, "-o", to}, {"--max-drop", "--far"}},
-      {{"compare", model, model}, {"--min-psnr", "--ppd", "--max-memory"}},
+      {trim, {"--max-drop"}},
+      {calibrate, {"--max-drop", "--far"}},
+      {compare, {"--min-psnr", "--ppd", "--max-memory"}},
       {{"bench", model}, {"--ppd", "--ipd", "--units-per-metre"}},
   };
-  for (const auto& [line, options] : others) {
-    for (const std::string& option : options)
-      EXPECT_TRUE(ended(run_program(joined(line, {option, "nan"})), 2, "nan")) << line[0] << option;
+  for (const auto& [line, options] : options_of) {
+    for (const std::string& option : options) expect_refused_after(line, {{{option, "nan"}, "nan"}});
   }
-  EXPECT_FALSE(std::filesystem::exists(out) || std::filesystem::exists(to));
 }
 
 }  // namespace

@@ -11,7 +11,9 @@
 #include <vector>
 
 #include "base/output_file.h"
+#include "formats/image_file.h"
 #include "formats/model_output.h"
+#include "measure/metrics.h"
 #include "support/fixtures.h"
 #include "support/ply.h"
 #include "support/program.h"
@@ -70,6 +72,12 @@ inline Model floor_model() {
 
 using Words = std::vector<std::string>;
 
+/// Both, one behind the other.
+inline Words joined(Words words, const Words& more) {
+  words.insert(words.end(), more.begin(), more.end());
+  return words;
+}
+
 /// Whether a run ended well; shows what it said.
 inline testing::AssertionResult good(const Outcome& outcome) {
   if (outcome.code == 0) return testing::AssertionSuccess();
@@ -91,7 +99,12 @@ inline testing::AssertionResult ended(const Outcome& outcome, int code, const st
                                      << said << "' in: " << outcome.err;
 }
 
-/// What `render` is asked for, and what it says of that.
+/// Of two files.
+inline double psnr_of_files(const std::filesystem::path& a, const std::filesystem::path& b) {
+  return measure::psnr(load_image(a), load_image(b));
+}
+
+/// Words of a command line, and what is said of them.
 struct Refusal {
   Words words;
   std::string said;
@@ -105,11 +118,16 @@ struct SceneTest : testing::Test {
   /// model.ply alone.
   SceneTest() { write_text(model, to_bytes(small_model())); }
 
+  /// A JSON in a file of that name; its path.
+  std::string save(const std::string& name, const nlohmann::json& what) const {
+    write_text(folder / name, what.dump());
+    return folder / name;
+  }
+
   /// Two heads and the two eyes of a pair, 0.2 apart, beside the model.
   void add_cameras() {
-    const nlohmann::json cameras = {camera_json("front", 0.0), camera_json("side", 0.5),
-                                    camera_json("pair_left", -0.1), camera_json("pair_right", 0.1)};
-    write_text(folder / "cameras.json", cameras.dump());
+    save("cameras.json", {camera_json("front", 0.0), camera_json("side", 0.5), camera_json("pair_left", -0.1),
+                          camera_json("pair_right", 0.1)});
   }
 
   /// So many, 0.1 apart: view0 and so on.
@@ -117,7 +135,7 @@ struct SceneTest : testing::Test {
     nlohmann::json cameras;
     for (int i = 0; i < count; ++i)
       cameras.push_back(camera_json("view" + std::to_string(i), 0.1 * i - 0.05 * (count - 1)));
-    write_text(folder / "cameras.json", cameras.dump());
+    save("cameras.json", cameras);
   }
 
   static bool have_ffmpeg() { return std::system("ffmpeg -version > /dev/null 2>&1") == 0; }
@@ -136,17 +154,15 @@ struct SceneTest : testing::Test {
     return asked("ffprobe -v error -count_frames -show_streams " + video);
   }
 
-  /// Both, one behind the other.
-  static Words joined(Words words, const Words& more) {
-    words.insert(words.end(), more.begin(), more.end());
-    return words;
+  /// Runs a command; one that writes, into `out` where no -o says otherwise.
+  Outcome run_into_out(Words words, const Surroundings& surroundings = {}) const {
+    const bool writes = words.front() != "compare" && words.front() != "info";
+    if (writes && std::ranges::find(words, "-o") == words.end()) words.insert(words.end(), {"-o", out});
+    return run_program(words, surroundings);
   }
 
-  /// Into `out`, where no -o says otherwise.
-  Outcome render(Words words, const Surroundings& surroundings = {}) const {
-    words.insert(words.begin(), {"render", model});
-    if (std::find(words.begin(), words.end(), "-o") == words.end()) words.insert(words.end(), {"-o", out});
-    return run_program(words, surroundings);
+  Outcome render(const Words& words, const Surroundings& surroundings = {}) const {
+    return run_into_out(joined({"render", model}, words), surroundings);
   }
 
   /// The report of a run that ends well.
@@ -155,12 +171,51 @@ struct SceneTest : testing::Test {
     return load_json(folder / "r.json");
   }
 
-  /// Expects that each is refused and leaves nothing, all of them with `more`.
-  void expect_refused(const std::vector<Refusal>& refusals, const Words& more = {}) const {
+  /// Expects that a command line with each of the words behind it is refused, and leaves nothing.
+  void expect_refused_after(const Words& line, const std::vector<Refusal>& refusals) const {
     const auto before = folder.files();
-    for (const Refusal& one : refusals) EXPECT_TRUE(ended(render(joined(one.words, more)), 2, one.said));
+    for (const auto& [words, said] : refusals)
+      EXPECT_TRUE(ended(run_into_out(joined(line, words)), 2, said)) << testing::PrintToString(words);
     EXPECT_EQ(folder.files(), before);
+  }
+
+  /// The same of `render`, all of them with `more`.
+  void expect_refused(const std::vector<Refusal>& refusals, const Words& more = {}) const {
+    expect_refused_after(joined({"render", model}, more), refusals);
   }
 };
 
 }  // namespace binosplat::test
+
+namespace binosplat {
+
+// What nearly every test of a command uses.
+namespace fs = std::filesystem;
+using nlohmann::json;
+using test::camera_json;
+using test::contents_of;
+using test::ended;
+using test::floor_model;
+using test::good;
+using test::has;
+using test::joined;
+using test::load_json;
+using test::Outcome;
+using test::PlyFile;
+using test::Program;
+using test::psnr_of_files;
+using test::read_text;
+using test::Refusal;
+using test::run_program;
+using test::save_ply;
+using test::SceneTest;
+using test::small_model;
+using test::Surroundings;
+using test::TempFolder;
+using test::wait_for_file;
+using test::wait_until;
+using test::Words;
+using test::write_text;
+using Names = std::set<std::string>;
+
+}  // namespace binosplat

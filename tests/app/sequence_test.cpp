@@ -1,53 +1,40 @@
 // render FOLDER --fps N: models of a folder, one after the other.
 
 #include "app/scene.h"
-#include "formats/image_file.h"
 
 namespace binosplat {
 namespace {
 
-using test::ended;
-using test::good;
-using test::has;
-using test::Outcome;
-using test::Words;
-using test::write_text;
-
-struct Sequence : test::SceneTest {
+struct Sequence : SceneTest {
   const std::string frames = folder / "frames";
-  const std::string cameras = folder / "cameras.json";
-  const Words common = {"--cameras", cameras, "--mono", "--size", "36x24"};
+  const Words common = {"--cameras", folder / "cameras.json", "--mono", "--size", "36x24"};
 
   Sequence() {
     add_cameras();
-    std::filesystem::create_directory(frames);
-    for (const int n : {1, 2, 10}) save(n);
+    fs::create_directory(frames);
+    for (const int n : {1, 2, 10}) save_frame(n);
   }
 
-  Outcome render(Words words, const std::string& scene) const {
-    words.insert(words.begin(), {"render", scene});
-    return test::run_program(words);
-  }
-  Outcome render(const Words& words) const { return render(words, frames); }
+  Outcome render(const Words& words) const { return run_into_out(joined({"render", frames}, words)); }
 
   /// Of each number another light.
-  void save(int n) const {
-    test::PlyFile file = test::small_model();
+  void save_frame(int n) const {
+    PlyFile file = small_model();
     for (auto& row : file.rows) row[file.column("f_dc_0")] += 0.1 * n;
     write_text(frames + "/f_" + std::to_string(n) + ".ply", to_bytes(file));
   }
 };
 
 TEST_F(Sequence, DrawsEachModelAsByItself) {
-  ASSERT_TRUE(good(render(joined(common, {"--fps", "10", "-o", out, "--json", folder / "r.json"}))));
-  std::vector<std::string> order;
-  const nlohmann::json report = test::load_json(folder / "r.json");
+  ASSERT_TRUE(good(render(joined(common, {"--fps", "10", "--json", folder / "r.json"}))));
+  Words order;
+  const json report = load_json(folder / "r.json");
   for (const auto& view : report.at("views")) order.push_back(view.at("name"));
   EXPECT_EQ(order, (Words{"f_1.ply", "f_2.ply", "f_10.ply"}));  // by their numbers
   std::vector<Image> pictures;
   for (const char* name : {"f_1", "f_2", "f_10"}) {
     const std::string alone = folder / (std::string(name) + ".png");
-    ASSERT_TRUE(good(render(joined(common, {"-o", alone}), frames + "/" + name + ".ply")));
+    ASSERT_TRUE(good(run_program(joined({"render", frames + "/" + name + ".ply", "-o", alone}, common))));
     pictures.push_back(load_image(out + "/" + name + ".png"));
     EXPECT_EQ(pictures.back().data, load_image(alone).data) << name;
   }
@@ -57,15 +44,13 @@ TEST_F(Sequence, DrawsEachModelAsByItself) {
 }
 
 TEST_F(Sequence, FollowsAPath) {
-  nlohmann::json path;
-  for (int k = 0; k < 2; ++k) path.push_back(test::camera_json("p" + std::to_string(k), 0.2 * k));
-  write_text(folder / "path.json", path.dump());
-  const auto outcome = render({"--path", folder / "path.json", "--fps", "1", "--seconds", "1", "--mono",
-                               "--size", "36x24", "-o", out});
-  ASSERT_TRUE(good(outcome));
-  EXPECT_TRUE(has(outcome.err, "3 models and 2 views: the first 2 of both are drawn"));
-  EXPECT_TRUE(std::filesystem::exists(out + "/f_2.png"));
-  EXPECT_FALSE(std::filesystem::exists(out + "/f_10.png"));
+  json path;
+  for (int k = 0; k < 2; ++k) path.push_back(camera_json("p" + std::to_string(k), 0.2 * k));
+  EXPECT_TRUE(ended(render({"--path", save("path.json", path), "--fps", "1", "--seconds", "1", "--mono",
+                            "--size", "36x24", "-o", out}),
+                    0, "3 models and 2 views: the first 2 of both are drawn"));
+  EXPECT_TRUE(fs::exists(out + "/f_2.png"));
+  EXPECT_FALSE(fs::exists(out + "/f_10.png"));
 }
 
 TEST_F(Sequence, IsAVideo) {
@@ -77,23 +62,20 @@ TEST_F(Sequence, IsAVideo) {
 }
 
 TEST_F(Sequence, SaysWhatDoesNotGoTogether) {
-  const auto refused = [&](const Words& words, const std::string& said) {
-    return ended(render(joined(common, words)), 2, said);
-  };
-  EXPECT_TRUE(
-      refused({"-o", out}, "is a folder with 3 models; name one of them, or give render or view --fps N"));
-  EXPECT_TRUE(refused({"-o", out, "--fps", "10", "--resume"}, "--resume is for one model"));
-  EXPECT_TRUE(refused({"-o", folder / "a.png", "--fps", "10"}, "a.png is one file, and 3 views"));
+  const Words line = joined({"render", frames}, common), moving = joined(line, {"--fps", "10"});
+  expect_refused_after(line,
+                       {{{}, "is a folder with 3 models; name one of them, or give render or view --fps"}});
+  expect_refused_after(moving, {{{"--resume"}, "--resume is for one model"},
+                                {{"-o", folder / "a.png"}, "a.png is one file, and 3 views"}});
+  expect_refused({{{"--fps", "10"}, "--fps is for videos, --tour, --path and folders"}});
   write_text(frames + "/f_11.ply", "ply");
-  EXPECT_TRUE(refused({"-o", out, "--fps", "10"}, "f_11.ply"));
-  EXPECT_TRUE(
-      ended(render({"--fps", "10", "-o", out}, model), 2, "--fps is for videos, --tour, --path and folders"));
-  save(11);
-  test::PlyFile flat = test::small_model();
+  EXPECT_TRUE(ended(run_into_out(moving), 2, "f_11.ply"));
+  save_frame(11);
+  PlyFile flat = small_model();
   flat.columns[flat.column("scale_2")] = "other";
   write_text(frames + "/f_12.ply", to_bytes(flat));
   EXPECT_TRUE(
-      refused({"-o", out, "--fps", "10"}, "f_12.ply is ply, flat Gaussians of 2DGS, and the models before"));
+      ended(run_into_out(moving), 2, "f_12.ply is ply, flat Gaussians of 2DGS, and the models before"));
 }
 
 }  // namespace

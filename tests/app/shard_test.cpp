@@ -1,42 +1,19 @@
 // binosplat render in parts: shards that come to the files of one run, and runs that go on where one ended.
 
-#include <chrono>
-#include <thread>
-
 #include "app/scene.h"
 
 namespace binosplat {
 namespace {
 
-using test::ended;
-using test::good;
-using test::has;
-using test::Outcome;
-using test::Program;
-using test::read_text;
-using test::Words;
-using test::write_text;
-
 constexpr const char* run_file = "render-run.json";
 
-struct Shards : test::SceneTest {
+struct Shards : SceneTest {
   Shards() { add_row_of_cameras(5); }
 
   Words line(const std::string& to, const Words& more) const {
     return joined({"render", model, "-o", to}, more);
   }
-  Outcome draw(const std::string& to, const Words& more) const { return test::run_program(line(to, more)); }
-  /// The files of a folder, by name.
-  static std::map<std::string, std::string> contents(const std::filesystem::path& of) {
-    std::map<std::string, std::string> all;
-    for (const auto& entry : std::filesystem::directory_iterator(of))
-      all[entry.path().filename()] = read_text(entry.path());
-    return all;
-  }
-  static std::size_t pictures_in(const std::filesystem::path& of) {
-    const auto all = contents(of);
-    return all.size() - all.count(run_file);
-  }
+  Outcome draw(const std::string& to, const Words& more) const { return run_program(line(to, more)); }
 };
 
 // In whichever order and company they are drawn, also where a frame goes by what the last one left.
@@ -46,20 +23,22 @@ TEST_F(Shards, AreTheFilesOfOneRun) {
                                 {"--view", "all", "--mono", "--tolerance", "1", "--transmittance", "last"},
                                 {"--orbit", "5", "--size", "36x24"},
                                 {"--path", folder / "cameras.json", "--mono", "--tolerance", "1"}}) {
-    const std::string whole = folder / "whole", parts = folder / "parts",
-                      shown = fmt::format("{}", settings[1]);
+    const std::string whole = folder / "whole", parts = folder / "parts", some = folder / "some";
     ASSERT_TRUE(good(draw(whole, settings)));
     const Words second = joined(settings, {"--shard", "2/2"});
     Program one(line(parts, joined(settings, {"--shard", "1/2"}))), two(line(parts, second));
     EXPECT_TRUE(good(one.wait()));
     EXPECT_TRUE(good(two.wait()));
-    EXPECT_EQ(contents(parts), contents(whole)) << shown;
-    EXPECT_NE(contents(whole).begin()->second, std::next(contents(whole).begin(), 2)->second);
+    auto expected = contents_of(whole);
+    EXPECT_EQ(contents_of(parts), expected) << settings[1];
 
     // Neither draws what the other does.
-    ASSERT_TRUE(good(draw(folder / "some", second)));
-    EXPECT_EQ(pictures_in(folder / "some"), pictures_in(whole) / 5 * 2) << shown;
-    for (const char* name : {"whole", "parts", "some"}) std::filesystem::remove_all(folder / name);
+    ASSERT_TRUE(good(draw(some, second)));
+    auto found = contents_of(some);
+    for (auto* const files : {&expected, &found}) files->erase(run_file);
+    EXPECT_NE(expected.begin()->second, std::next(expected.begin(), 2)->second);
+    EXPECT_EQ(found.size(), expected.size() / 5 * 2) << settings[1];
+    for (const std::string& drawn : {whole, parts, some}) fs::remove_all(drawn);
   }
 }
 
@@ -67,10 +46,9 @@ TEST_F(Shards, AreTheFilesOfOneRun) {
 TEST_F(Shards, FramesThatAreCarriedAreNotOneRunApart) {
   const Words last = {"--mono", "--tolerance", "1", "--transmittance", "last", "--path"};
   ASSERT_TRUE(good(draw(folder / "whole", joined(last, {folder / "cameras.json"}))));
-  nlohmann::json cameras = test::load_json(folder / "cameras.json");
+  json cameras = load_json(folder / "cameras.json");
   cameras.erase(0);
-  write_text(folder / "half.json", cameras.dump());
-  ASSERT_TRUE(good(draw(folder / "half", joined(last, {folder / "half.json"}))));
+  ASSERT_TRUE(good(draw(folder / "half", joined(last, {save("half.json", cameras)}))));
   EXPECT_NE(read_text(folder / "half/view1.png"), read_text(folder / "whole/view1.png"));
 }
 
@@ -80,9 +58,9 @@ struct Resume : Shards {
   Outcome again(const Words& more = {}) const { return draw(out, joined(settings, more)); }
   /// Whether a run is, and changes nothing.
   testing::AssertionResult refused(const std::string& said, const Words& more = {}) const {
-    const auto before = contents(out);
+    const auto before = contents_of(out);
     const testing::AssertionResult is = ended(again(more), 2, said);
-    return contents(out) == before ? is : testing::AssertionFailure() << "files have changed";
+    return contents_of(out) == before ? is : testing::AssertionFailure() << "files have changed";
   }
 };
 
@@ -90,51 +68,43 @@ TEST_F(Resume, GoesOnAfterAnInterruption) {
   const std::string whole = folder / "whole";
   ASSERT_TRUE(good(draw(whole, settings)));
   Program run(line(out, settings));
-  while (!std::filesystem::exists(out + "/view0.png"))
-    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  wait_for_file(out + "/view0.png");
   run.send(SIGINT);
   run.wait();
   // However far it came, one of those that are there is left as it is, and one that is not is drawn.
   const std::string as_it_was = read_text(whole + "/view0.png") + "as it was";
   write_text(out + "/view0.png", as_it_was);
-  std::filesystem::remove(out + "/view4.png");
-  const auto there = contents(out).size() - 1;
-  const Outcome outcome = again();
-  ASSERT_TRUE(good(outcome));
-  EXPECT_TRUE(has(outcome.err, fmt::format("{} of 5 views are in {} already", there, out)));
-  auto expected = contents(whole);
+  fs::remove(out + "/view4.png");
+  const auto there = contents_of(out).size() - 1;
+  EXPECT_TRUE(ended(again(), 0, fmt::format("{} of 5 views are in {} already", there, out)));
+  auto expected = contents_of(whole);
   expected["view0.png"] = as_it_was;
-  EXPECT_EQ(contents(out), expected);
-  const Outcome third = again();
-  ASSERT_TRUE(good(third));
-  EXPECT_TRUE(has(third.err, "5 of 5 views are in"));
+  EXPECT_EQ(contents_of(out), expected);
+  EXPECT_TRUE(ended(again(), 0, "5 of 5 views are in"));
 }
 
 // A view of several files is there when all of them are.
 TEST_F(Resume, DrawsPairsOfWhichAFileIsMissing) {
   const Words pairs = {"--view", "all", "--exr", "half", "--resume"};
   ASSERT_TRUE(good(draw(out, pairs)));
-  const auto whole = contents(out);
+  const auto whole = contents_of(out);
   ASSERT_EQ(whole.size(), 21);
-  std::filesystem::remove(out + "/view1_right.exr");
-  const Outcome outcome = draw(out, pairs);
-  ASSERT_TRUE(good(outcome));
-  EXPECT_TRUE(has(outcome.err, "4 of 5 views are in"));
-  EXPECT_EQ(contents(out), whole);
+  fs::remove(out + "/view1_right.exr");
+  EXPECT_TRUE(ended(draw(out, pairs), 0, "4 of 5 views are in"));
+  EXPECT_EQ(contents_of(out), whole);
 
   // The same options and cameras, but a pose was saved beside the model, with eyes that are farther apart.
-  nlohmann::json pose = test::camera_json("saved", 0.5);
+  json pose = camera_json("saved", 0.5);
   pose.update({{"up", {0, -1, 0}}, {"units_per_metre", 1.0}, {"ipd_metres", 0.1}, {"near", 0.1}});
-  write_text(folder / "model.binosplat.json", nlohmann::json::array({pose}).dump());
+  save("model.binosplat.json", json::array({pose}));
   EXPECT_TRUE(ended(draw(out, pairs), 2, "says other views."));
 }
 
 TEST_F(Resume, TakesNamesInAnyEncoding) {
   const std::string other = folder / "mod\xe9le.ply";
-  std::filesystem::copy_file(model, other);
+  fs::copy_file(model, other);
   for (int n = 0; n < 2; ++n)
-    EXPECT_TRUE(
-        good(test::run_program({"render", other, "--view", "view0", "--mono", "--resume", "-o", out})));
+    EXPECT_TRUE(good(run_program({"render", other, "--view", "view0", "--mono", "--resume", "-o", out})));
 }
 
 TEST_F(Resume, TakesNoPicturesOfAnotherRun) {
@@ -150,9 +120,9 @@ TEST_F(Resume, TakesNoPicturesOfAnotherRun) {
   write_text(model, other);
   EXPECT_TRUE(refused("says other model"));
   write_text(model, bytes);
-  nlohmann::json moved = nlohmann::json::parse(cameras);
+  json moved = json::parse(cameras);
   moved[4]["position"][1] = 0.25;
-  write_text(folder / "cameras.json", moved.dump());
+  save("cameras.json", moved);
   EXPECT_TRUE(refused("says other cameras, views"));
   write_text(folder / "cameras.json", cameras);
   EXPECT_TRUE(good(again()));
@@ -161,24 +131,24 @@ TEST_F(Resume, TakesNoPicturesOfAnotherRun) {
 TEST_F(Resume, TakesACalibrationAsItIs) {
   const std::string calibration = folder / "c.json";
   ASSERT_TRUE(
-      good(test::run_program({"calibrate", model, "-o", calibration, "--quality", "38", "--view", "view2"})));
+      good(run_program({"calibrate", model, "-o", calibration, "--quality", "38", "--view", "view2"})));
   const Words calibrated = {"--calibration", calibration};
   ASSERT_TRUE(good(again(calibrated)));
   EXPECT_TRUE(good(again(calibrated)));
-  nlohmann::ordered_json other = nlohmann::ordered_json::parse(read_text(calibration));
+  json other = load_json(calibration);
   for (auto& entry : other["entries"]) entry["tolerance"] = 2.0 * entry["tolerance"].get<double>();
-  write_text(calibration, other.dump());
+  save("c.json", other);
   EXPECT_TRUE(refused("says other calibration", calibrated));
 }
 
 TEST_F(Resume, TakesNoPicturesOfWhichNothingTells) {
   ASSERT_TRUE(good(draw(out, {"--view", "view3", "--mono"})));
   EXPECT_TRUE(refused("view3.png: nothing says how it was drawn"));
-  std::filesystem::remove(out + "/view3.png");
+  fs::remove(out + "/view3.png");
   ASSERT_TRUE(good(again()));
   // A run that draws all replaces pictures, whatever it draws them with.
   ASSERT_TRUE(good(draw(out, {"--view", "view3", "--mono", "--background", "1,1,1"})));
-  EXPECT_FALSE(std::filesystem::exists(out + "/" + run_file));
+  EXPECT_FALSE(fs::exists(out + "/" + run_file));
   EXPECT_TRUE(refused("nothing says how it was drawn"));
 }
 

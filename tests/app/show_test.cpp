@@ -1,40 +1,34 @@
 // render --show: what is shown in place of the picture.
 
 #include "app/scene.h"
-#include "formats/image_file.h"
-#include "measure/metrics.h"
+#include "shared/axes.h"
 
 namespace binosplat {
 namespace {
 
-using test::good;
-using test::Outcome;
-using test::read_text;
-using test::Words;
-
-struct RenderShow : test::SceneTest {
+struct RenderShow : SceneTest {
   RenderShow() { add_cameras(); }
   const std::string png = folder / "a.png";
 };
 
 TEST_F(RenderShow, EveryChoiceIsAnotherPictureAndSaysItsRange) {
-  const Words names = {"picture", "split",   "difference", "disagreement", "depth",
-                       "alphas",  "visible", "pairs",      "light"};
   std::vector<Image> images;
-  for (const std::string& name : names) {
+  for (std::size_t k = 0; k < std::size(show_choices); ++k) {
+    const std::string name = show_choices[k].name;
     const Outcome outcome =
         render({"-o", png, "--tolerance", "0.5", "--show", name, "--json", folder / "r.json"});
     ASSERT_TRUE(good(outcome)) << name;
     images.push_back(load_image(png));
-    for (std::size_t k = 0; k + 1 < images.size(); ++k) {
-      if (name == "pairs" && names[k] == "alphas") continue;  // no pixel of this model ends early
-      EXPECT_GT(measure::largest_difference(images[k], images.back()).max, 0.1) << name << ", " << names[k];
+    for (std::size_t other = 0; other < k; ++other) {
+      if (k == SHOW_PAIRS && other == SHOW_ALPHAS) continue;  // no pixel of this model ends early
+      EXPECT_GT(measure::largest_difference(images[other], images[k]).max, 0.1)
+          << name << ", " << show_choices[other].name;
     }
-    const auto view = test::load_json(folder / "r.json")["views"][0];
-    const bool has_range = name != "picture" && name != "split";
+    const json view = load_json(folder / "r.json")["views"][0];
+    const bool has_range = k >= SHOW_DIFFERENCE;
     EXPECT_EQ(view.contains("show") && view["show"]["most"].get<double>() > 0.0, has_range) << name;
-    EXPECT_EQ(outcome.out.find("most " + name) != std::string::npos, has_range) << outcome.out;
-    EXPECT_EQ(read_text(png).find("binosplatShow") != std::string::npos, has_range) << name;
+    EXPECT_EQ(bool(has(outcome.out, "most " + name)), has_range) << outcome.out;
+    EXPECT_EQ(bool(has(read_text(png), "binosplatShow")), has_range) << name;
   }
 }
 

@@ -1,26 +1,19 @@
 // binosplat render: thresholds, and what they go by.
 
 #include "app/scene.h"
-#include "formats/image_file.h"
-#include "measure/metrics.h"
 
 namespace binosplat {
 namespace {
 
-using nlohmann::json;
-using test::Words;
-
-struct ThresholdOptions : test::SceneTest {
+struct ThresholdOptions : SceneTest {
   json drawn(const std::string& scene, const Words& words) const {
-    const test::Outcome outcome =
-        test::run_program(joined({"render", scene, "--json", folder / "r.json"}, words));
-    EXPECT_TRUE(test::good(outcome));
-    return test::load_json(folder / "r.json");
+    EXPECT_TRUE(good(run_into_out(joined({"render", scene, "--json", folder / "r.json"}, words))));
+    return load_json(folder / "r.json");
   }
   json room(const Words& words) const { return drawn("demo:room", words); }
   /// The smallest there is.
   json city(const Words& words) const {
-    return drawn("demo:city", joined(words, {"--count", "10000", "--size", "64x36", "-o", out}));
+    return drawn("demo:city", joined(words, {"--count", "10000", "--size", "64x36"}));
   }
 };
 
@@ -47,22 +40,21 @@ TEST_F(ThresholdOptions, AQualityIsComeToWithoutATolerance) {
   EXPECT_EQ(run["settings"]["th"], "squared");
   EXPECT_EQ(run["settings"]["transmittance"], "one");
   EXPECT_GT(run["views"][0]["tolerance"].get<double>(), 0.0);
-  EXPECT_NEAR(measure::psnr(load_image(folder / "near.png"), load_image(folder / "exact.png")), 36.0, 1.0);
+  EXPECT_NEAR(psnr_of_files(folder / "near.png", folder / "exact.png"), 36.0, 1.0);
 }
 
 TEST_F(ThresholdOptions, EveryFrameOfAPathGoesByWhatTheLastOneMeasured) {
   json frames;
   for (int n = 0; n < 3; ++n) {
-    frames.push_back(test::camera_json("frame_" + std::to_string(n), 0.011 * n));
+    frames.push_back(camera_json("frame_" + std::to_string(n), 0.011 * n));
     frames[n].update({{"width", 64}, {"height", 36}, {"fx", 50}, {"fy", 50}, {"time", 0.011 * n}});
     frames[n]["position"] = {0.011 * n, -1.5, -1};
   }
-  test::write_text(folder / "path.json", frames.dump());
   const json run =
-      room({"--path", folder / "path.json", "--tolerance", "0.1", "--transmittance", "last", "-o", out});
+      room({"--path", save("path.json", frames), "--tolerance", "0.1", "--transmittance", "last"});
   ASSERT_EQ(run["views"].size(), 3u);
   EXPECT_LT(pairs_of(run, 1), 0.97 * pairs_of(run));
-  EXPECT_TRUE(std::filesystem::exists(out + "/frame_2_right.png"));
+  EXPECT_TRUE(fs::exists(out + "/frame_2_right.png"));
 }
 
 }  // namespace

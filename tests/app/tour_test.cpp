@@ -1,31 +1,21 @@
 // render --tour: the head's way from frame to frame as files and as a video.
 
-#include <fmt/format.h>
-
 #include <glm/glm.hpp>
 
 #include "app/scene.h"
-#include "formats/image_file.h"
 
 namespace binosplat {
 namespace {
 
-using nlohmann::json;
-using test::good;
-using test::has;
-using test::Outcome;
-using test::Words;
-using test::write_text;
-
-struct Tour : test::SceneTest {
+struct Tour : SceneTest {
   /// Five cameras 0.25 apart along x, and one at the end that is turned by 45 degrees.
   Tour() {
     json cameras;
-    for (int k = 0; k < 5; ++k) cameras.push_back(test::camera_json(fmt::format("v{}", k), 0.25 * k));
+    for (int k = 0; k < 5; ++k) cameras.push_back(camera_json(fmt::format("v{}", k), 0.25 * k));
     const double s = std::sqrt(0.5);
-    cameras.push_back(test::camera_json("turned", 1.0));
+    cameras.push_back(camera_json("turned", 1.0));
     cameras.back()["rotation"] = {{s, 0, s}, {0, 1, 0}, {-s, 0, s}};
-    write_text(folder / "cameras.json", cameras.dump());
+    save("cameras.json", cameras);
   }
 
   Outcome tour(const Words& words) const {
@@ -34,7 +24,7 @@ struct Tour : test::SceneTest {
     return outcome;
   }
 
-  json views() const { return test::load_json(folder / "run.json").at("views"); }
+  json views() const { return load_json(folder / "run.json").at("views"); }
 };
 
 glm::dvec3 place(const json& view, std::size_t eye = 0) {
@@ -74,9 +64,9 @@ TEST_F(Tour, EyesAndSpeedsHaveOneMetre) {
               units);
   };
   expect({"--units-per-metre", "0.5"}, 0.5, "at up to 3 m and 90 degrees a second");
-  json pose = test::camera_json("saved", 0.5);
+  json pose = camera_json("saved", 0.5);
   pose.update({{"up", {0, -1, 0}}, {"units_per_metre", 0.75}, {"ipd_metres", 0.063}, {"near", 0.1}});
-  write_text(folder / "model.binosplat.json", json::array({pose}).dump());
+  save("model.binosplat.json", json::array({pose}));
   expect({}, 0.75, "0.75 world units a metre");
 }
 
@@ -105,9 +95,8 @@ TEST_F(Tour, PairsAreHeads) {
 }
 
 TEST_F(Tour, ScenesThatAreBuiltInAreInMetres) {
-  const Outcome outcome =
-      test::run_program({"render", "demo:room", "--tour", "calm", "--seconds", "0.02", "--size", "32x24",
-                         "--mono", "--json", folder / "run.json", "-o", out});
+  const Outcome outcome = run_program({"render", "demo:room", "--tour", "calm", "--seconds", "0.02", "--size",
+                                       "32x24", "--mono", "--json", folder / "run.json", "-o", out});
   ASSERT_TRUE(good(outcome));
   EXPECT_FALSE(has(outcome.err, "a metre is"));
   const json frames = views();

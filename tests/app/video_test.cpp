@@ -1,35 +1,22 @@
 // render -o FILE.mkv: the frames of a path as a video, by the ffmpeg that is there.
 
-#include <chrono>
-#include <cstdlib>
-#include <thread>
-
 #include "app/scene.h"
-#include "formats/image_file.h"
-#include "measure/metrics.h"
 
 namespace binosplat {
 namespace {
 
-using test::ended;
-using test::good;
-using test::has;
-using test::Outcome;
-using test::write_text;
-using Names = std::set<std::string>;
-
-struct Video : test::SceneTest {
+struct Video : SceneTest {
   const std::string path = folder / "path.json";
 
   // Five cameras that move along x, `step` seconds apart.
   explicit Video(double step = 0.04) {
-    nlohmann::json cameras;
+    json cameras;
     for (int k = 0; k < 5; ++k) {
-      nlohmann::json camera = test::camera_json("frame" + std::to_string(k), -0.6 + 0.3 * k);
+      json camera = camera_json("frame" + std::to_string(k), -0.6 + 0.3 * k);
       camera["time"] = step * k;
       cameras.push_back(camera);
     }
-    write_text(path, cameras.dump());
+    save("path.json", cameras);
   }
 
   static glm::dvec3 mean(const Image& image) {
@@ -77,8 +64,7 @@ TEST_F(Video, InterleavedEyesKeepTheirOwnColours) {
 }
 
 TEST_F(Video, WithoutFfmpegSaysSoBeforeAnyWork) {
-  test::Surroundings bare;
-  bare.variables["PATH"] = folder.path().string();
+  const Surroundings bare = {.variables = {{"PATH", folder.path().string()}}};
   const Outcome outcome = render({"--path", path, "-o", folder / "a.mp4"}, bare);
   EXPECT_TRUE(ended(outcome, 2, "apt install ffmpeg"));
   EXPECT_FALSE(has(outcome.err, "drawing"));
@@ -88,11 +74,10 @@ TEST_F(Video, WithoutFfmpegSaysSoBeforeAnyWork) {
 TEST_F(Video, AnFfmpegThatFailsIsQuotedAndLeavesNothing) {
   for (const char* script : {"#!/bin/sh\necho no such encoder >&2\nexit 1\n",
                              "#!/bin/sh\necho no such encoder >&2\ncat > /dev/null\nexit 1\n"}) {
-    std::filesystem::create_directories(folder / "bin");
+    fs::create_directories(folder / "bin");
     write_text(folder / "bin/ffmpeg", script);
-    std::filesystem::permissions(folder / "bin/ffmpeg", std::filesystem::perms::owner_all);
-    test::Surroundings broken;
-    broken.variables["PATH"] = (folder / "bin").string() + ":/usr/bin:/bin";
+    fs::permissions(folder / "bin/ffmpeg", fs::perms::owner_all);
+    const Surroundings broken = {.variables = {{"PATH", (folder / "bin").string() + ":/usr/bin:/bin"}}};
     EXPECT_TRUE(
         ended(render({"--path", path, "-o", folder / "a.mp4"}, broken), 2, "ffmpeg ended: no such encoder"));
     EXPECT_EQ(folder.files(), (Names{"bin/ffmpeg", "model.ply", "path.json"}));
@@ -102,10 +87,8 @@ TEST_F(Video, AnFfmpegThatFailsIsQuotedAndLeavesNothing) {
 TEST_F(Video, AnInterruptLeavesNothing) {
   if (!have_ffmpeg()) GTEST_SKIP() << "ffmpeg is not installed";
   const auto before = folder.files();
-  test::Program program({"render", model, "--orbit", "5000", "--size", "64x48", "-o", folder / "a.mp4"});
-  const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(60);
-  while (folder.files() == before && std::chrono::steady_clock::now() < end)
-    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  Program program({"render", model, "--orbit", "5000", "--size", "64x48", "-o", folder / "a.mp4"});
+  wait_until([&] { return folder.files() != before; });
   EXPECT_NE(folder.files(), before) << "it never began to write";
   program.send(SIGINT);
   EXPECT_EQ(program.wait().code, -SIGINT);
@@ -115,14 +98,14 @@ TEST_F(Video, AnInterruptLeavesNothing) {
 
 TEST_F(Video, WhatDoesNotGoTogetherIsRefused) {
   if (!have_ffmpeg()) GTEST_SKIP() << "ffmpeg is not installed";
-  const test::Words video = {"--path", path, "-o", folder / "a.webm"};
+  const Words video = {"--path", path, "-o", folder / "a.webm"};
   expect_refused({{{"--exr", "half"}, "is a video"},
                   {{"--background", "none"}, "no alpha"},
                   {{"--layout", "separate"}, "must be a folder"}},
                  video);
-  nlohmann::json other = test::camera_json("b", 0.1);
+  json other = camera_json("b", 0.1);
   other["width"] = 80;
-  write_text(path, nlohmann::json({test::camera_json("a", 0), other}).dump());
+  save("path.json", json({camera_json("a", 0), other}));
   expect_refused({{video, "72 x 48 and 80 x 48 px"}});
 }
 

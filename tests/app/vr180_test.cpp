@@ -1,31 +1,23 @@
 // render --vr180: what files say of themselves, and how heads are held.
 
 #include <cmath>
-#include <cstdlib>
 
 #include "app/scene.h"
-#include "formats/image_file.h"
-#include "measure/metrics.h"
 
 namespace binosplat {
 namespace {
 
-using test::good;
-using test::has;
-using test::Words;
-using test::write_text;
-
-struct Vr180 : test::SceneTest {
+struct Vr180 : SceneTest {
   const Words panorama = {"--vr180", "--size", "32x32"};
 
   // A head that looks 37 degrees down, and two more beside it.
   Vr180() {
-    nlohmann::json cameras;
+    json cameras;
     for (int k = 0; k < 3; ++k) {
-      cameras.push_back(test::camera_json("v" + std::to_string(k), 0.2 * k));
+      cameras.push_back(camera_json("v" + std::to_string(k), 0.2 * k));
       cameras.back()["rotation"] = {{1, 0, 0}, {0, 0.8, 0.6}, {0, -0.6, 0.8}};
     }
-    write_text(folder / "cameras.json", cameras.dump());
+    save("cameras.json", cameras);
   }
 };
 
@@ -51,16 +43,15 @@ TEST_F(Vr180, HoldsTheHeadLevel) {
 }
 
 TEST_F(Vr180, HoldsPairsLevelAndTogether) {
-  nlohmann::json cameras;
+  json cameras;
   for (const char* side : {"left", "right"}) {  // turned outwards, and rolled
-    nlohmann::json camera = test::camera_json(std::string("pair_") + side, side[0] == 'l' ? -0.1 : 0.1);
+    json camera = camera_json(std::string("pair_") + side, side[0] == 'l' ? -0.1 : 0.1);
     const double s = side[0] == 'l' ? -0.1 : 0.1, c = std::sqrt(1 - s * s);
     camera["rotation"] = {{c, 0, s}, {0, 1, 0}, {-s, 0, c}};
     camera["position"][1] = side[0] == 'l' ? -0.05 : 0.05;
     cameras.push_back(camera);
   }
-  write_text(folder / "pair.json", cameras.dump());
-  const auto run = reported(joined(panorama, {"--cameras", folder / "pair.json", "--up", "0,-1,0"}));
+  const auto run = reported(joined(panorama, {"--cameras", save("pair.json", cameras), "--up", "0,-1,0"}));
   const auto eyes = run.at("views").at(0).at("eyes");
   EXPECT_EQ(eyes.at(0).at("axes"), eyes.at(1).at("axes"));
   EXPECT_NEAR(eyes.at(0).at("position").at(1).get<double>(), 0.0, 1e-12);
@@ -87,7 +78,7 @@ struct Photo {
   std::size_t whole = 0, pieces = 0;
 
   explicit Photo(const std::string& file) {
-    const std::string bytes = test::read_text(file);
+    const std::string bytes = read_text(file);
     const auto byte = [&](std::size_t at) {
       return static_cast<std::size_t>(static_cast<unsigned char>(bytes.at(at)));
     };
@@ -127,12 +118,10 @@ TEST_F(Vr180, WritesVrPhotosThatHoldBothEyes) {
   const std::size_t begin = photo.held.find(mark) + mark.size(), end = photo.held.find('"', begin);
   write_text(folder / "right.base64", photo.held.substr(begin, end - begin));
   write_text(folder / "right.jpg", asked("base64 -d " + (folder / "right.base64").string()));
-  const Image left = load_image(file), right = load_image(folder / "right.jpg");
-  const Image drawn_left = load_image(eyes + "/v0_180_left.png"),
-              drawn_right = load_image(eyes + "/v0_180_right.png");
-  EXPECT_GE(measure::psnr(left, drawn_left), 38.0);
-  EXPECT_GE(measure::psnr(right, drawn_right), 38.0);
-  EXPECT_LE(measure::psnr(right, drawn_left), 36.0) << "swapped eyes go unnoticed";
+  const std::string left = eyes + "/v0_180_left.png", right = eyes + "/v0_180_right.png";
+  EXPECT_GE(psnr_of_files(file, left), 38.0);
+  EXPECT_GE(psnr_of_files(folder / "right.jpg", right), 38.0);
+  EXPECT_LE(psnr_of_files(folder / "right.jpg", left), 36.0) << "swapped eyes go unnoticed";
 }
 
 }  // namespace
