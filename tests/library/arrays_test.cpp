@@ -1,6 +1,7 @@
 // Models from arrays are drawn as those from files.
 
-#include <gtest/gtest.h>
+#include <limits>
+#include <utility>
 
 #include "library/renderer_fixture.h"
 #include "support/errors.h"
@@ -48,20 +49,29 @@ TEST_F(Arrays, AreDrawnAsTheModelTheyAreOf) {
 
 TEST_F(Arrays, ThatAreNoGaussiansAreRefused) {
   const auto refused = [&](const char* said) {
-    const auto result = test::fails_saying([&] { const SplatModel made(gaussians()); }, {said});
-    means = model.position;
-    scales = model.scale;
-    opacities = model.opacity;
+    return test::fails_saying([&] { const SplatModel made(gaussians()); }, {said});
+  };
+  // A value in the place of one, which is put back.
+  const auto value_refused = [&](float& value, float wrong, const char* said) {
+    const float right = std::exchange(value, wrong);
+    const auto result = refused(said);
+    value = right;
     return result;
   };
-  scales[7].y = -1.0f;
-  EXPECT_TRUE(refused("scales[7]: below 0"));
-  means[3].x = NAN;
-  EXPECT_TRUE(refused("means[3]: expected finite numbers"));
-  opacities[0] = 1.5f;
-  EXPECT_TRUE(refused("opacities[0]: expected 0 to 1"));
+  constexpr float inf = std::numeric_limits<float>::infinity();
+  EXPECT_TRUE(value_refused(scales[7].y, -1.0f, "scales[7]: below 0"));
+  EXPECT_TRUE(value_refused(scales[7].y, NAN, "scales[7]: expected finite numbers"));
+  EXPECT_TRUE(value_refused(means[3].x, NAN, "means[3]: expected finite numbers"));
+  EXPECT_TRUE(value_refused(quats[3].x, inf, "quats[3]: expected finite numbers"));
+  EXPECT_TRUE(value_refused(sh[13].z, -inf, "sh[1]: expected finite numbers"));
+  EXPECT_TRUE(value_refused(opacities[0], 1.5f, "opacities[0]: expected 0 to 1"));
+  EXPECT_TRUE(value_refused(opacities[0], NAN, "opacities[0]: expected 0 to 1"));
+  quats[7] = glm::vec4(0.0f);
+  EXPECT_TRUE(refused("quats[7]: a quaternion of zeros"));
+  quats[7].x = 1.0f;
   opacities.pop_back();
   EXPECT_TRUE(refused("opacities: 199 elements for 200 means"));
+  opacities.push_back(0.5f);
   sh.pop_back();
   EXPECT_TRUE(refused("expected 1, 4, 9 or 16 for each"));
   means.clear(), quats.clear(), scales.clear(), opacities.clear(), sh.clear();

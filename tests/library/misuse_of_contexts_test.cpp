@@ -37,6 +37,8 @@ struct Loader {
   static Function nothing(const char*) { return nullptr; }
 };
 
+using MakeCurrent = unsigned(void*, void*, void*, void*);
+
 struct Contexts : Library {
   const SplatModel model = in_memory(test::random_model(3, 200, 0));
 
@@ -125,49 +127,37 @@ TEST_F(Contexts, ThatAreTooOldOrNoneOfOpenGL) {
 
 // A real one.
 TEST_F(Contexts, OfOpenGLES) {
-  const auto egl = [&](const char* name) { return caller.get_proc_address()(name); };
-  using MakeContext = void*(void*, void*, void*, const int*);
-  using MakeCurrent = unsigned(void*, void*, void*, void*);
-  const auto get_display = reinterpret_cast<void* (*)()>(egl("eglGetCurrentDisplay"));
+  const auto get_display = function<void*()>("eglGetCurrentDisplay");
   if (get_display == nullptr || get_display() == nullptr) GTEST_SKIP() << "no EGL here";
   constexpr int version_name = 0x3098, end = 0x3038;
   constexpr unsigned opengl_es = 0x30a0, opengl = 0x30a2;
   const test::CurrentAgain again;
   void* const display = get_display();
-  const auto bind = reinterpret_cast<unsigned (*)(unsigned)>(egl("eglBindAPI"));
+  const auto bind = function<unsigned(unsigned)>("eglBindAPI");
   bind(opengl_es);
-  void* const context = reinterpret_cast<MakeContext*>(egl("eglCreateContext"))(
+  void* const context = function<void*(void*, void*, void*, const int*)>("eglCreateContext")(
       display, nullptr, nullptr, std::array{version_name, 3, end}.data());
   bind(opengl);
   if (context == nullptr) GTEST_SKIP() << "no OpenGL ES here";
-  ASSERT_NE(reinterpret_cast<MakeCurrent*>(egl("eglMakeCurrent"))(display, nullptr, nullptr, context), 0u);
+  ASSERT_NE(function<MakeCurrent>("eglMakeCurrent")(display, nullptr, nullptr, context), 0u);
   EXPECT_TRUE(none_drawn_by(caller.get_proc_address(), {"is of OpenGL ES 3", "binosplat needs OpenGL 4.5"}));
-  reinterpret_cast<unsigned (*)(void*, void*)>(egl("eglDestroyContext"))(display,
-                                                                         context);  // once it is not current
+  function<unsigned(void*, void*)>("eglDestroyContext")(display, context);  // once it is not current
 }
 
 // A context that has a default framebuffer: its own is taken, where it begins.
 TEST_F(Contexts, WithADefaultFramebuffer) {
-  const auto egl = [&](const char* name) { return caller.get_proc_address()(name); };
-  const auto get = [&](const char* name) {
-    const auto found = reinterpret_cast<void* (*)()>(egl(name));
-    return found == nullptr ? nullptr : found();
-  };
-  void *const display = get("eglGetCurrentDisplay"), *const context = get("eglGetCurrentContext");
-  if (display == nullptr) GTEST_SKIP() << "no EGL here";
+  const auto get_display = function<void*()>("eglGetCurrentDisplay");
+  if (get_display == nullptr || get_display() == nullptr) GTEST_SKIP() << "no EGL here";
+  void *const display = get_display(), *const context = function<void*()>("eglGetCurrentContext")();
   constexpr int config_id = 0x3028, end = 0x3038, width = 0x3057, height = 0x3056;
-  using Query = unsigned(void*, void*, int, int*);
-  using Choose = unsigned(void*, const int*, void**, int, int*);
-  using Make = void*(void*, void*, const int*);
   int number = 0, count = 0;
   void* config = nullptr;
-  reinterpret_cast<Query*>(egl("eglQueryContext"))(display, context, config_id, &number);
-  reinterpret_cast<Choose*>(egl("eglChooseConfig"))(display, std::array{config_id, number, end}.data(),
-                                                    &config, 1, &count);
-  void* const surface = reinterpret_cast<Make*>(egl("eglCreatePbufferSurface"))(
+  function<unsigned(void*, void*, int, int*)>("eglQueryContext")(display, context, config_id, &number);
+  function<unsigned(void*, const int*, void**, int, int*)>("eglChooseConfig")(
+      display, std::array{config_id, number, end}.data(), &config, 1, &count);
+  void* const surface = function<void*(void*, void*, const int*)>("eglCreatePbufferSurface")(
       display, config, std::array{width, size.x, height, size.y, end}.data());
-  using MakeCurrent = unsigned(void*, void*, void*, void*);
-  const auto make_current = reinterpret_cast<MakeCurrent*>(egl("eglMakeCurrent"));
+  const auto make_current = function<MakeCurrent>("eglMakeCurrent");
   if (surface == nullptr || make_current(display, surface, surface, context) == 0u)
     GTEST_SKIP() << "no surface here";
   Renderer renderer(caller.get_proc_address(), model);
@@ -178,7 +168,7 @@ TEST_F(Contexts, WithADefaultFramebuffer) {
   one[0].target.x = -1;
   EXPECT_TRUE(test::fails_saying([&] { renderer.draw(one, placement); }, {"views[0].target", "-1, 0"}));
   make_current(display, nullptr, nullptr, context);
-  reinterpret_cast<unsigned (*)(void*, void*)>(egl("eglDestroySurface"))(display, surface);
+  function<unsigned(void*, void*)>("eglDestroySurface")(display, surface);
 }
 
 }  // namespace

@@ -62,10 +62,6 @@ struct Misuse : Library {
       caller.gl.NamedFramebufferTexture(id, GL_COLOR_ATTACHMENT0 + k, colours[k], 0);
     return id;
   }
-  template <typename F>
-  F* function(const char* name) const {
-    return reinterpret_cast<F*>(caller.get_proc_address()(name));
-  }
 };
 
 TEST_F(Misuse, TexturesThatCannotTakeAPicture) {
@@ -80,10 +76,6 @@ TEST_F(Misuse, TexturesThatCannotTakeAPicture) {
   const std::uint32_t solid = made(
       GL_TEXTURE_3D, [&](std::uint32_t id) { caller.TextureStorage3D(id, 1, GL_RGBA8, size.x, size.y, 4); });
   EXPECT_TRUE(target_refused({.texture = solid, .layer = 1}, {"of kind 0x806f", "GL_TEXTURE_2D_ARRAY"}));
-  const std::uint32_t cube = made(GL_TEXTURE_CUBE_MAP, [&](std::uint32_t id) {
-    caller.gl.TextureStorage2D(id, 1, GL_RGBA8, size.x, size.x);
-  });
-  EXPECT_TRUE(target_refused({.texture = cube, .layer = 1}, {"of kind 0x8513"}));
   const std::uint32_t samples = made(GL_TEXTURE_2D_MULTISAMPLE, [&](std::uint32_t id) {
     function<void(GLuint, GLsizei, GLenum, GLsizei, GLsizei, GLboolean)>("glTextureStorage2DMultisample")(
         id, 4, GL_RGBA8, size.x, size.y, GL_TRUE);
@@ -94,7 +86,6 @@ TEST_F(Misuse, TexturesThatCannotTakeAPicture) {
   const std::uint32_t good = caller.texture(GL_RGBA8, size.x, size.y),
                       array = caller.texture(GL_RGBA8, size.x, size.y, 2);
   EXPECT_TRUE(target_refused({.texture = good, .level = 1}, {"has no level 1"}));
-  EXPECT_TRUE(target_refused({.texture = good, .level = -1}, {"has no level -1"}));
   EXPECT_TRUE(target_refused({.texture = good, .layer = 0}, {"has no layer 0", "no array"}));
   EXPECT_TRUE(target_refused({.texture = array, .layer = 2}, {"has no layer 2", "an array of 2"}));
   EXPECT_TRUE(target_refused({.texture = array}, {"has no layer -1"}));
@@ -155,16 +146,13 @@ TEST_F(Misuse, PicturesOfBothEyes) {
   EXPECT_TRUE(refused(pair, placement, wide, {"views[0].target", "144 x 64 px", "within 72 x 64 px"}));
   pair[1].size.x -= 1;
   EXPECT_TRUE(refused(pair, placement, wide, {"views[1].size: 71 x 64", "parallel"}));
-  pair[0].size.x -= 1;
-  EXPECT_TRUE(
-      refused(pair, placement, {.background = glm::vec3(0.0f), .layout = Layout::half_width}, {"71"}));
+  pair = views();
   EXPECT_TRUE(refused(pair, placement, {.layout = Layout::anaglyph}, {"settings.background"}));
   EXPECT_TRUE(refused(pair, placement, {.background = glm::vec3(2.0f)}, {"settings.background", "0 to 1"}));
   EXPECT_TRUE(refused(pair, placement, {.cyclopean = true}, {"settings.cyclopean", "Scaffold-GS"}));
   Settings gazes = over_black;
   gazes.foveation = Foveation{.gaze = std::vector<glm::dvec2>(3)};
   EXPECT_TRUE(refused(pair, placement, gazes, {"settings.foveation.gaze", "3 for 2"}));
-  EXPECT_TRUE(refused(pair, placement, {.layout = static_cast<Layout>(77)}, {"layout 77"}));
 }
 
 TEST_F(Misuse, DepthsThatCannotBeKept) {
@@ -239,24 +227,15 @@ TEST_F(Misuse, NumbersThatAreNone) {
     const std::string text = fmt::format("views[1].size: {} x {} px", none.x, none.y);
     EXPECT_TRUE(refused([&](View& v) { v.size = none; }, {text}));
   }
+  EXPECT_TRUE(refused([](View& v) { std::swap(v.eye.fov.left, v.eye.fov.right); }, {"views[1].eye.fov"}));
   EXPECT_TRUE(refused(std::vector<View>(9, views()[0]), placement, over_black, {"1 to 8 views"}));
   EXPECT_TRUE(refused(std::vector<View>(), placement, over_black, {"1 to 8 views"}));
 }
 
+// Which those are, tests/library/settings_test.cpp has.
 TEST_F(Misuse, SettingsThatContradictEachOther) {
-  const auto badly_set = [&](Settings settings, std::initializer_list<std::string> parts) {
-    return refused(views(), placement, settings, parts);
-  };
-  EXPECT_TRUE(badly_set({.quality = 40.0f, .tolerance = 0.0f}, {"settings.tolerance", "settings.quality"}));
-  EXPECT_TRUE(
-      badly_set({.quality = 40.0f, .threshold = Threshold::exact}, {"settings.quality", "threshold exact"}));
-  EXPECT_TRUE(badly_set({.tolerance = 1.0f, .threshold = Threshold::exact}, {"settings.tolerance"}));
-  EXPECT_TRUE(badly_set({.transmittance = Transmittance::measured}, {"settings.transmittance", "no effect"}));
-  EXPECT_TRUE(badly_set({.threshold = static_cast<Threshold>(77)}, {"settings.threshold 77"}));
-  EXPECT_TRUE(badly_set({.transmittance = static_cast<Transmittance>(77)}, {"settings.transmittance 77"}));
-  EXPECT_TRUE(badly_set({.order = static_cast<Order>(-1)}, {"settings.order -1"}));
-  EXPECT_TRUE(badly_set({.projection = static_cast<Projection>(2)}, {"settings.projection 2"}));
-  EXPECT_TRUE(badly_set({.depth = static_cast<DepthKind>(77)}, {"settings.depth 77"}));
+  EXPECT_TRUE(refused(views(), placement, {.quality = 40.0f, .tolerance = 0.0f},
+                      {"settings.tolerance", "settings.quality"}));
   // One number is enough: the rule follows from it.
   EXPECT_GE(renderer.draw(views(), placement, {.quality = 40.0f}).quality, 39.0);
 }

@@ -51,6 +51,12 @@ struct Library : testing::Test {
     return {View{eyes[0], size, {.texture = textures[0]}}, View{eyes[1], size, {.texture = textures[1]}}};
   }
   std::vector<float> read(std::size_t eye) const { return caller.read<float>(textures[eye], size.x, size.y); }
+
+  /// A function of the driver's.
+  template <typename F>
+  F* function(const char* name) const {
+    return reinterpret_cast<F*>(caller.get_proc_address()(name));
+  }
 };
 
 }  // namespace binosplat

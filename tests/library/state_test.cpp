@@ -18,6 +18,7 @@ namespace binosplat {
 namespace {
 
 using Values = std::vector<double>;
+using Names = std::set<std::string>;
 
 /// A piece of state: how the caller sets it to something unusual, and what it is now.
 struct Piece {
@@ -40,13 +41,31 @@ struct State : testing::Test {
     gl.GetIntegerv(name, values.data());
     return {values.begin(), values.begin() + count};
   }
+  Values viewport(GLuint index) const {
+    std::array<float, 4> values{};
+    caller.GetFloati_v(GL_VIEWPORT, index, values.data());
+    return {values.begin(), values.end()};
+  }
   void add(const std::string& name, std::function<void()> set, std::function<Values()> get) {
     pieces.push_back({name, std::move(set), std::move(get)});
   }
+  /// One that is a number.
+  void add(const std::string& name, GLenum number, std::function<void()> set) {
+    add(name, std::move(set), [this, number] { return integers(number); });
+  }
+  void add_buffer(const std::string& name, GLenum target, GLenum number) {
+    add(name, number, [this, target] { gl.BindBuffer(target, buffer.id()); });
+  }
+  /// One that is on or off.
   void add_enabled(const std::string& name, GLenum effect) {
     add(
         name, [this, effect] { gl.Enable(effect); },
         [this, effect] { return Values{double(gl.IsEnabled(effect))}; });
+  }
+  void add_enabled_at(const std::string& name, GLenum effect, GLuint index) {
+    add(
+        name, [this, effect, index] { gl.Enablei(effect, index); },
+        [this, effect, index] { return Values{double(gl.IsEnabledi(effect, index))}; });
   }
 
   State() {
@@ -61,46 +80,30 @@ struct State : testing::Test {
   }
 
   void add_changed() {
-    add(
-        "program", [this] { gl.UseProgram(caller.context->program("recolour.comp").id()); },
-        [this] { return integers(GL_CURRENT_PROGRAM); });
-    add(
-        "storage buffer", [this] { gl.BindBuffer(GL_SHADER_STORAGE_BUFFER, buffer.id()); },
-        [this] { return integers(GL_SHADER_STORAGE_BUFFER_BINDING); });
-    add(
-        "indirect buffer", [this] { gl.BindBuffer(GL_DISPATCH_INDIRECT_BUFFER, buffer.id()); },
-        [this] { return integers(GL_DISPATCH_INDIRECT_BUFFER_BINDING); });
-    add(
-        "image", [this] { gl.BindImageTexture(0, array, 0, GL_FALSE, 1, GL_READ_ONLY, GL_RGBA16F); },
-        [this] {
-          Values values;
-          for (const GLenum name :
-               {GL_IMAGE_BINDING_NAME, GL_IMAGE_BINDING_LEVEL, GL_IMAGE_BINDING_LAYERED,
-                GL_IMAGE_BINDING_LAYER, GL_IMAGE_BINDING_ACCESS, GL_IMAGE_BINDING_FORMAT}) {
-            GLint value = 0;
-            gl.GetIntegeri_v(name, 0, &value);
-            values.push_back(value);
-          }
-          return values;
-        });
-    add(
-        "last image",
-        [this] { gl.BindImageTexture(MAX_CANVASES - 1, array, 0, GL_FALSE, 1, GL_READ_ONLY, GL_RGBA16F); },
-        [this] {
-          GLint name = 0;
-          gl.GetIntegeri_v(GL_IMAGE_BINDING_NAME, MAX_CANVASES - 1, &name);
-          return Values{double(name)};
-        });
-    add(
-        "scissor test", [this] { gl.Enablei(GL_SCISSOR_TEST, 0); },
-        [this] { return Values{double(gl.IsEnabledi(GL_SCISSOR_TEST, 0))}; });
-    add(
-        "sRGB framebuffer", [this] { gl.Enable(GL_FRAMEBUFFER_SRGB); },
-        [this] { return Values{double(gl.IsEnabled(GL_FRAMEBUFFER_SRGB))}; });
+    add("program", GL_CURRENT_PROGRAM,
+        [this] { gl.UseProgram(caller.context->program("recolour.comp").id()); });
+    add_buffer("storage buffer", GL_SHADER_STORAGE_BUFFER, GL_SHADER_STORAGE_BUFFER_BINDING);
+    add_buffer("indirect buffer", GL_DISPATCH_INDIRECT_BUFFER, GL_DISPATCH_INDIRECT_BUFFER_BINDING);
+    for (const GLuint unit : {0u, MAX_CANVASES - 1u}) {
+      const auto get = [this, unit] {
+        Values values;
+        for (const GLenum name : {GL_IMAGE_BINDING_NAME, GL_IMAGE_BINDING_LEVEL, GL_IMAGE_BINDING_LAYERED,
+                                  GL_IMAGE_BINDING_LAYER, GL_IMAGE_BINDING_ACCESS, GL_IMAGE_BINDING_FORMAT}) {
+          GLint value = 0;
+          gl.GetIntegeri_v(name, unit, &value);
+          values.push_back(value);
+        }
+        return values;
+      };
+      const auto set = [this, unit] {
+        gl.BindImageTexture(unit, array, 0, GL_FALSE, 1, GL_READ_ONLY, GL_RGBA16F);
+      };
+      add("image " + std::to_string(unit), set, get);
+    }
+    add_enabled_at("scissor test", GL_SCISSOR_TEST, 0);
+    add_enabled("sRGB framebuffer", GL_FRAMEBUFFER_SRGB);
     add_enabled("rasterizer discard", GL_RASTERIZER_DISCARD);
-    add(
-        "uniform buffer", [this] { gl.BindBuffer(GL_UNIFORM_BUFFER, buffer.id()); },
-        [this] { return integers(GL_UNIFORM_BUFFER_BINDING); });
+    add_buffer("uniform buffer", GL_UNIFORM_BUFFER, GL_UNIFORM_BUFFER_BINDING);
     add(
         "uniform binding",
         [this] {
@@ -139,12 +142,7 @@ struct State : testing::Test {
 
   void add_effects() {
     add(
-        "viewport", [this] { caller.ViewportIndexedf(0, 1.5f, 2, 33, 44); },
-        [this] {
-          std::array<float, 4> v{};
-          caller.GetFloati_v(GL_VIEWPORT, 0, v.data());
-          return Values(v.begin(), v.end());
-        });
+        "viewport", [this] { caller.ViewportIndexedf(0, 1.5f, 2, 33, 44); }, [this] { return viewport(0); });
     add(
         "colour mask", [this] { caller.ColorMaski(0, GL_FALSE, GL_TRUE, GL_FALSE, GL_FALSE); },
         [this] {
@@ -152,17 +150,10 @@ struct State : testing::Test {
           caller.GetBooleani_v(GL_COLOR_WRITEMASK, 0, v.data());
           return Values(v.begin(), v.end());
         });
-    add(
-        "blending", [this] { gl.Enablei(GL_BLEND, 0); },
-        [this] { return Values{double(gl.IsEnabledi(GL_BLEND, 0))}; });
-    add(
-        "clip origin", [this] { caller.ClipControl(GL_UPPER_LEFT, GL_ZERO_TO_ONE); },
-        [this] { return integers(GL_CLIP_ORIGIN); });
-    add(
-        "clip depth", [] {}, [this] { return integers(GL_CLIP_DEPTH_MODE); });
-    add(
-        "polygon mode", [this] { caller.PolygonMode(GL_FRONT_AND_BACK, GL_LINE); },
-        [this] { return integers(GL_POLYGON_MODE); });
+    add_enabled_at("blending", GL_BLEND, 0);
+    add("clip origin", GL_CLIP_ORIGIN, [this] { caller.ClipControl(GL_UPPER_LEFT, GL_ZERO_TO_ONE); });
+    add("clip depth", GL_CLIP_DEPTH_MODE, [] {});
+    add("polygon mode", GL_POLYGON_MODE, [this] { caller.PolygonMode(GL_FRONT_AND_BACK, GL_LINE); });
     for (const auto& [name, effect] :
          std::vector<std::pair<const char*, GLenum>>{{"depth test", GL_DEPTH_TEST},
                                                      {"stencil test", GL_STENCIL_TEST},
@@ -205,62 +196,29 @@ struct State : testing::Test {
   void add_untouched() {
     add_unit(0);
     add_unit(MAX_CANVASES);
-    add(
-        "vertex array", [this] { caller.BindVertexArray(vertices); },
-        [this] { return integers(GL_VERTEX_ARRAY_BINDING); });
-    add(
-        "draw framebuffer", [this] { gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, framebuffer); },
-        [this] { return integers(GL_DRAW_FRAMEBUFFER_BINDING); });
-    add(
-        "texture unit", [this] { caller.ActiveTexture(GL_TEXTURE5); },
-        [this] { return integers(GL_ACTIVE_TEXTURE); });
-    add(
-        "texture", [this] { caller.BindTexture(GL_TEXTURE_2D, texture); },
-        [this] { return integers(GL_TEXTURE_BINDING_2D); });
-    add(
-        "sampler", [this] { caller.BindSampler(5, sampler); },
-        [this] { return integers(GL_SAMPLER_BINDING); });
-    add(
-        "read framebuffer", [this] { gl.BindFramebuffer(GL_READ_FRAMEBUFFER, framebuffer); },
-        [this] { return integers(GL_READ_FRAMEBUFFER_BINDING); });
-    add(
-        "array buffer", [this] { gl.BindBuffer(GL_ARRAY_BUFFER, buffer.id()); },
-        [this] { return integers(GL_ARRAY_BUFFER_BINDING); });
-    add(
-        "pixel pack buffer", [this] { gl.BindBuffer(GL_PIXEL_PACK_BUFFER, buffer.id()); },
-        [this] { return integers(GL_PIXEL_PACK_BUFFER_BINDING); });
-    add(
-        "pixel store", [this] { caller.PixelStorei(GL_PACK_ALIGNMENT, 8); },
-        [this] { return integers(GL_PACK_ALIGNMENT); });
-    add(
-        "blend function", [this] { caller.BlendFunc(GL_ONE, GL_DST_COLOR); },
-        [this] { return integers(GL_BLEND_DST_RGB); });
-    add(
-        "depth function", [this] { caller.DepthFunc(GL_GREATER); },
-        [this] { return integers(GL_DEPTH_FUNC); });
-    add(
-        "depth mask", [this] { caller.DepthMask(GL_FALSE); },
-        [this] { return integers(GL_DEPTH_WRITEMASK); });
+    add("vertex array", GL_VERTEX_ARRAY_BINDING, [this] { caller.BindVertexArray(vertices); });
+    add("draw framebuffer", GL_DRAW_FRAMEBUFFER_BINDING,
+        [this] { gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, framebuffer); });
+    add("texture unit", GL_ACTIVE_TEXTURE, [this] { caller.ActiveTexture(GL_TEXTURE5); });
+    add("texture", GL_TEXTURE_BINDING_2D, [this] { caller.BindTexture(GL_TEXTURE_2D, texture); });
+    add("sampler", GL_SAMPLER_BINDING, [this] { caller.BindSampler(5, sampler); });
+    add("read framebuffer", GL_READ_FRAMEBUFFER_BINDING,
+        [this] { gl.BindFramebuffer(GL_READ_FRAMEBUFFER, framebuffer); });
+    add_buffer("array buffer", GL_ARRAY_BUFFER, GL_ARRAY_BUFFER_BINDING);
+    add_buffer("pixel pack buffer", GL_PIXEL_PACK_BUFFER, GL_PIXEL_PACK_BUFFER_BINDING);
+    add("pixel store", GL_PACK_ALIGNMENT, [this] { caller.PixelStorei(GL_PACK_ALIGNMENT, 8); });
+    add("blend function", GL_BLEND_DST_RGB, [this] { caller.BlendFunc(GL_ONE, GL_DST_COLOR); });
+    add("depth function", GL_DEPTH_FUNC, [this] { caller.DepthFunc(GL_GREATER); });
+    add("depth mask", GL_DEPTH_WRITEMASK, [this] { caller.DepthMask(GL_FALSE); });
     add(
         "clear colour", [this] { gl.ClearColor(0.1f, 0.2f, 0.3f, 0.4f); },
-        [this] {
-          std::array<float, 4> v{};
-          caller.GetFloatv(GL_COLOR_CLEAR_VALUE, v.data());
-          return Values(v.begin(), v.end());
-        });
+        [this] { return integers(GL_COLOR_CLEAR_VALUE, 4); });
     add(
         "scissors", [this] { caller.ScissorIndexed(0, 1, 2, 3, 4); },
         [this] { return integers(GL_SCISSOR_BOX, 4); });
     add(
-        "viewport 1", [this] { caller.ViewportIndexedf(1, 5, 6, 7, 8); },
-        [this] {
-          std::array<float, 4> v{};
-          caller.GetFloati_v(GL_VIEWPORT, 1, v.data());
-          return Values(v.begin(), v.end());
-        });
-    add(
-        "blending of buffer 1", [this] { gl.Enablei(GL_BLEND, 1); },
-        [this] { return Values{double(gl.IsEnabledi(GL_BLEND, 1))}; });
+        "viewport 1", [this] { caller.ViewportIndexedf(1, 5, 6, 7, 8); }, [this] { return viewport(1); });
+    add_enabled_at("blending of buffer 1", GL_BLEND, 1);
   }
 
   void set_all() {
@@ -269,12 +227,12 @@ struct State : testing::Test {
   }
 
   /// Names of the pieces that an action leaves other than they were.
-  std::set<std::string> changed_by(const std::function<void()>& action) {
+  Names changed_by(const std::function<void()>& action) {
     set_all();
     std::vector<Values> before;
     for (const Piece& piece : pieces) before.push_back(piece.get());
     action();
-    std::set<std::string> changed;
+    Names changed;
     for (std::size_t k = 0; k < pieces.size(); ++k) {
       if (pieces[k].get() != before[k]) changed.insert(pieces[k].name);
     }
@@ -323,25 +281,25 @@ TEST_F(State, IsTheSameAfterAFrame) {
   std::unique_ptr<Renderer> renderer;
   const auto made =
       changed_by([&] { renderer = std::make_unique<Renderer>(caller.get_proc_address(), model); });
-  EXPECT_EQ(made, std::set<std::string>()) << "by uploading the model";
+  EXPECT_EQ(made, Names()) << "by uploading the model";
   const Textures odd(caller);
   const auto drawn = changed_by([&] { renderer->draw(odd.views_with_depths(), {}, over_black); });
-  EXPECT_EQ(drawn, std::set<std::string>());
+  EXPECT_EQ(drawn, Names());
   const std::vector<float> depths = Textures::read_depths(caller, odd.depths[0]);
   auto in_place = odd.views_with_depths();
   in_place[1].target = {.texture = caller.texture(GL_SRGB8_ALPHA8, 40, 32)};
-  EXPECT_EQ(changed_by([&] { EXPECT_TRUE(renderer->draw(in_place, {}).in_place); }), std::set<std::string>());
+  EXPECT_EQ(changed_by([&] { EXPECT_TRUE(renderer->draw(in_place, {}).in_place); }), Names());
   const std::uint32_t meshes = caller.texture(GL_DEPTH24_STENCIL8, 40, 32);
   for (auto with_meshes : {odd.views_with_depths(), in_place}) {
     for (View& view : with_meshes)
       view.mesh_depth = {.texture = meshes, .near_plane = 0.1, .far_plane = 100.0};
-    EXPECT_EQ(changed_by([&] { renderer->draw(with_meshes, {}); }), std::set<std::string>());
+    EXPECT_EQ(changed_by([&] { renderer->draw(with_meshes, {}); }), Names());
   }
   const auto refused = changed_by([&] {
     for (const std::uint32_t bad : {4711u, caller.texture(GL_RGBA8UI, 40, 32)})
       EXPECT_THROW(renderer->draw(views_into({{odd.targets[0], {.texture = bad}}}), {}), Error);
   });
-  EXPECT_EQ(refused, std::set<std::string>()) << "by a frame that failed";
+  EXPECT_EQ(refused, Names()) << "by a frame that failed";
 
   // And the pictures are those of a plain context: none of that state reached them.
   set_all();
@@ -382,7 +340,7 @@ TEST_F(State, DrawingWithoutCareIsNoticedInEveryPiece) {
     gl.BindBufferRange(GL_SHADER_STORAGE_BUFFER, 13, frame.colours().id(), 0, 16);
     gl.BindBufferRange(GL_SHADER_STORAGE_BUFFER, 8, frame.colours().id(), 0, 16);
   });
-  std::set<std::string> expected;
+  Names expected;
   for (std::size_t k = 0; k < changed_count; ++k) expected.insert(pieces[k].name);
   EXPECT_EQ(careless, expected);
   const auto among_meshes = changed_by([&] {
