@@ -12,11 +12,7 @@ struct AxesOption : SceneTest {
   AxesOption() { add_cameras(); }
 
   /// What a command that ends well says.
-  std::string said_by(const Words& words) const {
-    const Outcome outcome = run_program(words);
-    EXPECT_TRUE(good(outcome));
-    return outcome.err;
-  }
+  std::string said_by(const Words& words) const { return well(run_program(words)).err; }
 };
 
 /// The small model with x, y and z times signs, in all that it takes (FORMATS: quaternions and harmonics,

@@ -18,9 +18,8 @@ struct BenchAlong : SceneTest {
   json bench(const std::string& axes, const Words& more, const Words& scenes = {}) {
     write_text(folder / "axes.json", axes);
     fs::remove_all(out);
-    const Outcome outcome = run_into_out(joined(joined({"bench", "--axes", folder / "axes.json"}, more),
-                                                scenes.empty() ? Words{model} : scenes));
-    EXPECT_TRUE(good(outcome));
+    const Outcome outcome = well(run_into_out(joined(joined({"bench", "--axes", folder / "axes.json"}, more),
+                                                     scenes.empty() ? Words{model} : scenes)));
     printed = outcome.out;
     said = outcome.err;
     return load_json(out + "/results.json").at("points");
@@ -183,8 +182,7 @@ struct BenchLevelsCommand : SceneTest {
 TEST_F(BenchLevelsCommand, TellWhatRenderTells) {
   save_ply(model, test::random_model(4, 700, 0));
   const std::string made = make_levels("made");
-  const Outcome outcome = bench({made}, {"--detail", "25dB,35dB"});
-  ASSERT_TRUE(good(outcome));
+  const Outcome outcome = well(bench({made}, {"--detail", "25dB,35dB"}));
   const json points = load_json(out + "/results.json").at("points");
   ASSERT_EQ(points.size(), 3u);
   EXPECT_EQ(points[0].at("gaussians"), 700.0) << "the finest";
@@ -215,9 +213,8 @@ TEST_F(BenchLevelsCommand, OfSeveralScenesTellHowTimesGrow) {
   const std::string small = make_levels("small");
   save_ply(model, test::random_model(2, 900, 1));
   const std::string large = make_levels("large", false);
-  const Outcome outcome = bench({small, large}, {"--detail", "2", "--cameras", small + "/cameras.json",
-                                                 "--view", "view2", "--mono", "--size", "36x24"});
-  ASSERT_TRUE(good(outcome));
+  const Outcome outcome = well(bench({small, large}, {"--detail", "2", "--cameras", small + "/cameras.json",
+                                                      "--view", "view2", "--mono", "--size", "36x24"}));
   const auto points = load_json(out + "/results.json").at("points");
   EXPECT_EQ(points[2]["gaussians"], 900.0);
   EXPECT_EQ(points[3]["details"][0]["view"], "view2");

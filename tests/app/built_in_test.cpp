@@ -44,8 +44,7 @@ TEST_F(BuiltIn, TheCityIsClosed) {
 
 TEST_F(BuiltIn, PairsAreComfortableAsTheyCome) {
   const auto comfortable = [&](const std::string& scene, const Words& words) {
-    const Outcome outcome = draw(scene, joined(words, {"--view", "all", "--size", "160x90"}));
-    EXPECT_TRUE(good(outcome));
+    const Outcome outcome = well(draw(scene, joined(words, {"--view", "all", "--size", "160x90"})));
     bool all = true;
     const json views = report()["views"];
     for (const json& view : views) all = all && view["disparity"]["comfortable"].get<bool>();

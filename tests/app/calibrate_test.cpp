@@ -89,8 +89,7 @@ TEST_F(CalibrateTest, GoesOnWhereItWasEnded) {
 }
 
 TEST_F(CalibrateTest, RenderGoesByIt) {
-  const Outcome outcome = calibrate({"--quality", "38", "--views", "2"});
-  ASSERT_TRUE(good(outcome));
+  const Outcome outcome = well(calibrate({"--quality", "38", "--views", "2"}));
   EXPECT_TRUE(has(outcome.out, "target: 38 dB against the exact pictures"));
   const json found = load_json(file);
   EXPECT_EQ(found["views"].size(), 2);

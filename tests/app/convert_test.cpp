@@ -21,8 +21,7 @@ TEST_F(ConvertTest, WritesEveryFormatAndSaysWhatItCosts) {
   };
   // Degree 1, whose harmonics are far beyond what real ones are: only what keeps them comes close.
   for (const Case& c : {Case{"m.spz", "spz", 15, 60}, Case{"m.sog", "SOG", 35, 90}}) {
-    const Outcome outcome = convert(c.file, {"--report", "2", "--json", folder / "r.json"});
-    ASSERT_TRUE(good(outcome));
+    const Outcome outcome = well(convert(c.file, {"--report", "2", "--json", folder / "r.json"}));
     const json report = load_json(folder / "r.json");
     EXPECT_EQ(report["gaussians"], 300);
     EXPECT_EQ(report["bytes"], fs::file_size(folder / c.file));
@@ -36,8 +35,8 @@ TEST_F(ConvertTest, WritesEveryFormatAndSaysWhatItCosts) {
     EXPECT_TRUE(has(run_program({"info", folder / c.file}).out, c.format));
   }
   // A ply is drawn the same to the bit, and whoever reads that would see that a difference is one.
-  const Outcome same = convert("m.ply", {"--report", "3", "--size", "36x24", "--json", folder / "r.json"});
-  ASSERT_TRUE(good(same));
+  const Outcome same =
+      well(convert("m.ply", {"--report", "3", "--size", "36x24", "--json", folder / "r.json"}));
   const json report = load_json(folder / "r.json");
   ASSERT_EQ(report["views"].size(), 3);
   for (const json& view : report["views"]) {
@@ -53,8 +52,7 @@ TEST_F(ConvertTest, ViewsAreChosenOrMadeUp) {
   ASSERT_TRUE(ended(around, 0, "no cameras beside"));
   EXPECT_TRUE(has(around.out, "orbit_001"));
   add_cameras();
-  const Outcome named = convert("m.spz", {"--report", "3", "--view", "side"});
-  ASSERT_TRUE(good(named));
+  const Outcome named = well(convert("m.spz", {"--report", "3", "--view", "side"}));
   EXPECT_TRUE(has(named.out, "worst: side"));
   EXPECT_FALSE(has(named.out, "front"));
   EXPECT_TRUE(ended(convert("m.spz", {"--report", "3", "--view", "nowhere"}), 2, "nowhere"));
@@ -70,8 +68,7 @@ TEST_F(ConvertTest, AxesAreTurned) {
   const Outcome back = run("m.spz", "back.ply");
   ASSERT_TRUE(ended(back, 0, "turned from RUB to RDF"));
   EXPECT_TRUE(has(back.out, "equal"));
-  const Outcome as_ply = run("m.spz", "as-ply.ply", {"--axes", "rdf"});
-  ASSERT_TRUE(good(as_ply));
+  const Outcome as_ply = well(run("m.spz", "as-ply.ply", {"--axes", "rdf"}));
   EXPECT_FALSE(has(as_ply.err, "turned"));
   EXPECT_NE(read_text(folder / "as-ply.ply"), read_text(folder / "back.ply"));
 }
@@ -118,9 +115,8 @@ TEST_F(ConvertTest, ErrorsSayWhatToDo) {
 }
 
 TEST_F(ConvertTest, ABuiltInScene) {
-  const Outcome outcome =
-      run_program({"convert", "demo:room", "-o", folder / "room.spz", "--report", "1", "--size", "160x90"});
-  ASSERT_TRUE(good(outcome));
+  const Outcome outcome = well(
+      run_program({"convert", "demo:room", "-o", folder / "room.spz", "--report", "1", "--size", "160x90"}));
   EXPECT_TRUE(has(outcome.out, "98230 Gaussians"));
 }
 

@@ -18,8 +18,7 @@ struct Devices : SceneTest {
 };
 
 TEST_F(Devices, ListsWaysToDrawThatRenderTakes) {
-  const Outcome outcome = devices();
-  ASSERT_TRUE(good(outcome));
+  const Outcome outcome = well(devices());
   EXPECT_TRUE(has(outcome.out, "--backend surfaceless"));
   bool any = false;
   const json all = list();

@@ -118,12 +118,11 @@ TEST_F(Edges, AFullStandardOutputIsAnError) {
 TEST_F(Edges, FoldersOfCaches) {
   const TempFolder here, home, mesa;  // Mesa keeps what it compiled: ours are what this is about
   const auto draw = [&](const std::string& caches) {
-    const Outcome outcome = render(one, {.folder = here.path(),
-                                         .variables = {{"HOME", home.path()},
-                                                       {"XDG_CACHE_HOME", caches},
-                                                       {"MESA_SHADER_CACHE_DIR", mesa.path()}}});
-    EXPECT_TRUE(good(outcome));
-    return outcome.err;
+    return well(render(one, {.folder = here.path(),
+                             .variables = {{"HOME", home.path()},
+                                           {"XDG_CACHE_HOME", caches},
+                                           {"MESA_SHADER_CACHE_DIR", mesa.path()}}}))
+        .err;
   };
   const char* const full = "the disk is full; drivers keep no shaders there";
   EXPECT_TRUE(has(draw("/proc"), full));

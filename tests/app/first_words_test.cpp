@@ -20,11 +20,7 @@ struct FirstWords : SceneTest {
   Outcome run(const Words& words) const { return run_program(words, here); }
 
   /// What drawing a picture said.
-  std::string said(const Words& words) const {
-    const Outcome outcome = render(words, here);
-    EXPECT_TRUE(good(outcome));
-    return outcome.err;
-  }
+  std::string said(const Words& words) const { return well(render(words, here)).err; }
 };
 
 TEST_F(FirstWords, AModelAloneIsDrawn) {
@@ -82,8 +78,7 @@ TEST_F(FirstWords, LengthsHaveAUnit) {
 
 TEST_F(FirstWords, QuietIsQuiet) {
   EXPECT_TRUE(has(render(small).out, "median ms"));
-  const Outcome outcome = render(joined(small, {"--quiet"}));
-  ASSERT_TRUE(good(outcome));
+  const Outcome outcome = well(render(joined(small, {"--quiet"})));
   EXPECT_FALSE(has(outcome.out, "median ms"));
   EXPECT_TRUE(has(outcome.out, "front_left.png"));
   EXPECT_EQ(run({"--quiet", "render", "model.ply", "--mono", "--size", "36x24", "-o", out}).err, "");
@@ -156,8 +151,7 @@ TEST_F(FirstWords, TheJudgeHasNoGpuTimes) {
 }
 
 TEST_F(FirstWords, ViewsAreListed) {
-  const Outcome outcome = run({"info", "model.ply", "--views", "--json", folder / "views.json"});
-  ASSERT_TRUE(good(outcome));
+  const Outcome outcome = well(run({"info", "model.ply", "--views", "--json", folder / "views.json"}));
   EXPECT_TRUE(has(outcome.out, "cameras.json: 4 views"));
   EXPECT_TRUE(has(outcome.out, "side        72 x 48 px, 43.6 degrees high, at 0.5,0,0"));
   EXPECT_EQ(load_json(folder / "views.json").size(), 4u);

@@ -36,9 +36,8 @@ Image cut(const Image& whole, int eye, const std::vector<int>& begin, const std:
 
 TEST_F(Foveate, WritesBothEyesWithTheirInsetsExact) {
   ASSERT_TRUE(good(draw("exact.png", {})));
-  const auto run = draw("drawn.png", {"--foveate", "inset=20deg,context=0.4,gaze=8,-3,4,-3", "--tolerance",
-                                      "0.05", "--json", folder / "run.json"});
-  ASSERT_TRUE(good(run));
+  const Outcome run = well(draw("drawn.png", {"--foveate", "inset=20deg,context=0.4,gaze=8,-3,4,-3",
+                                              "--tolerance", "0.05", "--json", folder / "run.json"}));
   EXPECT_TRUE(has(run.out, "\ncompose "));
   const Image exact = load_image(folder / "exact.png"), drawn = load_image(folder / "drawn.png");
   EXPECT_NE(exact.data, drawn.data);
@@ -77,8 +76,7 @@ TEST_F(Foveate, CompareTellsWhatIsSeenAndWhere) {
   ASSERT_TRUE(good(draw("exact.png", {"--mono"})));
   ASSERT_TRUE(good(draw("drawn.png", {"--mono", "--foveate", "inset=22,context=0.25"})));
   const std::string fov = fmt::format(",72,{}", 2 * std::atan(108 / 180.0) * 180 / std::acos(-1.0));
-  const auto run = compared("108" + fov);
-  ASSERT_TRUE(good(run));
+  const Outcome run = well(compared("108" + fov));
   EXPECT_TRUE(has(run.out, "0 to 5 degrees"));
   EXPECT_TRUE(has(run.out, "infinite"));
   const auto rings = load_json(folder / "c.json").at("foveated").at("rings");

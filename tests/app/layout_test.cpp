@@ -9,9 +9,7 @@ struct LayoutOption : SceneTest {
   LayoutOption() { add_cameras(); }
   json view(std::size_t k = 0) const { return load_json(folder / "r.json")["views"][k]; }
   Outcome draw(const Words& words) const {
-    Outcome outcome = render(joined(words, {"--json", folder / "r.json"}));
-    EXPECT_TRUE(good(outcome));
-    return outcome;
+    return well(render(joined(words, {"--json", folder / "r.json"})));
   }
 };
 

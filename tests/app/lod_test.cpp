@@ -101,8 +101,7 @@ TEST_F(RenderLevels, ByDecibelsAsAFileTells) {
   const Words line = {"--path", save_path({-800, -20}), "--detail", "40dB", "--detail-report"};
   EXPECT_TRUE(ended(render(line), 2, "has no errors of its levels to go by"));
   test::add_level_errors(*copy);
-  const Outcome told = render(line);
-  ASSERT_TRUE(good(told));
+  const Outcome told = well(render(line));
   EXPECT_EQ(report()["settings"]["detail_db"], 40.0);
   EXPECT_FALSE(report()["settings"].contains("detail_px"));
   const json far = levels(0), near = levels(1);

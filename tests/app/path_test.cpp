@@ -59,8 +59,7 @@ TEST_F(KeysPath, GoesThroughKeys) {
 TEST_F(KeysPath, ManyFramesAreToldInAFewLines) {
   save_cameras(0.5);
   const auto lines = [&](const char* fps, bool many) {
-    const Outcome outcome = along({"--fps", fps, "--quality", "40"});
-    EXPECT_TRUE(good(outcome));
+    const Outcome outcome = well(along({"--fps", fps, "--quality", "40"}));
     EXPECT_EQ(outcome.out.find("13 frames: ") != std::string::npos, many) << outcome.out;
     EXPECT_EQ(outcome.out.find("path_00001.png") == std::string::npos, many) << outcome.out;
     return std::count(outcome.out.begin(), outcome.out.end(), '\n');
@@ -79,8 +78,7 @@ TEST_F(KeysPath, FramesAreFrames) {
   const std::string said = "4 frames of " + path + " as they are (not all have times that rise";
   for (const double step : {0.0, 0.04, -0.5}) {
     save_cameras(step);
-    const Outcome outcome = along({});
-    EXPECT_TRUE(good(outcome));
+    const Outcome outcome = well(along({}));
     EXPECT_EQ(places().size(), 4u) << step;
     EXPECT_EQ(outcome.err.find(said) != std::string::npos, step <= 0.0) << outcome.err;
   }

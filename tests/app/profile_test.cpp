@@ -16,8 +16,7 @@ struct ProfileCommand : SceneTest {
 };
 
 TEST_F(ProfileCommand, LeavesAReportATraceAndATable) {
-  const Outcome outcome = profile({"--tour", "calm", "--seconds", "0.2", "--size", "48x32"});
-  ASSERT_TRUE(good(outcome));
+  const Outcome outcome = well(profile({"--tour", "calm", "--seconds", "0.2", "--size", "48x32"}));
   EXPECT_EQ(folder.files(), (Names{"cameras.json", "model.ply", "out/frames.csv", "out/report.html",
                                    "out/results.csv", "out/results.json", "out/trace.json"}));
   const json trace = json::parse(read_text(out + "/trace.json"));
@@ -71,8 +70,7 @@ TEST_F(ProfileCommand, StandsAtAViewAndComparesWithTheRunBefore) {
   const std::string before = folder / "before.json";
   fs::copy(out + "/results.json", before);
   const Words compared = joined(still, {"--compare", before});
-  const Outcome same = profile(compared);
-  ASSERT_TRUE(good(same));
+  const Outcome same = well(profile(compared));
   EXPECT_TRUE(has(same.out, "numbers of 1 points in both runs changed beyond noise"));
   // The same frames, had they ten times as many pairs: a count, which no load on this machine moves.
   json old = load_json(before);

@@ -35,8 +35,8 @@ TEST_F(RefitTest, BringsThePhotosBack) {
   Model darker = colourful();
   for (float& c : darker.sh) c -= 0.2f;
   save_ply(model, darker);
-  const Outcome outcome = refit("m.ply", {"--photos", folder / "photos", "--views", "2", "--test", "view3"});
-  ASSERT_TRUE(good(outcome));
+  const Outcome outcome =
+      well(refit("m.ply", {"--photos", folder / "photos", "--views", "2", "--test", "view3"}));
   const json all = steps();
   ASSERT_EQ(all.size(), 3u) << outcome.out;
   const double before = all[0]["held_back_db"], after = all[2]["held_back_db"], test = all[2]["test_db"];
@@ -51,8 +51,7 @@ TEST_F(RefitTest, BringsThePhotosBack) {
   EXPECT_EQ(load_json(folder / "r.json")["written"], true);
   // A view without a photo is fitted to the model's own picture.
   fs::remove(folder / "photos" / "view5.png");
-  const Outcome fewer = refit("n.ply", {"--photos", folder / "photos"});
-  ASSERT_TRUE(good(fewer));
+  const Outcome fewer = well(refit("n.ply", {"--photos", folder / "photos"}));
   EXPECT_TRUE(has(fewer.out, "7 views fitted, 6 of them to photos; 1 held back"));
 }
 

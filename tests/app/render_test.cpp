@@ -22,8 +22,7 @@ struct Render : SceneTest {
 };
 
 TEST_F(Render, WithoutCamerasTheModelIsFramed) {
-  const Outcome outcome = render({"--size", "90x60"});
-  ASSERT_TRUE(good(outcome));
+  const Outcome outcome = well(render({"--size", "90x60"}));
   EXPECT_EQ(folder.files(), (Names{"model.ply", "out/framed_left.png", "out/framed_right.png"}));
   EXPECT_FALSE(same("out/framed_left.png", "out/framed_right.png"));
   for (const char* word : {"/framed_left.png", "project", "bin", "sort", "blend"})
@@ -64,8 +63,7 @@ TEST_F(Render, APoseSavedBesideTheModelIsUsed) {
   pose.update({{"up", {0, -1, 0}}, {"units_per_metre", 2.0}, {"ipd_metres", 0.1}, {"near", 0.1}});
   save("model.binosplat.json", json::array({pose}));
   const auto drawn = [&](const std::string& png, const Words& more) {
-    const Outcome outcome = render(joined(more, {"-o", folder / png, "--json", folder / "r.json"}));
-    EXPECT_TRUE(good(outcome));
+    const Outcome outcome = well(render(joined(more, {"-o", folder / png, "--json", folder / "r.json"})));
     return outcome.err.find("pose saved there") != std::string::npos;
   };
   EXPECT_TRUE(drawn("saved.png", {}));
@@ -156,9 +154,8 @@ TEST_F(Render, HalfPrecisionIsNearButNotTheSame) {
 TEST_F(Render, JsonHasWhatWasPrinted) {
   add_cameras();
   const Outcome outcome =
-      render({"--json", folder / "r.json", "--frames", "4", "--ipd", "0.07", "--units-per-metre", "2",
-              "--convergence", "3", "--tiles", "aabb", "--tile", "8"});
-  ASSERT_TRUE(good(outcome));
+      well(render({"--json", folder / "r.json", "--frames", "4", "--ipd", "0.07", "--units-per-metre", "2",
+                   "--convergence", "3", "--tiles", "aabb", "--tile", "8"}));
   const json report = load_json(folder / "r.json");
   EXPECT_EQ(report["version"], "0.1.0");
   EXPECT_EQ(report["scene"]["gaussians"], 300);

@@ -53,8 +53,7 @@ TEST_F(ScaffoldFolder, AppearancesAndDecodingsMakeOtherPictures) {
 }
 
 TEST_F(ScaffoldFolder, InfoSaysWhatItIs) {
-  const Outcome outcome = run_program({"info", folder.path(), "--json", report});
-  ASSERT_TRUE(good(outcome));
+  const Outcome outcome = well(run_program({"info", folder.path(), "--json", report}));
   EXPECT_TRUE(has(outcome.out, "point_cloud.ply (Scaffold-GS, 100 anchors of 10 Gaussians"));
   EXPECT_FALSE(has(outcome.out, "never visible")) << "said of stand-ins";
   EXPECT_EQ(load_json(report)["gaussians"], 1000);

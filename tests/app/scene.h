@@ -99,6 +99,12 @@ inline testing::AssertionResult ended(const Outcome& outcome, int code, const st
                                      << said << "' in: " << outcome.err;
 }
 
+/// A run, which must have ended well.
+inline Outcome well(Outcome outcome) {
+  EXPECT_TRUE(good(outcome));
+  return outcome;
+}
+
 /// Of two files.
 inline double psnr_of_files(const std::filesystem::path& a, const std::filesystem::path& b) {
   return measure::psnr(load_image(a), load_image(b));
@@ -214,6 +220,7 @@ using test::Surroundings;
 using test::TempFolder;
 using test::wait_for_file;
 using test::wait_until;
+using test::well;
 using test::Words;
 using test::write_text;
 using Names = std::set<std::string>;

@@ -214,7 +214,7 @@ TEST_F(ViewOnADisplay, DrawsByACalibrationAndFlipsToTheExactPicture) {
 
 TEST_F(ViewOnADisplay, AGridAndCamerasAreShownByKeys) {
   open_whole();
-  hold("s");  // out of where the cameras are
+  hold("s", "1");  // out of where the cameras are
   const auto after = [&](const std::string& name) {
     key(name);
     return shown();
