@@ -1,41 +1,53 @@
 // What cmake --install and cpack leave: libraries that another program finds, builds with and draws with.
 
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <regex>
-#include <set>
 #include <span>
 #include <sstream>
 
 #include "app/scene.h"
-#include "formats/image_file.h"
 #include "formats/model_file.h"
-#include "measure/metrics.h"
 #include "render/frame.h"
 #include "stereo/eyes.h"
-#include "support/ply.h"
+#include "support/scenes.h"
 
 namespace binosplat {
 namespace {
-
-namespace fs = std::filesystem;
 
 #if defined(__SANITIZE_ADDRESS__)
 constexpr const char* sanitize = "-fsanitize=address,undefined";
 #else
 constexpr const char* sanitize = "";
 #endif
+constexpr const char* leaks = "ASAN_OPTIONS=detect_leaks=0 ";  // of drivers
 
-/// Whether a command of the shell ends well; shows what it said.
-testing::AssertionResult succeeds(const test::TempFolder& folder, const std::string& command) {
-  const fs::path said = folder / "said";
-  const int code = std::system((command + " > " + said.string() + " 2>&1").c_str());
-  if (code == 0) return testing::AssertionSuccess();
-  return testing::AssertionFailure() << command << ": " << code << "\n" << test::read_text(said);
-}
+/// A folder to install into, and to build another program in.
+struct Install : testing::Test {
+  const TempFolder folder;
+  const std::string prefix = folder / "prefix", build = folder / "build",
+                    documents = prefix + "/share/doc/binosplat", model = folder / "model.ply";
+
+  /// Whether a command of the shell ends well; shows what it said.
+  testing::AssertionResult succeeds(const std::string& command) const {
+    const fs::path said = folder / "said";
+    const int code = std::system((command + " > " + said.string() + " 2>&1").c_str());
+    if (code == 0) return testing::AssertionSuccess();
+    return testing::AssertionFailure() << command << ": " << code << "\n" << read_text(said);
+  }
+  testing::AssertionResult is_installed(const std::string& to) const {
+    return succeeds(std::string("cmake --install ") + BINOSPLAT_BUILD_DIR + " --prefix " + to);
+  }
+  /// Whether a program in this folder is built with what is installed.
+  testing::AssertionResult is_built(const std::string& source) const {
+    return succeeds("cmake -G Ninja -S " + source + " -B " + build + " -DCMAKE_PREFIX_PATH=" + prefix +
+                    " -DCMAKE_CXX_COMPILER=" + BINOSPLAT_CXX + " -DCMAKE_CXX_FLAGS='" + BINOSPLAT_CXX_FLAGS +
+                    " " + sanitize + "' && cmake --build " + build);
+  }
+
+  void check_mesh_example(const std::string& source) const;
+  Words faults_of_headers(const fs::path& include, std::size_t by) const;
+};
 
 /// Both eyes as examples/embed.cpp asks for them, or with its lenses swapped.
 std::vector<Image> expected_eyes(const fs::path& file, bool swapped = false) {
@@ -62,7 +74,7 @@ void write_walls(const fs::path& path) {
     double left, right, half_height, z, step;
     glm::dvec3 colour;
   };
-  test::PlyFile file = test::inria_file(0, 1);
+  PlyFile file = test::inria_file(0, 1);
   const std::vector<double> empty(file.columns.size(), 0.0);
   file.rows.clear();
   for (const Wall& wall :
@@ -84,7 +96,7 @@ void write_walls(const fs::path& path) {
       file.at(row, "rot_0") = 1.0;
     }
   }
-  test::write_text(path, to_bytes(file));
+  write_text(path, to_bytes(file));
 }
 
 /// What an sRGB texture holds of linear light.
@@ -92,9 +104,9 @@ float encoded(double light) { return static_cast<float>(1.055 * std::pow(light, 
 
 /// What is wrong with a picture of examples/mesh.cpp whose cube, 4 units ahead, stands between the walls. The
 /// axis goes through it at column `axis`.
-std::vector<std::string> faults_of_mesh(const fs::path& picture, int axis) {
+Words faults_of_mesh(const fs::path& picture, int axis) {
   const Image image = load_image(picture);
-  std::vector<std::string> faults;
+  Words faults;
   const auto expect = [&](const char* what, int column, int row, const glm::vec3& colour) {
     const std::size_t at = 3 * (static_cast<std::size_t>(row) * image.width + column);
     const glm::vec3 seen(image.data[at], image.data[at + 1], image.data[at + 2]);
@@ -113,64 +125,54 @@ std::vector<std::string> faults_of_mesh(const fs::path& picture, int axis) {
 }
 
 /// Builds and runs examples/mesh.cpp, as it is installed and with a fault.
-void check_mesh_example(const test::TempFolder& folder, const std::string& source, const std::string& build) {
+void Install::check_mesh_example(const std::string& source) const {
   write_walls(folder / "walls.ply");
-  const std::string run = "ASAN_OPTIONS=detect_leaks=0 " + build + "/mesh ";
+  const std::string run = leaks + build + "/mesh ";
   const std::string drawing = run + (folder / "walls.ply").string() + " " + (folder / "out").string();
-  ASSERT_TRUE(succeeds(folder, drawing + " 1 0 0 0 0 0 4"));
-  EXPECT_EQ(faults_of_mesh(folder / "out/left.png", 286), std::vector<std::string>());
-  EXPECT_EQ(faults_of_mesh(folder / "out/right.png", 194), std::vector<std::string>());
-  ASSERT_TRUE(succeeds(folder, drawing)) << "a place of its own choice";
-  EXPECT_FALSE(succeeds(folder, drawing + " 1 2 3"));
-  EXPECT_FALSE(succeeds(folder, run + "/no/such.ply " + (folder / "out").string()));
+  ASSERT_TRUE(succeeds(drawing + " 1 0 0 0 0 0 4"));
+  EXPECT_EQ(faults_of_mesh(folder / "out/left.png", 286), Words());
+  EXPECT_EQ(faults_of_mesh(folder / "out/right.png", 194), Words());
+  ASSERT_TRUE(succeeds(drawing)) << "a place of its own choice";
+  EXPECT_FALSE(succeeds(drawing + " 1 2 3"));
+  EXPECT_FALSE(succeeds(run + "/no/such.ply " + (folder / "out").string()));
 
   const std::string call = "renderer.submit(", forgets = "for (auto& view : views) view.mesh_depth.reset();";
-  std::string text = test::read_text(source + "/mesh.cpp");
+  std::string text = read_text(source + "/mesh.cpp");
   ASSERT_NE(text.find(call), std::string::npos);
-  test::write_text(source + "/mesh.cpp", text.insert(text.find(call), forgets));
-  ASSERT_TRUE(succeeds(folder, "cmake --build " + build + " --target mesh"));
-  ASSERT_TRUE(succeeds(folder, drawing + " 1 0 0 0 0 0 4"));
+  write_text(source + "/mesh.cpp", text.insert(text.find(call), forgets));
+  ASSERT_TRUE(succeeds("cmake --build " + build + " --target mesh"));
+  ASSERT_TRUE(succeeds(drawing + " 1 0 0 0 0 0 4"));
   EXPECT_EQ(faults_of_mesh(folder / "out/left.png", 286).size(), 2u) << "forgotten depths go unnoticed";
 }
 
-TEST(Install, AnotherProgramDrawsWithIt) {
-  const test::TempFolder folder;
-  const std::string first = (folder / "first").string(), prefix = (folder / "prefix").string();
-  const std::string build = (folder / "build").string();
-  test::write_text(folder / "model.ply", test::to_bytes(test::small_model()));
+TEST_F(Install, AnotherProgramDrawsWithIt) {
+  write_text(model, to_bytes(small_model()));
   fs::create_directory(folder / "out");
   // Moved after it was installed: nothing in it may name the place.
-  ASSERT_TRUE(succeeds(folder, std::string("cmake --install ") + BINOSPLAT_BUILD_DIR + " --prefix " + first));
-  fs::rename(first, prefix);
-  for (const auto& entry : fs::recursive_directory_iterator(prefix + "/lib/cmake")) {
-    if (!entry.is_regular_file()) continue;
-    EXPECT_EQ(test::read_text(entry.path()).find(BINOSPLAT_SOURCE_DIR), std::string::npos) << entry.path();
-  }
-  ASSERT_TRUE(succeeds(folder, "cmake -G Ninja -S " + prefix + "/share/doc/binosplat/examples -B " + build +
-                                   " -DCMAKE_BUILD_TYPE=Release -DCMAKE_PREFIX_PATH=" + prefix +
-                                   " -DCMAKE_CXX_COMPILER=" + BINOSPLAT_CXX + " -DCMAKE_CXX_FLAGS='" +
-                                   BINOSPLAT_CXX_FLAGS + " " + sanitize + "'"));
-  ASSERT_TRUE(succeeds(folder, "cmake --build " + build));
-  ASSERT_TRUE(succeeds(folder, "ASAN_OPTIONS=detect_leaks=0 " + build + "/embed " +
-                                   (folder / "model.ply").string() + " " + (folder / "out").string()));
-  const auto eyes = expected_eyes(folder / "model.ply"), others = expected_eyes(folder / "model.ply", true);
+  ASSERT_TRUE(is_installed(folder / "first"));
+  fs::rename(folder / "first", prefix);
+  for (const auto& [name, text] : contents_of(prefix + "/lib/cmake"))
+    EXPECT_EQ(text.find(BINOSPLAT_SOURCE_DIR), std::string::npos) << name;
+  ASSERT_TRUE(is_built(documents + "/examples"));
+  ASSERT_TRUE(succeeds(leaks + build + "/embed " + model + " " + (folder / "out").string()));
+  const auto eyes = expected_eyes(model), others = expected_eyes(model, true);
   for (std::size_t k = 0; k < 2; ++k) {
     const Image drawn = load_image(folder / (k == 0 ? "out/left.png" : "out/right.png"));
     EXPECT_LE(measure::largest_difference(drawn, quantised(eyes[k])).max, 1.01 / 255);
     EXPECT_GT(measure::largest_difference(drawn, quantised(others[k])).max, 0.1)
         << "swapped lenses go unnoticed";
   }
-  EXPECT_FALSE(succeeds(folder, "ASAN_OPTIONS=detect_leaks=0 " + build + "/embed /no/such.ply /tmp"));
-  check_mesh_example(folder, prefix + "/share/doc/binosplat/examples", build);
+  EXPECT_FALSE(succeeds(leaks + build + "/embed /no/such.ply /tmp"));
+  check_mesh_example(documents + "/examples");
 }
 
 /// What files of Markdown below a folder link to and is not there.
-std::vector<std::string> dangling(const fs::path& folder) {
-  std::vector<std::string> out;
+Words dangling(const fs::path& folder) {
+  Words out;
   static const std::regex link(R"(\]\(([^)#]+)(#[^)]*)?\))");
   for (const auto& entry : fs::recursive_directory_iterator(folder)) {
     if (entry.path().extension() != ".md") continue;
-    const std::string text = test::read_text(entry.path());
+    const std::string text = read_text(entry.path());
     for (std::sregex_iterator at(text.begin(), text.end(), link), end; at != end; ++at) {
       const std::string to = (*at)[1];
       if (to.find("://") == std::string::npos && !fs::exists(entry.path().parent_path() / to))
@@ -181,19 +183,19 @@ std::vector<std::string> dangling(const fs::path& folder) {
 }
 
 /// Lines of C++ in docs/embedding.md that stand in none of the examples.
-std::vector<std::string> lines_of_no_example(const fs::path& documents) {
+Words lines_of_no_example(const fs::path& documents) {
   const auto trimmed = [](const std::string& line) {
     const auto begin = line.find_first_not_of(' ');
     return begin == std::string::npos ? "" : line.substr(begin);
   };
   std::set<std::string> known;
   for (const auto& entry : fs::directory_iterator(documents / "examples")) {
-    std::istringstream lines(test::read_text(entry.path()));
+    std::istringstream lines(read_text(entry.path()));
     for (std::string line; std::getline(lines, line);) known.insert(trimmed(line));
   }
-  std::vector<std::string> out;
+  Words out;
   bool is_code = false;
-  std::istringstream lines(test::read_text(documents / "docs/embedding.md"));
+  std::istringstream lines(read_text(documents / "docs/embedding.md"));
   for (std::string line; std::getline(lines, line);) {
     if (line.starts_with("```")) {
       is_code = line == "```cpp";
@@ -204,34 +206,26 @@ std::vector<std::string> lines_of_no_example(const fs::path& documents) {
   return out;
 }
 
-TEST(Install, DocumentsShowTheExamplesOwnLines) {
-  const test::TempFolder folder;
-  ASSERT_TRUE(succeeds(folder, std::string("cmake --install ") + BINOSPLAT_BUILD_DIR + " --prefix " +
-                                   (folder / "prefix").string()));
-  const fs::path documents = folder / "prefix/share/doc/binosplat";
-  EXPECT_EQ(lines_of_no_example(documents), std::vector<std::string>());
-  fs::remove(documents / "examples/mesh.cpp");
+TEST_F(Install, DocumentsShowTheExamplesOwnLinesAndLinksHold) {
+  ASSERT_TRUE(is_installed(prefix));
+  EXPECT_EQ(lines_of_no_example(documents), Words());
+  EXPECT_EQ(dangling(documents), Words());
+  EXPECT_TRUE(has(read_text(prefix + "/share/man/man1/binosplat.1"), ".SH binosplat render"));
+  fs::remove(documents + "/examples/mesh.cpp");
   EXPECT_GT(lines_of_no_example(documents).size(), 10u) << "lines of no example go unnoticed";
+  fs::remove(documents + "/docs/viewing.md");
+  EXPECT_GE(dangling(documents).size(), 3u) << "a missing file goes unnoticed";
 }
 
-TEST(Install, DocumentsLinksHoldAndManFindsItsPage) {
-  const test::TempFolder folder;
-  ASSERT_TRUE(succeeds(folder, std::string("cmake --install ") + BINOSPLAT_BUILD_DIR + " --prefix " +
-                                   (folder / "prefix").string()));
-  const fs::path share = folder / "prefix/share";
-  EXPECT_EQ(dangling(share / "doc/binosplat"), std::vector<std::string>{});
-  fs::remove(share / "doc/binosplat/docs/viewing.md");
-  EXPECT_GE(dangling(share / "doc/binosplat").size(), 3u) << "a missing file goes unnoticed";
-  EXPECT_NE(test::read_text(share / "man/man1/binosplat.1").find(".SH binosplat render"), std::string::npos);
-}
-
-/// The compiler of this tree, and clang where it is another and installed, each with both standards.
-const std::vector<std::string>& compilers() {
-  static const std::vector<std::string> found = [] {
-    std::vector<std::string> commands;
+/// The compiler of this tree, and clang where it is another and installed; each with C++20, and in the long
+/// check with the standard after it.
+const Words& compilers() {
+  static const Words found = [] {
+    Words commands;
     for (const std::string compiler : {BINOSPLAT_CXX, "clang++"}) {
       if (std::system((compiler + " --version > /dev/null 2>&1").c_str()) != 0) continue;
-      for (const char* standard : {" -std=c++20", " -std=c++2b"}) commands.push_back(compiler + standard);
+      commands.push_back(compiler + " -std=c++20");
+      if (test::switched_on("BINOSPLAT_LONG")) commands.push_back(compiler + " -std=c++2b");
     }
     return commands;
   }();
@@ -240,16 +234,11 @@ const std::vector<std::string>& compilers() {
 
 /// What is wrong with installed headers: how many there are, what they include, the macros that they define,
 /// and whether each compiles by itself, with none of this tree's beside it, by so many of the compilers.
-std::vector<std::string> faults_of_headers(const test::TempFolder& folder, const fs::path& include,
-                                           std::size_t by = compilers().size()) {
-  std::vector<std::string> faults;
-  int headers = 0;
+Words Install::faults_of_headers(const fs::path& include, std::size_t by) const {
+  Words faults;
+  const auto headers = contents_of(include);
   std::ptrdiff_t lines = 0;
-  for (const auto& entry : fs::recursive_directory_iterator(include)) {
-    if (!entry.is_regular_file()) continue;
-    const std::string name = fs::relative(entry.path(), include).string(),
-                      text = test::read_text(entry.path());
-    ++headers;
+  for (const auto& [name, text] : headers) {
     lines += std::count(text.begin(), text.end(), '\n');
     // The standard library's, GLM's and each other, no more.
     static const std::regex included(R"(#include (<[^>]*>|"[^"]*"))"),
@@ -260,31 +249,28 @@ std::vector<std::string> faults_of_headers(const test::TempFolder& folder, const
     static const std::regex macro(R"(# *define +(?!BINOSPLAT_)(\w+))");
     for (std::sregex_iterator at(text.begin(), text.end(), macro), end; at != end; ++at)
       faults.push_back(name + " defines " + (*at)[1].str());
-    test::write_text(folder / "alone.cpp", "#include <" + name + ">\n");
+    write_text(folder / "alone.cpp", "#include <" + name + ">\n");
     for (const std::string& compiler : std::span(compilers()).first(by)) {
-      const auto compiles = succeeds(folder, compiler + " -fsyntax-only -Wall -Wextra -Wpedantic -Werror -I" +
-                                                 include.string() + " " + (folder / "alone.cpp").string());
+      const auto compiles = succeeds(compiler + " -fsyntax-only -Wall -Wextra -Wpedantic -Werror -I" +
+                                     include.string() + " " + (folder / "alone.cpp").string());
       if (!compiles) faults.push_back(name + " does not compile: " + compiles.message());
     }
   }
-  if (headers > 8) faults.push_back(std::to_string(headers) + " headers: at most 8 are to be read");
+  if (headers.size() > 8)
+    faults.push_back(std::to_string(headers.size()) + " headers: at most 8 are to be read");
   if (lines > 1500) faults.push_back(std::to_string(lines) + " lines: at most 1,500 are to be read");
-  if (headers == 0) faults.emplace_back("no headers");
+  if (headers.empty()) faults.emplace_back("no headers");
   return faults;
 }
 
-TEST(Install, HeadersAreFewAndStandByThemselves) {
-  const test::TempFolder folder;
-  const fs::path include = folder / "include";
-  ASSERT_TRUE(succeeds(
-      folder, std::string("cmake --install ") + BINOSPLAT_BUILD_DIR + " --prefix " + folder.path().string()));
-  EXPECT_EQ(faults_of_headers(folder, include), std::vector<std::string>());
+TEST_F(Install, HeadersAreFewAndStandByThemselves) {
+  ASSERT_TRUE(is_installed(prefix));
+  EXPECT_EQ(faults_of_headers(prefix + "/include", compilers().size()), Words());
   const auto noticed = [&](const std::string& text, int headers = 1, std::size_t by = 0) {
-    const test::TempFolder planted;
+    const TempFolder planted;
     fs::create_directory(planted / "binosplat");
-    for (int k = 0; k < headers; ++k)
-      test::write_text(planted / ("binosplat/" + std::to_string(k) + ".h"), text);
-    return faults_of_headers(folder, planted.path(), by).size();
+    for (int k = 0; k < headers; ++k) write_text(planted / ("binosplat/" + std::to_string(k) + ".h"), text);
+    return faults_of_headers(planted.path(), by).size();
   };
   EXPECT_EQ(noticed("#pragma once\n#include <vector>\n", 8), 0u);
   EXPECT_EQ(noticed("#pragma once\n", 9), 1u) << "a ninth header goes unnoticed";
@@ -298,67 +284,78 @@ TEST(Install, HeadersAreFewAndStandByThemselves) {
 
 /// The lines of docs/embedding.md that a program's CMakeLists.txt needs.
 std::string lines_for_cmake() {
-  const std::string text = test::read_text(std::string(BINOSPLAT_SOURCE_DIR) + "/docs/embedding.md");
+  const std::string text = read_text(std::string(BINOSPLAT_SOURCE_DIR) + "/docs/embedding.md");
   const std::size_t begin = text.find("find_package(binosplat");
   return text.substr(begin, text.find("```", begin) - begin);
 }
 
-TEST(Install, TwoLinesOfCMakeAreEnough) {
-  const test::TempFolder folder;
-  ASSERT_TRUE(succeeds(folder, std::string("cmake --install ") + BINOSPLAT_BUILD_DIR + " --prefix " +
-                                   (folder / "prefix").string()));
-  const std::string lines = lines_for_cmake();
+constexpr const char* project = "cmake_minimum_required(VERSION 3.25)\nproject(other LANGUAGES CXX)\n";
+
+TEST_F(Install, TwoLinesOfCMakeAreEnough) {
+  ASSERT_TRUE(is_installed(prefix));
+  const std::string lines = lines_for_cmake(), program = folder / "program";
   EXPECT_EQ(std::count(lines.begin(), lines.end(), '\n'), 2) << lines;
-  fs::create_directory(folder / "program");
-  test::write_text(folder / "program/CMakeLists.txt",
-                   "cmake_minimum_required(VERSION 3.25)\nproject(other LANGUAGES CXX)\n"
-                   "add_executable(your_program main.cpp)\n" +
-                       lines);
-  test::write_text(folder / "program/main.cpp",
-                   "#include <binosplat/renderer.h>\n"
-                   "int main(int count, char** arguments) {\n"
-                   "  try {\n"
-                   "    binosplat::Renderer(nullptr, binosplat::SplatModel(arguments[count - 1]));\n"
-                   "  } catch (const binosplat::Error& error) {\n"
-                   "    return static_cast<int>(error.code());\n"
-                   "  }\n"
-                   "}\n");
-  test::write_text(folder / "model.ply", test::to_bytes(test::small_model()));
-  const std::string build = (folder / "build").string();
+  fs::create_directory(program);
   // No standard of C++ is set: the compiler's own is C++17.
-  ASSERT_TRUE(succeeds(folder, "cmake -G Ninja -S " + (folder / "program").string() + " -B " + build +
-                                   " -DCMAKE_PREFIX_PATH=" + (folder / "prefix").string() +
-                                   " -DCMAKE_CXX_COMPILER=" + BINOSPLAT_CXX + " -DCMAKE_CXX_FLAGS='" +
-                                   BINOSPLAT_CXX_FLAGS + " " + sanitize + "'"));
-  ASSERT_TRUE(succeeds(folder, "cmake --build " + build));
+  write_text(program + "/CMakeLists.txt", project + ("add_executable(your_program main.cpp)\n" + lines));
+  write_text(program + "/main.cpp", R"(#include <binosplat/renderer.h>
+int main(int count, char** arguments) {
+  try {
+    binosplat::Renderer(nullptr, binosplat::SplatModel(arguments[count - 1]));
+  } catch (const binosplat::Error& error) {
+    return static_cast<int>(error.code());
+  }
+}
+)");
+  write_text(model, to_bytes(small_model()));
+  ASSERT_TRUE(is_built(program));
   // It is linked, and refuses to draw without a loader.
-  const std::string run =
-      "ASAN_OPTIONS=detect_leaks=0 " + build + "/your_program " + (folder / "model.ply").string();
-  EXPECT_TRUE(succeeds(folder, run + "; test $? -eq 2"));
+  EXPECT_TRUE(succeeds(leaks + build + "/your_program " + model + "; test $? -eq 2"));
 }
 
-TEST(Install, PackagesHoldAProgramThatRuns) {
+// Levels of detail, an inset, meshes and the budget, by what is installed alone.
+TEST_F(Install, AnotherProgramDrawsLevelsWithAnInsetAmongMeshes) {
+  const std::string city = folder / "city";
+  ASSERT_TRUE(is_installed(prefix));
+  write_text(folder / "CMakeLists.txt",
+             std::string(project) +
+                 "find_package(binosplat 0.1 REQUIRED)\nadd_executable(levels " BINOSPLAT_SOURCE_DIR
+                 "/tests/install/levels_program.cpp)\n"
+                 "target_link_libraries(levels binosplat::binosplat EGL OpenGL)\n");
+  ASSERT_TRUE(is_built(folder.path()));
+  ASSERT_TRUE(good(run_program({"levels", "demo:city", "--count", "10000", "-o", city})));
+  const Outcome drawn =
+      run_program({city}, {.variables = {{"ASAN_OPTIONS", "detect_leaks=0"}}, .program = build + "/levels"});
+  ASSERT_TRUE(good(drawn));
+  std::size_t first = 0, last = 0;
+  int open = 0, covered = 0;
+  ASSERT_EQ(std::sscanf(drawn.out.c_str(), "%zu %zu %d %d", &first, &last, &open, &covered), 4) << drawn.out;
+  EXPECT_GT(last, first);
+  EXPECT_GT(open, 500);
+  EXPECT_EQ(covered, 0);
+}
+
+TEST_F(Install, PackagesHoldAProgramThatRuns) {
   if (std::getenv("BINOSPLAT_LONG") == nullptr) GTEST_SKIP() << "takes a minute: BINOSPLAT_LONG=1";
   if (std::system("dpkg-shlibdeps --version > /dev/null 2>&1") != 0) GTEST_SKIP() << "no dpkg here";
-  const test::TempFolder folder;
-  ASSERT_TRUE(succeeds(folder, std::string("cpack --config ") + BINOSPLAT_BUILD_DIR +
-                                   "/CPackConfig.cmake -B " + (folder / "packages").string()));
-  ASSERT_TRUE(succeeds(folder, "cd " + folder.path().string() +
-                                   " && dpkg-deb -x packages/*.deb deb && mkdir tar && tar -xzf "
-                                   "packages/*.tar.gz --strip-components=1 -C tar"));
+  ASSERT_TRUE(succeeds(std::string("cpack --config ") + BINOSPLAT_BUILD_DIR + "/CPackConfig.cmake -B " +
+                       (folder / "packages").string()));
+  ASSERT_TRUE(succeeds("cd " + folder.path().string() +
+                       " && dpkg-deb -x packages/*.deb deb && mkdir tar && tar -xzf "
+                       "packages/*.tar.gz --strip-components=1 -C tar"));
   for (const char* program : {"deb/usr/bin/binosplat", "tar/bin/binosplat"}) {
-    ASSERT_TRUE(succeeds(folder, (folder / program).string() + " --version")) << program;
-    EXPECT_EQ(test::read_text(folder / "said"), "binosplat 0.1.0\n");
+    ASSERT_TRUE(succeeds((folder / program).string() + " --version")) << program;
+    EXPECT_EQ(read_text(folder / "said"), "binosplat 0.1.0\n");
   }
 #ifdef BINOSPLAT_PYTHON
-  ASSERT_TRUE(succeeds(folder, "PYTHONPATH=" + folder.path().string() +
-                                   "/deb/usr/lib/python3/dist-packages " BINOSPLAT_PYTHON
-                                   " -c 'import binosplat; print(binosplat.__file__)'"));
-  EXPECT_NE(test::read_text(folder / "said").find("/deb/usr/lib/"), std::string::npos);
+  ASSERT_TRUE(succeeds("PYTHONPATH=" + folder.path().string() +
+                       "/deb/usr/lib/python3/dist-packages " BINOSPLAT_PYTHON
+                       " -c 'import binosplat; print(binosplat.__file__)'"));
+  EXPECT_TRUE(has(read_text(folder / "said"), "/deb/usr/lib/"));
 #endif
-  ASSERT_TRUE(succeeds(folder, "dpkg-deb -f " + folder.path().string() + "/packages/*.deb Depends"));
-  EXPECT_NE(test::read_text(folder / "said").find("libopenexr"), std::string::npos);
-  EXPECT_EQ(test::read_text(folder / "said").find("mesa"), std::string::npos) << "drags Mesa along";
+  ASSERT_TRUE(succeeds("dpkg-deb -f " + folder.path().string() + "/packages/*.deb Depends"));
+  EXPECT_TRUE(has(read_text(folder / "said"), "libopenexr"));
+  EXPECT_EQ(read_text(folder / "said").find("mesa"), std::string::npos) << "drags Mesa along";
 }
 
 }  // namespace
