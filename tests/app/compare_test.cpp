@@ -157,6 +157,14 @@ TEST_F(Compare, PicturesBeyondAllMemoryAreRefusedBeforeTheyAreRead) {
   }
 }
 
+#if !defined(__SANITIZE_ADDRESS__)  // which needs more address space than any limit leaves
+TEST_F(Compare, TooLittleMemoryIsCodeFour) {
+  const std::string a = png("a.png", Image(4000, 4000, 3));
+  EXPECT_TRUE(
+      ended(run_program({"compare", a, a}, {.limits = {{RLIMIT_AS, 300'000'000}}}), 4, "out of memory"));
+}
+#endif
+
 TEST_F(Compare, UsageHelpAndVersion) {
   EXPECT_TRUE(has(run_program({"--help"}).out, "3 no usable OpenGL, display or headset; 4 out of memory"));
   EXPECT_EQ(run_program({"--version"}).out, "binosplat 0.1.0\n");

@@ -36,7 +36,8 @@ TEST_F(FilesInFlight, AFileThatCannotBeWrittenEndsTheRun) {
   ASSERT_TRUE(good(run_program(line(out, {"--shard", "1/12"}))));
   fs::create_directories(folder / "out/view6_right.exr");
   EXPECT_TRUE(ended(run_program(line(out)), 2, "view6_right.exr: it is a folder"));
-  for (const auto& [name, bytes] : contents_of(out)) EXPECT_EQ(bytes, expected.at(name)) << name;
+  for (const auto& [name, bytes] : contents_of(out))
+    EXPECT_TRUE(expected.contains(name) && expected.at(name) == bytes) << name;
   fs::remove(folder / "out/view6_right.exr");
   ASSERT_TRUE(good(run_program(line(out))));
   EXPECT_EQ(contents_of(out), expected);
@@ -84,7 +85,8 @@ TEST_F(FilesInFlight, ASignalLeavesWhatResumeGoesOnFrom) {
     EXPECT_TRUE(code == -signal || code == 0) << code;  // unless it was done
     EXPECT_LT(std::chrono::steady_clock::now() - sent, std::chrono::seconds(2));
     if (signal != SIGKILL) {
-      for (const auto& [name, bytes] : contents_of(out)) EXPECT_EQ(bytes, expected.at(name)) << name;
+      for (const auto& [name, bytes] : contents_of(out))
+        EXPECT_TRUE(expected.contains(name) && expected.at(name) == bytes) << name;
     }
     ASSERT_TRUE(good(run_program(line(out)))) << signal;
     auto found = contents_of(out);
