@@ -3,11 +3,9 @@
 
 #include <gtest/gtest.h>
 
-#include <chrono>
 #include <cmath>
 #include <cstring>
 #include <nlohmann/json.hpp>
-#include <thread>
 
 #include "base/error.h"
 #include "formats/calibration_file.h"
@@ -22,6 +20,7 @@
 #include "support/display.h"
 #include "support/gl.h"
 #include "support/models.h"
+#include "support/scenes.h"
 #include "xr/projection.h"
 #include "xr/walk.h"
 #include "xr/xr_script.h"
@@ -220,11 +219,7 @@ TEST_F(XrView, RecordsFramesAndTheDisplaysThatTheyMissed) {
 TEST_F(XrView, ASignalLeavesTheSession) {
   stage.script = {{"frames", 1000000}, {"sleep", true}, {"pixels", Json::array()}};
   Program program(plain_words, {.variables = stage.variables()});
-  const auto start = std::chrono::steady_clock::now();
-  while (program.said().find("FOCUSED") == std::string::npos) {
-    ASSERT_LT(std::chrono::steady_clock::now() - start, std::chrono::minutes(1)) << program.said();
-    std::this_thread::sleep_for(std::chrono::milliseconds(20));
-  }
+  wait_until([&] { return program.said().find("FOCUSED") != std::string::npos; });
   program.send(SIGINT);
   const Outcome outcome = program.wait();
   EXPECT_EQ(outcome.code, 0) << outcome.err;
@@ -458,7 +453,9 @@ TEST_F(XrView, LevelsOfDetailComeWhileOneLooks) {
   ASSERT_EQ(run_program({"levels", file, "-o", levels, "--leaf", "64", "--levels", "3"}).code, 0);
   stage.script = {{"frames", 60}, {"sleep", true}, {"pixels", {59}}};
   plain_words[1] = levels;
-  for (const Strings& more : {Strings{}, {"--quality", "45"}}) {
+  std::vector<Strings> options = {{"--quality", "45"}};
+  if (switched_on("BINOSPLAT_LONG")) options.emplace_back();
+  for (const Strings& more : options) {
     const XrLog log = run(more);
     const std::string begun = said.substr(0, said.find(" Gaussians"));
     EXPECT_LT(std::stoi(begun.substr(begun.rfind(' ') + 1)), 100) << "of 300 the coarsest levels come first";
