@@ -172,7 +172,7 @@ BenchPlan make_plan(const BenchOptions& options) {
 
 BenchFolder::BenchFolder(fs::path folder, std::shared_ptr<const ordered_json> plan)
     : folder_(std::move(folder)), plan_(std::move(plan)) {
-  claim_run(folder_ / "plan.json", *plan_, "points");
+  if (fs::exists(folder_ / "plan.json")) check_same_run(folder_ / "plan.json", *plan_, "points");
 }
 
 BenchFolder::BenchFolder(fs::path folder) : folder_(std::move(folder)) {
@@ -206,6 +206,7 @@ lab::Point BenchFolder::load(std::size_t point) const {
 }
 
 void BenchFolder::save(std::size_t point, const lab::Point& measured) const {
+  claim_run(folder_ / "plan.json", *plan_, "points");
   if (measured.picture) save_png(fs::path(file(point)).replace_extension(".png"), *measured.picture);
   save_json(file(point), {{"row", measured.row}, {"details", measured.details}});
 }
@@ -226,6 +227,7 @@ lab::Results BenchFolder::results() const {
 }
 
 void BenchFolder::save_results(const lab::Results& results) const {
+  claim_run(folder_ / "plan.json", *plan_, "points");
   save_report(folder_, "results.json", to_json(results, *plan_), lab::results_page(results));
   write_file(folder_ / "results.csv", lab::csv(results.points));
   write_file(folder_ / "details.csv", lab::details_csv(results.points));

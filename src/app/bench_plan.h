@@ -84,7 +84,8 @@ constexpr const char *along_path = "path", *along_tour = "tour";
 /// The points of a folder: what was measured, by number of the plan.
 class BenchFolder {
  public:
-  /// Starts the folder, or goes on with it. Throws Error if it holds another plan.
+  /// Goes on with the folder, or starts it once something is saved, so that a run that is refused leaves
+  /// nothing behind. Throws Error if it holds another plan; so do save() and save_results().
   BenchFolder(std::filesystem::path folder, std::shared_ptr<const nlohmann::ordered_json> plan);
   /// A folder that is there, with whatever plan it has. Throws Error if it has none.
   explicit BenchFolder(std::filesystem::path folder);

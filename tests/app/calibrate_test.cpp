@@ -37,10 +37,9 @@ TEST_F(CalibrateTest, ViewsThatSeeNothingHaveNoSay) {
                         {{"trim", model, "--quality", "25", "-o", folder / "t.ply"}, none},
                         {{"refit", model, "--against", "exact", "-o", folder / "t.ply"}, none}});
   for (const Words& axes : {Words{"--axes", "quick"}, {"--axes", "paper"}, {"--motion", "walk"}}) {
-    fs::remove_all(out);
     EXPECT_TRUE(ended(run_into_out(joined({"bench", model, "--size", "36x24"}, axes)), 2,
                       "sees anything of the model"))
-        << axes[1];
+        << axes[1] << " into a folder in which the ones before left nothing";
   }
   // The file is what convert is for.
   const Outcome converted = run_program({"convert", model, "--report", "2", "-o", folder / "m.ply"});
