@@ -169,7 +169,7 @@ TEST_F(Render, JsonHasWhatWasPrinted) {
   for (const json& stage : report["stages"])
     EXPECT_GE(stage["p99_ms"].get<double>(), stage["median_ms"].get<double>());
   // 300 Gaussians of 48 bytes, and 12 SH coefficients of 4.
-  const json memory = report["memory"];
+  const json& memory = report["memory"];
   EXPECT_EQ(memory["model_bytes"], 300 * (48 + 48));
   EXPECT_GT(memory["frame_bytes_at_least"].get<double>(), 2 * 72 * 48 * 16);
   EXPECT_LT(memory["frame_bytes_at_least"].get<double>(), memory["gpu_peak_bytes"].get<double>());

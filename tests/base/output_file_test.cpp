@@ -30,6 +30,7 @@ Told& told() {
 }  // namespace
 
 // In the place of the C library's, for all that this program is linked of.
+// NOLINTNEXTLINE(readability-inconsistent-declaration-parameter-name): the C library's are reserved
 extern "C" int fsync(int file) {
   struct stat status {};
   fstat(file, &status);
@@ -40,6 +41,7 @@ extern "C" int fsync(int file) {
   return static_cast<int>(syscall(SYS_fsync, file));
 }
 
+// NOLINTNEXTLINE(readability-inconsistent-declaration-parameter-name)
 extern "C" int rename(const char* from, const char* to) noexcept {
   {
     const std::lock_guard lock(told().mutex);

@@ -201,22 +201,23 @@ TEST(Exr, BrokenFilesAreRefused) {
   const test::TempFolder folder;
   save_exr(folder / "a.exr", random_picture(), {.compression = ExrCompression::zip});
   const std::string good = test::read_text(folder / "a.exr");
-  const auto with = [&](std::size_t at, const char* bytes, std::size_t count = 4) {
-    return test::patched(good, at, std::string(bytes, count));
+  using namespace std::string_view_literals;
+  const auto with = [&](std::size_t at, std::string_view bytes) {
+    return test::patched(good, at, std::string(bytes));
   };
   const std::size_t window = good.find("box2i") + 10;
   const std::vector<test::BrokenFile> refusals = {
       // An attribute of nearly 2^31 bytes.
-      {with(good.find("string") + 7, "\xf0\xff\xff\x7f"), {}},
+      {with(good.find("string") + 7, "\xf0\xff\xff\x7f"sv), {}},
       // A number of five bytes: OpenEXR would read four and take the rest for the next attribute's name.
-      {with(good.find("float") + 6, "\5", 1), {"broken OpenEXR"}},
+      {with(good.find("float") + 6, "\5"sv), {"broken OpenEXR"}},
       // The data window's far corner at 2^31 - 2 and at 60,000.
-      {with(window + 8, "\xfe\xff\xff\x7f\xfe\xff\xff\x7f", 8), {}},
-      {with(window + 8, "\x60\xea\0\0\x60\xea\0\0", 8), {}},
+      {with(window + 8, "\xfe\xff\xff\x7f\xfe\xff\xff\x7f"sv), {}},
+      {with(window + 8, "\x60\xea\0\0\x60\xea\0\0"sv), {}},
       // One line of 2^24 px, for which OpenEXR would make room in blocks of 16; lines without a place in the
       // file.
-      {with(window + 8, "\xff\xff\xff\0\0\0\0\0", 8), {"16777216 x 1 px, which"}},
-      {with(window + 12, "\x20\x4e\0\0"), {"1251 blocks, which"}},
+      {with(window + 8, "\xff\xff\xff\0\0\0\0\0"sv), {"16777216 x 1 px, which"}},
+      {with(window + 12, "\x20\x4e\0\0"sv), {"1251 blocks, which"}},
   };
   test::expect_refusals("b.exr", refusals, [&](const std::string& bytes) {
     test::write_text(folder / "b.exr", bytes);

@@ -76,7 +76,7 @@ TEST(FlatValues, OfHostileYamlAreAnError) {
   for (int i = 0; i < 30000; ++i) flat += fmt::format("k{}: 1\n", i);
   const std::vector<test::BrokenFile> refusals = {
       {"a: [1\n", {"f.yml, line "}},
-      {std::string("a: 1\nb\0: 2\n", 12), {"f.yml, line 2: the control character 0"}},
+      {std::string("a: 1\nb\0: 2\n", 11), {"f.yml, line 2: the control character 0"}},
       {"a: tr\4ue\n", {"f.yml, line 1: the control character 4"}},
       {std::string(1 << 16, '['), {}},
       {deep, {}},

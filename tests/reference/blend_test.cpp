@@ -1,5 +1,6 @@
 #include "reference/blend.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
