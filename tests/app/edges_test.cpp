@@ -1,7 +1,5 @@
 // What every sub-command must withstand: empty arguments, outputs that are inputs, full disks, odd names.
 
-#include <cstdlib>
-
 #include "app/scene.h"
 
 namespace binosplat {
@@ -118,24 +116,21 @@ TEST_F(Edges, AFullStandardOutputIsAnError) {
 
 // Programs are kept in a folder of caches, by this program and by the driver, which has one of its own.
 TEST_F(Edges, FoldersOfCaches) {
-  const TempFolder here, home;
-  // Mesa's own folder stays: ours is what this is about.
-  const char *const caches_home = std::getenv("XDG_CACHE_HOME"), *const users_home = std::getenv("HOME");
-  const std::string mesa = caches_home  ? caches_home
-                           : users_home ? std::string(users_home) + "/.cache"
-                                        : home.path().string();
-  const auto draw = [&](const std::string& caches) {
-    return well(render(one, {.folder = here.path(),
-                             .variables = {{"HOME", home.path()},
-                                           {"XDG_CACHE_HOME", caches},
-                                           {"MESA_SHADER_CACHE_DIR", mesa}}}))
-        .err;
+  const TempFolder here, home, mesa;
+  // Ours are what this is about: Mesa keeps what it compiles in a folder of its own, unless it is to have
+  // none.
+  const auto draw = [&](const std::string& caches, bool mesas_own = true) {
+    std::map<std::string, std::string> variables = {{"HOME", home.path()}, {"XDG_CACHE_HOME", caches}};
+    if (mesas_own)
+      variables.insert(
+          {{"MESA_SHADER_CACHE_DISABLE", "false"}, {"MESA_SHADER_CACHE_DIR", mesa.path().string()}});
+    return well(render(one, {.folder = here.path(), .variables = variables})).err;
   };
   const char* const full = "the disk is full; drivers keep no shaders there";
   EXPECT_TRUE(has(draw("/proc"), full));
   // Nothing can be written below a file; that is said once, and by no driver.
   write_text(here / "file", "");
-  const std::string said = draw(here / "file/caches");
+  const std::string said = draw(here / "file/caches", false);
   EXPECT_TRUE(has(said, "file: nothing can be written there; drivers keep no shaders there in this run"));
   EXPECT_FALSE(has(said, "disabling"));
   fs::remove(here / "file");

@@ -11,6 +11,7 @@ namespace {
 /// Condon's and Shortley's.
 double farthest_from_definition(const std::array<double, 16>& basis, double polar, double azimuth) {
   double farthest = 0.0;
+  std::size_t k = 0;
   for (int degree = 0; degree <= 3; ++degree) {
     for (int order = -degree; order <= degree; ++order) {
       const auto m = static_cast<unsigned>(std::abs(order));
@@ -18,8 +19,7 @@ double farthest_from_definition(const std::array<double, 16>& basis, double pola
                             : order > 0 ? std::sqrt(2.0) * std::cos(m * azimuth)
                                         : std::sqrt(2.0) * std::sin(m * azimuth);
       const double defined = std::sph_legendre(static_cast<unsigned>(degree), m, polar) * around;
-      const double found = basis[static_cast<std::size_t>(degree * degree + degree + order)];
-      farthest = std::max(farthest, std::abs(found - defined));
+      farthest = std::max(farthest, std::abs(basis[k++] - defined));
     }
   }
   return farthest;
