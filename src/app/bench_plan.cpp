@@ -172,7 +172,7 @@ BenchPlan make_plan(const BenchOptions& options) {
 
 BenchFolder::BenchFolder(fs::path folder, std::shared_ptr<const ordered_json> plan)
     : folder_(std::move(folder)), plan_(std::move(plan)) {
-  if (fs::exists(folder_ / "plan.json")) check_same_run(folder_ / "plan.json", *plan_, "points");
+  if (fs::exists(folder_ / "plan.json")) claim();
 }
 
 BenchFolder::BenchFolder(fs::path folder) : folder_(std::move(folder)) {
@@ -183,6 +183,7 @@ BenchFolder::BenchFolder(fs::path folder) : folder_(std::move(folder)) {
 }
 
 bool BenchFolder::same_plan(const BenchFolder& other) const { return *plan_ == *other.plan_; }
+void BenchFolder::claim() const { claim_run(folder_ / "plan.json", *plan_, "points"); }
 std::size_t BenchFolder::size() const { return plan_->at("points").size(); }
 
 fs::path BenchFolder::file(std::size_t point) const {
@@ -206,7 +207,7 @@ lab::Point BenchFolder::load(std::size_t point) const {
 }
 
 void BenchFolder::save(std::size_t point, const lab::Point& measured) const {
-  claim_run(folder_ / "plan.json", *plan_, "points");
+  claim();
   if (measured.picture) save_png(fs::path(file(point)).replace_extension(".png"), *measured.picture);
   save_json(file(point), {{"row", measured.row}, {"details", measured.details}});
 }
@@ -227,7 +228,7 @@ lab::Results BenchFolder::results() const {
 }
 
 void BenchFolder::save_results(const lab::Results& results) const {
-  claim_run(folder_ / "plan.json", *plan_, "points");
+  claim();
   save_report(folder_, "results.json", to_json(results, *plan_), lab::results_page(results));
   write_file(folder_ / "results.csv", lab::csv(results.points));
   write_file(folder_ / "details.csv", lab::details_csv(results.points));

@@ -103,6 +103,7 @@ class BenchFolder {
   const std::filesystem::path& path() const { return folder_; }
 
  private:
+  void claim() const;
   std::filesystem::path file(std::size_t point) const;
 
   std::filesystem::path folder_;

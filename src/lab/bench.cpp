@@ -482,7 +482,7 @@ Point Bench::contributions() {
   for (const std::size_t v : spread_evenly(what_.views.size(), contribution_views))
     some.push_back(what_.views[v]);
   return {row_of("device", device_text(context_)),
-          lab::contributions(load_(), some, depth_table(paper_far), depth_table({}), {})};
+          lab::contributions(load_(), some, depth_table(paper_far), depth_table({}))};
 }
 
 std::vector<std::size_t> spread_evenly(std::size_t all, std::size_t count) {

@@ -83,7 +83,7 @@ void add_by_distance(std::vector<reference::DistanceBin> bins, std::vector<Row>&
 }  // namespace
 
 std::vector<Row> contributions(const Model& model, std::span<const BenchView> views, const DepthTable& table,
-                               const DepthTable& fitted, const std::function<void()>& progress) {
+                               const DepthTable& fitted) {
   std::array<std::array<std::vector<Row>, skipped_shares.size()>, known.size()> skipping;  // by view
   std::vector<reference::DistanceBin> distances;
   std::vector<ShownGaussian> shown;
@@ -112,7 +112,6 @@ std::vector<Row> contributions(const Model& model, std::span<const BenchView> vi
                   measure::photo_psnr(image, one.exposure, *one.photo));
       }
     }
-    if (progress) progress();
   }
   std::vector<Row> rows;
   for (std::size_t by = 0; by < known.size(); ++by) {

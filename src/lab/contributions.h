@@ -3,7 +3,6 @@
 // them by depth, and what a picture loses without the lowest contributions (AdaGScale, figures 4 to 6). In
 // float64 on the CPU: how the frame draws plays no part in it.
 
-#include <functional>
 #include <span>
 #include <vector>
 
@@ -18,9 +17,8 @@ namespace binosplat::lab {
 /// means over the views;
 /// distance: alpha T of fragments, by their distance from the Gaussian's middle in px;
 /// depth: max(T) of the Gaussians that a pixel blends, by their view depth in world units.
-/// T_upper(depth) is the `table`'s for skipping, and the `fitted` one's for the bins of depth. `progress` is
-/// called after each view.
+/// T_upper(depth) is the `table`'s for skipping, and the `fitted` one's for the bins of depth.
 std::vector<Row> contributions(const Model& model, std::span<const BenchView> views, const DepthTable& table,
-                               const DepthTable& fitted, const std::function<void()>& progress);
+                               const DepthTable& fitted);
 
 }  // namespace binosplat::lab

@@ -25,9 +25,7 @@ std::vector<Row> of_walls(const std::string& of) {
     test::add(model, {0, 0, 1 + i}, glm::vec3(1e4f, 1e4f, 1e-3f), static_cast<float>(wall_alpha[i]));
   const BenchView view{"front", {make_view(test::front_camera(32, 24, 32.0))}};
   const DepthTable table{5.0f, {1.0f, 1.0f, 1.0f, 0.1f, 1.0f}};
-  int views = 0;
-  std::vector<Row> found = contributions(model, std::span(&view, 1), table, table, [&] { ++views; });
-  EXPECT_EQ(views, 1);
+  std::vector<Row> found = contributions(model, std::span(&view, 1), table, table);
   std::erase_if(found, [&](const Row& row) { return text(row, "of") != of; });
   return found;
 }
