@@ -1,5 +1,6 @@
 // Where thresholds fail: every rule on every case, frame by frame against exact frames, with verdicts that
-// follow from stated bounds. BINOSPLAT_LONG=1 prints the table of docs/measuring.md.
+// follow from stated bounds. BINOSPLAT_LONG=1 prints the tables of
+// bench/results/stability.md.
 
 #include <fmt/ranges.h>
 #include <gtest/gtest.h>
