@@ -306,7 +306,7 @@ Image halved(const Image& image) {
   return half;
 }
 
-// Measured: see docs/trimming.md. Half the size of the photos, four views held back.
+// Measured: see docs/models.md. Half the size of the photos, four views held back.
 TEST(TrimScenes, FoxAtHalfADecibelIsLessThanHalf) {
   REQUIRE_SCENE("fox", scene);
   if (!test::switched_on("BINOSPLAT_LONG")) GTEST_SKIP() << "some minutes: set BINOSPLAT_LONG=1";

@@ -213,7 +213,7 @@ TEST_F(Install, DocumentsShowTheExamplesOwnLinesAndLinksHold) {
   EXPECT_TRUE(has(read_text(prefix + "/share/man/man1/binosplat.1"), ".SH binosplat render"));
   fs::remove(documents + "/examples/mesh.cpp");
   EXPECT_GT(lines_of_no_example(documents).size(), 10u) << "lines of no example go unnoticed";
-  fs::remove(documents + "/docs/viewing.md");
+  fs::remove(documents + "/docs/measuring.md");
   EXPECT_GE(dangling(documents).size(), 3u) << "a missing file goes unnoticed";
 }
 
