@@ -6,7 +6,7 @@
 
 namespace binosplat {
 
-/// What an Error is about. The numbers are those that the program `binosplat` exits with.
+/// The kind of an Error. The numbers are the exit codes of the program `binosplat`.
 enum class ExitCode {
   done = 0,
   fell_short = 1,     // the program's: a comparison did not reach what was asked for
@@ -15,8 +15,8 @@ enum class ExitCode {
   out_of_memory = 4,  // on the GPU or on this machine
 };
 
-/// What the library throws where the caller, a file or the machine is at fault. what() is written for people:
-/// it names the file or the argument, what was expected, and what to do. Besides it the library lets
+/// The library's exception if the caller, a file or the machine is at fault. what() is written for people: it
+/// names the file or the argument, what was expected, and what to do. Besides it the library lets
 /// std::bad_alloc pass, and throws std::runtime_error where OpenGL reports an error that is the library's
 /// own. The object whose call threw can be used again, unless its GPU was reset, and destroyed in any case.
 class Error : public std::runtime_error {

@@ -45,7 +45,7 @@ struct Bounds {
 /// outlive what it was made from. Everything here may be called from any thread, and needs no context.
 class SplatModel {
  public:
-  /// Reads a file, or a folder that holds a model. What it is, is decided by its content, never by its name:
+  /// Reads a file, or a folder that holds a model. The content decides the format, never the name:
   /// INRIA's ply and PlayCanvas' compressed ply, spz, .splat, .ksplat, SOG (a folder or .sog), streamed SOG
   /// (by a lod-meta.json), glTF and OpenUSD's text with Gaussians, and Scaffold-GS's ply with the networks
   /// beside it. Gaussians whose numbers are not finite are left out, and counted on standard error. The

@@ -35,8 +35,8 @@ class SplatStream;
 /// SDL_GL_GetProcAddress and glXGetProcAddress, which have other types, with reinterpret_cast.
 using GetProcAddress = void (*(*)(const char* name))();
 
-/// What is drawn of a view, and how exactly; by default all of it, as the settings say. Rows count from the
-/// top of the picture.
+/// The drawn part of a view, and how exactly it is drawn; by default all of it, as the settings say. Rows
+/// count from the top of the picture.
 struct ViewRegion {
   static constexpr int tile = 16;  // px, a side of the tiles below
   /// For each row of tiles the columns of tiles [x, y) that are drawn; nothing is drawn of others, such as
@@ -79,8 +79,8 @@ struct View {
 /// later runs.
 ///
 /// State: after each call, and after an error, the context's state is what it was before, but for a program
-/// in use that was deleted, which OpenGL does not set again. What is bound, enabled or masked does not change
-/// what is drawn. Do not call within transform feedback or conditional rendering; queries that are active
+/// in use that was deleted, which OpenGL does not set again. Bindings, enabled states and masks do not change
+/// the pictures. Do not call within transform feedback or conditional rendering; queries that are active
 /// count what is done here.
 class Renderer {
  public:

@@ -1,5 +1,5 @@
 #pragma once
-// What drawing a frame took, and how much the next one may draw to take no longer than it may.
+// The cost of a drawn frame, and how much the next one may draw within its time.
 
 #include <cstdint>
 #include <optional>
@@ -20,8 +20,8 @@ struct StageSpan {
   std::int64_t begin_ns = 0, end_ns = 0;
 };
 
-/// Times are sums over all attempts at a quality, without drawings for which a buffer was too small. What is
-/// written into targets after the blend is not timed.
+/// Times are sums over all attempts at a quality, without drawings for which a buffer was too small. They
+/// exclude writes into targets after the blend.
 struct Report {
   std::vector<StageTime> stages = {};  // empty where the driver tells no times
   double gpu_ms = 0;                   // their sum

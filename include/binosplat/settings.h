@@ -34,7 +34,7 @@ struct DepthTable {
   std::vector<float> bounds = {};  // from 0 to 1, by bin
 };
 
-/// What Gaussians are sorted by, front to back.
+/// The key by which Gaussians are sorted, front to back.
 enum class Order {
   depth,     // along the view's axis, as 3D Gaussian Splatting is trained; turns with the head
   distance,  // from the point between the eyes
@@ -55,14 +55,14 @@ enum class Precision {
          // hardly changes
 };
 
-/// What a pixel's depth is, where more than half of the pixel is covered.
+/// The depth of a pixel of which more than half is covered.
 enum class DepthKind {
   mean,    // of all that is seen in it: between a thing and what is behind it
-  median,  // where half of the light is gone: on the one or on the other. What a compositor needs
+  median,  // by which half of the light is gone: on the one or on the other, as compositors need it
 };
 
-/// What is seen sharply: for each eye an inset about its gaze, exact (in full precision to the bit), and
-/// around it the same picture in fewer pixels, brought to one size. Degrees are those of the eye: its
+/// The sharp part of a picture: for each eye an inset about its gaze, exact (in full precision to the bit),
+/// and around it the same picture in fewer pixels, brought to one size. Degrees are those of the eye: its
 /// picture's middle is where its axis meets it, wherever that lies in an asymmetric frustum.
 struct Foveation {
   double inset_degrees = 20.0;  // across what is exact, all around the gaze, from 1 to 120

@@ -20,7 +20,7 @@ namespace binosplat {
 
 class Stream;  // the library's own
 
-/// What is asked of levels of detail.
+/// The request for levels of detail.
 struct StreamOptions {
   /// dB, from 10 to 100: the PSNR that each view should have against the finest levels. A frame's own quality
   /// (Settings) comes on top of it.

@@ -58,8 +58,8 @@ struct Target {
 };
 
 /// Where a view's depths go: a 2D texture, or a layer of an array, of a depth format without stencil, as
-/// XR_KHR_composition_layer_depth takes it. All of the texture is overwritten. What lies at z (world units,
-/// along the view's axis) has the depth far (1 - near / z) / (far - near), from 0 at `near_plane` to 1 at
+/// XR_KHR_composition_layer_depth takes it. All of the texture is overwritten. The depth at z (world units,
+/// along the view's axis) is far (1 - near / z) / (far - near), from 0 at `near_plane` to 1 at
 /// `far_plane`; either may be infinite, and `near_plane` may be the larger one, which reverses the depths. A
 /// pixel of which half or less is covered is infinitely far. The texture may have fewer pixels than the view:
 /// GPUs of servers fill depths slowly, and a headset's runtime needs no more.

@@ -29,7 +29,7 @@ constexpr const char* no_eval3d =
     "it was trained by 3DGUT, which evaluates Gaussians along each ray and has no low-pass. They are drawn "
     "as splats with hardly any (--kernel-px2 0.001), which comes to some 45 dB: large ones near the eye look "
     "otherwise";
-/// For it (tests/bench/results/judges-2026-11-27.md).
+/// For it (tests/bench/results/judges.md).
 constexpr double along_rays_kernel_px2 = 0.001;
 constexpr const char* no_sigma_points =
     "it was trained with the unscented transform, and is drawn by a linear projection: large Gaussians near "

@@ -1,5 +1,6 @@
-// Pages are read in a terminal, too: no line of them is over 120 characters. Tests and sources that they name
-// exist.
+// Pages are read in a terminal, too: no line of them is over 120 characters. Tests, sources, files and
+// headings that they name or link to exist. Their sentences, and those of public headers, keep some rules of
+// style (docs/architecture.md, "Style").
 
 #include <gtest/gtest.h>
 
@@ -7,7 +8,9 @@
 #include <array>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <regex>
+#include <set>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -51,6 +54,133 @@ std::vector<fs::path> all_pages() {
   return pages;
 }
 
+/// Those, the READMEs of rooms, and the pages of tests.
+std::vector<fs::path> pages_with_those_of_folders() {
+  std::vector<fs::path> pages = all_pages();
+  for (const char* folder : {"src", "tests"}) {
+    for (const auto& entry : fs::recursive_directory_iterator(root / folder)) {
+      if (entry.path().extension() == ".md") pages.push_back(entry.path());
+    }
+  }
+  return pages;
+}
+
+/// Lines outside of code between ``` and ```.
+std::vector<std::string> lines_of(const std::string& page) {
+  std::vector<std::string> lines;
+  bool is_code = false;
+  std::istringstream in(page);
+  for (std::string line; std::getline(in, line);) {
+    const bool is_fence = line.starts_with("```");
+    if (is_fence) is_code = !is_code;
+    lines.push_back(is_fence || is_code ? "" : line);
+  }
+  return lines;
+}
+
+/// The anchors of a page's headings, as GitHub makes them.
+std::set<std::string> anchors_of(const std::string& page) {
+  std::set<std::string> anchors;
+  std::map<std::string, int> times;
+  static const std::regex link("\\[([^\\]]*)\\]\\([^)]*\\)");
+  for (const std::string& line : lines_of(page)) {
+    const std::size_t level = line.find_first_not_of('#');
+    if (level == 0 || level == std::string::npos || line[level] != ' ') continue;
+    std::string anchor;
+    for (const char c : std::regex_replace(line.substr(level + 1), link, "$1")) {
+      const auto byte = static_cast<unsigned char>(c);
+      if (byte >= 0x80 || std::isalnum(byte) || c == '_' || c == '-')
+        anchor += static_cast<char>(std::tolower(byte));
+      if (c == ' ') anchor += '-';
+    }
+    const int before = times[anchor]++;
+    anchors.insert(before == 0 ? anchor : anchor + '-' + std::to_string(before));
+  }
+  return anchors;
+}
+
+/// The links of a page in `folder` to files or headings that do not exist.
+std::vector<std::string> dangling_links(const std::string& page, const fs::path& folder) {
+  static const std::regex link("\\]\\(([^)#\\s]*)(?:#([^)\\s]*))?\\)");
+  std::vector<std::string> dangling;
+  std::string text;
+  for (const std::string& line : lines_of(page)) text += line + '\n';
+  for (std::sregex_iterator at(text.begin(), text.end(), link), end; at != end; ++at) {
+    const std::string file = (*at)[1], anchor = (*at)[2];
+    if (file.find("://") != std::string::npos) continue;
+    const bool is_there = file.empty() || fs::exists(folder / file);
+    const bool has_anchor =
+        anchor.empty() ||
+        (is_there && anchors_of(file.empty() ? page : text_of(folder / file)).contains(anchor));
+    if (!is_there || !has_anchor) dangling.push_back(anchor.empty() ? file : file + '#' + anchor);
+  }
+  return dangling;
+}
+
+/// The paragraphs of a page and the items of its lists, each in one line: no headings, tables or code.
+std::vector<std::string> paragraphs_of_page(const std::string& page) {
+  static const std::regex item("^ *([-*]|[0-9]+\\.) ");
+  std::vector<std::string> paragraphs = {""};
+  bool is_code = false, may_be_code = true;
+  for (const std::string& line : lines_of(page)) {
+    const bool is_blank = line.find_first_not_of(' ') == std::string::npos;
+    is_code = line.starts_with("    ") && (may_be_code || is_code);
+    const bool is_other = is_blank || is_code || line[0] == '#' || line[0] == '|';
+    may_be_code = is_other;
+    std::smatch start;
+    const bool is_item = std::regex_search(line, start, item);
+    if ((is_other || is_item) && !paragraphs.back().empty()) paragraphs.emplace_back();
+    if (is_other) continue;
+    const std::size_t from = is_item ? static_cast<std::size_t>(start.length()) : line.find_first_not_of(' ');
+    paragraphs.back() += (paragraphs.back().empty() ? "" : " ") + line.substr(from);
+  }
+  return paragraphs;
+}
+
+/// The comments of a header, each in one line.
+std::vector<std::string> comments_of(const std::string& header) {
+  static const std::regex comment("^(.*?)//[/!<]* ?(.*)$");
+  std::vector<std::string> comments = {""};
+  std::istringstream in(header);
+  for (std::string line; std::getline(in, line);) {
+    std::smatch parts;
+    const bool has_comment = std::regex_match(line, parts, comment);
+    const bool goes_on = has_comment && parts[1].str().find_first_not_of(' ') == std::string::npos;
+    if (!goes_on && !comments.back().empty()) comments.emplace_back();
+    if (has_comment) comments.back() += (comments.back().empty() ? "" : " ") + parts[2].str();
+  }
+  return comments;
+}
+
+/// The sentences that begin with "What " and are no question.
+std::vector<std::string> beginning_with_what(const std::vector<std::string>& paragraphs) {
+  static const std::regex sentence("(?:^|[.!?:] )\\**(What (?:[^.!?]|[.!?](?=[^ ]))*)(?=([.!?])?)");
+  std::vector<std::string> found;
+  for (const std::string& text : paragraphs) {
+    for (std::sregex_iterator at(text.begin(), text.end(), sentence), end; at != end; ++at) {
+      if ((*at)[2] != "?") found.push_back((*at)[1]);
+    }
+  }
+  return found;
+}
+
+/// The words and names of a page that others have replaced (the glossary has these).
+std::vector<std::string> replaced_words(const std::string& page) {
+  static const std::regex code("`[^`]*`|\\]\\([^)]*\\)"), words("\\b([Tt]old|[Ll]eaf|as time goes by)\\b"),
+      names(
+          "`(Workings|Driven|Studied|Listed|Known|elsewhere\\(\\)|put_a_ms_|SHOW_LIGHT|parts_seen[.a-z]*|"
+          "leaf_errors[.a-z]*|LodFiles::Piece)[^`]*`");
+  std::vector<std::string> found;
+  for (const std::string& text : paragraphs_of_page(page)) {
+    const std::string plain = std::regex_replace(text, code, "");
+    for (const auto& [in, what] : {std::pair(&plain, &words), std::pair(&text, &names)}) {
+      for (std::sregex_iterator at(in->begin(), in->end(), *what), end; at != end; ++at)
+        found.push_back((*at)[1]);
+    }
+  }
+  return found;
+}
+
 /// The tests that a page names as `room.Suite.Name`, or `room.Suite.*`, and no file of that room has.
 std::vector<std::string> missing_tests(const std::string& page) {
   static const std::regex named("`([a-z]+)\\.([A-Z]\\w+)\\.(\\w+|\\*)`");
@@ -89,7 +219,7 @@ std::vector<std::string> missing_sources(const std::string& page) {
 
 TEST(Pages, HaveLinesThatFitATerminal) {
   const std::vector<fs::path> pages = all_pages();
-  EXPECT_GT(pages.size(), 15u) << "the pages were not found";
+  EXPECT_GT(pages.size(), 10u) << "the pages were not found";
   for (const fs::path& page : pages) {
     const std::string text = text_of(page);
     EXPECT_FALSE(text.empty()) << page;
@@ -110,6 +240,56 @@ TEST(Pages, NameSourcesThatExist) {
     EXPECT_EQ(missing_sources(text_of(page)), std::vector<std::string>()) << page;
   EXPECT_EQ(missing_sources("`src/gl/none.cpp`, `gl/context.{h,txt,cpp}`, `shaders/blend.comp`, `NAME.cpp`"),
             (std::vector<std::string>{"src/gl/none.cpp", "gl/context.txt"}))
+      << "planted";
+}
+
+TEST(Pages, LinkToFilesAndHeadingsThatExist) {
+  for (const fs::path& page : pages_with_those_of_folders())
+    EXPECT_EQ(dangling_links(text_of(page), page.parent_path()), std::vector<std::string>()) << page;
+  const std::string planted =
+      "# A `heading`, and [a link](none.md)\n[1](CMakeLists.txt) [2](docs/none.md) "
+      "[3](#a-heading-and-a-link)\n"
+      "[4](#none) [5](docs/method.md#6-stereo)\n[6](docs/method.md#none) [7](https://none.org/#none)\n"
+      "```\n# Code\n[8](none.txt)\n```\n[9](#code)\n";
+  EXPECT_EQ(dangling_links(planted, root),
+            (std::vector<std::string>{"none.md", "docs/none.md", "#none", "docs/method.md#none", "#code"}))
+      << "planted";
+}
+
+TEST(Pages, BeginNoSentenceWithWhat) {
+  for (const fs::path& page : pages_with_those_of_folders())
+    EXPECT_EQ(beginning_with_what(paragraphs_of_page(text_of(page))), std::vector<std::string>()) << page;
+  for (const char* folder : {"include"}) {  // next: src, stereo
+    for (const auto& entry : fs::recursive_directory_iterator(root / folder)) {
+      if (entry.path().extension() != ".h") continue;
+      EXPECT_EQ(beginning_with_what(comments_of(text_of(entry.path()))), std::vector<std::string>())
+          << entry.path();
+    }
+  }
+}
+
+TEST(Pages, PlantedWhatIsCaught) {
+  const auto in_page = [](const std::string& text) {
+    return beginning_with_what(paragraphs_of_page(text)).size();
+  };
+  EXPECT_EQ(in_page("What goes first\nis drawn.\n"), 1u);
+  EXPECT_EQ(in_page("It ends.\nWhat follows is drawn. What goes first, too.\n"), 2u);
+  EXPECT_EQ(in_page("text\n- What follows\n  is drawn\n1. **What** follows.\n2. **What follows.**\n"), 2u);
+  EXPECT_EQ(in_page("# What is drawn\n| What | is |\n\n    What is code\n```\nWhat is code\n```\n"), 0u);
+  EXPECT_EQ(in_page("What is drawn? This is. What costs 0.5 dB?\n"), 0u);
+  const auto in_header = [](const std::string& text) {
+    return beginning_with_what(comments_of(text)).size();
+  };
+  EXPECT_EQ(in_header("/// What is drawn.\nint a;  // What a is\n// It ends.\n// What follows\n"), 3u);
+  EXPECT_EQ(in_header("// It is\n// What they call it. What is it?\nint What = 3;\n"), 0u);
+}
+
+TEST(Pages, UseNoWordThatWasReplaced) {
+  for (const fs::path& page : pages_with_those_of_folders())
+    EXPECT_EQ(replaced_words(text_of(page)), std::vector<std::string>()) << page;
+  EXPECT_EQ(
+      replaced_words("It told a leaf, and `--leaf` of `Workings::a`, `Known`,\nand Known [told](told.md).\n"),
+      (std::vector<std::string>{"told", "leaf", "told", "Workings", "Known"}))
       << "planted";
 }
 

@@ -91,7 +91,7 @@ class Judged {
   }                                                                 \
   static_assert(true)
 
-/// A line of docs/method.md's table of K.
+/// A line of the table of K in tests/bench/results/reference.md.
 struct KEffect {
   double k;
   bool always;
@@ -176,8 +176,8 @@ const std::vector<const char*> garden_views = {"DSC07956", "DSC07988", "DSC08020
                                                "DSC08052", "DSC08084", "DSC08116"};
 const std::vector<const char*> garden_one = {"DSC07956"};
 
-// docs/method.md's figures are a little above these bounds: 29.8, 44.3, 44.4; 36.4, 48.9; 32.7, 44.1; 58.3;
-// 46.3.
+// Figures of results/reference.md are a little above these
+// bounds: 29.8, 44.3, 44.4; 36.4, 48.9; 32.7, 44.1; 58.3; 46.3.
 const AtQuality at_quality[] = {
     {"fox_one", fox, fox_views, TH_PERIPHERAL, Source::one, -0.5, 29.0, 2.5},
     {"fox_last", fox, fox_views, TH_PERIPHERAL, Source::last, -0.5, 43.0, 2.0},

@@ -1,5 +1,6 @@
-// What it costs to decode a Scaffold-GS model once for both eyes, from between them: the error against each
-// eye's own, and how much of it the eyes do not share, at three distances (docs/decisions.md states them).
+// The error of decoding a Scaffold-GS model once for both eyes, from their midpoint, against each eye's own,
+// and how much of it the eyes do not share, at three distances (tests/bench/results/scaffold.md has the
+// numbers).
 
 #include <algorithm>
 #include <array>
