@@ -12,8 +12,17 @@ layout(std430, binding = 1) readonly buffer Gaussians { Gaussian gaussians[]; };
 #define GAUSSIAN(at) gaussians[at]
 #endif
 #include "frame.glsl"
-uniform uint page_first;
-uniform uint page_count;
+uniform uint page_first;      // of all Gaussians of the frame: where those of the page's instances begin
+uniform uint page_count;      // of one instance
+uniform uint instance_first;  // the model's first instance
+uniform uint instance_count;
+
+// The page's Gaussians lie in the frame once an instance, one instance after another. Gaussian i of them: where it is in the
+// page, and the first of its instance's views.
+uvec2 place_in_page(uint i) {
+  uint instance = instance_count > 1u ? i / page_count : 0u;
+  return uvec2(i - instance * page_count, (instance_first + instance) * frame.view_count);
+}
 
 #if OFFSETS > 0
 

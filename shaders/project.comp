@@ -14,7 +14,7 @@
 
 layout(local_size_x = THREADS) in;
 
-layout(std430, binding = 0) readonly buffer Views { View views[]; };
+layout(std430, binding = 0) readonly buffer Views { View views[]; };  // (instance, view)
 #include "gaussians.glsl"            // bindings 1 and 9
 #include "threshold/threshold.glsl"  // binding 7
 #include "sh.glsl"  // binding 2, of the page
@@ -52,9 +52,11 @@ void leave_aside(uint splat, bool is_large) {
 
 void main() {
   uint slot = thread_index();
-  uint i = slot < arguments[0].count ? indices[slot] - page_first : page_count;  // wraps, and is too large, before the page
-  bool is_here = i < page_count;
-  i = is_here ? i : 0u;
+  uint end = instance_count * page_count;
+  uint i = slot < arguments[0].count ? indices[slot] - page_first : end;  // wraps, and is too large, before the page
+  bool is_here = i < end;
+  uvec2 place = place_in_page(is_here ? i : 0u);
+  i = place.x;
   Gaussian g = GAUSSIAN(i);
   mat3 axes = scaled_axes(g);
 #if SH_DEGREE == 0 && OFFSETS == 0
@@ -64,7 +66,7 @@ void main() {
   uint first_eyes = 0u;  // coverage by the first of both eyes
 #endif
   for (uint v = view_begin; v < view_end; ++v) {
-    View view = views[v];
+    View view = views[place.y + v];
     uint splat_at = splat_of(slot, v);
 #if OFFSETS > 0
     g = GAUSSIAN(place_of(i, v));
@@ -73,7 +75,7 @@ void main() {
     Splat splat;
     uint coverage = 0u;
     if (is_here && is_kept(i, v) && project(view, g, axes, splat)) {
-      splat.colour.w = tile_level(v, indices[slot], splat);
+      splat.colour.w = tile_level(view, v, indices[slot], splat);
 #if HALF
       splat = rounded(splat);  // as `bin` will find it
 #endif

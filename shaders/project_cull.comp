@@ -8,7 +8,7 @@
 
 layout(local_size_x = THREADS, local_size_y = EYES) in;
 
-layout(std430, binding = 0) readonly buffer Views { View views[]; };
+layout(std430, binding = 0) readonly buffer Views { View views[]; };  // (instance, view)
 #include "gaussians.glsl"            // bindings 1 and 9
 #include "threshold/threshold.glsl"  // binding 7
 layout(std430, binding = 2) writeonly buffer DepthKeys { uint depth_keys[]; };    // of the model
@@ -21,13 +21,13 @@ uniform uint view_end;  // without the probe
 // What the next frame is to know of a Gaussian that this view does not draw: a bound of 1 again for one out of view,
 // a little more than before for one that Th leaves out, or it would never be measured again. The drawn are measured.
 #if MEASURES
-void age_bound(uint gaussian, uint v, bool projected, bool drawn, Splat splat) {
+void age_bound(View view, uint gaussian, uint v, bool projected, bool drawn, Splat splat) {
   if (v >= frame.asked) return;  // a probe
   bool left_out = false;
 #if TH != TH_TAU
   if (projected && !drawn) {
     splat.colour.w = visible_level(splat.opacity);
-    left_out = !is_wide(splat) && touches_a_tile(splat, views[v]);  // wide ones may be out of view
+    left_out = !is_wide(splat) && touches_a_tile(splat, view);  // wide ones may be out of view
   }
 #endif
   float aged = frame.has_bounds == 0u ? 1.0 : min(1.0, float(BOUND_AGEING) * bounds[v * frame.gaussian_count + gaussian]);
@@ -37,32 +37,34 @@ void age_bound(uint gaussian, uint v, bool projected, bool drawn, Splat splat) {
 
 // The Gaussian's key, if any view of this invocation draws it: the same in all views of an order group.
 uint key_of(uint i) {
-  Gaussian g = GAUSSIAN(i);
+  uvec2 place = place_in_page(i);
+  Gaussian g = GAUSSIAN(place.x);
   mat3 axes = scaled_axes(g);
   uint key = DEPTH_KEY_NONE;
   for (uint v = view_begin + gl_LocalInvocationID.y; v < view_end; v += EYES) {
+    View view = views[place.y + v];
 #if OFFSETS > 0
     g = GAUSSIAN(place_of(i, v));
     axes = scaled_axes(g);
 #endif
     Splat splat;
-    bool projected = is_kept(i, v) && project(views[v], g, axes, splat);
-    if (projected) splat.colour.w = tile_level(v, page_first + i, splat);
+    bool projected = is_kept(i, v) && project(view, g, axes, splat);
+    if (projected) splat.colour.w = tile_level(view, v, page_first + i, splat);
 #if HALF
     if (projected) splat = rounded(splat);  // or an eye could get what it has not alone
 #endif
-    bool drawn = projected && touches_a_tile(splat, views[v]);
+    bool drawn = projected && touches_a_tile(splat, view);
 #if MEASURES
-    age_bound(page_first + i, v, projected, drawn, splat);
+    age_bound(view, page_first + i, v, projected, drawn, splat);
 #endif
 #if PROBED
     // All of it that leaves a mark, where the probe is of this group.
-    if (projected && !drawn && v == frame.probed && views[v].order_group == views[frame.asked].order_group) {
+    if (projected && !drawn && v == frame.probed && view.order_group == views[frame.asked].order_group) {
       splat.colour.w = visible_level(splat.opacity);
-      drawn = touches_a_tile(splat, views[frame.asked]);
+      drawn = touches_a_tile(splat, views[frame.asked]);  // in tiles that all instances share
     }
 #endif
-    if (drawn) key = floatBitsToUint(order_depth(views[v], g));
+    if (drawn) key = floatBitsToUint(order_depth(view, g));
 #if !MEASURES
     if (drawn) break;  // no need to ask the other eye
 #endif
@@ -76,7 +78,8 @@ shared uint keys[THREADS];
 
 void main() {
   uint i = thread_index();
-  uint key = i < page_count ? key_of(i) : DEPTH_KEY_NONE;
+  bool is_here = i < instance_count * page_count;
+  uint key = is_here ? key_of(i) : DEPTH_KEY_NONE;
 #if EYES > 1
   if (gl_LocalInvocationID.y == 0u) keys[gl_LocalInvocationID.x] = DEPTH_KEY_NONE;
   barrier();
@@ -84,5 +87,5 @@ void main() {
   barrier();
   key = keys[gl_LocalInvocationID.x];
 #endif
-  if (i < page_count && gl_LocalInvocationID.y == 0u) depth_keys[page_first + i] = key;
+  if (is_here && gl_LocalInvocationID.y == 0u) depth_keys[page_first + i] = key;
 }

@@ -94,7 +94,7 @@ float order_depth(View view, Gaussian g) {
   precise vec3 d = g.position.xyz - view.anchor.xyz;
 #if ORDER == ORDER_DISTANCE
   precise vec3 away = d - view.centre.xyz;
-  precise float distance = sqrt(dot_precise(away, away));
+  precise float distance = view.eye.w * sqrt(dot_precise(away, away));
   return distance;
 #else
   return to_eye(view, d).z;
@@ -126,8 +126,8 @@ float free_of(View view) {
 }
 
 // What a splat has whatever the projection, but for its colour. `kept` as conic_of() has it.
-void finish(Gaussian g, float kept, inout Splat splat) {
-  splat.opacity = g.position.w;
+void finish(View view, Gaussian g, float kept, inout Splat splat) {
+  splat.opacity = view.opacity * g.position.w;
 #if ANTIALIASED || REGIONS
   splat.opacity *= kept;
 #endif

@@ -17,7 +17,7 @@ bool project(View view, Gaussian g, mat3 axes, out Splat splat) {
   precise vec2 mean = view.lens.xy * (v.xy / v.z) + view.lens.zw - 0.5;
   splat.mean = mean;
   splat.depth = v.z;
-  finish(g, kept, splat);
+  finish(view, g, kept, splat);
   return true;
 }
 

@@ -33,7 +33,7 @@ vec3 direction_of(float bytes) { return unpackSnorm4x8(floatBitsToUint(bytes)).x
 
 // Whether a Gaussian at v is too far from all rays of the picture to be seen.
 bool is_beside(View view, vec3 v, float distance, vec3 scale) {
-  float spread = max(max(scale.x, scale.y), scale.z) / distance;
+  float spread = view.eye.w * max(max(scale.x, scale.y), scale.z) / distance;
   float variance = spread * spread + float(KERNEL_PX2) / (view.lens.x * view.lens.y);
   float sine2 = LEVEL_MAX * min(variance, float(WIDEST_TANGENT) * float(WIDEST_TANGENT));
   float cosine = (sqrt(1.0 - sine2) - sqrt(sine2 * view.centre.w)) / sqrt(1.0 + view.centre.w);
@@ -74,7 +74,7 @@ bool project(View view, Gaussian g, mat3 axes, out Splat splat) {
   precise vec3 d = g.position.xyz - view.anchor.xyz;
   vec3 v = to_eye(view, d);
   precise vec3 away = d - view.eye.xyz;
-  precise float distance = sqrt(dot_precise(away, away));
+  precise float distance = view.eye.w * sqrt(dot_precise(away, away));
 #if ORDER == ORDER_DISTANCE
   if (!(distance > view.anchor.w)) return false;
 #else
@@ -105,7 +105,7 @@ bool project(View view, Gaussian g, mat3 axes, out Splat splat) {
   }
   precise vec2 mean = view.lens.xy * slope + view.lens.zw - 0.5;
   splat.mean = mean;
-  finish(g, kept, splat);
+  finish(view, g, kept, splat);
   return true;
 }
 

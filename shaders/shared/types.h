@@ -22,12 +22,15 @@ using vec4 = glm::vec4;
 // y down, z forward) in the world. The anchor is a point near all views, the same number in the views of a
 // rig: subtracting it first keeps fp32 exact far from the origin, and views with equal anchors and third rows
 // see equal depths to the bit.
+//
+// A model that stands elsewhere than at the frame's origin has views of its own (render/instance.h): then the
+// world is the model's, and the rows are as long as `eye.w`.
 struct View {
   vec4 row_x;   // axis x, then translation x
   vec4 row_y;   // axis y, then translation y
   vec4 row_z;   // axis z (forward), then translation z
   vec4 anchor;  // world point; w: near, the smallest depth drawn (world units)
-  vec4 eye;     // the eye minus the anchor, world axes; w: unused
+  vec4 eye;     // the eye minus the anchor, world axes; w: world units of the frame to one of the model
   vec4 lens;    // fx, fy, cx, cy in px
   vec4 slopes;  // v.x / v.z and v.y / v.z at which J is taken: lowest x, y, highest x, y (docs/method.md 2)
   vec4 centre;  // what distances are sorted by, minus the anchor: the eye, or the point between those of a
@@ -49,6 +52,10 @@ struct View {
   float tolerance_share;  // its tolerance over the frame's
   float low_pass_share;   // share of the low-pass that takes no weight from Gaussians (projection.glsl)
   uint lists_shift;       // columns of supertiles, where it shares lists as the second eye (supertiles.glsl)
+  float opacity;          // times each Gaussian's
+  float table_far;        // world units of the frame, where the table of depths ends
+  uint table_first;       // the table's first bin in the buffer of tables
+  uint table_bins;
   uint unused_1, unused_2, unused_3;
 };
 
@@ -57,13 +64,11 @@ struct View {
 struct FrameParameters {
   vec4 background;      // rgb, display-referred; w: unused
   float tolerance;      // of the threshold rule: K or kappa
-  float far;            // world units, where the table of depths ends
-  uint depth_bins;      // how many bins it has
   uint has_bounds;      // 0: no earlier frame measured bounds of the transmittance for this one
   uint view_count;      // with the probe
   uint asked;           // views without the probe, which comes next and is exact
   uint probed;          // the number of the view that the probe is of; MAX_VIEWS without one
-  uint gaussian_count;  // the model's
+  uint gaussian_count;  // of all instances of the models
   uint slots;           // how many each view has room for
   uint tile_count;      // tiles of all supertiles, over all views
   uint list_per_view;   // 1 with --tiles all: a view's tiles share one list
@@ -74,7 +79,7 @@ struct FrameParameters {
   uint decoding_of_probe;   // number of the decoding that the probe shares with its view
   uint anchor_cull;         // 1: anchors that touch no tile of 3D-GS are not decoded
   float depth_slack;        // how much nearer splats may be than those before them in a list, world units
-  uint unused_1, unused_2, unused_3;
+  uint unused;
 };
 
 // A Gaussian of the model as the GPU keeps it. Its SH coefficients lie in a buffer of their own.
@@ -184,8 +189,8 @@ struct DispatchArguments {
 };
 
 #ifdef __cplusplus
-static_assert(sizeof(View) == 208 && offsetof(View, slopes) == 96 && offsetof(View, low_pass_share) == 188);
-static_assert(sizeof(FrameParameters) == 96 && offsetof(FrameParameters, tolerance) == 16);
+static_assert(sizeof(View) == 224 && offsetof(View, slopes) == 96 && offsetof(View, low_pass_share) == 188);
+static_assert(sizeof(FrameParameters) == 80 && offsetof(FrameParameters, tolerance) == 16);
 static_assert(sizeof(Gaussian) == 48 && offsetof(Gaussian, scale) == 32);
 static_assert(sizeof(Anchor) == 64 && offsetof(Anchor, scale) == 48);
 static_assert(sizeof(Splat) == 48 && offsetof(Splat, conic) == 16 && offsetof(Splat, colour) == 32);

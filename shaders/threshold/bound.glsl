@@ -6,23 +6,23 @@
 
 #if TRANSMITTANCE == TRANSMITTANCE_ONE
 
-float bound_of(uint gaussian, uint view, float depth) { return 1.0; }
+float bound_of(View view, uint v, uint gaussian, float depth) { return 1.0; }
 
 #elif TRANSMITTANCE == TRANSMITTANCE_DEPTH
 
-layout(std430, binding = 7) readonly buffer DepthTable { float depth_table[]; };  // T_upper of equal bins over [0, far)
+layout(std430, binding = 7) readonly buffer DepthTables { float depth_tables[]; };  // T_upper of equal bins over [0, far)
 
-float bound_of(uint gaussian, uint view, float depth) {
-  precise float bin = depth / frame.far * float(frame.depth_bins);
-  return bin < float(frame.depth_bins) ? depth_table[uint(bin)] : 1.0;
+float bound_of(View view, uint v, uint gaussian, float depth) {
+  precise float bin = depth / view.table_far * float(view.table_bins);
+  return bin < float(view.table_bins) ? depth_tables[view.table_first + uint(bin)] : 1.0;
 }
 
 #else
 
 layout(std430, binding = 7) readonly buffer Bounds { float bounds[]; };  // (view, Gaussian)
 
-float bound_of(uint gaussian, uint view, float depth) {
-  return frame.has_bounds == 0u ? 1.0 : bounds[view * frame.gaussian_count + gaussian];
+float bound_of(View view, uint v, uint gaussian, float depth) {
+  return frame.has_bounds == 0u ? 1.0 : bounds[v * frame.gaussian_count + gaussian];
 }
 
 #endif

@@ -8,15 +8,15 @@
 #include "threshold/bound.glsl"
 #include "threshold/{TH_NAME}.glsl"
 
-float threshold_of(uint v, Splat splat, float bound) {
-  precise float tolerance = frame.tolerance * views[v].tolerance_share;
-  return threshold(size_of(views[v], splat), bound, tolerance);
+float threshold_of(View view, Splat splat, float bound) {
+  precise float tolerance = frame.tolerance * view.tolerance_share;
+  return threshold(size_of(view, splat), bound, tolerance);
 }
 
-// Th of a Gaussian in view v, where it is `splat`.
-float threshold_in(uint v, uint gaussian, Splat splat) {
+// Th of a Gaussian in the view of number v, where it is `splat`.
+float threshold_in(View view, uint v, uint gaussian, Splat splat) {
   if (v >= frame.asked) return float(ALPHA_MIN);
-  return threshold_of(v, splat, bound_of(gaussian, v, abs(splat.depth)));
+  return threshold_of(view, splat, bound_of(view, v, gaussian, abs(splat.depth)));
 }
 
 // The same for what leaves a mark at all.
@@ -26,7 +26,7 @@ float visible_level(float opacity) {
 }
 
 // 2 ln(sigma / Th), the level of the tile tests; negative where no alpha reaches Th. `precise`: cull and project must agree.
-float tile_level(uint v, uint gaussian, Splat splat) {
-  precise float rho = 1.3862943611198906 * log2(splat.opacity / threshold_in(v, gaussian, splat));
+float tile_level(View view, uint v, uint gaussian, Splat splat) {
+  precise float rho = 1.3862943611198906 * log2(splat.opacity / threshold_in(view, v, gaussian, splat));
   return rho;
 }

@@ -21,12 +21,13 @@ namespace {
 std::int64_t bytes_for(render::FramePlan plan, std::uint32_t gaussians, bool in_parts) {
   plan.gaussian_count = in_parts ? 0 : gaussians;
   plan.gaussian_room = gaussians;
+  plan.models.front().size.room = gaussians;
   const render::MemoryNeeds needs = render::memory_needs(plan);
   if (!in_parts) return needs.model + needs.frame;
   const int precision = plan.settings.precision;
   // Each of both with its place.
-  const std::int64_t bytes_of_one =
-      render::gaussian_bytes(precision) + render::harmonic_bytes(plan.degree, precision) + 2 * 4;
+  const std::int64_t bytes_of_one = render::gaussian_bytes(precision) +
+                                    render::harmonic_bytes(plan.models.front().degree, precision) + 2 * 4;
   const auto uploads = static_cast<std::int64_t>(
       std::bit_ceil(std::min<std::size_t>(gaussians, render::Scatter::records_at_once)));
   return needs.model + needs.frame + uploads * bytes_of_one;

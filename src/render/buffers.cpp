@@ -13,8 +13,6 @@ shared::FrameParameters parameters_of(const FramePlan& plan, std::uint32_t slots
   const FrameSettings& s = plan.settings;
   return {.background = glm::vec4(s.background, 0.0f),
           .tolerance = plan.tolerance,
-          .far = s.depth_table.far,
-          .depth_bins = static_cast<std::uint32_t>(s.depth_table.bounds.size()),
           .has_bounds = uses_measured,
           .view_count = plan.view_count(),
           .asked = plan.asked,
@@ -36,9 +34,10 @@ shared::FrameParameters parameters_of(const FramePlan& plan, std::uint32_t slots
 FrameBuffers::FrameBuffers(gl::Context& context)
     : parameters(context, "parameters of the frame"),
       views(context, "views"),
+      instance_views(context, "views of instances"),
       region_rows(context, "regions of views"),
       counters(context, "counters"),
-      transmittance{.depth_table = {context, "transmittance by depth"},
+      transmittance{.depth_tables = {context, "transmittance by depth"},
                     .bounds = std::make_unique<gl::Buffer>(context, "measured transmittance"),
                     .next_bounds = std::make_unique<gl::Buffer>(context, "transmittance for the next frame"),
                     .measured = {context, "transmittance by splat"}},
@@ -77,13 +76,29 @@ void FrameBuffers::upload(const FramePlan& plan, bool uses_measured) {
   if (!meshes.empty()) pictures.mesh_sources.upload(meshes);
   region_rows.reserve(sizeof(glm::uvec2));  // programs that never read it need it bound
   if (plan.draws_regions()) region_rows.upload(plan.region_rows);
-  if (plan.settings.transmittance != TRANSMITTANCE_DEPTH) return;
-  std::vector<float> table = plan.settings.depth_table.bounds;
-  for (float& bound : table) bound = bound > 0.0f ? std::max(bound, static_cast<float>(BOUND_FLOOR)) : 1.0f;
-  transmittance.depth_table.upload(table);
+  const bool by_depth = plan.settings.transmittance == TRANSMITTANCE_DEPTH;
+  std::vector<float> tables = plan.settings.depth_table.bounds;
+  std::vector<shared::View> of_instances;
+  for (const InstancePlace& place : plan.instances) {
+    const DepthTable& own = place.depth_table;
+    for (const shared::View& view : plan.views) {
+      shared::View& seen = of_instances.emplace_back(view_of_instance(view, place));
+      if (own.bounds.empty()) continue;
+      seen.table_far = static_cast<float>(own.far * place.scale);
+      seen.table_first = static_cast<std::uint32_t>(tables.size());
+      seen.table_bins = static_cast<std::uint32_t>(own.bounds.size());
+    }
+    tables.insert(tables.end(), own.bounds.begin(), own.bounds.end());
+  }
+  if (!of_instances.empty()) instance_views.upload(of_instances);
+  if (!by_depth) return;
+  for (float& bound : tables) bound = bound > 0.0f ? std::max(bound, static_cast<float>(BOUND_FLOOR)) : 1.0f;
+  if (tables.empty()) tables.push_back(1.0f);  // a buffer that is bound has some size
+  transmittance.depth_tables.upload(tables);
 }
 
-void FrameBuffers::reserve(const FramePlan& plan, const ModelBuffers& model, const Capacity& capacity) {
+void FrameBuffers::reserve(const FramePlan& plan, std::span<const std::shared_ptr<ModelBuffers>> models,
+                           const Capacity& capacity) {
   const std::int64_t gaussians = plan.gaussian_room;
   slots = static_cast<std::uint32_t>(capacity.slots);
   const std::int64_t blocks = (gaussians + COMPACT_BLOCK - 1) / COMPACT_BLOCK;
@@ -100,10 +115,10 @@ void FrameBuffers::reserve(const FramePlan& plan, const ModelBuffers& model, con
     transmittance.next_bounds->reserve(gaussians * plan.asked * 4);
     transmittance.measured.reserve(capacity.slots * plan.view_count() * 4);
   }
-  for (std::size_t page = 0; plan.offset_count > 0 && page < model.pages.size(); ++page) {
+  for (std::size_t page = 0; plan.offset_count > 0 && page < models.front()->pages.size(); ++page) {
     if (page == kept.size())
       kept.push_back(std::make_unique<gl::Buffer>(context_, "Gaussians kept by anchor"));
-    kept[page]->reserve(std::int64_t{plan.decoding_count()} * model.pages[page].anchors->count * 4);
+    kept[page]->reserve(std::int64_t{plan.decoding_count()} * models.front()->pages[page].anchors->count * 4);
   }
   const std::int64_t splats = capacity.slots * plan.view_count();
   projected.depths.reserve(capacity.slots * static_cast<std::int64_t>(plan.groups.size()) * 4);

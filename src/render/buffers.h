@@ -39,7 +39,8 @@ struct FrameBuffers {
   void upload(const FramePlan& plan, bool uses_measured);
 
   /// Makes room for a frame of this plan, as `capacity` says. To be called before upload().
-  void reserve(const FramePlan& plan, const ModelBuffers& model, const Capacity& capacity);
+  void reserve(const FramePlan& plan, std::span<const std::shared_ptr<ModelBuffers>> models,
+               const Capacity& capacity);
 
   /// To be called once a frame is complete: `next_bounds` become the next frame's `bounds`, if this one
   /// measured.
@@ -48,17 +49,23 @@ struct FrameBuffers {
   /// The Gaussians that the last frame drew in its view `v`, in index order.
   std::vector<DrawnGaussian> read_drawn(const FramePlan& plan, std::uint32_t v) const;
 
+  /// The views by which the models are projected.
+  const gl::Buffer& views_of_instances(const FramePlan& plan) const {
+    return plan.instances.empty() ? views : instance_views;
+  }
+
   std::uint32_t slots = 0;  // room for the Gaussians that one order group draws
 
-  gl::Buffer parameters;   // FrameParameters
-  gl::Buffer views;        // View, the probe last
-  gl::Buffer region_rows;  // uvec2 by row of tiles of a view, where a view is not drawn whole
-  gl::Buffer counters;     // Counters
+  gl::Buffer parameters;      // FrameParameters
+  gl::Buffer views;           // View, the probe last
+  gl::Buffer instance_views;  // View by (instance, view), where the plan has instances
+  gl::Buffer region_rows;     // uvec2 by row of tiles of a view, where a view is not drawn whole
+  gl::Buffer counters;        // Counters
 
   /// The upper bounds of transmittance that thresholds go by: T_upper from a table, or by (view, Gaussian) as
   /// measured for the next frame, written while the last frame's is read. Empty where nothing is measured.
   struct Transmittance {
-    gl::Buffer depth_table;                           // float by bin
+    gl::Buffer depth_tables;                          // float by bin: the settings', then instances'
     std::unique_ptr<gl::Buffer> bounds, next_bounds;  // float
     gl::Buffer measured;                              // uint by splat, bits of the largest float
   } transmittance;

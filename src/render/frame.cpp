@@ -1,6 +1,7 @@
 #include "render/frame.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "base/error.h"
@@ -45,10 +46,42 @@ void add(FrameReport attempt, FrameReport& report) {
 
 Frame::Frame(std::shared_ptr<GpuModel> model)
     : model_(std::move(model)),
-      uploads_(model_->uploads()),
+      drawn_{{model_, model_->uploads()}},
       dispatcher_(model_->context()),
       buffers_(model_->context()),
       counters_read_(model_->context(), "counters for the CPU", gl::Buffer::Use::read) {}
+
+void Frame::place(std::vector<Instance> instances) {
+  for (const auto& [model, place] : instances) {
+    if (!(place.scale > 0.0) || !std::isfinite(place.scale))
+      fail("an instance's scale of {}: expected a number above 0", place.scale);
+    if (!(place.opacity >= 0.0f && place.opacity <= 1.0f))
+      fail("an instance's opacity of {}: expected 0 to 1", place.opacity);
+    if (model->model().scaffold && (instances.size() > 1 || !place.is_plain())) {
+      fail(
+          "a Scaffold-GS model is drawn alone, where it was trained: its networks make Gaussians for an eye "
+          "of "
+          "its own world");
+    }
+  }
+  std::vector<Drawn> drawn;
+  places_.clear();
+  while (!instances.empty()) {
+    const std::shared_ptr<GpuModel> model = instances.front().model;
+    const auto others = std::stable_partition(instances.begin(), instances.end(),
+                                              [&](const Instance& one) { return one.model == model; });
+    drawn.push_back({model, model->uploads(), static_cast<std::uint32_t>(others - instances.begin())});
+    for (auto one = instances.begin(); one != others; ++one) places_.push_back(std::move(one->place));
+    instances.erase(instances.begin(), others);
+  }
+  if (drawn.size() == 1 && places_.size() == 1 && places_.front().is_plain()) places_.clear();
+  const auto same = [](const Drawn& a, const Drawn& b) {
+    return a.model == b.model && a.instances == b.instances;
+  };
+  if (std::ranges::equal(drawn, drawn_, same)) return;  // and what was noted of their uploads holds
+  drawn_ = std::move(drawn);
+  is_placed_anew_ = true;
+}
 
 void Frame::take(std::span<const shared::View> views, const FrameSettings& settings, const Workings& workings,
                  const CallersTextures& textures) {
@@ -143,14 +176,29 @@ void Frame::begin(PlanRequest request) {
   const FrameSettings& settings = submitted_.settings;
   const Workings& workings = submitted_.workings;
   check(workings, settings);
-  if (model_buffers_ && model_buffers_->precision != settings.precision) {
-    model_buffers_.reset();  // first, since both together may not fit
+  if (workings.stand_in && !is_plain()) fail("a stand-in: only for one model in its own world");
+  if (!model_buffers_.empty() && model_buffers_.front()->precision != settings.precision) {
+    model_buffers_.clear();  // first, since both together may not fit
     history_.forget_measured();
   }
-  model_buffers_ = model_->in(settings.precision);
-  plan_ = make_plan(views, settings, model_->model(), model_->size(), workings, request);
-  if (std::exchange(uploads_, model_->uploads()) != model_->uploads())
-    history_.follow_levels(plan_.gaussian_count);
+  bool is_other = std::exchange(is_placed_anew_, false);
+  std::vector<std::shared_ptr<ModelBuffers>> held;
+  for (Drawn& drawn : drawn_) {
+    held.push_back(drawn.model->in(settings.precision));
+    PlannedModel& model = request.models.emplace_back(planned(drawn.model->model(), drawn.model->size()));
+    model.instances = drawn.instances;
+    if (request.models.size() > 1) {
+      const PlannedModel& before = request.models[request.models.size() - 2];
+      model.first_instance = before.first_instance + before.instances;
+    }
+    is_other |= std::exchange(drawn.uploads, drawn.model->uploads()) != drawn.model->uploads();
+  }
+  if (drawn_.empty()) request.models.push_back({.instances = 0});
+  model_buffers_ = std::move(held);
+  request.instances = places_;
+  const GpuModel& first = drawn_.empty() ? *model_ : *drawn_.front().model;
+  plan_ = make_plan(views, settings, first.model(), first.size(), workings, request);
+  if (is_other) history_.follow(plan_);
 }
 
 CallersTextures Frame::submitted_textures(bool with_canvases) const {
@@ -213,9 +261,9 @@ void Frame::wait_and_read(FrameReport& report) {
 void Frame::reserve() {
   if (!submitted_.workings.stand_in) share_lists(plan_, capacity_.slots, middle_depth(counters_));
   const TimedSpan span("upload", &cpu_.upload);
-  buffers_.reserve(plan_, *model_buffers_, capacity_);
+  buffers_.reserve(plan_, model_buffers_, capacity_);
   buffers_.upload(plan_, measuring_.uses_last);
-  model_buffers_->reserve(plan_);
+  for (const auto& model : model_buffers_) model->reserve(plan_);
   buffers_.counters.upload(std::vector{shared::Counters{}});
 }
 
@@ -228,7 +276,7 @@ void Frame::record() {
     dispatcher_.context().prepare([this] { record_stages(); });
   }
   if (workings.stand_in)
-    pictures_stood_in_ = workings.stand_in->fill(model_->model(), plan_, *model_buffers_, buffers_);
+    pictures_stood_in_ = workings.stand_in->fill(model_->model(), plan_, *model_buffers_.front(), buffers_);
   const TimedSpan span("submit", &cpu_.submit);
   dispatcher_.begin_frame();
   record_stages();
@@ -246,10 +294,10 @@ void Frame::record_stages() {
     dispatches();
   };
   if (plan_.offset_count > 0)
-    run(Stage::decode, [&] { decode(dispatcher_, plan_, *model_buffers_, buffers_); });
+    run(Stage::decode, [&] { decode(dispatcher_, plan_, *model_buffers_.front(), buffers_); });
   for (std::uint32_t group = 0; group < plan_.groups.size(); ++group) {
     run(Stage::project,
-        [&] { project(dispatcher_, plan_, group, measuring_.measures, *model_buffers_, buffers_); });
+        [&] { project(dispatcher_, plan_, group, measuring_.measures, model_buffers_, buffers_); });
   }
   run(Stage::bin, [&] { bin(dispatcher_, plan_, capacity_, buffers_); });
   run(Stage::sort, [&] { sort(dispatcher_, plan_, capacity_, buffers_); });

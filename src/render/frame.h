@@ -71,6 +71,11 @@ class Frame {
   Frame(gl::Context& context, const Model& model, int precision = PRECISION_FULL)
       : Frame(std::make_shared<GpuModel>(context, model, precision)) {}
 
+  /// The models that the next frames draw, and where; at first the one that the Frame was made with, once and
+  /// in its own world. Several share lists and are blended as one model. Throws Error for a scale or an
+  /// opacity that there is not, and for a Scaffold-GS model that is not alone in its own world.
+  void place(std::vector<Instance> instances);
+
   /// Draws all views at once, and waits for the GPU: submit() and finish(). Views that follow one another
   /// with equal depths (third row and anchor equal to the bit) are projected together; each eye of a rig has
   /// the same bits drawn together with the other or alone. A frame that overflows its buffers is drawn again
@@ -148,8 +153,8 @@ class Frame {
   const std::vector<shared::View>& views() const { return plan_.views; }
   const FramePlan& plan() const { return plan_; }
   FrameBuffers& buffers() { return buffers_; }
-  /// Once a frame is drawn.
-  ModelBuffers& model_buffers() { return *model_buffers_; }
+  /// Of the first model that is drawn, once a frame is.
+  ModelBuffers& model_buffers() { return *model_buffers_.front(); }
 
  private:
   /// What was submitted, for attempts that follow.
@@ -178,9 +183,19 @@ class Frame {
   FrameReport finish_attempt();
   void fill(FrameReport& report) const;
 
+  /// A model that is drawn.
+  struct Drawn {
+    std::shared_ptr<GpuModel> model;
+    int uploads = 0;  // GpuModel::uploads() at the last frame
+    std::uint32_t instances = 1;
+  };
+  bool is_plain() const { return places_.empty(); }
+
   std::shared_ptr<GpuModel> model_;
-  int uploads_ = 0;  // GpuModel::uploads() at the last frame
-  std::shared_ptr<ModelBuffers> model_buffers_;
+  std::vector<Drawn> drawn_;                                  // each model once
+  std::vector<InstancePlace> places_;                         // FramePlan::instances
+  bool is_placed_anew_ = false;                               // other models than the last frame's
+  std::vector<std::shared_ptr<ModelBuffers>> model_buffers_;  // of drawn_
   gl::Dispatcher dispatcher_;
   FrameBuffers buffers_;
   bool is_prepared_ = false;  // its programs were compiled, all at once

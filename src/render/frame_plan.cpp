@@ -24,17 +24,36 @@ bool same_order(const shared::View& a, const shared::View& b, int order) {
                                   : equal(a.row_z, b.row_z, sizeof(a.row_z)));
 }
 
+void check_table(const DepthTable& table) {
+  const auto is_share = [](float t) { return t >= 0.0f && t <= 1.0f; };
+  if (!(table.far > 0.0f) || !std::isfinite(table.far) || table.bounds.empty() ||
+      !std::all_of(table.bounds.begin(), table.bounds.end(), is_share))
+    fail("transmittance depth: its table needs a far end above 0 and values from 0 to 1");
+}
+
 // What settings need beside each other.
-void check_needs(const FrameSettings& s, std::size_t views) {
+void check_needs(const FrameSettings& s, std::size_t views, std::span<const InstancePlace> instances) {
   if (s.decode != DECODE_EYES && views % 2 != 0)
     fail("decode {}: only for both eyes together", decode_choices[s.decode].name);
-  const DepthTable& table = s.depth_table;
-  const auto is_share = [](float t) { return t >= 0.0f && t <= 1.0f; };
-  if (s.transmittance == TRANSMITTANCE_DEPTH &&
-      (!(table.far > 0.0f) || !std::isfinite(table.far) || table.bounds.empty() ||
-       !std::all_of(table.bounds.begin(), table.bounds.end(), is_share))) {
-    fail("transmittance depth: its table needs a far end above 0 and values from 0 to 1");
+  if (s.transmittance != TRANSMITTANCE_DEPTH) return;
+  if (instances.empty() || !s.depth_table.bounds.empty()) check_table(s.depth_table);
+  for (const InstancePlace& place : instances) {
+    if (!place.depth_table.bounds.empty()) check_table(place.depth_table);
   }
+}
+
+// The models' Gaussians, each as often as its instances draw it.
+void add_models(FramePlan& plan, std::vector<PlannedModel> models) {
+  std::uint64_t count = 0, room = 0;
+  for (const PlannedModel& model : models) {
+    count += model.size.gaussians * std::uint64_t{model.instances};
+    room += model.size.room * std::uint64_t{model.instances};
+  }
+  if (room > std::uint64_t{1} << 31)
+    fail("{} Gaussians in all instances of the models: at most 2^31 fit a frame", room);
+  plan.models = std::move(models);
+  plan.gaussian_count = static_cast<std::uint32_t>(count);
+  plan.gaussian_room = static_cast<std::uint32_t>(room);
 }
 
 bool draws_some(const FrameSettings& settings) {
@@ -54,6 +73,9 @@ void add_view(FramePlan& plan, shared::View view, const ViewRegion& region,
   take_window(region, view);
   view.tolerance_share = region.tolerance_share;
   view.low_pass_share = region.low_pass_share;
+  view.eye.w = view.opacity = 1.0f;
+  view.table_far = plan.settings.depth_table.far;
+  view.table_bins = static_cast<std::uint32_t>(plan.settings.depth_table.bounds.size());
   const auto tiles_in = [&](std::uint32_t pixels, std::uint32_t first) {
     const std::uint32_t all = (pixels + tile - 1) / tile;
     return all <= first ? 0 : (all - first + tiles.step - 1) / tiles.step;
@@ -141,24 +163,26 @@ Perspective perspective_of(const FrameSettings& settings, const Model& model) {
           settings.projection.value_or(model.perspective.projection)};
 }
 
+PlannedModel planned(const Model& model, const ModelSize& size) {
+  return {
+      .degree = model.degree, .kernel_px2 = model.kernel_px2, .antialiased = model.antialiased, .size = size};
+}
+
 FramePlan make_plan(std::span<const shared::View> views, const FrameSettings& settings, const Model& model,
                     const ModelSize& size, const Workings& workings, const PlanRequest& request) {
   if (views.empty() || views.size() > MAX_VIEWS)
     fail("a frame has 1 to {} views, not {}", MAX_VIEWS, views.size());
   check(settings);
-  check_needs(settings, views.size());
+  check_needs(settings, views.size(), request.instances);
   check_regions(settings, views.size(), model.scaffold != nullptr);
   FramePlan plan;
   plan.settings = settings;
   plan.tolerance = request.tolerance.value_or(settings.tolerance);
   plan.between_pixels = workings.between_pixels;
   plan.visibility_as_depth = workings.visibility_as_depth;
-  plan.degree = model.degree;
-  plan.kernel_px2 = model.kernel_px2;
-  plan.antialiased = model.antialiased;
   plan.perspective = perspective_of(settings, model);
-  plan.gaussian_count = static_cast<std::uint32_t>(size.gaussians);
-  plan.gaussian_room = static_cast<std::uint32_t>(size.room);
+  plan.instances = request.instances;
+  add_models(plan, request.models.empty() ? std::vector{planned(model, size)} : request.models);
   if (model.scaffold) {
     plan.offset_count = static_cast<std::uint32_t>(model.scaffold->offset_count);
     plan.views_per_decoding = settings.decode == DECODE_CYCLOPEAN ? 2 : 1;

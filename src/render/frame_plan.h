@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "render/instance.h"
 #include "render/mesh_depth.h"
 #include "render/settings.h"
 #include "render/workings.h"
@@ -43,6 +44,22 @@ struct Meshes {
   std::vector<glm::uvec2> whole_sizes;  // px, by view: of the picture that a window is a part of
 };
 
+/// Gaussians of a model, and how many it has room for.
+struct ModelSize {
+  std::size_t gaussians = 0, room = 0;
+};
+inline ModelSize size_of(const Model& model) { return {model.count(), std::max(model.count(), model.room)}; }
+
+/// One of a frame's models. It is drawn by `instances` of the frame's, from `first_instance` on.
+struct PlannedModel {
+  int degree = 0;  // of its SH
+  double kernel_px2 = KERNEL_PX2;
+  bool antialiased = false;
+  ModelSize size;  // of one instance
+  std::uint32_t first_instance = 0, instances = 1;
+};
+PlannedModel planned(const Model& model, const ModelSize& size);
+
 /// What a frame derives from its settings, its views and its model before anything is drawn. It is made once,
 /// by make_plan(); what frames remember of one another is history.h's.
 struct FramePlan {
@@ -50,13 +67,12 @@ struct FramePlan {
   float tolerance = 0.0f;            // K or kappa: the settings', or one that was found for a quality
   bool between_pixels = false;       // likewise
   bool visibility_as_depth = false;  // likewise
-  int degree = 0;                    // the degree of the model's SH
-  double kernel_px2 = KERNEL_PX2;    // the model's
-  bool antialiased = false;
   Perspective perspective;
-  std::uint32_t gaussian_count = 0;
-  std::uint32_t gaussian_room = 0;  // as many, or more where the model grows
-  std::vector<shared::View> views;  // those asked for, then the probe's
+  std::vector<PlannedModel> models;
+  std::vector<InstancePlace> instances;  // by model; empty: one model, once, in its own world
+  std::uint32_t gaussian_count = 0;      // of all instances
+  std::uint32_t gaussian_room = 0;       // as many, or more where a model grows
+  std::vector<shared::View> views;       // those asked for, then the probe's
   std::uint32_t asked = 0;
   std::optional<Probe> probe;
   std::vector<OrderGroup> groups;
@@ -97,14 +113,10 @@ struct FramePlan {
 /// What the settings ask for, and otherwise what the model was trained with.
 Perspective perspective_of(const FrameSettings& settings, const Model& model);
 
-/// Gaussians of a model, and how many it has room for.
-struct ModelSize {
-  std::size_t gaussians = 0, room = 0;
-};
-inline ModelSize size_of(const Model& model) { return {model.count(), std::max(model.count(), model.room)}; }
-
 /// What is asked of a plan besides settings.
 struct PlanRequest {
+  std::vector<PlannedModel> models;      // empty: the model that make_plan() is given
+  std::vector<InstancePlace> instances;  // as FramePlan's
   std::optional<Probe> probe;
   std::optional<float> tolerance;  // in the place of the settings'
   CallersTextures textures;

@@ -41,7 +41,7 @@ std::vector<Image> Frame::read_debug_view(int what) {
 }
 
 std::vector<MeasuredGaussian> Frame::read_measured(std::uint32_t v) const {
-  if (!measuring_.measures || uploads_ != model_->uploads()) return {};
+  if (!measuring_.measures || !is_plain() || drawn_.front().uploads != model_->uploads()) return {};
   const shared::View& view = plan_.views.at(v);
   const std::vector<DrawnGaussian> drawn = buffers_.read_drawn(plan_, v);
   const auto largest =

@@ -21,13 +21,21 @@ double turned_degrees(const shared::View& a, const shared::View& b) {
   };
   // The trace of the rotation from one to the other is 1 + 2 cos(angle).
   const double trace = dot(a.row_x, b.row_x) + dot(a.row_y, b.row_y) + dot(a.row_z, b.row_z);
-  return glm::degrees(std::acos(std::clamp((trace - 1.0) / 2.0, -1.0, 1.0)));
+  const double unit = double{a.eye.w} * b.eye.w;
+  return glm::degrees(std::acos(std::clamp((trace / unit - 1.0) / 2.0, -1.0, 1.0)));
 }
 
 double moved(const shared::View& a, const shared::View& b) {
   const glm::dvec3 eye_a = glm::dvec3(a.anchor) + glm::dvec3(a.eye);
   const glm::dvec3 eye_b = glm::dvec3(b.anchor) + glm::dvec3(b.eye);
-  return glm::length(eye_a - eye_b);
+  return b.eye.w * glm::length(eye_a - eye_b);
+}
+
+// Whether the second view sees its model as the first does, within `share` of a camera cut.
+bool is_near(const shared::View& a, const shared::View& b, double middle_depth, double share) {
+  return turned_degrees(a, b) <= share * turn_max_degrees &&
+         moved(a, b) <= share * move_max_of_depth * middle_depth &&
+         std::abs(b.eye.w / a.eye.w - 1.0) <= share * move_max_of_depth;
 }
 
 // The rows of tiles of the views that were asked for: where nothing was drawn, nothing was measured.
@@ -48,22 +56,28 @@ double middle_depth(const shared::Counters& counters) {
 
 bool continues(const FramePlan& before, const FramePlan& now, double middle_depth, double share) {
   if (!std::ranges::equal(rows_asked(before), rows_asked(now))) return false;
-  if (before.asked != now.asked || before.gaussian_count != now.gaussian_count) return false;
+  if (before.asked != now.asked || before.gaussian_count != now.gaussian_count ||
+      before.instances.size() != now.instances.size())
+    return false;
   for (std::size_t v = 0; v < now.asked; ++v) {
     const shared::View& a = before.views[v];
     const shared::View& b = now.views[v];
     if (a.width != b.width || a.height != b.height || a.lens != b.lens || a.left != b.left || a.top != b.top)
       return false;
-    if (turned_degrees(a, b) > share * turn_max_degrees ||
-        moved(a, b) > share * move_max_of_depth * middle_depth)
-      return false;
+    if (!is_near(a, b, middle_depth, share)) return false;
+    for (std::size_t k = 0; k < now.instances.size(); ++k) {
+      if (!is_near(view_of_instance(a, before.instances[k]), view_of_instance(b, now.instances[k]),
+                   middle_depth, share))
+        return false;
+    }
   }
   return true;
 }
 
-void FrameHistory::follow_levels(std::uint32_t gaussians) {
+void FrameHistory::follow(const FramePlan& now) {
   forget_measured();
-  last_.gaussian_count = gaussians;
+  last_.gaussian_count = now.gaussian_count;
+  last_.instances = now.instances;
 }
 
 bool FrameHistory::probed_lately(const FramePlan& now) {

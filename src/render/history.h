@@ -9,8 +9,8 @@ namespace binosplat::render {
 
 /// True if the views are the same ones a moment later: as many, of the same pictures and lenses, the same
 /// regions of them drawn, each turned by no more than 15 degrees and moved by no more than a tenth of
-/// `middle_depth` (of the Gaussians drawn before, world units). Anything else is a camera cut. `share` scales
-/// these two limits.
+/// `middle_depth` (of the Gaussians drawn before, world units), in the world and as each instance sees them.
+/// Anything else is a camera cut. `share` scales these two limits.
 bool continues(const FramePlan& before, const FramePlan& now, double middle_depth, double share = 1.0);
 
 /// The depth of what a frame drew in the middle of a logarithmic scale, world units; 0 if it drew nothing.
@@ -28,8 +28,8 @@ class FrameHistory {
   void forget() { last_ = measured_ = {}; }
   /// The next frame uses no measured transmittance.
   void forget_measured() { measured_ = {}; }
-  /// The model has `gaussians` Gaussians now, at other levels of detail of the same scene.
-  void follow_levels(std::uint32_t gaussians);
+  /// What `now` draws are other Gaussians of the same scene: other levels of detail, or other instances.
+  void follow(const FramePlan& now);
 
   /// Whether `now` follows the last frame without a camera cut.
   bool goes_on(const FramePlan& now) const { return continues(last_, now, middle_depth_); }

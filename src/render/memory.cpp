@@ -38,8 +38,11 @@ MemoryNeeds memory_needs(const FramePlan& plan) {
   MemoryNeeds needs;
   const std::uint32_t decodings = plan.offset_count == 0 ? 1 : plan.decoding_count();
   const int precision = plan.settings.precision;
-  needs.model = plan.anchor_bytes + std::int64_t{decodings} * plan.gaussian_room *
-                                        (gaussian_bytes(precision) + harmonic_bytes(plan.degree, precision));
+  needs.model = plan.anchor_bytes;
+  for (const PlannedModel& model : plan.models) {
+    needs.model += decodings * static_cast<std::int64_t>(model.size.room) *
+                   (gaussian_bytes(precision) + harmonic_bytes(model.degree, precision));
+  }
   const bool measured = measures(plan.settings.transmittance);
   const std::int64_t bytes_a_splat = splat_bytes(precision) + (measured ? 12 : 8);
   const std::int64_t bytes_a_gaussian = 4 + (measured ? plan.asked * 8 : 0);

@@ -1,4 +1,5 @@
 #include <cstddef>
+#include <vector>
 
 #include "render/stages.h"
 #include "render/variants.h"
@@ -7,9 +8,25 @@ namespace binosplat::render {
 
 namespace {
 
-// No shader reads it of models that are not decoded.
-const gl::Buffer& kept_of(const ModelBuffers& model, std::size_t page, const FrameBuffers& buffers) {
-  return model.pages[page].anchors ? *buffers.kept[page] : *model.pages[page].gaussians;
+// A page of a model, which a dispatch draws for all instances of the model.
+struct DrawnPage {
+  const PlannedModel& model;
+  const ModelBuffers::Page& page;
+  std::uint32_t first;     // of the frame's Gaussians
+  const gl::Buffer& kept;  // anything for models that are not decoded: no shader reads it
+};
+
+std::vector<DrawnPage> pages_of(const FramePlan& plan, DrawnModels models, const FrameBuffers& buffers) {
+  std::vector<DrawnPage> pages;
+  std::uint32_t first = 0;
+  for (std::size_t m = 0; m < models.size(); ++m) {
+    for (std::size_t p = 0; p < models[m]->pages.size(); ++p) {
+      const ModelBuffers::Page& page = models[m]->pages[p];
+      pages.push_back({plan.models[m], page, first, page.anchors ? *buffers.kept[p] : *page.gaussians});
+      first += plan.models[m].instances * page.count;
+    }
+  }
+  return pages;
 }
 
 constexpr std::uint32_t fills_a_gpu = 1u << 20;  // Gaussians: some times what an H200 has in work
@@ -17,30 +34,33 @@ constexpr std::uint32_t fills_a_gpu = 1u << 20;  // Gaussians: some times what a
 // Depths of what the group draws; nothing is kept of the splats yet, so that what is out of view costs no
 // memory.
 void cull(gl::Dispatcher& dispatcher, const FramePlan& plan, OrderGroup views, PairVariant variant,
-          const ModelBuffers& model, FrameBuffers& buffers) {
+          std::span<const DrawnPage> pages, FrameBuffers& buffers) {
   // A probe is asked with its view, unless it is alone in its group.
   const std::uint32_t end = views.begin < plan.asked ? std::min(views.end, plan.asked) : views.end;
   // An invocation for each eye takes the time of one where a model does not fill the GPU. Elsewhere one
   // invocation asks both where one eye's answer makes the other's unnecessary.
   const bool asks_both = !variant.measures && plan.gaussian_count >= fills_a_gpu;
   variant.eyes = end - views.begin > 1 && !asks_both ? 2 : 1;
-  const gl::Program& program = dispatcher.context().program("project_cull.comp", variant);
-  for (std::size_t p = 0; p < model.pages.size(); ++p) {
-    const ModelBuffers::Page& page = model.pages[p];
-    dispatcher.run(program, gl::DispatchSize::threads(page.count, THREADS),
-                   {{"Frame", buffers.parameters},
-                    {"Views", buffers.views},
-                    {"RegionRows", buffers.region_rows},
-                    {"Gaussians", *page.gaussians},
-                    {"Kept", kept_of(model, p, buffers)},
-                    {"DepthKeys", buffers.culled.depth_keys},
-                    {"Bounds", *buffers.transmittance.bounds},
-                    {"DepthTable", buffers.transmittance.depth_table},
-                    {"NextBounds", *buffers.transmittance.next_bounds}},
-                   {{"page_first", page.first},
-                    {"page_count", page.count},
-                    {"view_begin", views.begin},
-                    {"view_end", end}});
+  for (const DrawnPage& drawn : pages) {
+    variant.take(drawn.model);
+    dispatcher.run(
+        dispatcher.context().program("project_cull.comp", variant),
+        gl::DispatchSize::threads(std::uint64_t{drawn.model.instances} * drawn.page.count, THREADS),
+        {{"Frame", buffers.parameters},
+         {"Views", buffers.views_of_instances(plan)},
+         {"RegionRows", buffers.region_rows},
+         {"Gaussians", *drawn.page.gaussians},
+         {"Kept", drawn.kept},
+         {"DepthKeys", buffers.culled.depth_keys},
+         {"Bounds", *buffers.transmittance.bounds},
+         {"DepthTables", buffers.transmittance.depth_tables},
+         {"NextBounds", *buffers.transmittance.next_bounds}},
+        {{"page_first", drawn.first},
+         {"page_count", drawn.page.count},
+         {"instance_first", drawn.model.first_instance},
+         {"instance_count", drawn.model.instances},
+         {"view_begin", views.begin},
+         {"view_end", end}});
   }
 }
 
@@ -73,26 +93,27 @@ void compact(gl::Dispatcher& dispatcher, const FramePlan& plan, std::uint32_t gr
 }  // namespace
 
 void project(gl::Dispatcher& dispatcher, const FramePlan& plan, std::uint32_t group, bool measures,
-             const ModelBuffers& model, FrameBuffers& buffers) {
+             DrawnModels models, FrameBuffers& buffers) {
   const OrderGroup views = plan.groups[group];
+  const std::vector<DrawnPage> pages = pages_of(plan, models, buffers);
   PairVariant variant(plan);
   variant.measures = measures;
-  cull(dispatcher, plan, views, variant, model, buffers);
+  cull(dispatcher, plan, views, variant, pages, buffers);
   const DrawnBuffers& drawn = *buffers.drawn[group];
   compact(dispatcher, plan, group, drawn, buffers);
   variant.subgroups = dispatcher.context().limits().subgroups_of_32;
   variant.list_views = plan.list_views;
-  variant.sh_degree = plan.degree;
-  const gl::Program& program = dispatcher.context().program("project.comp", variant);
-  for (std::size_t p = 0; p < model.pages.size(); ++p) {
-    const ModelBuffers::Page& page = model.pages[p];
+  for (const auto& [model, page, first, kept] : pages) {
+    variant.take(model);
+    variant.sh_degree = model.degree;
     dispatcher.start(
-        program, gl::DispatchSize::indirect(drawn.arguments, offsetof(shared::DispatchArguments, threads_x)),
+        dispatcher.context().program("project.comp", variant),
+        gl::DispatchSize::indirect(drawn.arguments, offsetof(shared::DispatchArguments, threads_x)),
         {{"Frame", buffers.parameters},
-         {"Views", buffers.views},
+         {"Views", buffers.views_of_instances(plan)},
          {"RegionRows", buffers.region_rows},
          {"Gaussians", *page.gaussians},
-         {"Kept", kept_of(model, p, buffers)},
+         {"Kept", kept},
          {"Harmonics", *page.harmonics},
          {"Arguments", drawn.arguments},
          {"Indices", drawn.indices},
@@ -101,10 +122,12 @@ void project(gl::Dispatcher& dispatcher, const FramePlan& plan, std::uint32_t gr
          {"FrameCounters", buffers.counters},
          {"Large", buffers.projected.large},
          {"Bounds", *buffers.transmittance.bounds},
-         {"DepthTable", buffers.transmittance.depth_table},
+         {"DepthTables", buffers.transmittance.depth_tables},
          {"Measured", buffers.transmittance.measured}},
-        {{"page_first", page.first},
+        {{"page_first", first},
          {"page_count", page.count},
+         {"instance_first", model.first_instance},
+         {"instance_count", model.instances},
          {"view_begin", views.begin},
          {"view_end", views.end}});
   }

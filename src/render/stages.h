@@ -10,10 +10,13 @@ namespace binosplat::render {
 void decode(gl::Dispatcher& dispatcher, const FramePlan& plan, const ModelBuffers& model,
             const FrameBuffers& buffers);
 
+/// The buffers of the plan's models.
+using DrawnModels = std::span<const std::shared_ptr<ModelBuffers>>;
+
 /// Finds the Gaussians that an order group draws, in index order, and makes them as each of its views sees
 /// them: splats and tile coverage by slot, depths.
 void project(gl::Dispatcher& dispatcher, const FramePlan& plan, std::uint32_t group, bool measures,
-             const ModelBuffers& model, FrameBuffers& buffers);
+             DrawnModels models, FrameBuffers& buffers);
 
 /// Puts (depth, splat) into the list of every supertile that a splat of any view touches, in any order.
 void bin(gl::Dispatcher& dispatcher, const FramePlan& plan, const Capacity& capacity, FrameBuffers& buffers);

@@ -48,13 +48,18 @@ PairVariant::PairVariant(const FramePlan& plan)
       tile_size(plan.settings.tile_size),
       probed(plan.probe.has_value()),
       regions(plan.draws_regions()),
-      antialiased(plan.antialiased),
       half(plan.settings.precision == PRECISION_HALF),
       offset_count(plan.offset_count),
       order(plan.perspective.order),
       projection(plan.perspective.projection),
-      between_pixels(plan.between_pixels),
-      kernel_px2(plan.kernel_px2 == KERNEL_PX2 ? 0.0f : static_cast<float>(plan.kernel_px2)) {}
+      between_pixels(plan.between_pixels) {
+  take(plan.models.front());
+}
+
+void PairVariant::take(const PlannedModel& model) {
+  antialiased = model.antialiased;
+  kernel_px2 = model.kernel_px2 == KERNEL_PX2 ? 0.0f : static_cast<float>(model.kernel_px2);
+}
 
 std::array<gl::Number, 18> PairVariant::numbers() const {
   return {number("TILES", tiles, std::size(tiles_choices), tiles_choices[tiles].name),

@@ -22,14 +22,16 @@ gl::Number subgroups_number(const gl::Context& context);
 /// The variant of the programs that decide which pairs there are: project_cull.comp, project.comp,
 /// bin_large.comp.
 struct PairVariant {
+  /// Of the plan's first model.
   explicit PairVariant(const FramePlan& plan);
+  void take(const PlannedModel& model);
 
   int tiles, th, transmittance, tile_size;
-  bool probed, regions, antialiased, half;
+  bool probed, regions, antialiased = false, half;
   std::uint32_t offset_count;
   int order, projection;
   bool between_pixels;
-  float kernel_px2;  // 0: that of shared/limits.h
+  float kernel_px2 = 0.0f;  // 0: that of shared/limits.h
   // Set for some of these programs only:
   bool measures = false;  // for later frames
   int eyes = 1;           // invocations along y of project_cull.comp
