@@ -7,21 +7,21 @@ namespace binosplat::render {
 
 namespace {
 
-// No shader reads it of models that are not decoded.
+// Only shaders that decode read `kept`; other models bind any buffer.
 const gl::Buffer& kept_of(const ModelBuffers& model, std::size_t page, const FrameBuffers& buffers) {
   return model.pages[page].anchors ? *buffers.kept[page] : *model.pages[page].gaussians;
 }
 
-constexpr std::uint32_t fills_a_gpu = 1u << 20;  // Gaussians: some times what an H200 has in work
+constexpr std::uint32_t fills_a_gpu = 1u << 20;  // Gaussians: several times an H200's invocations in flight
 
-// Depths of what the group draws; nothing is kept of the splats yet, so that what is out of view costs no
-// memory.
+// Computes the depths of the Gaussians that the group draws. It stores no splats yet, so Gaussians out of
+// view cost no memory.
 void cull(gl::Dispatcher& dispatcher, const FramePlan& plan, OrderGroup views, PairVariant variant,
           const ModelBuffers& model, FrameBuffers& buffers) {
-  // A probe is asked with its view, unless it is alone in its group.
+  // A probe has the Gaussians of its view, unless it is alone in its group.
   const std::uint32_t end = views.begin < plan.asked ? std::min(views.end, plan.asked) : views.end;
-  // An invocation for each eye takes the time of one where a model does not fill the GPU. Elsewhere one
-  // invocation asks both where one eye's answer makes the other's unnecessary.
+  // If a model does not fill the GPU, an invocation per eye takes no longer. In larger models one invocation
+  // tests both eyes, and one eye may decide for both.
   const bool asks_both = !variant.measures && plan.gaussian_count >= fills_a_gpu;
   variant.eyes = end - views.begin > 1 && !asks_both ? 2 : 1;
   const gl::Program& program = dispatcher.context().program("project_cull.comp", variant);

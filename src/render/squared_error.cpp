@@ -11,7 +11,8 @@ namespace binosplat::render {
 
 namespace {
 
-constexpr std::uint32_t groups_most = 2048;  // of more pixels each sums up several: their sums are read back
+constexpr std::uint32_t groups_most = 2048;  // the CPU reads back a sum of each, so large pictures share
+                                             // groups
 
 }  // namespace
 
