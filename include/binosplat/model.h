@@ -29,8 +29,7 @@ struct Gaussians {
   std::span<const float> opacities = {};   // from 0 to 1: the sigmoid of the trainers' values
   /// RGB coefficients of the spherical harmonics, the constant one first: 1, 4, 9 or 16 per Gaussian.
   std::span<const glm::vec3> sh = {};
-  std::string axes = "RDF";  // directions of x, y and z: right, down, forward, as in COLMAP; OpenGL's are
-                             // "RUB"
+  std::string axes = "RDF";  // directions of x, y and z: right, down, forward (COLMAP); OpenGL's are "RUB"
   bool antialiased = false;  // trained with Mip-Splatting's compensation
 };
 

@@ -14,8 +14,7 @@ namespace binosplat {
 enum class Threshold {
   exact,       // if its alpha is below 1/255 in the whole tile, as 3D Gaussian Splatting blends
   squared,     // if the squared error stays below the tolerance, in px * squared colour
-  peripheral,  // if its loss outside the tiles it keeps stays below the tolerance, in alpha * px^2
-               // (AdaGScale)
+  peripheral,  // if its loss elsewhere stays below the tolerance, in alpha * px^2 (AdaGScale)
 };
 
 /// The source of the upper bound of transmittance, which a Threshold assumes for a Gaussian.
@@ -36,8 +35,7 @@ struct DepthTable {
 
 /// The key by which Gaussians are sorted, front to back.
 enum class Order {
-  depth,     // along the view's axis, as in the training of 3D Gaussian Splatting; changes when the head
-             // turns
+  depth,     // along the view's axis, as in the training of 3D Gaussian Splatting; turns with the head
   distance,  // from the point between the eyes
 };
 

@@ -31,8 +31,7 @@ class Targets {
 
   gl::Context& context_;
   GLint largest_ = 0;              // px, a side of a texture
-  std::uint32_t framebuffer_ = 0;  // created at first use; tests textures of formats that are not in
-                                   // `drawable_`
+  std::uint32_t framebuffer_ = 0;  // created at first use; tests textures of other formats than `drawable_`
   std::set<GLint> drawable_ = {};  // formats that passed the test
 };
 
