@@ -95,8 +95,8 @@ class Renderer {
   /// Draws up to 8 views of one head in one frame, each into its target. A layout other than `separate` takes
   /// two views of one size, the left eye's first, and draws both into the first view's target. submit()
   /// passes the frame to the driver and returns while the GPU draws. Until finish() returns, do not read,
-  /// write or delete the targets, and submit no other frame of this renderer. It never waits for the GPU, but
-  /// compiles shaders in the first frame of a combination of settings.
+  /// write or delete the targets, and submit no other frame of this renderer. submit() never waits for the
+  /// GPU, but it compiles shaders in the first frame of a combination of settings.
   ///
   /// Neighbouring views of equal direction and depth are projected together, which saves time: put an eye's
   /// views side by side. A view of the same orientation may lie before or behind the first one by less than a

@@ -94,7 +94,7 @@ struct Settings {
   DepthTable depth_table = {};  // with Transmittance::by_depth
 
   std::optional<Order> order = {};            // none: as the model was trained
-  std::optional<Projection> projection = {};  // likewise
+  std::optional<Projection> projection = {};  // none: as the model was trained
   DepthKind depth = DepthKind::mean;          // the depth written into depth targets
   Layout layout = Layout::separate;
   /// Foveates both eyes' pictures. A tolerance or a quality then applies to the contexts. Excludes depth

@@ -44,8 +44,8 @@ struct View {
   uint shift_x;           // px, the begin of its first tile
   uint shift_y;
   uint is_probe;          // 1: only tiles that lie apart, drawn exactly
-  uint left;              // px: the begin of a window in the whole picture; `width`
-  uint top;               // and `height` are the window's own
+  uint left;              // px: a window's begin in the whole picture, else 0
+  uint top;               // (`width` and `height` are the window's own)
   uint first_row;         // index of its first row of tiles in region_rows (tiles/regions.glsl)
   float tolerance_share;  // its tolerance over the frame's
   float low_pass_share;   // share of the low-pass that costs Gaussians no weight (projection.glsl)

@@ -81,7 +81,7 @@ struct Renderer::Impl {
     bool has_meshes() const { return !mesh_depths.list.empty(); }
   };
 
-  std::shared_ptr<const Model> model;  // one of this and `stream` is null
+  std::shared_ptr<const Model> model;  // null with a stream
   std::shared_ptr<SplatStream::Impl> stream;
   int precision;  // PRECISION_
   std::unique_ptr<gl::Context> context;

@@ -18,8 +18,8 @@ class Targets {
   Targets(const Targets&) = delete;
   Targets& operator=(const Targets&) = delete;
 
-  /// Throws Error(bad_input) for a picture or a depth that does not fit its target. Restores the context's
-  /// state, and takes a few queries per target.
+  /// Throws Error(bad_input) for a picture or a depth that does not fit its target. Changes no state of the
+  /// context, and takes a few queries per target.
   void check(std::span<const View> views, const Settings& settings);
 
  private:

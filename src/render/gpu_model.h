@@ -54,7 +54,7 @@ struct ModelBuffers {
 
   std::uint32_t page_gaussians_;
   std::size_t page_step_ = 0;            // Gaussians
-  Scatter to_gaussians_, to_harmonics_;  // each waits until the GPU has read its last upload
+  Scatter to_gaussians_, to_harmonics_;  // two: each waits until the GPU has read its last upload
 };
 
 class GpuModel {

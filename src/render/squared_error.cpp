@@ -11,8 +11,7 @@ namespace binosplat::render {
 
 namespace {
 
-constexpr std::uint32_t groups_most = 2048;  // the CPU reads back a sum of each, so large pictures share
-                                             // groups
+constexpr std::uint32_t groups_most = 2048;  // the CPU reads back one sum a group
 
 }  // namespace
 
