@@ -51,10 +51,10 @@ class SplatStream {
 
   /// Updates the levels. Call it before each frame, with that frame's views. Within about `ms`, including the
   /// GPU's time, it uploads what the thread has read, or draws one view of a visibility pass. The thread uses
-  /// these passes to choose what it reads next. While views move, half of the passes show views predicted for
-  /// half a second ahead. Once they rest and the model has all they need, one call takes longer: it measures
-  /// the true loss of the levels. At 90 frames a second allow at least 2.5 ms, and 6 if there is time.
-  /// Returns whether the model has changed.
+  /// these passes to choose what it reads next. While views move, a pass draws the second half of them as
+  /// predicted for half a second ahead. Once they rest and the model has all they need, one call takes
+  /// longer: it measures the true loss of the levels. At 90 frames a second allow at least 2.5 ms, and 6 if
+  /// there is time. Returns whether the model has changed.
   ///
   /// Throws Error. bad_input: as Renderer::submit() does; between submit() and finish(); before a renderer
   /// exists; if a file has become unreadable. out_of_memory.
