@@ -40,7 +40,7 @@ std::vector<glm::dvec2> field_of(const Camera& camera, const glm::ivec2& rays) {
     for (int column = 0; column < rays.x; ++column) {
       const glm::dvec2 slope =
           reach * glm::dvec2((2.0 * column + 1.0) / rays.x - 1.0, (2.0 * row + 1.0) / rays.y - 1.0);
-      // At a pixel's middle, as in a picture.
+      // At a pixel's centre, as in a picture.
       points.push_back(
           glm::floor(glm::dvec2(camera.fx, camera.fy) * slope + glm::dvec2(camera.cx, camera.cy)));
     }

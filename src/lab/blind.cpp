@@ -27,7 +27,7 @@ Camera small(const Camera& camera) {
 // Whether the middle of a visible Gaussian lies well within the picture. Its pixel then shows it, whatever
 // its shape. Most views pass this test without drawing. `camera` is in the model's axes.
 bool has_middle(const Model& model, const Camera& camera, double near_plane) {
-  // The nearest pixel's middle is at most half a pixel away along each axis, and the low-pass is at least as
+  // The nearest pixel's centre is at most half a pixel away along each axis, and the low-pass is at least as
   // wide.
   const double not_faint = 2.0 / 255.0 * std::exp(0.25 / model.kernel_px2);
   if (model.antialiased || model.scaffold) return false;

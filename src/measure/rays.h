@@ -13,7 +13,7 @@ namespace binosplat::measure {
 /// The camera turned in place by `radians` about `axis`, a unit vector in its own frame.
 Camera turned(const Camera& camera, const glm::dvec3& axis, double radians);
 
-/// The unit vector, in the world, from the camera through a point of its picture. (0, 0) is the middle of the
+/// The unit vector, in the world, from the camera through a point of its picture. (0, 0) is the centre of the
 /// first pixel.
 glm::dvec3 ray_through(const Camera& camera, const glm::dvec2& pixel);
 
