@@ -39,8 +39,9 @@ void claim_folder(const std::filesystem::path& folder, const std::string& scene)
 /// The outputs that the options request. Throws Error early for outputs that cannot be written.
 Outputs outputs_of(const RenderOptions& render);
 
-/// Names the files of each shot. Throws Error if the layout does not fit the eyes, if several shots share one
-/// picture, if a video's frames differ in size, or if a file would replace an input or the file of --json.
+/// Names the files of each shot. Throws Error if the layout does not fit the eyes, or if several shots share
+/// one picture. Also for a video with frames of different sizes, and for a file that would replace an input
+/// or the file of --json.
 void place_files(const Outputs& outputs, const std::string& json, std::vector<Shot>& shots);
 
 /// Opens the requested video of the shots, which takes frames from encoded(); null if none is requested.

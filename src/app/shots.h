@@ -64,9 +64,9 @@ struct CameraList {
 };
 
 /// The cameras of --cameras, of a file beside the model or of the built-in scene. Does not read the model.
-/// Empty if there are none, if options place their own, or if the ones beside the model cannot be used and no
-/// option requests them (Known::unusable). `saved` comes from find_saved(). `Known` stores the units and eye
-/// distance of the rig, or else the scene's.
+/// Empty if there are none, or if options place their own. Also empty if the ones beside the model cannot be
+/// used (Known::unusable) and no option requests them. `saved` comes from find_saved(). `Known` stores the
+/// units and eye distance of the rig, or else the scene's.
 CameraList listed_cameras(const SceneOptions& scene, const CameraOptions& camera, const RigOptions& rig = {},
                           const std::optional<SavedPose>& saved = {});
 

@@ -13,9 +13,9 @@ double quantile(std::vector<double> values, double share);
 /// empty.
 double mean(const std::vector<double>& values);
 
-/// Student's t, two-sided: the mean of n normal samples lies within t * (standard deviation / sqrt(n)) of the
-/// true mean, except for a share `outside` of all cases. `freedom` (at least 1) is that of the standard
-/// deviation.
+/// Student's t, two-sided, for means of n normal samples. They lie within t * (standard deviation / sqrt(n))
+/// of the true mean, except for a share `outside` of all cases. `freedom` (at least 1) is that of the
+/// standard deviation.
 double student_t(double outside, int freedom);
 
 /// The standard deviation of a population, estimated from a sample of two or more.

@@ -71,7 +71,7 @@ struct BenchEffort {
   std::optional<Peaks> peaks = {};               // of the GPU; adds floors to whole pictures
   bool perception = true;  // SSIM, FLIP and blended pixels; else only PSNR, which is fast
   bool seen = false;       // visibility of errors for a gaze along each axis
-  bool popping = false;    // in the first frames of the first stretch
+  bool popping = false;    // measures popping in the first stretch
 };
 
 /// `count` indices spread evenly over `all`, both ends included; all if there are no more.

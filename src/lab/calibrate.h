@@ -1,7 +1,7 @@
 #pragma once
-// Finds the transmittance bound by depth (AdaGScale, sections 3.2 and 3.4), and for each rule and source the
-// tolerance that reaches a target in some views of a model. Pictures stay on the GPU; only sums are read
-// back.
+// Finds the transmittance bound by depth (AdaGScale, sections 3.2 and 3.4). Also finds, for each rule and
+// source, the tolerance that reaches a target in some views of a model. Pictures stay on the GPU; only sums
+// are read back.
 
 #include <functional>
 #include <memory>

@@ -1,7 +1,7 @@
 #pragma once
-// Contributions of single Gaussians to a view by distance from their middles, transmittance in front of them
-// by depth, and the loss without the lowest contributions (AdaGScale, figures 4 to 6). In float64 on the CPU,
-// so independent of the frame's settings.
+// Measures single Gaussians as AdaGScale's figures 4 to 6 do: contributions to a view by distance from their
+// middles, transmittance in front of them by depth, and the loss without the lowest contributions. In float64
+// on the CPU, so independent of the frame's settings.
 
 #include <span>
 #include <vector>

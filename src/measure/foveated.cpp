@@ -96,8 +96,8 @@ float expanded(const Image& small, int x, int y) {
   return sum;
 }
 
-// The share of a grating (a quarter of a cycle per pixel of this level) that passes the finer levels and lies
-// in this level's band. The kernel passes cos^4 of half the phase between pixels.
+// A grating has a quarter of a cycle per pixel of this level. Returns its share that passes the finer levels
+// and lies in this level's band. The kernel passes cos^4 of half the phase between pixels.
 double passed(int level) {
   double share = 1.0 - std::pow(std::cos(glm::radians(45.0)), 8.0);
   for (int k = 1; k <= level; ++k) share *= std::pow(std::cos(glm::radians(45.0) / std::exp2(k)), 4.0);

@@ -14,7 +14,7 @@ namespace binosplat::preview {
 struct Choices {
   int layout = LAYOUT_PARALLEL;  // LAYOUT_SEPARATE shows only the left eye
   int show = SHOW_PICTURE;
-  double split = 0.5;  // with SHOW_SPLIT: share of the width that is not exact
+  double split = 0.5;  // with SHOW_SPLIT: share of the width that shows `settings`
   render::FrameSettings settings;
   /// The calibration, which applies if `settings` have neither a tolerance nor a quality.
   render::ThresholdPolicy policy;

@@ -23,8 +23,8 @@ int tiles_along(shared::uint pixels, int tile_size) {
 /// A tile number truncated towards 0, as by C's cast to int, and clamped to 0..count.
 int clamped_tile(double tile, int count) { return static_cast<int>(std::clamp(tile, 0.0, double(count))); }
 
-/// The tiles of 3D-GS's 3-sigma square, with its roundings: the smaller eigenvalue has a floor, the radius is
-/// a whole number of pixels, and a mean left of or above the picture truncates towards 0.
+/// The tiles of 3D-GS's 3-sigma square, with its roundings. The smaller eigenvalue has a floor, and the
+/// radius is a whole number of pixels. A mean left of or above the picture truncates towards 0.
 TileRange aabb_tiles(const Splat& splat, int tile_size, int tiles_x, int tiles_y) {
   const double half_trace = 0.5 * (splat.covariance.x + splat.covariance.z);
   const double lambda1 = half_trace + std::sqrt(std::max(0.1, half_trace * half_trace - splat.det));

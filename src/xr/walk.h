@@ -22,8 +22,8 @@ Placement upright_at(const glm::dvec3& position, const glm::dmat3& rotation, con
                      double units_per_metre);
 
 /// The first placement of OpenXR's space, for a standing viewer with eyes at upright_at(). If its origin is
-/// on the floor, the origin is placed 1.6 m lower. If heads do not start at the origin, as in the middle of a
-/// room, the space is placed so that `head` is there and has that heading.
+/// on the floor, the origin is placed 1.6 m lower. In some spaces heads do not start at the origin, as in the
+/// middle of a room. Then pass `head`: the space is placed so that it is there and has that heading.
 Placement start_of(Placement eyes, bool on_floor, const Eye* head = nullptr);
 
 class Walk {

@@ -152,7 +152,8 @@ class Model:
     degree
         Of the spherical harmonics, 0 to 3.
     left_out
-        Number of the file's Gaussians that were dropped: not finite, scales above 1e13, or no rotation.
+        Number of the file's Gaussians that were dropped: values not finite or out of range, scales above 1e13, or
+        no rotation.
     antialiased_by
         The source of ``antialiased``: a comment of its file, or a file of the training run; empty: none.
     order, projection
