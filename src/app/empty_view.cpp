@@ -14,7 +14,7 @@ namespace {
 struct MiddlesSeen {
   std::size_t inside = 0;  // in the picture and beyond the near plane
   std::size_t ahead = 0;   // beyond the near plane
-  std::size_t near = 0;    // before the near plane
+  std::size_t near = 0;    // between the camera and the near plane
 };
 
 MiddlesSeen look(const Model& model, Camera camera, double near_plane) {

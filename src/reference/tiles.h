@@ -26,7 +26,7 @@ struct TileLists {
   std::uint32_t tiles_x = 0;
   std::uint32_t tiles_y = 0;
   std::uint32_t tile_size = 0;           // px
-  std::vector<std::uint32_t> begin;      // tiles + 1: tile t owns gaussians[begin[t], begin[t + 1])
+  std::vector<std::uint32_t> begin;      // tiles + 1: tile t owns gaussians from begin[t] to begin[t + 1] - 1
   std::vector<std::uint32_t> gaussians;  // indices into the model
   Approximation approximation;           // applied when blending
   /// The view z of a mesh in each pixel, in rows; splats beyond it are hidden. Empty: no mesh.
