@@ -1,5 +1,5 @@
-// A program with an OpenGL context and textures of its own that has binosplat draw both eyes into them, from
-// the poses and angles that OpenXR gives: embed MODEL.ply FOLDER leaves FOLDER/left.png and right.png.
+// A program with its own OpenGL context and textures. binosplat draws both eyes into them, from poses and
+// angles as OpenXR gives them. embed MODEL.ply FOLDER writes FOLDER/left.png and right.png.
 #define GL_GLEXT_PROTOTYPES
 #include <EGL/egl.h>
 #include <EGL/eglext.h>
@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-// What a VR application has anyway: an OpenGL 4.5 core context that is current. Here without a window.
+// Every VR application has a current OpenGL 4.5 core context. This one needs no window.
 void make_context() {
   const EGLDisplay display = eglGetPlatformDisplay(EGL_PLATFORM_SURFACELESS_MESA, nullptr, nullptr);
   const EGLint attributes[] = {EGL_CONTEXT_MAJOR_VERSION, 4, EGL_CONTEXT_MINOR_VERSION, 5, EGL_NONE};
@@ -28,16 +28,16 @@ int main(int argc, char** argv) try {
   if (argc != 3) return std::fprintf(stderr, "usage: embed MODEL.ply FOLDER\n"), 2;
   make_context();
   constexpr int width = 320, height = 300;
-  GLuint textures[2];  // as the images of an OpenXR swapchain
+  GLuint textures[2];  // in place of the images of an OpenXR swapchain
   glCreateTextures(GL_TEXTURE_2D, 2, textures);
   for (const GLuint texture : textures) glTextureStorage2D(texture, 1, GL_SRGB8_ALPHA8, width, height);
 
   const binosplat::SplatModel model(argv[1]);
   binosplat::Renderer renderer(eglGetProcAddress, model);
-  // As if the floor lay 1.6 m below the origin of the model's world. Yours may lie elsewhere: see bounds().
+  // Assumes that the floor is 1.6 m below the origin of the model's world. See bounds() for other models.
   const binosplat::Placement placement = model.placement({0.0, 1.6, 0.0});
-  // Each frame: xrLocateViews' poses and angles, 49 degrees outwards and 37 inwards, into this frame's
-  // textures.
+  // In each frame: poses and angles of xrLocateViews, here 49 degrees outwards and 37 inwards, and this
+  // frame's textures.
   const binosplat::Eye left = {.position = {-0.0315, 1.6, 0.0}, .fov = {-0.855, 0.646, 0.7, -0.7}};
   const binosplat::Eye right = {.position = {0.0315, 1.6, 0.0}, .fov = {-0.646, 0.855, 0.7, -0.7}};
   const std::array views = {binosplat::View{left, {width, height}, {.texture = textures[0]}},
@@ -50,12 +50,12 @@ int main(int argc, char** argv) try {
     const std::string path = std::string(argv[2]) + (eye == 0 ? "/left.png" : "/right.png");
     png_image image = {
         .version = PNG_IMAGE_VERSION, .width = width, .height = height, .format = PNG_FORMAT_RGB};
-    // A step below zero: OpenGL's rows begin at the bottom.
+    // Negative stride: OpenGL's rows start at the bottom.
     if (png_image_write_to_file(&image, path.c_str(), 0, bytes.data(), -3 * width, nullptr) == 0)
       throw std::runtime_error(path + ": " + image.message);
     std::printf("%s: %d x %d px\n", path.c_str(), width, height);
   }
-} catch (const std::exception& error) {  // binosplat::Error tells which kind, too
+} catch (const std::exception& error) {  // binosplat::Error also has an exit code
   std::fprintf(stderr, "embed: %s\n", error.what());
   return 2;
 }

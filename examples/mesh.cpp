@@ -1,5 +1,5 @@
-// A program that draws meshes of its own with OpenGL and has binosplat draw a model's splats among them, so
-// that they hide each other: mesh MODEL.ply FOLDER leaves FOLDER/left.png and right.png.
+// A program that draws its own meshes with OpenGL. binosplat draws a model's splats among them, so that both
+// occlude each other. mesh MODEL.ply FOLDER writes FOLDER/left.png and right.png.
 #define GL_GLEXT_PROTOTYPES
 #include <EGL/egl.h>
 #include <EGL/eglext.h>
@@ -16,9 +16,9 @@
 #include <vector>
 
 constexpr int width = 480, height = 450;
-constexpr double near_m = 0.1, far_m = 100.0;  // what the meshes' projection shows, in metres
+constexpr double near_m = 0.1, far_m = 100.0;  // planes of the meshes' projection, in metres
 
-// What a VR application has anyway: an OpenGL 4.5 core context that is current. Here without a window.
+// Every VR application has a current OpenGL 4.5 core context. This one needs no window.
 void make_context() {
   const EGLDisplay display = eglGetPlatformDisplay(EGL_PLATFORM_SURFACELESS_MESA, nullptr, nullptr);
   const EGLint attributes[] = {EGL_CONTEXT_MAJOR_VERSION, 4, EGL_CONTEXT_MINOR_VERSION, 5, EGL_NONE};
@@ -28,8 +28,8 @@ void make_context() {
   eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, context);
 }
 
-// The meshes are boxes of size 1 that are scaled. Their light is linear; with GL_FRAMEBUFFER_SRGB OpenGL
-// turns it into the numbers of an sRGB texture, which are those that binosplat blends with.
+// The meshes are scaled unit boxes. Their colours are linear; GL_FRAMEBUFFER_SRGB converts them to the sRGB
+// values of the texture, in which binosplat blends.
 const char* const shaders[] = {R"(#version 450 core
 layout(location = 0) uniform mat4 clip_from_box;
 layout(location = 1) uniform vec3 colour;
@@ -65,7 +65,7 @@ void draw_box(const glm::mat4& clip_from_box, const glm::vec3& colour) {
   glDrawArrays(GL_TRIANGLES, 0, 36);
 }
 
-// The projection of an eye's four angles, and before it the way from the eyes' space into the eye's own.
+// The projection of an eye's four angles, after the transform from the eyes' space into the eye's own.
 glm::dmat4 clip_from_eyes(const binosplat::Eye& eye) {
   const auto [left, right, up, down] = eye.fov;
   const glm::dvec4 side = near_m * glm::tan(glm::dvec4(left, right, down, up));
@@ -79,7 +79,7 @@ void write_png(const std::string& path, GLuint texture) {
   glGetTextureImage(texture, 0, GL_RGB, GL_UNSIGNED_BYTE, 3 * width * height, bytes.data());
   png_image image = {
       .version = PNG_IMAGE_VERSION, .width = width, .height = height, .format = PNG_FORMAT_RGB};
-  // A step below zero: OpenGL's rows begin at the bottom.
+  // Negative stride: OpenGL's rows start at the bottom.
   if (png_image_write_to_file(&image, path.c_str(), 0, bytes.data(), -3 * width, nullptr) == 0)
     throw std::runtime_error(path + ": " + image.message);
   std::printf("%s: %d x %d px\n", path.c_str(), width, height);
@@ -89,7 +89,7 @@ int main(int argc, char** argv) try {
   if (argc != 3 && argc != 4 && argc != 10)
     return std::fprintf(stderr, "usage: mesh MODEL.ply FOLDER [FRAMES [HEAD_X Y Z CUBE_X Y Z]]\n"), 2;
   const binosplat::SplatModel model(argv[1]);
-  // In the model's world: the cube in the middle and the head before it, unless they are given.
+  // In the model's world. By default the cube is in the middle of the model and the head in front of it.
   binosplat::Placement placement = model.placement();
   const auto [low, high] = model.bounds();
   const glm::dvec3 back = placement.axes[2];
@@ -99,7 +99,7 @@ int main(int argc, char** argv) try {
     placement.origin[k] = std::stod(argv[4 + k]);
     cube[k] = std::stod(argv[7 + k]);
   }
-  // The cube in the eyes' space, in metres. The head is at its origin and looks at the cube.
+  // The cube in the eyes' space, in metres. The head is at the origin and looks at the cube.
   cube = glm::transpose(placement.axes) * (cube - placement.origin) / placement.units_per_metre;
   const glm::dquat q = glm::quatLookAt(glm::normalize(cube), glm::dvec3(0, 1, 0));
   const glm::dmat4 there = glm::scale(glm::translate(glm::dmat4(1), cube), glm::dvec3(0.22 * length(cube)));
@@ -123,7 +123,7 @@ int main(int argc, char** argv) try {
                            .near_plane = near_m * placement.units_per_metre,
                            .far_plane = far_m * placement.units_per_metre};
   }
-  use_program();  // once, as all state: binosplat leaves it as it was
+  use_program();  // set once: binosplat preserves all state
   glBindVertexArray(vertices);
   glEnable(GL_DEPTH_TEST);
   glEnable(GL_FRAMEBUFFER_SRGB);
@@ -145,6 +145,6 @@ int main(int argc, char** argv) try {
   }
   write_png(std::string(argv[2]) + "/left.png", colours[0]);
   write_png(std::string(argv[2]) + "/right.png", colours[1]);
-} catch (const std::exception& error) {  // binosplat::Error tells which kind, too
+} catch (const std::exception& error) {  // binosplat::Error also has an exit code
   return std::fprintf(stderr, "mesh: %s\n", error.what()), 2;
 }

@@ -1,5 +1,5 @@
-// A program with an OpenXR session of its own that draws the controllers as boxes and has binosplat draw a
-// model's splats among them: openxr MODEL.ply shows both until the runtime says that it is over.
+// A program with its own OpenXR session. It draws the controllers as boxes, and binosplat draws a model's
+// splats among them. openxr MODEL.ply runs until the runtime ends the session.
 #define GL_GLEXT_PROTOTYPES
 #define XR_USE_GRAPHICS_API_OPENGL
 #define XR_USE_PLATFORM_EGL
@@ -23,7 +23,7 @@
 
 XrInstance instance = XR_NULL_HANDLE;
 
-// Every call of OpenXR goes through this one: a negative result is an error.
+// Checks every OpenXR call: a negative result is an error.
 XrResult check(const char* call, XrResult result) {
   if (result >= 0) return result;
   char name[XR_MAX_RESULT_STRING_SIZE] = "no instance";
@@ -32,7 +32,7 @@ XrResult check(const char* call, XrResult result) {
 }
 #define XR(call, ...) check(#call, call(__VA_ARGS__))
 
-// The images of one eye, which take turns, and what OpenGL draws its boxes with.
+// The images of one eye, a ring, and the objects with which OpenGL draws boxes into them.
 struct Swapchain {
   XrSwapchain handle = XR_NULL_HANDLE;
   glm::ivec2 size{0};
@@ -40,7 +40,7 @@ struct Swapchain {
   bool in_place = true;
   GLuint depths = 0, framebuffer = 0;
 };
-// Where the controllers are asked for.
+// The actions that locate the controllers.
 struct Hands {
   XrActionSet set = XR_NULL_HANDLE;
   std::array<XrSpace, 2> grips = {};
@@ -55,7 +55,7 @@ void make_instance() {
   XR(xrCreateInstance, &info, &instance);
 }
 
-// An OpenGL 4.5 core context without a window, current, and a session that takes its pictures.
+// Creates and makes current an OpenGL 4.5 core context without a window, and creates a session for it.
 XrSession make_session(XrSystemId system) {
   const EGLDisplay display = eglGetPlatformDisplay(EGL_PLATFORM_SURFACELESS_MESA, nullptr, nullptr);
   const EGLint attributes[] = {EGL_CONTEXT_MAJOR_VERSION, 4, EGL_CONTEXT_MINOR_VERSION, 5, EGL_NONE};
@@ -64,7 +64,7 @@ XrSession make_session(XrSystemId system) {
   const EGLContext context = eglCreateContext(display, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, attributes);
   if (eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, context) == EGL_FALSE)
     throw std::runtime_error("no context of OpenGL 4.5 core");
-  // OpenXR asks for this call before a session, whatever it answers.
+  // OpenXR requires this call before a session. Its result is unused.
   PFN_xrGetOpenGLGraphicsRequirementsKHR get_requirements = nullptr;
   XR(xrGetInstanceProcAddr, instance, "xrGetOpenGLGraphicsRequirementsKHR",
      reinterpret_cast<PFN_xrVoidFunction*>(&get_requirements));
@@ -80,15 +80,15 @@ XrSession make_session(XrSystemId system) {
 
 Swapchain make_swapchain(XrSession session, const XrViewConfigurationView& view) {
   XrSwapchainCreateInfo info = {XR_TYPE_SWAPCHAIN_CREATE_INFO};
-  // binosplat writes into the texture itself, by a view of another format, if the runtime lets it.
+  // If the runtime allows it, binosplat writes directly into the texture, through a view of another format.
   info.usageFlags = XR_SWAPCHAIN_USAGE_COLOR_ATTACHMENT_BIT | XR_SWAPCHAIN_USAGE_UNORDERED_ACCESS_BIT |
                     XR_SWAPCHAIN_USAGE_MUTABLE_FORMAT_BIT;
-  info.format = GL_SRGB8_ALPHA8;  // what models' colours are; a runtime without it says so
+  info.format = GL_SRGB8_ALPHA8;  // the space of models' colours; a runtime without it reports an error
   info.width = view.recommendedImageRectWidth;
   info.height = view.recommendedImageRectHeight;
   info.sampleCount = info.faceCount = info.arraySize = info.mipCount = 1;
   Swapchain swapchain = {.size = {info.width, info.height}};
-  if (xrCreateSwapchain(session, &info, &swapchain.handle) < 0) {  // as Monado: then through a copy
+  if (xrCreateSwapchain(session, &info, &swapchain.handle) < 0) {  // as Monado: use a copy
     swapchain.in_place = false;
     info.usageFlags = XR_SWAPCHAIN_USAGE_COLOR_ATTACHMENT_BIT;
     XR(xrCreateSwapchain, session, &info, &swapchain.handle);
@@ -111,7 +111,8 @@ XrPath path(const std::string& text) {
   return out;
 }
 
-// One action for the grips of both hands. Runtimes give the simple controller's to other controllers, too.
+// One action for the grips of both hands. Runtimes also map the simple controller's profile to other
+// controllers.
 Hands make_hands(XrSession session) {
   const std::array<std::string, 2> names = {"/user/hand/left", "/user/hand/right"};
   const std::array<XrPath, 2> paths = {path(names[0]), path(names[1])};
@@ -143,11 +144,11 @@ glm::dmat4 matrix(const glm::dvec3& position, const glm::dvec4& q) {
   return glm::translate(glm::dmat4(1), position) * glm::mat4_cast(glm::dquat(q.w, q.x, q.y, q.z));
 }
 
-// The boxes in the hands that the runtime knows, 4 x 4 x 12 cm each, in `space`.
+// The boxes of the tracked hands, 4 x 4 x 12 cm each, in `space`.
 std::vector<glm::dmat4> locate_boxes(XrSession session, const Hands& hands, XrSpace space, XrTime time) {
   const XrActiveActionSet active = {hands.set, XR_NULL_PATH};
   const XrActionsSyncInfo info = {XR_TYPE_ACTIONS_SYNC_INFO, nullptr, 1, &active};
-  XR(xrSyncActions, session, &info);  // without the focus it finds no controllers
+  XR(xrSyncActions, session, &info);  // finds no controllers without focus
   constexpr XrSpaceLocationFlags valid =
       XR_SPACE_LOCATION_ORIENTATION_VALID_BIT | XR_SPACE_LOCATION_POSITION_VALID_BIT;
   std::vector<glm::dmat4> boxes;
@@ -161,8 +162,8 @@ std::vector<glm::dmat4> locate_boxes(XrSession session, const Hands& hands, XrSp
   return boxes;
 }
 
-// Boxes of size 1 that are scaled. Their light is linear; with GL_FRAMEBUFFER_SRGB OpenGL turns it into the
-// numbers of an sRGB texture, which are those that binosplat blends with.
+// Draws scaled unit boxes. Their colours are linear; GL_FRAMEBUFFER_SRGB converts them to the sRGB values of
+// the texture, in which binosplat blends.
 void set_up_drawing() {
   const char* const sources[] = {R"(#version 450 core
 layout(location = 0) uniform mat4 clip_from_box;
@@ -189,14 +190,14 @@ void main() { fragment = vec4(light, 1); })"};
   glLinkProgram(program);
   GLuint vertices = 0;
   glCreateVertexArrays(1, &vertices);
-  glUseProgram(program);  // once, as all state: binosplat leaves it as it was
+  glUseProgram(program);  // set once: binosplat preserves all state
   glBindVertexArray(vertices);
   glEnable(GL_DEPTH_TEST);
   glEnable(GL_FRAMEBUFFER_SRGB);
   glClearColor(0, 0, 0, 1);
 }
 
-// Clears an eye's image and draws the boxes into it. Returns their depths, as binosplat is to read them.
+// Clears an eye's image and draws the boxes into it. Returns their depths for binosplat.
 binosplat::MeshDepth draw_boxes(const Swapchain& swapchain, GLuint image, const binosplat::Eye& eye,
                                 double units_per_metre, const std::vector<glm::dmat4>& boxes) {
   glNamedFramebufferTexture(swapchain.framebuffer, GL_COLOR_ATTACHMENT0, image, 0);
@@ -217,7 +218,7 @@ binosplat::MeshDepth draw_boxes(const Swapchain& swapchain, GLuint image, const 
       .texture = swapchain.depths, .near_plane = near * units_per_metre, .far_plane = far * units_per_metre};
 }
 
-// What the runtime has to say since the last frame. False: it is over.
+// Handles the runtime's events since the last frame. Returns false if the session is over.
 bool handle_events(XrSession session, bool& running) {
   XrEventDataBuffer event = {XR_TYPE_EVENT_DATA_BUFFER};
   while (XR(xrPollEvent, instance, &event) == XR_SUCCESS) {
@@ -240,7 +241,7 @@ bool handle_events(XrSession session, bool& running) {
   return true;
 }
 
-// All that a frame takes.
+// Everything that a frame needs.
 struct Stage {
   XrSession session = XR_NULL_HANDLE;
   XrSpace space = XR_NULL_HANDLE;
@@ -250,8 +251,8 @@ struct Stage {
   binosplat::Renderer renderer;
 };
 
-// Draws what the eyes will see at `time`; `submitted` is what was drawn, pose and fov as they were given.
-// False where the runtime does not know the eyes' poses.
+// Draws the views at `time`. `submitted` receives the drawn images, with poses and angles unchanged. Returns
+// false if the runtime does not know the eyes' poses.
 bool draw(Stage& stage, XrTime time, std::array<XrCompositionLayerProjectionView, 2>& submitted) {
   const XrViewLocateInfo info = {XR_TYPE_VIEW_LOCATE_INFO, nullptr, stereo_views, time, stage.space};
   XrViewState state = {XR_TYPE_VIEW_STATE};
@@ -281,8 +282,8 @@ bool draw(Stage& stage, XrTime time, std::array<XrCompositionLayerProjectionView
     submitted[k] = {XR_TYPE_COMPOSITION_LAYER_PROJECTION_VIEW, nullptr, views[k].pose, fov, whole};
   }
   stage.renderer.submit(pictures, stage.placement);
-  // Here the GPU draws, and the CPU is the program's own: physics, sound, the next frame's meshes.
-  stage.renderer.finish();  // before it the images are binosplat's
+  // While the GPU draws here, the CPU is free for physics, sound and the next frame's meshes.
+  stage.renderer.finish();  // until then binosplat uses the images
   for (const Swapchain& swapchain : stage.swapchains) XR(xrReleaseSwapchainImage, swapchain.handle, nullptr);
   return true;
 }
@@ -299,7 +300,7 @@ int main(int argc, char** argv) try {
   std::uint32_t count = 0;
   XR(xrEnumerateViewConfigurationViews, instance, system, stereo_views, 2, &count, sizes.data());
   const XrSession session = make_session(system);
-  // LOCAL begins where the head is at the start, which here is the origin of the model's world.
+  // LOCAL has its origin at the head's first position, here placed at the origin of the model's world.
   XrReferenceSpaceCreateInfo where = {XR_TYPE_REFERENCE_SPACE_CREATE_INFO};
   where.referenceSpaceType = XR_REFERENCE_SPACE_TYPE_LOCAL;
   where.poseInReferenceSpace.orientation.w = 1.0f;

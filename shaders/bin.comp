@@ -1,7 +1,7 @@
-// Stage 2, bin: of the splats in few supertiles of a view, or of both eyes that share lists, how many are in each supertile; with
-// FILLS the entries themselves, each to the place of its supertile. A work group counts the entries of BIN_BLOCK splats in shared
-// memory first, so that neighbours, which often are in one supertile, do not wait for one another; of as many supertiles as it has
-// room for, from first_supertile on.
+// Stage 2, bin, for splats in few supertiles of a view, or of both eyes that share lists. Without FILLS it counts the
+// entries of each supertile; with FILLS it writes them to the place of their supertile. A work group first counts the
+// entries of BIN_BLOCK splats in shared memory: neighbours are often in one supertile, and would wait for each other's
+// atomics. A dispatch covers SUPERTILES supertiles from first_supertile on.
 #include "shared/limits.h"
 #include "shared/types.h"
 #include "shared/grid.glsl"
@@ -14,31 +14,31 @@ layout(std430, binding = 0) readonly buffer Views { View views[]; };
 layout(std430, binding = 1) readonly buffer Arguments { DispatchArguments arguments[]; };
 layout(std430, binding = 2) readonly buffer Coverages { uint coverages[]; };  // by splat: supertiles.glsl
 #if FILLS
-layout(std430, binding = 3) buffer SupertileEnds { uint supertile_ends[]; };  // where each one's next entry goes
+layout(std430, binding = 3) buffer SupertileEnds { uint supertile_ends[]; };  // the place of each one's next entry
 layout(std430, binding = 4) readonly buffer Depths { uint depths[]; };        // (order group, slot): slots.glsl
 layout(std430, binding = 5) writeonly buffer Entries { uvec2 entries[]; };    // depth, entry
 layout(std430, binding = 6) readonly buffer FrameCounters { Counters counters; };
 #else
 layout(std430, binding = 3) buffer SupertileCounts { uint supertile_counts[]; };
 #endif
-uniform uint view_index;       // the first of those that share lists
+uniform uint view_index;       // the first of the views that share lists
 uniform uint first_supertile;  // in the view
 
 #define EACH (BIN_BLOCK / BIN_THREADS)
-shared uint bins[SUPERTILES];  // of each supertile: entries, then with FILLS where the next one goes
+shared uint bins[SUPERTILES];  // by supertile: the count of entries, then with FILLS the place of the next one
 
-#define ENTRIES (4u * uint(LIST_VIEWS))  // that a splat in few supertiles may have
-uint across;                             // supertiles of a row
+#define ENTRIES (4u * uint(LIST_VIEWS))  // of a splat in few supertiles, at most
+uint across;                             // supertiles in a row
 uint coverage[EACH][LIST_VIEWS];
 
 uint supertile_of(uint coverage, uint nth) { return ((coverage & ~IN_FEW_SUPERTILES) >> FEW_SHIFT) + nth % 2u + nth / 2u * across; }
 uint tiles_of(uint coverage, uint nth) { return nth < 4u ? coverage >> 4u * nth & 15u : 0u; }
 
-// Of splat k's entries the nth: its supertile from first_supertile on, and the tiles; 0 tiles: there is none.
+// The nth entry of splat k: its supertile, counted from first_supertile, and its tiles; 0 tiles: no entry.
 uvec2 entry_of(uint k, uint nth) {
   uint supertile = supertile_of(coverage[k][nth / 4u], nth % 4u), tiles = tiles_of(coverage[k][nth / 4u], nth % 4u);
 #if LIST_VIEWS == 2
-  // In the supertiles of the first eye's both eyes have an entry, elsewhere the second.
+  // In the first eye's supertiles an entry holds both eyes' tiles. Elsewhere the second eye has its own entries.
   uint before = supertile - supertile_of(coverage[k][1u - nth / 4u], 0u);
   uint same = before < 2u ? before : before - across < 2u ? before - across + 2u : 4u;
   if (nth < 4u) tiles |= tiles_of(coverage[k][1], same) << SUPERTILE_TILES;

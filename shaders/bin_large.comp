@@ -2,9 +2,9 @@
 #extension GL_KHR_shader_subgroup_basic : require
 #extension GL_KHR_shader_subgroup_arithmetic : require
 #endif
-// Stage 2, bin: the entries of splats in many supertiles and of wide ones, which project.comp left aside. A work group takes
-// LARGE_EACH of them and its invocations share their rows, so that none waits for the one with the most. The entries go behind
-// those that bin.comp is to place, each with its supertile, in any order.
+// Stage 2, bin: makes the entries of wide splats and of splats in many supertiles, which project.comp listed in
+// `large`. A work group takes LARGE_EACH splats. Its invocations share their rows, so that none waits for the largest
+// splat. The entries go behind the room for those of bin.comp, each with its supertile, in any order.
 #include "shared/limits.h"
 #include "shared/types.h"
 #include "shared/grid.glsl"
@@ -17,22 +17,24 @@ layout(local_size_x = THREADS) in;
 
 layout(std430, binding = 0) readonly buffer Views { View views[]; };
 layout(std430, binding = 1) buffer FrameCounters { Counters counters; };
-layout(std430, binding = 2) readonly buffer Large { uint large[]; };   // splats, of both eyes if they share lists
+layout(std430, binding = 2) readonly buffer Large { uint large[]; };   // splats, for both eyes if they share lists
 layout(std430, binding = 3) buffer Coverages { uint coverages[]; };     // by splat: supertiles.glsl
 layout(std430, binding = 4) buffer SupertileCounts { uint supertile_counts[]; };
 layout(std430, binding = 5) writeonly buffer Entries { uvec2 entries[]; };
-uniform uint first_entry;  // of those that it makes
-uniform uint capacity;     // and how many there is room for
+uniform uint first_entry;  // the first entry that it makes
+uniform uint capacity;     // room for its entries
 
 #define EYE_COUNT uint(LIST_VIEWS)
-#define ROWS (THREADS / EYE_COUNT)  // at a time: an invocation for each and eye
-// Of the splats: by eye their tile boxes and whether they touch any tile; their first rows of supertiles, and the rows before theirs.
+#define ROWS (THREADS / EYE_COUNT)  // at a time: one invocation per row and eye
+// By splat: each eye's tile box and whether it touches any tile; the first row of supertiles; the rows of earlier
+// splats.
 shared uvec4 box_at[LARGE_EACH][EYE_COUNT];
 shared uint touches[LARGE_EACH][EYE_COUNT];
 shared uint first_row[LARGE_EACH];
 shared uint rows_before[LARGE_EACH];
 shared uint row_count;
-// Of the rows at hand: their splats, first supertiles, columns of tiles by eye (two of 16 bits a word), and the entries before each.
+// By row in work: its splat, its first supertile, columns of tiles by eye (two of 16 bits a word), and the entries of
+// earlier rows.
 shared uint row_splat[ROWS];
 shared uint row_supertile[ROWS];
 shared uvec2 row_tiles[ROWS][EYE_COUNT];
@@ -44,8 +46,8 @@ SupertileRow row_at(uint at, uint eye) {
   return supertile_row_of(uvec4(tiles.x & 0xFFFFu, tiles.x >> 16, tiles.y & 0xFFFFu, tiles.y >> 16));
 }
 
-// How many columns of supertiles an eye's are moved by, so that both eyes' lie side by side; not yet round the edge. Where the
-// second eye's are moved by more than half a row, which is back, the first eye's are moved by a whole one.
+// The shift of an eye's columns of supertiles that makes both eyes' columns adjacent; not yet wrapped around. If the
+// second eye's shift is over half a row, which means backward, the first eye's columns shift by a whole row.
 uint moved_by(uint first_view, uint eye) {
   if (first_view + 1u >= frame.view_count) return 0u;
   uint across = supertiles_across(views[first_view]), shift = LIST_VIEWS == 2 ? views[first_view + 1u].lists_shift : 0u;
@@ -53,7 +55,7 @@ uint moved_by(uint first_view, uint eye) {
 }
 
 #if LIST_VIEWS == 2
-// Whether the columns of both eyes are one run, in which no supertile is without an entry.
+// Whether both eyes' columns form one run without a gap.
 bool are_one(uvec2 a, uvec2 b) { return max(a.x, b.x) <= min(a.y, b.y); }
 #endif
 

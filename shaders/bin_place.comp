@@ -1,5 +1,5 @@
-// Stage 2, bin: where the entries of each supertile go, and its list among those that are to be sorted. One invocation a
-// supertile. Both in any order.
+// Stage 2, bin: the place of each supertile's entries, and its list's place among those of its kind, for `sort`. One
+// invocation a supertile. Both places are in any order.
 #include "shared/limits.h"
 #include "shared/types.h"
 #include "shared/grid.glsl"
@@ -9,7 +9,7 @@
 layout(local_size_x = THREADS) in;
 
 layout(std430, binding = 0) buffer FrameCounters { Counters counters; };
-layout(std430, binding = 1) buffer SupertileCounts { uint supertile_counts[]; };  // made 0 for the next frame
+layout(std430, binding = 1) buffer SupertileCounts { uint supertile_counts[]; };  // cleared for the next frame
 layout(std430, binding = 2) writeonly buffer SupertileEnds { uint supertile_ends[]; };
 layout(std430, binding = 3) writeonly buffer TileRanges { uvec2 tile_ranges[]; };  // begin, end
 #if LIST_VIEWS == 2
@@ -19,10 +19,11 @@ layout(std430, binding = 5) readonly buffer Views { View views[]; };
 #define ITEMS_BINDING 4
 #include "sort_items.glsl"
 uniform uint supertile_count;
-uniform uint capacity;  // entries that there is room for
+uniform uint capacity;  // room for entries
 uniform uint groups_max;
 
-// Where lists are shared, the second eye's supertile that shares that of the first's; none of a view without a second.
+// The second eye's supertile that shares the list of a first eye's supertile. NO_SECOND if lists are not shared, or the
+// view has no second one.
 uint second_of(uint supertile) {
 #if LIST_VIEWS == 2
   uint v = 0u;
@@ -60,7 +61,7 @@ void main() {
   if (self == 0u) {
     base = atomicAdd(counters.pairs, sum);
     if (base + sum > capacity) atomicOr(counters.overflow, OVERFLOW_PAIRS);
-    if (group_index() == 0u) {  // of bin_fill_large.comp
+    if (group_index() == 0u) {  // for bin_fill_large.comp
       uvec2 groups = split_groups(blocks_of(counters.large_entries, THREADS), groups_max);
       counters.fill_x = groups.x;
       counters.fill_y = groups.y;

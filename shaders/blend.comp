@@ -1,11 +1,11 @@
-// Stage 4: the picture. One work group a tile, whose splats pass front to back through shared memory. Tiles with long lists
-// are drawn by a launch of their own, which starts first and has more invocations (tile_ranges.glsl).
+// Stage 4: blends the pictures. One work group a tile: its splats pass through shared memory front to back. Tiles with
+// long lists have a dispatch of their own, which starts first and has more invocations (tile_ranges.glsl).
 //
-// Programs that measure something of each splat or tell what they come by have no other way through the lists.
+// Debug views and all measurements but visibility have only this program.
 #include "lists.glsl"
 #define INVOCATIONS (TILE_SIZE * TILE_SIZE / COLUMN)
-// Splats in shared memory at a time, 9 KiB at most: with more an H200 holds fewer groups, with less the longest lists take
-// longer (src/render/README.md).
+// Splats in shared memory at a time, at most 9 KiB. With more an H200 runs fewer groups; with fewer the longest lists
+// take longer (src/render/README.md).
 #if APPROXIMATE
 #define BATCH_MAX APPROXIMATE_STEP
 #elif MEASURE
@@ -16,7 +16,7 @@
 #define BATCH (INVOCATIONS < BATCH_MAX ? INVOCATIONS : BATCH_MAX)
 #if APPROXIMATE
 #define REACHES(at) ((reached[at] >> own_bit & 1u) != 0u)
-shared uint reached[BATCH];  // the blocks of each of the batch
+shared uint reached[BATCH];  // by splat of the batch: the blocks that it reaches
 uint own_bit, dark_bit;
 #define BLOCK_WIDTH APPROXIMATE_BLOCK
 #define BLOCK_HEIGHT APPROXIMATE_BLOCK
@@ -29,9 +29,9 @@ vec2 corner;  // the tile's first pixel
 
 layout(local_size_x = TILE_SIZE, local_size_y = TILE_SIZE / COLUMN) in;
 
-shared uint lit;  // 1 while a pixel is not done
+shared uint lit;  // 1 if a pixel is not done
 #if APPROXIMATE
-shared uint bright;  // a bit a block that is not dark
+shared uint bright;  // a bit for each block that is not dark
 #endif
 
 void load(uint at) {
@@ -80,7 +80,7 @@ void main() {
 #if APPROXIMATE
       bool is_asked = (batch - begin) % APPROXIMATE_STEP == 0u;
       if (is_asked && (bright & dark_bit) == 0u) end_dark();
-      if (MEASURE != MEASURE_TRANSMITTANCE && is_asked && bright == 0u) break;  // what measures asks what is behind, too
+      if (MEASURE != MEASURE_TRANSMITTANCE && is_asked && bright == 0u) break;  // measurements include splats behind
 #endif
     }
     load(batch + gl_LocalInvocationIndex);
@@ -98,7 +98,7 @@ void main() {
 #endif
   }
   if (is_truncated || (!are_done() && !TAKES_NO_MORE && batch < end)) atomicAdd(counters.truncated_lists, 1u);
-#if MEASURE <= MEASURE_TRANSMITTANCE  // the picture stays
+#if MEASURE <= MEASURE_TRANSMITTANCE  // the others keep the picture
   write_pixels();
 #endif
 }

@@ -1,5 +1,5 @@
-// The approximate blend of docs/method.md 5.2: a splat is blended in the blocks of a tile where its alpha reaches Th, and a block
-// ends once it is dark, that is, once T is small in all its pixels. The exact blend ends where all pixels are done. Part of
+// The approximate blend of docs/method.md 5.2. It blends a splat in the blocks of a tile in which its alpha reaches Th.
+// A block ends once it is dark: T is small in all its pixels. The exact blend ends once all pixels are done. Part of
 // blending.glsl.
 #if !APPROXIMATE
 
@@ -11,10 +11,10 @@ float finished(uint p) { return transmittance_left(p); }
 
 #else
 
-float dark_transmittance;  // T at most of the pixels of a dark block; 0: no block is
-bool ended_dark = false;   // this block, before its list did
+float dark_transmittance;  // a block is dark once no T exceeds this; 0: never
+bool ended_dark = false;   // this block ended dark, before its list did
 #if MEASURE == MEASURE_TRANSMITTANCE
-vec4 dark_colour[COLUMN];  // with Z; what measures goes on behind
+vec4 dark_colour[COLUMN];  // final colour and Z; measurements continue behind
 float dark_left[COLUMN];
 #endif
 #define TAKES_NO_MORE (ended_dark && MEASURE != MEASURE_TRANSMITTANCE)
@@ -30,7 +30,7 @@ bool are_dark() {
   return all;
 }
 
-// What is behind is taken to look as what was seen, but in pixels that have ended by themselves.
+// Assumes that everything behind looks like the part in front, except in pixels that are done.
 void end_dark() {
   if (ended_dark || dark_transmittance <= 0.0) return;
   ended_dark = true;
@@ -46,7 +46,7 @@ void end_dark() {
   }
 }
 
-// What a pixel leaves, whose colour and depth are what they are to be from here on.
+// The transmittance left in a pixel. Its colour and depth become final.
 float finished(uint p) {
   float left = transmittance_left(p);
   if (ended_dark) {

@@ -1,20 +1,21 @@
-// Stage 4 on software renderers, as llvmpipe, which draws eight invocations by one of its own: one work group a tile, a
-// row of invocations a block of it. Together they take the list's next splats to shared memory and ask which blocks each reaches;
-// an invocation a block lists them; then each row blends those that reach its own. The bits are those of blend.comp.
+// Stage 4 on software renderers such as llvmpipe, which runs eight invocations in one of its own. One work group a
+// tile, one row of invocations a block of it. The group copies the list's next splats to shared memory and finds the
+// blocks that each reaches. One invocation per block lists its splats, and each row blends its block's list. The bits
+// are those of blend.comp.
 #define BLOCK_WIDTH 8
 #define BLOCK_HEIGHT COLUMN
 #define ROUND (APPROXIMATE == 1 ? APPROXIMATE_STEP : 128)  // splats at a time
-#define BATCH (ROUND + 1)  // and one that leaves no mark
+#define BATCH (ROUND + 1)  // plus an invisible one
 #include "blending.glsl"
 #include "blocks.glsl"
 
 layout(local_size_x = BLOCK_WIDTH, local_size_y = BLOCKS) in;
 #define INVOCATIONS (BLOCK_WIDTH * BLOCKS)
 
-shared uint reached[ROUND];                    // of the batch: the blocks of each
-shared uint own_lists[BLOCKS][ROUND + BLEND_UNROLL];  // by block: those of the batch that reach it, and some that leave no mark
+shared uint reached[ROUND];                    // by splat of the batch: the blocks that it reaches
+shared uint own_lists[BLOCKS][ROUND + BLEND_UNROLL];  // by block: splats of the batch, then invisible ones
 shared uint own_counts[BLOCKS];
-shared uint bright;  // a bit a block: whether a pixel of it is not dark
+shared uint bright;  // a bit for each block with a pixel that is not dark
 
 void list_own(uint block) {
   uint bit = bit_of(block), count = 0u, i = 0u;
@@ -83,7 +84,7 @@ void main() {
 #endif
   }
   if (is_truncated || batch < end) atomicAdd(counters.truncated_lists, 1u);
-#if MEASURE <= MEASURE_TRANSMITTANCE  // the picture stays
+#if MEASURE <= MEASURE_TRANSMITTANCE  // the others keep the picture
   write_pixels();
 #endif
 }

@@ -1,8 +1,8 @@
-// DEBUG_VIEW: a number of each pixel in the place of its picture, `shown`, which is SHOW_ALPHAS to SHOW_MEDIAN_DEPTH of
-// shared/axes.h. Its invocations draw a pixel each, a splat at a time. Part of blending.glsl.
+// DEBUG_VIEW: writes a value per pixel instead of the picture: `shown`, SHOW_ALPHAS to SHOW_MEDIAN_DEPTH of
+// shared/axes.h. An invocation draws one pixel, one splat at a time. Part of blending.glsl.
 #if DEBUG_VIEW
 uniform uint shown;
-layout(std430, binding = 8) writeonly buffer DebugView { float debug_values[]; };  // below 0: there is nothing to show
+layout(std430, binding = 8) writeonly buffer DebugView { float debug_values[]; };  // below 0: no value
 #if !MEASURE
 layout(std430, binding = 7) readonly buffer Measured { uint measured[]; };  // SHOW_LIGHT: max(T) of each splat
 #endif
@@ -15,7 +15,7 @@ void debug_stage(uint at, uint splat) {
   if (shown == SHOW_LIGHT) batch_transmittance[at] = uintBitsToFloat(measured[splat]);
 }
 
-// Alphas count up to the splat that a pixel stops before.
+// Counts alphas, including that of the splat before which the pixel stops.
 void debug_evaluated(uint at) {
   if (shown == SHOW_ALPHAS && !is_done(0u) && at < size) debug_value += 1.0;
 }
@@ -27,7 +27,7 @@ void debug_blended(uint at, float weight) {
     debug_value = depth_of(at);
 }
 
-// A block ended dark, and what it has stands for what is behind, too.
+// A block ended dark: scales the value like the colour.
 void debug_scale(float scale) {
   if (shown == SHOW_LIGHT) debug_value *= scale;
 }
@@ -36,7 +36,7 @@ void write_debug_view(uint to, float left, uint list) {
   if (shown == SHOW_PAIRS) debug_value = float(list);
   if (shown == SHOW_LIGHT) debug_value = left < 1.0 ? debug_value / (1.0 - left) : -1.0;
 #if PROJECTION == PROJECTION_TANGENT
-  if (shown == SHOW_MEDIAN_DEPTH) debug_value *= sqrt(nearness[0]);  // of a distance
+  if (shown == SHOW_MEDIAN_DEPTH) debug_value *= sqrt(nearness[0]);  // from a distance
 #endif
   debug_values[to] = debug_value;
 }

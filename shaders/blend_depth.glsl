@@ -1,13 +1,13 @@
-// What a blend tells of a pixel's depth, DEPTH (shared/limits.h). Part of blending.glsl.
+// The depth of a pixel that a blend computes, DEPTH (shared/limits.h). Part of blending.glsl.
 #if DEPTH != DEPTH_NONE
 layout(std430, binding = 5) writeonly buffer ZSums { float z_sums[]; };
 #endif
 
-// Whether a pixel's median depth is found, the depth of the splat where T falls below a half.
+// Whether a pixel gets a median depth: that of the splat at which T falls below a half.
 #define HAS_MEDIAN(p) (DEPTH == DEPTH_MEDIAN || DEPTH == DEPTH_MEDIAN_OF_TWO_ROWS && p % 2u == 0u)
 const float half_left = 1.0 - float(COVERAGE_FOR_DEPTH);
 
-// Of splats of which one leaves less than that.
+// The depth of the first of these splats after which T is below a half; one of them must be.
 float median_depth(uint at[AHEAD], float weights[AHEAD], float before) {
   for (uint k = 0u; k < AHEAD; ++k) {
     precise float left = before - weights[k];
@@ -26,12 +26,12 @@ void add_depth(uint p, float weight, float depth) {
 #endif
 }
 
-// Of a pixel that leaves so much.
+// `left` is the pixel's remaining transmittance.
 void write_depth(uint to, uint p, float left) {
 #if DEPTH != DEPTH_NONE
   precise float behind = mesh_behind(p);
 #if PROJECTION == PROJECTION_TANGENT && DEPTH != DEPTH_VISIBILITY
-  precise float along = z_sum[p] * sqrt(nearness[p]);  // of distances
+  precise float along = z_sum[p] * sqrt(nearness[p]);  // from distances
   z_sum[p] = along;
   behind *= sqrt(nearness[p]);
 #endif

@@ -1,10 +1,10 @@
-// The blend of --precision half where the GPU takes two halves at once (PACKED of blending.glsl): an invocation's pixels two by
-// two. A batch is blended by itself, as if nothing were in front of it, and its sums go to those of the picture in fp32: halves
-// would lose what is behind many splats. Alphas are found in fp32 down to the exponent.
+// The blend of --precision half on GPUs that compute two halves at once (PACKED of blending.glsl): an invocation blends
+// its pixels two by two. It blends a batch as if nothing were in front of it, and adds the sums to the picture's in
+// fp32. Halves alone would lose the splats behind many others. Alphas are fp32 up to the exponent.
 #define PIXEL_PAIRS (COLUMN / 2)
 #define AT_ONCE (8 / COLUMN)  // splats; AHEAD at most
 
-// The first `count` splats of own_at(), and up to AHEAD that leave no mark.
+// Blends the first `count` splats of own_at(). It may read up to AHEAD more, which must be invisible.
 void blend_batch(uint count) {
   const f16vec2 none = f16vec2(float16_t(0.0)), all = f16vec2(float16_t(1.0));
   f16vec2 red[PIXEL_PAIRS], green[PIXEL_PAIRS], blue[PIXEL_PAIRS], left[PIXEL_PAIRS];
@@ -30,7 +30,8 @@ void blend_batch(uint count) {
       for (uint p = 0u; p < PIXEL_PAIRS; ++p) {
         vec2 rows = vec2(row[2u * p], row[2u * p + 1u]);
         f16vec2 exponent = f16vec2(-fma(rows, fma(rows, vec2(down.y), vec2(slope)), vec2(level)));
-        // 1 where alpha is over 1/255, 0 below: a saturated product takes one instruction for both, a comparison four.
+        // 1 if alpha is over 1/255, else 0. A saturated product takes one instruction for both halves, a comparison
+        // four.
         f16vec2 is_seen = clamp(fma(exponent, f16vec2(float16_t(4096.0)), f16vec2(float16_t(32744.0))), none, all);
         alphas[p][k] = exp2(exponent) * is_seen;
       }
@@ -52,7 +53,7 @@ void blend_batch(uint count) {
     float before = transmittance[p], after = before * float(left[p / 2u][p % 2u]);
     colour[p] += before * sum;
     z_sum[p] += before * z[p / 2u][p % 2u];
-    if (after < least[p]) least[p] = -max(after, 1e-30);  // below 0: it is done
+    if (after < least[p]) least[p] = -max(after, 1e-30);  // below 0: the pixel is done
     transmittance[p] = is_done(p) ? 0.0 : after;
   }
 }

@@ -1,6 +1,7 @@
-// What a blend measures of each splat, MEASURE (shared/limits.h): a maximum or a sum over the pixels that it reaches. It is found
-// in shared memory, and passed on to the buffer once a tile, which costs little beside the blend. Sums are of whole numbers, so
-// that the order of the additions does not matter. With MEASURE_NONE all of this is empty. Part of blending.glsl.
+// The value that a blend measures of each splat, MEASURE (shared/limits.h): a maximum or a sum over the pixels that it
+// reaches. It accumulates in shared memory, and each tile adds it to the buffer once, which costs little beside the
+// blend. Sums are integers, so the order of additions does not matter. With MEASURE_NONE all functions are empty. Part
+// of blending.glsl.
 #define SUMS_PICTURES (MEASURE == MEASURE_TRANSPOSED || MEASURE == MEASURE_CHANGES)
 #if MEASURE == MEASURE_TRANSMITTANCE
 #define MEASURED uint
@@ -11,8 +12,8 @@
 #endif
 
 #if MEASURE != MEASURE_NONE
-// Transmittance: by splat, bits of floats. Sums: by splat and channel, 64 bits, low first. Visibility: by splat,
-// VISIBILITY_LOW_BITS and those above.
+// Transmittance: the bits of a float, by splat. Sums: 64 bits by splat and channel, low first. Visibility: by splat,
+// the sum of the low VISIBILITY_LOW_BITS, then that of the bits above.
 layout(std430, binding = 7) buffer Measured { uint measured[]; };
 shared MEASURED batch_measured[BATCH];
 #endif
@@ -20,7 +21,7 @@ shared MEASURED batch_measured[BATCH];
 uniform uint scale;  // bits of a float
 #endif
 #if SUMS_PICTURES
-vec4 picture[COLUMN];  // transposed: scaled
+vec4 picture[COLUMN];  // transposed: times `scale`
 uint place_of(View view, uint p);
 #endif
 
@@ -39,7 +40,8 @@ void begin_measuring(View view, uint p, bool inside) {
 #endif
 }
 
-// A splat is met where its alpha counts, in a block that the approximate blend leaves it out of, too.
+// Whether a splat counts in a pixel: its alpha reaches ALPHA_MIN, even in a block from which the approximate blend
+// drops it.
 #if MEASURE == MEASURE_TRANSMITTANCE && APPROXIMATE
 bool is_met[COLUMN][AHEAD];
 #define MEET(p, k, alpha) is_met[p][k] = alpha >= float(ALPHA_MIN)
@@ -49,12 +51,12 @@ bool is_met[COLUMN][AHEAD];
 #define IS_MET(p, k, weight) (weight > 0.0)
 #endif
 
-int visible = 0;  // of the splat at hand, in this invocation's pixels
+int visible = 0;  // of the current splat, in this invocation's pixels
 
-// Transmittance: the most that a splat's alpha counts for in any pixel, T (docs/method.md 5). Visibility: what an error of its
-// colour would count for, alpha T, times the T that an error of its alpha would. The transposed blend: the picture, by what the
-// splat counts for. Changes: without the splat alone, what lies behind it, of which it leaves the share 1 - alpha, is in its
-// place.
+// Transmittance: the largest T of a pixel that the splat marks (docs/method.md 5). Visibility: alpha T, the weight of
+// an error of its colour, times T, that of an error of its alpha. Transposed: the picture times the splat's weight.
+// Changes: without the splat, the colour behind it takes its place. That colour is the rest of the picture over T (1 -
+// alpha).
 void measure(uint at, uint p, uint k, float weight) {
 #if MEASURE == MEASURE_VISIBILITY
   float counted = transmittance[p] >= float(VISIBILITY_LEAST) ? weight * transmittance[p] : 0.0;
@@ -79,7 +81,7 @@ void measure(uint at, uint p, uint k, float weight) {
 #endif
 }
 
-// A splat's pixels are done.
+// Ends a splat, after all its pixels.
 void end_measuring_splat(uint at) {
 #if MEASURE == MEASURE_VISIBILITY
   if (visible != 0) atomicAdd(batch_measured[at], visible);
@@ -87,7 +89,7 @@ void end_measuring_splat(uint at) {
   visible = 0;
 }
 
-// A pixel shows nothing more whose visibility would be counted.
+// Ends a pixel once its T is too small for visibility.
 void end_where_nothing_is_measured(uint p) {
 #if MEASURE == MEASURE_VISIBILITY
   if (transmittance[p] < float(VISIBILITY_LEAST) && !is_done(p)) {
@@ -97,8 +99,9 @@ void end_where_nothing_is_measured(uint p) {
 #endif
 }
 
-// What a tile measured of a splat, to the buffer. Visibility in two parts without a carry, for which one would wait: there is room
-// for 2^26 px, and for 2^18 tiles, in a picture that is half as large as those that are drawn, or less.
+// Adds a tile's measurement of a splat to the buffer. Visibility has two parts without a carry, which would make one
+// atomic wait for the other. They have room for 2^26 px and 2^18 tiles; a visibility pass has at most half the size of
+// a drawn picture.
 void pass_on(uint splat, uint batch_at) {
 #if MEASURE == MEASURE_TRANSMITTANCE
   uint most = batch_measured[batch_at];

@@ -1,5 +1,5 @@
-// After the blend: what it measured of each Gaussian drawn, for the next frame's Th. One invocation a slot of
-// an order group. What was not drawn was written by project_cull.comp.
+// After the blend: stores max(T) of each drawn Gaussian for the next frame's Th. One invocation a slot of an order
+// group. project_cull.comp has written the values of the others.
 #include "shared/axes.h"
 #include "shared/limits.h"
 #include "shared/types.h"

@@ -1,15 +1,15 @@
-// The caller's meshes among the splats, MESH_DEPTH: what lies behind one is not seen. Part of blending.glsl.
-//   MESH_ASKED   1: a block asks first whether it may have anything behind a mesh (blend_subgroups.comp)
+// The caller's meshes among the splats (MESH_DEPTH): splats behind a mesh are not drawn. Part of blending.glsl.
+//   MESH_ASKED   1: a block first tests whether it may have any splat behind a mesh (blend_subgroups.comp)
 #ifndef MESH_DEPTH
 #define MESH_DEPTH 0
 #endif
 #ifndef MESH_ASKED
 #define MESH_ASKED 0
 #endif
-#define NO_MESH 3e38  // as far as anything is seen
+#define NO_MESH 3e38  // beyond every splat
 #if MESH_DEPTH
 layout(std430, binding = 10) readonly buffer MeshSources { MeshSource mesh_sources[]; };  // by view
-// The caller's textures, by view; the images of the pictures have the units before.
+// The caller's textures, by view. The images of canvases have the units before.
 layout(binding = MAX_CANVASES) uniform sampler2D meshes_0;
 layout(binding = MAX_CANVASES + 1) uniform sampler2D meshes_1;
 layout(binding = MAX_CANVASES + 2) uniform sampler2D meshes_2;
@@ -24,7 +24,7 @@ float number_at(uint nth, ivec2 texel, int level) {
 
 uint view_at_hand();
 
-// z of the mesh in a pixel of this invocation; with the tangent projection the distance of what is seen there. NO_MESH: none.
+// The depth z of the mesh in a pixel of this invocation, with the tangent projection its distance. NO_MESH: none.
 float mesh_at(uint p) {
   uint nth = view_at_hand();
   MeshSource from = mesh_sources[nth];
@@ -38,7 +38,7 @@ float mesh_at(uint p) {
 #if PROJECTION == PROJECTION_TANGENT
   z *= inversesqrt(nearness[p]);
 #endif
-  return d != from.nothing && z > 0.0 && z < NO_MESH ? z : NO_MESH;  // not a number: none
+  return d != from.nothing && z > 0.0 && z < NO_MESH ? z : NO_MESH;  // NaN: none
 }
 #endif
 
@@ -64,7 +64,7 @@ void begin_meshes(uint p, bool inside) {
 #endif
 }
 
-// The depth of the mesh in a pixel; 0: there is none.
+// The depth of the mesh in a pixel; 0: none.
 float mesh_behind(uint p) {
 #if MESH_DEPTH && MESH_ASKED
   if (nearest_mesh == NO_MESH) return 0.0;
@@ -73,7 +73,7 @@ float mesh_behind(uint p) {
   return depth < NO_MESH ? depth : 0.0;
 }
 
-// Ends a pixel before a splat from which on all of the list lies behind its mesh.
+// Ends a pixel if this splat and all later ones of the list lie behind its mesh.
 void end_behind_mesh(uint at, uint p, float farthest) {
   if (depth_of(at) - frame.depth_slack > farthest && !is_done(p)) {
     least[p] = -transmittance[p];

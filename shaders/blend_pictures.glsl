@@ -1,5 +1,5 @@
-// Where a blend writes pictures: in the frame's own buffer, or as they are shown in images of the caller's (CANVASES). Part of
-// blending.glsl.
+// The destination of a blend's pictures: the frame's own buffer, or the caller's images in their final form (CANVASES).
+// Part of blending.glsl.
 #if CANVASES
 #include "canvases.glsl"
 void write_picture(View view, uint nth, uint to, uvec2 at, vec4 pixel) {

@@ -1,5 +1,5 @@
-// The blend (docs/method.md 3) along single rays, which need not meet centres of pixels: one invocation a ray, by the list of the
-// tile that it meets. Those lists are made with BETWEEN.
+// The blend (docs/method.md 3) along single rays, which need not pass through pixel centres. One invocation a ray, with
+// the list of the tile that it meets. The lists are made with BETWEEN.
 #include "shared/limits.h"
 #include "shared/types.h"
 #include "shared/axes.h"
@@ -37,13 +37,13 @@ void main() {
 #else
   float nearness = 1.0;
 #endif
-  // A driver may end loops of too many rounds: each is of several splats, as in blend.comp.
+  // A driver may end loops after too many rounds, so each round takes several splats, as in blend.comp.
   uint at = begin;
   for (; at < end && !is_done; at += BLEND_UNROLL) {
     for (uint k = 0u; k < BLEND_UNROLL; ++k) {
       Splat splat = SPLAT(values[min(at + k, end - 1u)]);
       vec2 d = ray.pixel - splat.mean;
-      // By the Cholesky factor of the conic, which keeps it positive.
+      // The Cholesky factor of the conic keeps q positive.
       float root = sqrt(splat.conic.x);
       float across = root * d.x + splat.conic.y / root * d.y;
       float down = d.y / (abs(splat.conic.w) * root);
@@ -53,7 +53,7 @@ void main() {
       float facing = 1.0 + dot((splat.mean + 0.5 - view.lens.zw) / view.lens.xy, slope);
       alpha = is_wide(splat) && facing * splat.conic.w < 0.0 ? 0.0 : alpha;
 #endif
-      bool is_seen = at + k < end && !is_done && alpha >= float(ALPHA_MIN);  // not a number: no
+      bool is_seen = at + k < end && !is_done && alpha >= float(ALPHA_MIN);  // NaN: false
       float left = transmittance * (1.0 - alpha);
       is_done = is_done || (is_seen && left < float(TRANSMITTANCE_MIN));
       float weight = is_seen && !is_done ? transmittance * alpha : 0.0;

@@ -7,19 +7,20 @@
 #if HALF && defined(GL_NV_gpu_shader5)
 #extension GL_NV_gpu_shader5 : require
 #endif
-// Stage 4 where subgroups have 32 invocations: one work group a tile, a subgroup a block of it. Together they take the list's
-// next splats to shared memory and ask which blocks each reaches; then each subgroup blends those that reach its own. The bits
-// are those of blend.comp, but in packed halves.
+// Stage 4 on GPUs with subgroups of 32 invocations: one work group a tile, one subgroup a block of it. The group copies
+// the list's next splats to shared memory and finds the blocks that each reaches. Each subgroup then blends the splats
+// that reach its block. The bits are those of blend.comp, except in packed halves.
 #define BLOCK_WIDTH 8
 #define BLOCK_HEIGHT (4 * COLUMN)
-#if APPROXIMATE  // whose blocks are those of docs/method.md 5.2
+#if APPROXIMATE  // blocks of docs/method.md 5.2
 #define ROUND APPROXIMATE_STEP
 #else
-// Splats at a time: with more in shared memory there is room for fewer groups. The visibility pass waits for its longest list.
+// Splats at a time: with more, fewer groups fit in shared memory. The visibility pass has more, because it waits for
+// its longest list.
 #define ROUND (LISTS == LISTS_SHORT ? 64 : MEASURE == MEASURE_VISIBILITY ? 256 : 128)
 #endif
 #define WORDS (ROUND / 32)
-#define BATCH (ROUND + 1)  // and one that leaves no mark
+#define BATCH (ROUND + 1)  // plus an invisible one
 #define ANY(condition) subgroupAny(condition)
 #define MESH_ASKED MESH_DEPTH
 #if HALF && defined(GL_NV_gpu_shader5)
@@ -30,25 +31,26 @@
 
 layout(local_size_x = 32, local_size_y = BLOCKS) in;
 
-shared uint reached[ROUND];                    // of the batch: the blocks of each
-shared uint own_lists[BLOCKS][ROUND + AHEAD];  // by block: those of the batch that reach it
+shared uint reached[ROUND];                    // by splat of the batch: the blocks that it reaches
+shared uint own_lists[BLOCKS][ROUND + AHEAD];  // by block: the splats of the batch that reach it
 shared uint blocks_done;
 OF_TILE vec2 corner;                           // the tile's first pixel
 
 uint value_at(uint at) { return at < end ? values[at] : 0u; }
 
 #if MESH_DEPTH
-uint sure;  // how many of those that come first no mesh hides
+uint sure;  // how many of the first splats no mesh hides
 #endif
 
-// The batch's splats that reach this subgroup's block, in order, and AHEAD that leave no mark: how many.
+// Lists the batch's splats that reach this subgroup's block, in order, then AHEAD invisible ones. Returns their number
+// without the invisible ones.
 uint list_own() {
   uint lane = gl_SubgroupInvocationID, bit = bit_of(gl_SubgroupID);
   uint count = 0u;
 #if MESH_DEPTH
   sure = ROUND + AHEAD;
 #endif
-  uint mine[WORDS];  // all are read before the first is waited for
+  uint mine[WORDS];  // all reads are issued before the first is used
   for (uint word = 0u; word < WORDS; ++word) mine[word] = reached[word * 32u + lane];
   for (uint word = 0u; word < WORDS; ++word) {
     bool reaches = (mine[word] >> bit & 1u) != 0u;
@@ -88,12 +90,12 @@ void main() {
   corner = vec2(first_pixel - in_tile);
   if (self == 0u) stage_nothing(ROUND);
   if (self == 0u) blocks_done = 0u;
-  bool ended = false;  // of the block
+  bool ended = false;  // the block is done
   uint next = value_at(begin + self);
 #if MEASURE
-  uint at_hand = 0u;  // the splat that this invocation took to the batch
+  uint at_hand = 0u;  // the splat that this invocation copied to the batch
 #endif
-#if LISTS == LISTS_LONG  // few groups, which wait for memory: they read the next splats while these are blended
+#if LISTS == LISTS_LONG  // few groups: they read the next splats early, to hide the latency of memory
   Splat next_splat = SPLAT(next);
   next = value_at(begin + ROUND + self);
 #endif
@@ -139,7 +141,7 @@ void main() {
     barrier();
     if (blocks_done == BLOCKS) break;
   }
-#if MEASURE <= MEASURE_TRANSMITTANCE  // the picture stays
+#if MEASURE <= MEASURE_TRANSMITTANCE  // the others keep the picture
   write_pixels();
 #endif
 }

@@ -1,18 +1,18 @@
-// What the programs of stage 4 share: an invocation's pixels, and how splats are blended into them (docs/method.md 3).
+// Shared by the programs of stage 4: an invocation's pixels, and how splats are blended into them (docs/method.md 3).
 //   COLUMN      pixels of an invocation, one below the other
-//   AHEAD       splats whose alphas are found at once
-//   BATCH       splats that the work group has in shared memory; the includer fills them by stage()
+//   AHEAD       splats whose alphas are computed at once
+//   BATCH       splats that the work group has in shared memory; the including file fills them by stage()
 //   LISTS       LISTS_LONG: only tiles of more than LONG_LIST pairs; LISTS_SHORT: only the others
 //   APPROXIMATE 1: the blend of docs/method.md 5.2 (blend_approximate.glsl)
-//   DEPTH       what z_sums tell, DEPTH_ of shared/limits.h (blend_depth.glsl)
+//   DEPTH       the depth in z_sums, DEPTH_ of shared/limits.h (blend_depth.glsl)
 //   CANVASES    1: pictures of views go into images, and z_sums are depths (blend_pictures.glsl)
-//   MEASURE     what is measured of each splat, MEASURE_ of shared/limits.h (blend_measure.glsl)
-//   DEBUG_VIEW  1: a number of each pixel is shown in the place of its picture (blend_debug.glsl)
-//   PLAIN       1: whole views, no probe: without those choices a GPU blends 5 % faster
-//   BROAD       1: with the tangent projection, wide splats may lie ahead of some pixels of a tile, and behind others
-//   MESH_DEPTH  1: splats behind the caller's meshes are not seen (blend_mesh.glsl)
-//   ANY         whether something holds in an invocation that goes with this one
-//   REACHES     whether a splat of the batch is blended in this invocation's block, if others are in the batch, too
+//   MEASURE     the value measured of each splat, MEASURE_ of shared/limits.h (blend_measure.glsl)
+//   DEBUG_VIEW  1: writes a value per pixel instead of the picture (blend_debug.glsl)
+//   PLAIN       1: whole views, no probe: without these branches a GPU blends 5 % faster
+//   BROAD       1: with the tangent projection, a tile may show wide splats that lie behind some of its rays
+//   MESH_DEPTH  1: splats behind the caller's meshes are not drawn (blend_mesh.glsl)
+//   ANY         whether a condition holds in any invocation that runs with this one
+//   REACHES     whether a splat of the batch is blended in this invocation's block, if the batch also has others
 #include "lists.glsl"
 #include "shared/axes.h"
 #include "shared/limits.h"
@@ -32,7 +32,7 @@
 #define ANY(condition) (condition)
 #endif
 
-// Whether pixels are blended in packed halves (blend_halves.glsl), which are for the frames that most are.
+// Whether pixels are blended in packed halves (blend_halves.glsl): only in variants that most frames use.
 #ifndef MAY_PACK
 #define MAY_PACK 0
 #endif
@@ -50,11 +50,11 @@ layout(std430, binding = 6) buffer FrameCounters { Counters counters; };
 layout(std430, binding = 9) readonly buffer LongLists { uint long_lists[]; };  // tiles
 #endif
 
-// -log2(alpha) in a pixel (x, y) of the cell is (t^2 + s) + y ((2 b t + v) + c y), t = a x + u. See stage(). With the tangent
-// projection that is divided by |d|^2, d being the pixel's ray, before -log2(sigma), which is no part of s, is added.
+// -log2(alpha) in a pixel (x, y) of the cell is (t^2 + s) + y ((2 b t + v) + c y), t = a x + u. See stage(). With the
+// tangent projection s excludes -log2(sigma): that is added after a division by |d|^2, with d the pixel's ray.
 shared vec4 batch_across[BATCH];  // a, u, 2 b, s
-shared vec4 batch_down[BATCH];    // v, c, with the tangent projection -log2(sigma) and direction_in_bytes(): one address finds all three
-#if PACKED  // v, c, and as halves rg and b are in batch_down
+shared vec4 batch_down[BATCH];    // v, c; tangent: -log2(sigma), direction_in_bytes()
+#if PACKED  // v and c; batch_down also has rg and b as halves
 shared float batch_depth[BATCH];
 float depth_of(uint at) { return batch_depth[at]; }
 #else
@@ -62,26 +62,26 @@ shared vec4 batch_colour[BATCH];  // rgb, depth
 float depth_of(uint at) { return batch_colour[at].a; }
 #endif
 
-// What holds for all of a tile: with the tangent projection there are too few registers for it. All write the same.
+// Values of a whole tile. With the tangent projection registers are scarce, so they are shared; all write the same.
 #if PROJECTION == PROJECTION_TANGENT
 #define OF_TILE shared
 OF_TILE float farthest;  // the largest |d|^2
-OF_TILE vec2 heart;      // the slope of its middle
-float nearness[COLUMN];  // of each pixel: 1 / |d|^2
+OF_TILE vec2 heart;      // the slope of the tile's middle
+float nearness[COLUMN];  // by pixel: 1 / |d|^2
 #else
 #define OF_TILE
 #endif
-OF_TILE vec2 middle;  // of its cell
+OF_TILE vec2 middle;  // of the tile's cell
 
 uint view_index = 0u;
 uvec2 first_pixel;  // of the column
-float column;       // from the middle of the cell
-float row[COLUMN];  // of each pixel, as well
-uint size;          // splats of the batch
+float column;       // x from the middle of the cell
+float row[COLUMN];  // by pixel: y from the middle of the cell
+uint size;          // splats in the batch
 vec3 colour[COLUMN];
 float z_sum[COLUMN];
-float transmittance[COLUMN];  // 0 once the pixel is done,
-float least[COLUMN];          // and this -T; until then the T that the blend stops at
+float transmittance[COLUMN];  // 0 once the pixel is done
+float least[COLUMN];          // -T once the pixel is done; before that, the T at which the blend stops
 
 bool is_done(uint p) { return least[p] < 0.0; }
 
@@ -101,11 +101,11 @@ float transmittance_left(uint p) { return is_done(p) ? -least[p] : transmittance
 #include "blend_approximate.glsl"
 
 #if !PACKED
-// What is told of each splat in a pixel may need the transmittance in front of it.
+// Some outputs need the transmittance before each splat.
 #define FOLLOWS_TRANSMITTANCE (MEASURE != MEASURE_NONE || DEPTH == DEPTH_VISIBILITY || DEBUG_VIEW != 0)
 
-// AHEAD splats of the batch at once: their alphas do not wait for one another, only what they leave of T does.
-// Where some may lie behind meshes each pixel is asked.
+// Blends AHEAD splats of the batch at once: their alphas are independent, only T is sequential. With `may_be_hidden`,
+// tests them against each pixel's mesh.
 void blend(uint at[AHEAD], const bool may_be_hidden) {
   float farthest[COLUMN];
   if (may_be_hidden) {
@@ -114,7 +114,7 @@ void blend(uint at[AHEAD], const bool may_be_hidden) {
       end_behind_mesh(at[0], p, farthest[p]);
     }
   }
-  float weights[COLUMN][AHEAD];  // alphas at first
+  float weights[COLUMN][AHEAD];  // first alphas, then weights
   for (uint k = 0u; k < AHEAD; ++k) {
     vec4 across = batch_across[at[k]];
     vec4 down = batch_down[at[k]];
@@ -127,7 +127,7 @@ void blend(uint at[AHEAD], const bool may_be_hidden) {
       exponent = fma(nearness[p], exponent, down.z);
 #endif
       precise float a = exp2(-exponent);
-      bool is_seen = a >= float(ALPHA_MIN) && REACHES(at[k]);  // not a number: no
+      bool is_seen = a >= float(ALPHA_MIN) && REACHES(at[k]);  // NaN: false
       if (may_be_hidden) is_seen = is_seen && depth_of(at[k]) <= farthest[p];
       weights[p][k] = is_seen ? min(float(ALPHA_MAX), a) : 0.0;
       MEET(p, k, a);
@@ -144,7 +144,7 @@ void blend(uint at[AHEAD], const bool may_be_hidden) {
   }
 #endif
   float left[COLUMN];
-  bool some_stop = false;  // asked of all pixels at once: a branch each took 2 % of the time
+  bool some_stop = false;  // one test for all pixels: a branch for each took 2 % of the time
   for (uint p = 0u; p < COLUMN; ++p) {
     debug_evaluated(at[0]);
     precise float next = transmittance[p];
@@ -156,7 +156,7 @@ void blend(uint at[AHEAD], const bool may_be_hidden) {
     left[p] = next;
     some_stop = some_stop || next < least[p];
   }
-  if (some_stop) {  // seldom: a pixel stops before one of these
+  if (some_stop) {  // rare: a pixel stops before one of these splats
     for (uint p = 0u; p < COLUMN; ++p) {
       if (left[p] >= least[p]) continue;
       precise float next = transmittance[p];
@@ -173,7 +173,7 @@ void blend(uint at[AHEAD], const bool may_be_hidden) {
   }
   for (uint p = 0u; p < COLUMN; ++p) {
     bool is_half = transmittance[p] >= half_left && left[p] < half_left;
-    if (HAS_MEDIAN(p) && ANY(is_half)) {  // seldom
+    if (HAS_MEDIAN(p) && ANY(is_half)) {  // rare
       float depth = median_depth(at, weights[p], transmittance[p]);
       if (is_half) z_sum[p] = depth;
     }
@@ -201,7 +201,7 @@ void blend(uint at[AHEAD], const bool may_be_hidden) {
 
 void blend(uint at[AHEAD]) { blend(at, MESH_DEPTH != 0); }
 
-// Those that follow one another.
+// Blends AHEAD consecutive splats.
 void blend_from(uint first) {
   uint at[AHEAD];
   for (uint k = 0u; k < AHEAD; ++k) at[k] = first + k;
@@ -210,11 +210,12 @@ void blend_from(uint first) {
 
 #endif
 
-// A splat for the batch, and one that leaves no mark.
+// Writes a splat into the batch; stage_nothing() writes an invisible one.
 //
-// alpha = sigma 2^-|L^T d|^2, d = pixel - mean, L the lower Cholesky factor of Q log2(e) / 2, as a polynomial of the pixel's
-// place from the middle of its cell. No splat is thinner than the low-pass, and where alpha can be seen the mean is no further
-// than a few of its widths: no term is large there, and their sum exact to 1e-4. Cells do not depend on the tiles' size.
+// alpha = sigma 2^-|L^T d|^2, d = pixel - mean, L the lower Cholesky factor of Q log2(e) / 2, as a polynomial of the
+// pixel's place from the middle of its cell. No splat is thinner than the low-pass, and in visible pixels the mean is
+// at most a few of its widths away. So no term is large there, and their sum is exact to 1e-4. Cells do not depend on
+// the tile size.
 void stage(uint at, Splat splat) {
   const float scale = 0.72134752044448170;  // log2(e) / 2
 #if !PACKED

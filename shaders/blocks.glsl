@@ -1,5 +1,6 @@
-// The blocks of BLOCK_WIDTH x BLOCK_HEIGHT px that a tile is drawn by, row by row, and those that splats are told to reach:
-// the same, or in the approximate blend those of docs/method.md 5.2, which do not depend on how a tile is drawn. After blending.glsl.
+// The blocks of BLOCK_WIDTH x BLOCK_HEIGHT px in which a tile is drawn, row by row, and the blocks that a splat
+// reaches. The two are equal, except in the approximate blend. There a splat reaches the blocks of docs/method.md 5.2,
+// which do not depend on how a tile is drawn. Include after blending.glsl.
 #define BLOCKS_ACROSS (TILE_SIZE / BLOCK_WIDTH)
 #define BLOCKS_DOWN (TILE_SIZE / BLOCK_HEIGHT)
 #define BLOCKS (BLOCKS_ACROSS * BLOCKS_DOWN)
@@ -9,13 +10,13 @@
 #define REACH_HEIGHT BLOCK_HEIGHT
 #endif
 
-// The bit of what reaches a block, of blocks_reached().
+// The index of a block's bit in blocks_reached().
 uint bit_of(uint block) {
   return block / BLOCKS_ACROSS * BLOCK_HEIGHT / REACH_HEIGHT * BLOCKS_ACROSS + block % BLOCKS_ACROSS;
 }
 
-// The blocks where alpha comes to ALPHA_MIN in a pixel, in the approximate blend to Th: maybe some more, for rounding, none less. `mean` is
-// seen from the tile's first pixel.
+// A bit for each block with a pixel whose alpha reaches ALPHA_MIN, in the approximate blend Th. Rounding may add
+// blocks, but never loses one. `mean` is relative to the tile's first pixel.
 uint blocks_reached(Splat splat, vec2 mean) {
   if (!(splat.opacity >= float(ALPHA_MIN))) return 0u;
 #if APPROXIMATE
@@ -28,15 +29,15 @@ uint blocks_reached(Splat splat, vec2 mean) {
 #endif
   float root_det = abs(splat.conic.w);
   float tallest = root_det * sqrt(rho * splat.conic.x);            // half the ellipse's height,
-  float widest = sqrt(rho / splat.conic.x);                        // half its widest row,
-  float lean = -splat.conic.y / splat.conic.x;                     // of the line through its rows' middles,
-  float apex = -splat.conic.y * root_det * sqrt(rho / splat.conic.z);  // where it is furthest to the right
+  float widest = sqrt(rho / splat.conic.x);                        // half the length of its widest row,
+  float lean = -splat.conic.y / splat.conic.x;                     // the slope of the line through its rows' middles,
+  float apex = -splat.conic.y * root_det * sqrt(rho / splat.conic.z);  // the y of its rightmost point
   uint bits = 0u;
   for (uint row = 0u; row < TILE_SIZE / REACH_HEIGHT; ++row) {
     float low = float(row * REACH_HEIGHT) - mean.y;
     float high = low + float(REACH_HEIGHT - 1);
     if (low > tallest || high < -tallest) continue;
-    vec2 y = clamp(vec2(-apex, apex), low, high);  // of its furthest to the left and to the right in this row
+    vec2 y = clamp(vec2(-apex, apex), low, high);  // the y of its leftmost and rightmost points in this row
     vec2 reach = widest * sqrt(max(vec2(0.0), 1.0 - y * y / (tallest * tallest)));
     vec2 x = lean * y + vec2(-reach.x, reach.y);
     float slack = 0.01 + 1e-5 * (abs(x.x) + abs(x.y));

@@ -1,5 +1,5 @@
-// The squared error, in 255ths, of a drawn view against what byte_pictures.comp kept of another, summed by work group: in
-// whole numbers, so that equal pictures have 0 and no order of summing shows. One invocation a pixel.
+// The squared error of a drawn view, in squared 255ths, against the picture that byte_pictures.comp stored, summed by
+// work group. In integers, equal pictures have 0, and the order of summation does not matter. One invocation a pixel.
 #include "shared/limits.h"
 #include "shared/grid.glsl"
 #include "shared/bytes.glsl"
@@ -14,7 +14,7 @@ uniform uint first_kept;
 uniform uint first_sum;
 uniform uint pixel_count;
 
-shared uint sums[THREADS];  // of at most 3 * 255^2 each: their sum fits a word
+shared uint sums[THREADS];  // each at most 3 * 255^2: their sum fits in a word
 
 void main() {
   uint pixel = thread_index();

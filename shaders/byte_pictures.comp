@@ -1,5 +1,4 @@
-// Drawn pixels as 8 bits keep them, a word each: what a picture takes that only 8-bit pictures are compared with. One
-// invocation a pixel.
+// Rounds drawn pixels to 8 bits, one word each, for pictures that are only compared in 8 bits. One invocation a pixel.
 #include "shared/limits.h"
 #include "shared/grid.glsl"
 #include "shared/bytes.glsl"

@@ -1,5 +1,5 @@
-// Images of the caller's, in which the blend writes views' pictures as they are shown.
-//   MESH_DEPTH  1: over the colours that are there
+// The caller's images, into which the blend writes views' final pictures.
+//   MESH_DEPTH  1: over the images' own colours
 #include "shared/types.h"
 #include "shown.glsl"
 
@@ -24,11 +24,11 @@ vec4 behind_at(uint nth, ivec2 at) {
 }
 #endif
 
-// A blended pixel `at` of a view that is so high, from its top left, in the image of unit `nth`.
+// Writes a blended pixel to the image of unit `nth`. `at` counts from the top left of a view that is `height` px high.
 void write_on_canvas(uint nth, Canvas canvas, uint height, uvec2 at, vec4 pixel, vec3 background) {
   ivec2 to = ivec2(canvas.left + at.x, canvas.bottom + height - 1u - at.y);
 #if MESH_DEPTH
-  if (pixel == vec4(0.0, 0.0, 0.0, 1.0)) return;  // not even rounding changes what is there
+  if (pixel == vec4(0.0, 0.0, 0.0, 1.0)) return;  // the image keeps its exact value
   vec4 over_it = over_image(pixel, behind_at(nth, to), canvas.linear != 0u);
 #else
   vec4 over_it = over(pixel, background, canvas.keeps_alpha != 0u);

@@ -1,8 +1,8 @@
-// How many Gaussians an order group draws becomes the arguments of later dispatches, checked against what the buffers hold. One
-// invocation. The file that includes this declares `arguments` and `counters`.
+// Turns the number of Gaussians that an order group draws into the arguments of later dispatches, and checks it against
+// the buffers' room. One invocation. The including file declares `arguments` and `counters`.
 #include "shared/arguments.glsl"
 
-uniform uint capacity;  // Gaussians that the buffers hold
+uniform uint capacity;  // room of the buffers, in Gaussians
 uniform uint groups_max;
 
 void set_arguments(uint count) {

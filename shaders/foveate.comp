@@ -1,8 +1,7 @@
-// An eye's picture of its parts: within the inset the pixels of its window as they are, beyond the seam around it the context,
-// which has fewer pixels, and in the seam one going over into the other. A work group shares what the context's rows are at
-// its columns.
-//   CANVASES    1: the picture goes into an image as it is shown, and its depths nowhere
-//   MESH_DEPTH  1: over the colours that are there
+// Composes an eye's picture. Inside the inset are the pixels of its window. Beyond the seam around it is the context,
+// which has fewer pixels; the seam mixes both. A work group shares the context's rows, interpolated at its columns.
+//   CANVASES    1: writes the final picture into an image, without depths
+//   MESH_DEPTH  1: over the image's own colours
 #include "shared/limits.h"
 #include "shared/types.h"
 #include "shared/grid.glsl"
@@ -10,7 +9,7 @@
 #include "canvases.glsl"
 #endif
 
-// Pixels of a work group; an invocation has one in each THREAD_ROWS of its rows.
+// Pixels of a work group: an invocation draws one in every THREAD_ROWS rows.
 #define COLUMNS COMPOSE_COLUMNS
 #define ROWS COMPOSE_ROWS
 #define THREAD_ROWS 8u
@@ -18,24 +17,24 @@ layout(local_size_x = COLUMNS, local_size_y = THREAD_ROWS) in;
 
 layout(std430, binding = 0) readonly buffer Colours { vec4 colours[]; };  // C, and T left
 #if CANVASES
-uniform uint nth;                                          // of the canvases
+uniform uint nth;                                          // index of the canvas
 uniform uint background_r, background_g, background_b;     // bits of floats
 #else
 layout(std430, binding = 1) readonly buffer ZSums { float z_sums[]; };
 layout(std430, binding = 2) writeonly buffer Composed { vec4 composed[]; };
 layout(std430, binding = 3) writeonly buffer ComposedZ { float composed_z[]; };
-uniform uint first;  // of the picture in its buffer
+uniform uint first;  // the picture's first pixel in its buffer
 #endif
 uniform uint width, height;  // of the picture, px
 uniform uint context_first, context_width, context_height;
 uniform uint window_first, window_left, window_top, window_width;  // left and top in the picture
 uniform uint inset_left, inset_top, inset_right, inset_bottom;     // in the picture
 uniform uint seam;            // bits of a float, px
-uniform uint step_x, step_y;  // bits of floats: px of the context to one of the picture
+uniform uint step_x, step_y;  // bits of floats: px of the context per px of the picture
 
-// A context has at most as many pixels as the picture; one is made of those from the one before to two after.
+// A context has at most as many pixels as the picture. Interpolation needs those from one before to two after.
 #define AROUND_ROWS (ROWS + 4u)
-shared vec4 across[AROUND_ROWS * COLUMNS];  // of a row of the context, at the pixels' columns
+shared vec4 across[AROUND_ROWS * COLUMNS];  // rows of the context at the pixels' columns
 #if !CANVASES
 shared float across_z[AROUND_ROWS * COLUMNS];
 #endif
@@ -53,20 +52,21 @@ Pixel pixel_at(uint place) {
 #endif
 }
 
-// Catmull-Rom's weights of four neighbours, t from the second to the third.
+// Catmull-Rom's weights of four neighbours; t runs from the second to the third.
 vec4 weights_of(float t) {
   return 0.5 * vec4(t * (-1.0 + t * (2.0 - t)), 2.0 + t * t * (-5.0 + 3.0 * t), t * (1.0 + t * (4.0 - 3.0 * t)), t * t * (t - 1.0));
 }
 
-// Where a pixel of the picture lies among the context's.
-// The same number wherever it is asked for: by it shared memory is filled and read.
+// The place of a picture's pixel in the context. Every call returns the same bits, because it addresses shared memory
+// for writes and reads.
 vec2 in_context(uvec2 pixel) {
   precise vec2 at = (vec2(pixel) + 0.5) * uintBitsToFloat(uvec2(step_x, step_y)) - 0.5;
   return at;
 }
 
-// The context as it would be seen, by Catmull-Rom, and along each axis within the range of the two that lie nearest, or edges
-// would have bright and dark seams and T could leave its range. First the context's rows at the pixels' columns.
+// Interpolates the context by Catmull-Rom. Along each axis the result stays in the range of the two nearest pixels.
+// Otherwise edges would have bright and dark seams, and T could leave its range. First along the context's rows, at the
+// pixels' columns;
 void filter_rows(uvec2 corner, int base_y, int count) {
   uvec2 self = gl_LocalInvocationID.xy;
   ivec2 most = ivec2(context_width, context_height) - 1;
@@ -87,7 +87,7 @@ void filter_rows(uvec2 corner, int base_y, int count) {
   barrier();
 }
 
-// Then what a pixel in this invocation's column sees of them.
+// then along this invocation's column.
 Pixel context_at(uint pixel_y, int base_y) {
   float at = in_context(uvec2(0u, pixel_y)).y;
   vec4 weights = weights_of(at - floor(at));
@@ -112,13 +112,13 @@ float share_of_window(uvec2 pixel) {
   return beyond >= wide ? 0.0 : 1.0 - smoothstep(0.0, wide, beyond);
 }
 
-// Whether no pixel of a group lies in the seam or within.
+// Whether all pixels of a group lie beyond the seam.
 bool is_beyond(uvec2 corner) {
   vec2 wide = vec2(uintBitsToFloat(seam)), low = vec2(corner), high = low + vec2(COLUMNS, ROWS);
   return any(lessThan(high, vec2(inset_left, inset_top) - wide)) || any(greaterThan(low, vec2(inset_right, inset_bottom) + wide));
 }
 
-// The inset is convex: where the corners of a group lie in it, all of the group does.
+// Whether all of a group lies in the inset. The inset is convex, so the group's corners decide.
 bool is_inset(uvec2 corner) {
   uvec2 last = min(corner + uvec2(COLUMNS, ROWS), uvec2(width, height));
   return all(greaterThanEqual(corner, uvec2(inset_left, inset_top))) && all(lessThanEqual(last, uvec2(inset_right, inset_bottom)));

@@ -1,2 +1,2 @@
-// What holds for a whole frame. What a page or an order group differ in, each dispatch is told by uniforms.
+// Values of a whole frame. Values that differ by page or order group are uniforms.
 layout(std140, binding = 0) uniform Frame { FrameParameters frame; };

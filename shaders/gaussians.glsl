@@ -1,5 +1,5 @@
-// The Gaussians of a page of the model. Those of Scaffold-GS depend on the eye: a view has those of its decoding, as far as
-// the networks keep them.
+// The Gaussians of a page of the model. In Scaffold-GS they depend on the eye: a view uses those of its decoding that
+// exist.
 //   OFFSETS   K of Scaffold-GS, 0 for other models
 //   HALF      1: in half precision
 
@@ -26,9 +26,9 @@ uvec2 place_in_page(uint i) {
 
 #if OFFSETS > 0
 
-layout(std430, binding = 9) readonly buffer Kept { uint kept[]; };  // (decoding, anchor), a bit each
+layout(std430, binding = 9) readonly buffer Kept { uint kept[]; };  // (decoding, anchor), a bit for each Gaussian
 
-// Where view v finds Gaussian i of the page, and whether it has it.
+// The place of the page's Gaussian i for view v; is_kept() returns whether it exists.
 uint place_of(uint i, uint v) {
   return (v < frame.asked ? v / frame.views_per_decoding : frame.decoding_of_probe) * page_count + i;
 }

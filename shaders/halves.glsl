@@ -1,9 +1,9 @@
-// --precision half: what a frame keeps of Gaussians and splats in 32 bytes each, most of it in fp16. Both are computed with in
-// fp32. C++ packs the same in render/halves.h. `precise` because several programs pack, and a last bit can turn a half.
+// --precision half: Gaussians and splats in 32 bytes each, mostly in fp16; computations are in fp32. C++ packs the same
+// in render/halves.h. Values are `precise`: several programs pack, and another last bit may round to another half.
 
-// A unit quaternion without its largest number, which the others tell, in 20 bits each: fp16's eleven would let a needle of
-// thousands of pixels point beside.
-#define ROTATION_STEPS 741454.0  // to 1: 2^19 - 1 at sqrt(1/2)
+// A unit quaternion in 20 bits for each component but the largest, which follows from the others. With fp16's eleven
+// bits a needle of thousands of pixels would point in a wrong direction.
+#define ROTATION_STEPS 741454.0  // steps per 1: 2^19 - 1 at sqrt(1/2)
 
 vec4 unpack_rotation(uvec2 bits) {
   uvec3 steps = uvec3(bits.x, bits.x >> 20 | bits.y << 12, bits.y >> 8) & 0xFFFFFu;
@@ -27,7 +27,7 @@ uvec2 packed_rotation(vec4 q) {
   return uvec2(steps.x | steps.y << 20, steps.y >> 12 | steps.z << 8 | largest << 28);
 }
 
-// Position, and the largest scale; the scales as shares of it, opacity, rotation.
+// Position and the largest scale; then the scales as shares of it, opacity, rotation.
 Gaussian unpack_gaussian(uvec4 low, uvec4 high) {
   vec2 xy = unpackHalf2x16(high.x), z_opacity = unpackHalf2x16(high.y);
   vec4 place = uintBitsToFloat(low);
@@ -43,9 +43,9 @@ uvec4 packed_shape(Gaussian g) {
   return uvec4(packHalf2x16(shares.xy), packHalf2x16(vec2(shares.z, g.position.w)), packed_rotation(g.rotation));
 }
 
-// Mean, depth and rho in fp32. Of the conic Q = L L^T the factor L, whose rounding cannot turn an ellipse inside out, times a
-// power of two: fp16 then holds splats from 1/255 to four million px. L.yx is the sum of two, for L.xx as it is kept: their ratio
-// is the direction of a needle.
+// Mean, depth and rho are in fp32. The conic Q = L L^T is stored as its factor L, whose rounding cannot turn an ellipse
+// inside out. A power of two scales L, so that fp16 holds splats from 1/255 to four million px. L.yx is a sum of two
+// halves, computed for the rounded L.xx: their ratio is the direction of a needle.
 #define HALF_FACTOR 256.0
 #define HALF_LEAST 6.1035156e-05
 #define HALF_MOST 65504.0
@@ -71,13 +71,13 @@ uvec4 packed_place(Splat splat) {
 }
 
 uvec4 packed_shape(Splat splat) {
-  // Roots and quotients differ by compilers' choices, this does not.
+  // Compilers differ in roots and quotients, but not in this.
   precise float inverse = inversesqrt(splat.conic.x);
   precise float xx = splat.conic.x * inverse;
   precise float yx = splat.conic.y * inverse;
   precise float yy = inversesqrt(splat.conic.w * splat.conic.w * splat.conic.x);
   precise vec2 factor = clamp(HALF_FACTOR * vec2(xx, yy), vec2(HALF_LEAST), vec2(HALF_MOST));
-  if (splat.conic.w < 0.0) factor.y = -factor.y;  // and with it what is read (projection/tangent.glsl)
+  if (splat.conic.w < 0.0) factor.y = -factor.y;  // unpack_splat() returns the sign (projection/tangent.glsl)
   precise float kept_xx = unpackHalf2x16(packHalf2x16(vec2(factor.x, 0.0))).x;
   precise float leaning = clamp(yx / xx * kept_xx, -HALF_MOST, HALF_MOST);
   precise float rest = leaning - unpackHalf2x16(packHalf2x16(vec2(leaning, 0.0))).x;
@@ -85,5 +85,5 @@ uvec4 packed_shape(Splat splat) {
                packHalf2x16(vec2(min(splat.colour.b, HALF_MOST), rest)), floatBitsToUint(splat.colour.w));
 }
 
-// What is left of a splat that was written.
+// The splat as unpack_splat() returns it after packing.
 Splat rounded(Splat splat) { return unpack_splat(packed_place(splat), packed_shape(splat)); }

@@ -1,4 +1,4 @@
-// Copies the pixels of a window to their places in a picture: copies of buffers take a driver ten times as long. One
+// Copies the pixels of a window to their places in a picture. Copies of buffers take a driver ten times as long. One
 // invocation a pixel.
 #include "shared/limits.h"
 #include "shared/grid.glsl"
@@ -8,9 +8,9 @@ layout(local_size_x = THREADS) in;
 layout(std430, binding = 0) readonly buffer Colours { vec4 colours[]; };  // C, and T left; over black
 layout(std430, binding = 1) writeonly buffer Wanted { vec4 wanted[]; };   // C
 uniform uint pixel_count;  // of the window
-uniform uint width;        // likewise
-uniform uint first;        // pixel of the picture,
-uniform uint pitch;        // of which rows are so many apart
+uniform uint width;        // px, of the window
+uniform uint first;        // first pixel in the picture
+uniform uint pitch;        // px from row to row of the picture
 
 void main() {
   uint pixel = thread_index();

@@ -1,7 +1,7 @@
-// What a level of detail loses of each part, as pictures show it: parts lie side by side in a picture, each in a square of its
-// own. With FINEST, of the finest level: keeps the picture, and finds the mean colour of each part and how much is seen of it;
-// else by how much the drawn level differs from it, over what looks much like that mean colour. One work group a square; sums
-// are the same each time.
+// The loss of a level of detail for each chunk. A picture shows the chunks side by side, each in a square of its own.
+// With FINEST, for the finest level: stores the picture, and computes each chunk's mean colour and visibility.
+// Otherwise: computes the difference from the finest level, over a background similar to that mean colour. One work
+// group a square; the sums are reproducible.
 #include "shared/limits.h"
 #include "shared/grid.glsl"
 
@@ -9,18 +9,18 @@ layout(local_size_x = THREADS) in;
 
 layout(std430, binding = 0) readonly buffer Colours { vec4 colours[]; };  // C, and T left; by pixel
 layout(std430, binding = 1) buffer Finest { vec4 finest[]; };             // likewise
-layout(std430, binding = 2) buffer Behind { vec4 behind[]; };             // by square: mean colour, and contrast squared
+layout(std430, binding = 2) buffer Behind { vec4 behind[]; };             // by square: mean colour, contrast squared
 layout(std430, binding = 3) writeonly buffer Sums { float sums_of_squares[]; };
 #if FINEST
-layout(std430, binding = 4) readonly buffer ZSums { float z_sums[]; };  // how much of each pixel is seen
+layout(std430, binding = 4) readonly buffer ZSums { float z_sums[]; };  // visibility by pixel
 #endif
 uniform uint square_count;
 uniform uint square_side;  // px
 uniform uint row_squares;
 uniform uint row_pixels;
 
-// What lies behind a part is taken to differ from its mean colour as its own pixels do, but by so much at least:
-// a part of one colour has others behind it.
+// The background is assumed to differ from the chunk's mean colour as its own pixels do, but at least by this: a chunk
+// of one colour has others behind it.
 const float contrast_least = 0.125;
 
 shared vec4 sums[THREADS];

@@ -1,18 +1,19 @@
-// What the work groups before this one have counted, in the one dispatch in which they count: each leaves its own count, then the
-// sum of all up to it, and looks back from group to group until one knows its sum, 32 at a time (Merrill and Garland 2016). It
-// waits for groups that have begun only: they take their numbers as they begin. For subgroups of 32 that do arithmetic and ballots.
-// The file that includes this defines LOOK_BACK_BINDING and THREADS.
+// Prefix sums over the work groups of the dispatch that counts (Merrill and Garland 2016). Each group stores its own
+// count, then the sum of all counts up to it. It looks back over earlier groups, 32 at a time, until one has stored its
+// sum. It waits only for groups that have begun, because groups take their numbers when they begin. Requires subgroups
+// of 32 with arithmetic and ballots. The including file defines LOOK_BACK_BINDING and THREADS.
 layout(std430, binding = LOOK_BACK_BINDING) coherent volatile buffer LookBack { uint look_back[]; };
-uniform uint look_back_half;  // of the words below: this dispatch goes by one and makes the other ready for the next
+uniform uint look_back_half;  // this dispatch uses one half of the words below, and clears the other for the next
 
-// At first how many groups have begun and how many words are not 0, of each half; then the words of both, in turn.
+// First, for each half: how many groups have begun, and how many words are not 0. Then the words of both halves,
+// alternating.
 #define LOOK_BACK_BEGUN(half) look_back[2u * (half)]
 #define LOOK_BACK_USED(half) look_back[2u * (half) + 1u]
 #define LOOK_BACK_WORD(half, group) look_back[4u + 2u * (group) + (half)]
-#define LOOK_BACK_OWN 1u  // above the count: of the group by itself
-#define LOOK_BACK_SUM 2u  // of all up to it
+#define LOOK_BACK_OWN 1u  // in the bits above the count: the group's own count
+#define LOOK_BACK_SUM 2u  // the sum of all groups up to it
 #define LOOK_BACK_BITS 30
-#define LOOK_BACK_MOST ((1u << LOOK_BACK_BITS) - 1u)  // sums stop there
+#define LOOK_BACK_MOST ((1u << LOOK_BACK_BITS) - 1u)  // sums saturate here
 
 shared uint look_back_shared;
 
@@ -26,10 +27,10 @@ uint looked_up(uint value) {
   return value;
 }
 
-// The group's number; every invocation must call it, once. A group that has one must call sum_before().
+// Returns the group's number; every invocation must call it, once. A group with a number must call sum_before().
 uint take_number() { return looked_up(gl_LocalInvocationIndex == 0u ? atomicAdd(LOOK_BACK_BEGUN(look_back_half), 1u) : 0u); }
 
-// The sum of the counts of all groups with lower numbers; every invocation must call it with its group's count.
+// Returns the sum of the counts of all groups with lower numbers; every invocation must call it with its group's count.
 uint sum_before(uint number, uint groups, uint own) {
   uint other = 1u - look_back_half;
   for (uint i = number * THREADS + gl_LocalInvocationIndex; i < LOOK_BACK_USED(other); i += groups * THREADS) LOOK_BACK_WORD(other, i) = 0u;
@@ -46,12 +47,12 @@ uint sum_before(uint number, uint groups, uint own) {
       uint word = lane < end ? LOOK_BACK_WORD(look_back_half, end - 1u - lane) : LOOK_BACK_SUM << LOOK_BACK_BITS;
       uint kind = word >> LOOK_BACK_BITS;
       uint waits = subgroupBallot(kind == 0u).x, sums = subgroupBallot(kind == LOOK_BACK_SUM).x;
-      // Those that are there without a gap, up to the first that knows its sum.
+      // The words that are complete without a gap, up to the first sum.
       uint there = waits == 0u ? 32u : uint(findLSB(waits));
       uint last = sums == 0u ? 32u : uint(findLSB(sums));
       uint taken = min(there, last + 1u);
       uint count = lane < taken ? word & LOOK_BACK_MOST : 0u;
-      // In halves, since 32 of the largest counts are more than a word holds.
+      // Adds halves of words, because 32 of the largest counts exceed a word.
       uint low = subgroupAdd(count & 0xFFFFu), high = subgroupAdd(count >> 16) + (low >> 16);
       uint found = high >> (LOOK_BACK_BITS - 16) == 0u ? high << 16 | low & 0xFFFFu : LOOK_BACK_MOST;
       sum = min(sum + found, LOOK_BACK_MOST);

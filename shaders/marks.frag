@@ -1,4 +1,4 @@
-// Their colours as they are, and an alpha above 0 where there is one.
+// Writes the display colours of marks; alpha is above 0 in their pixels.
 in vec4 colour;
 layout(location = 0) out vec4 shown;
 

@@ -1,14 +1,14 @@
-// Puts what the preview has drawn among the splats behind those before it, so that a frame's pictures are whole ones: nothing
-// is seen through it, and depths are sums again, as of a frame without meshes. One invocation a pixel of a view.
+// Composes the preview's marks behind the splats in front of them. Their pixels become opaque, and depths become sums
+// again, as in a frame without meshes. One invocation a pixel of a view.
 #include "shared/limits.h"
 #include "shared/grid.glsl"
 
 layout(local_size_x = THREADS) in;
 
 layout(std430, binding = 0) buffer Colours { vec4 colours[]; };  // C, and T left
-layout(std430, binding = 1) buffer ZSums { float z_sums[]; };    // depths, of splats or of what stands behind them
+layout(std430, binding = 1) buffer ZSums { float z_sums[]; };    // depths, of splats or of marks behind them
 layout(binding = 0) uniform sampler2D marks;
-uniform uint first;          // of the view's pixels
+uniform uint first;          // the view's first pixel
 uniform uint width, height;  // of the view
 
 void main() {

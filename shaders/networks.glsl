@@ -1,7 +1,8 @@
-// The networks of Scaffold-GS (Lu et al. 2024): two layers each. Of the first, what depends on the anchor's feature alone is
-// computed once a model (ViewFree); what the eye adds is left: direction and distance. Hidden units stand in quads.
+// The networks of Scaffold-GS (Lu et al. 2024), of two layers each. The contribution of an anchor's feature to the
+// first layer is computed once per model (ViewFree). The shader adds that of direction and distance. Hidden units are
+// stored in quads.
 //   HIDDEN   hidden units, a multiple of 4     OFFSETS   K, Gaussians of an anchor     BANK   1 with a feature bank
-//   WEIGHTS  vec4s of all weights, if they go into shared memory; else 0
+//   WEIGHTS  vec4s of all weights, if they fit in shared memory; else 0
 
 #define QUADS (HIDDEN / 4)
 
@@ -16,15 +17,15 @@
 #define COLOUR_ROW uint(8 * OFFSETS)
 #define BANK_ROW uint(11 * OFFSETS)
 
-// For each network QUADS of biases, then the weights of direction and distance by hidden unit; then for each row of the second
-// layers QUADS of weights and its bias.
+// For each network: QUADS of biases, then the weights of direction and distance by hidden unit. Then for each row of
+// the second layers: QUADS of weights, and its bias.
 layout(std430, binding = 3) readonly buffer Networks { vec4 networks[]; };
-// (resolution of the feature, network, quad, anchor); one resolution without a feature bank.
+// (resolution of the feature, network, quad, anchor); without a feature bank there is one resolution.
 layout(std430, binding = 4) readonly buffer ViewFree { vec4 view_free[]; };
 
 uniform uint anchor_count;  // of the page
 
-// All invocations call it before anything else.
+// All invocations must call it first.
 #if WEIGHTS > 0
 shared vec4 weights[WEIGHTS];
 
@@ -60,7 +61,7 @@ vec4 from_feature(uint resolution, uint network, uint quad, uint anchor) {
   return view_free[((resolution * 3u + network) * uint(QUADS) + quad) * anchor_count + anchor];
 }
 
-// How much of the feature at a quarter, at half and at all of its resolution a feature bank takes.
+// The shares of the feature at a quarter, half and full resolution in a feature bank.
 vec3 bank_mix(vec4 ray) {
 #if BANK == 1
   Hidden hidden;
@@ -73,7 +74,7 @@ vec3 bank_mix(vec4 ray) {
 #endif
 }
 
-// The first layer of a network for an anchor; ray: direction from the eye, and distance.
+// Computes the first layer of a network for an anchor. ray: direction from the eye, and distance.
 Hidden hidden_of(uint network, uint anchor, vec4 ray, vec3 mixed) {
   Hidden hidden;
   for (int q = 0; q < QUADS; ++q) {

@@ -1,5 +1,5 @@
-// What views show of the parts of a model: sums over the Gaussians of each part of what the blend summed up of them
-// (MEASURE_VISIBILITY). One invocation a slot of an order group, of those whose Gaussians lie in the page.
+// The visibility of a model's chunks in the views: sums the blend's results (MEASURE_VISIBILITY) over the Gaussians of
+// each chunk. One invocation a slot of an order group; it skips Gaussians outside the page.
 #include "shared/axes.h"
 #include "shared/limits.h"
 #include "shared/types.h"
@@ -13,15 +13,15 @@ layout(local_size_x = THREADS) in;
 layout(std430, binding = 0) readonly buffer Views { View views[]; };
 layout(std430, binding = 2) readonly buffer Arguments { DispatchArguments arguments[]; };
 layout(std430, binding = 3) readonly buffer Indices { uint indices[]; };    // Gaussian of each slot
-layout(std430, binding = 4) buffer Sums { uvec2 sums[]; };              // by splat, VISIBILITY_LOW_BITS and those above
-layout(std430, binding = 5) readonly buffer Owners { uint owners[]; };      // part by block of Gaussians
-layout(std430, binding = 6) buffer OfParts { uint of_parts[]; };            // (view, part), two of 64 bits
+layout(std430, binding = 4) buffer Sums { uvec2 sums[]; };              // by splat: VISIBILITY_LOW_BITS, the bits above
+layout(std430, binding = 5) readonly buffer Owners { uint owners[]; };      // chunk by block of Gaussians
+layout(std430, binding = 6) buffer OfParts { uint of_parts[]; };            // (view, chunk), two of 64 bits
 uniform uint part_count;
 uniform uint block_size;  // Gaussians
 uniform uint view_begin;
 uniform uint view_end;
 
-// What counts of a splat that is hidden, which is not one that is beside the picture: a 65,536th of a pixel.
+// The least sum of a splat within the picture, even if it is hidden: a 65,536th of a pixel.
 const uint hidden = uint(VISIBILITY_SCALE) / 65536u;
 
 void add(uint at, uvec2 number) {
@@ -39,7 +39,7 @@ void main() {
   for (uint v = view_begin; v < view_end; ++v) {
     uint from = splat_of(slot, v);
     uvec2 sum = sums[from];
-    if (sum != uvec2(0)) sums[from] = uvec2(0);  // for the next pass
+    if (sum != uvec2(0)) sums[from] = uvec2(0);  // cleared for the next pass
     uint low = sum.x + (sum.y << VISIBILITY_LOW_BITS);
     uvec2 area = uvec2(low, (sum.y >> (32 - VISIBILITY_LOW_BITS)) + (low < sum.x ? 1u : 0u));
     if (area.y == 0u) area.x = max(area.x, hidden);

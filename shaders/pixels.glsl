@@ -1,12 +1,13 @@
-// The tile of a work group and the pixels of its invocations: where they begin, and where they go at last. The end of blending.glsl.
+// The tile of a work group and the pixels of its invocations: their initial values and their destinations. The end of
+// blending.glsl.
 
-// What the work group draws.
+// The tile that the work group draws.
 uint tile = 0u;
 uint begin = 0u, end = 0u;  // its list
 
-// Whether there is anything for this work group to draw; else it must end.
+// Finds the tile. If it returns false, the work group has nothing to draw and must end.
 bool find_tile() {
-  // It is to be drawn again.
+  // The frame will be drawn again.
   if (counters.overflow != 0u) return false;
 #if LISTS == LISTS_LONG
   if (group_index() >= counters.long_lists) return false;
@@ -26,7 +27,7 @@ bool find_tile() {
   return is_own;
 }
 
-// Where pixel p of this invocation is kept. A probe's tiles are kept side by side.
+// The place of pixel p of this invocation in the picture. A probe's tiles lie side by side.
 uint place_of(View view, uint p) {
   uvec2 at = first_pixel - first_drawn(view);
   uint across = view.width;
@@ -38,10 +39,10 @@ uint place_of(View view, uint p) {
   return view.pixel_offset + (at.y + p) * across + at.x;
 }
 
-// The view that is drawn, or that its probe is of.
+// The drawn view, or the view of the drawn probe.
 uint view_at_hand() { return view_index < frame.asked ? view_index : frame.probed; }
 
-// The pixels of this invocation, of which the first lies `in_tile`.
+// Initialises the pixels of this invocation; `in_tile` is the first.
 void begin_pixels(uvec2 in_tile) {
   View view = views[view_index];
   uvec2 corner = tile_corner(tile_of(tile, view), view);

@@ -1,6 +1,6 @@
-// Both eyes' pictures, or one, into an image of any format: shared/layout.h says which pixel goes where. Colours are
-// display-referred and written as they are.
-//   OVER   1: a single picture goes over the colours that are in the image
+// Writes both eyes' pictures, or one, into an image of any format; shared/layout.h maps the pixels. Colours are
+// display-referred and written unchanged.
+//   OVER   1: blends a single picture over the image's own colours
 #include "shared/layout.h"
 #include "shown.glsl"
 #include "shared/limits.h"
@@ -14,14 +14,14 @@ layout(binding = 0) writeonly uniform image2D shown;
 layout(binding = 0) uniform sampler2D behind;  // the same image, read before it is written
 #endif
 uniform uint kind;            // LAYOUT_
-uniform uint first, second;   // the eyes' first pixels in `colours`; of a single picture both are its own
+uniform uint first, second;   // the eyes' first pixels in `colours`; for a single picture both are equal
 uniform uint width, height;   // of an eye
 uniform uint columns, rows;   // of the picture
-uniform uint left, bottom;    // of it in the image
+uniform uint left, bottom;    // lower left corner of the picture in the image
 uniform uint background_r, background_g, background_b;  // bits of floats
-uniform uint keeps_alpha;     // 1: no background, but associated alpha
-uniform uint linear;          // 1: the image's numbers mean light, not what a screen takes
-uniform uint steps;           // that the image's colours have above 0; 0: they are floats
+uniform uint keeps_alpha;     // 1: no background, but premultiplied alpha
+uniform uint linear;          // 1: the image stores linear light instead of display values
+uniform uint steps;           // largest integer of the image's colours; 0: floats
 
 vec4 over(vec4 colour) {
   return over(colour, uintBitsToFloat(uvec3(background_r, background_g, background_b)), keeps_alpha != 0u);

@@ -1,13 +1,13 @@
-// A view's depths as OpenGL keeps them, from 0 to 1, into a texture of depths, which no compute shader can write. A texture of
-// fewer pixels than the view has that of the view's pixel in the middle of each of its own.
-//   IS_DEPTH    1: what lies in z_sums is the depth itself, of every second row at least; 0: none
+// Writes a view's depths as OpenGL's values from 0 to 1 into a depth texture, which compute shaders cannot write. If
+// the texture has fewer pixels than the view, each gets the depth of the view's pixel at its middle.
+//   IS_DEPTH    1: z_sums holds depths, at least of every second row, and 0 for none
 #include "shared/limits.h"
 
 #if !IS_DEPTH
 layout(std430, binding = 0) readonly buffer Colours { vec4 colours[]; };  // C, and T left
 #endif
 layout(std430, binding = 1) readonly buffer ZSums { float z_sums[]; };
-uniform uint first;                  // of the view's pixels
+uniform uint first;                  // the view's first pixel
 uniform uint width, height;          // of the view
 uniform uint columns, rows;          // of the texture
 uniform uint farthest, per_inverse;  // bits of floats: the depth at z is farthest + per_inverse / z
@@ -18,7 +18,7 @@ void main() {
   uvec2 pixel = (2u * at + 1u) * uvec2(width, height) / (2u * uvec2(columns, rows));
   if (2u * rows <= height) pixel.y &= ~1u;
   uint from = first + pixel.y * width + pixel.x;
-  float inverse = 0.0;  // what is seen through is infinitely far, as what is not there
+  float inverse = 0.0;  // transparent and missing pixels are infinitely far
 #if IS_DEPTH
   if (z_sums[from] > 0.0) inverse = 1.0 / z_sums[from];
 #else

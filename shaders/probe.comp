@@ -1,6 +1,6 @@
-// After the blend: the squared error of a view in its probe's tiles, drawn exactly, summed for --quality. Both as 8 bits would
-// keep them, which is what is looked at; and the squares of the sums of THREADS pixels, a tile mostly, by which tiles differ. One
-// invocation a pixel of those tiles.
+// After the blend: sums the squared error of a view in its probe's tiles, which are drawn exactly, for --quality. Both
+// are rounded to 8 bits, as a viewer sees them. Also sums the squares of the sums over THREADS pixels, mostly a tile,
+// which measure how much tiles differ. One invocation a pixel of these tiles.
 #include "shared/limits.h"
 #include "shared/types.h"
 #include "shared/grid.glsl"
@@ -41,7 +41,7 @@ void main() {
     barrier();
   }
   if (self != 0u) return;
-  // Whole numbers, so that the order of the additions does not matter.
+  // Integers, so the order of additions does not matter.
   uint sum = uint(sums[0] * float(PROBE_SCALE));
   uint before = atomicAdd(counters.probe_low, sum);
   if (before + sum < before) atomicAdd(counters.probe_high, 1u);

@@ -3,9 +3,9 @@
 #extension GL_KHR_shader_subgroup_arithmetic : require
 #extension GL_KHR_shader_subgroup_ballot : require
 #endif
-// Stage 1, project, second part: the Gaussians drawn get slots without gaps, in index order, by which lists break ties. The last
-// block leaves the arguments of later dispatches. And how far they are in the middle.
-//   LOOKS_BACK    1: blocks count and compact in this one dispatch; 0: blocks were counted (project_compact_count.comp)
+// Stage 1, project, second part: gives the drawn Gaussians slots without gaps, in index order, by which lists break
+// ties. The last block writes the arguments of later dispatches. Also sums the depths, for the middle depth.
+//   LOOKS_BACK    1: blocks count and compact in this dispatch; 0: project_compact_count.comp has counted the blocks
 #include "shared/limits.h"
 #include "shared/types.h"
 #include "shared/grid.glsl"
@@ -27,7 +27,7 @@ uniform uint order_group;
 layout(std430, binding = 2) readonly buffer BlockCounts { uint block_counts[]; };
 shared uint sum_of_blocks;
 
-// Each block sums up those before its own: for some thousands of them cheaper than a scan of its own.
+// Each block sums the counts of the blocks before it: for some thousands of blocks cheaper than a separate scan.
 uint sum_before(uint block, uint blocks, uint own) {
   if (gl_LocalInvocationIndex == 0u) sum_of_blocks = 0u;
   barrier();
@@ -41,7 +41,7 @@ uint sum_before(uint block, uint blocks, uint own) {
 
 #define EACH (COMPACT_BLOCK / THREADS)
 #define WORDS (THREADS / 32)
-shared uint masks[EACH][WORDS];  // of each round: a bit for each Gaussian that is drawn
+shared uint masks[EACH][WORDS];  // by round: a bit for each Gaussian that is drawn
 shared uint depth_sum;
 
 void main() {
@@ -66,7 +66,7 @@ void main() {
   if (gl_SubgroupInvocationID == 0u)
 #endif
   atomicAdd(depth_sum, own_sum);
-  uint place[EACH];  // among those of the block
+  uint place[EACH];  // among the drawn Gaussians of the block
   uint seen = 0u;
   for (uint i = 0u; i < EACH; ++i) {
     bool is_drawn = key[i] != DEPTH_KEY_NONE;

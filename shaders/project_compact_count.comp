@@ -1,11 +1,11 @@
-// Stage 1, project, second part: how many Gaussians of each block of COMPACT_BLOCK are drawn.
+// Stage 1, project, second part: counts the drawn Gaussians of each block of COMPACT_BLOCK.
 #include "shared/limits.h"
 #include "shared/types.h"
 #include "shared/grid.glsl"
 
 layout(local_size_x = THREADS) in;
 
-layout(std430, binding = 0) readonly buffer DepthKeys { uvec4 depth_keys[]; };  // by four: fewer, larger reads
+layout(std430, binding = 0) readonly buffer DepthKeys { uvec4 depth_keys[]; };  // four at once: fewer, larger reads
 layout(std430, binding = 1) writeonly buffer BlockCounts { uint block_counts[]; };
 #include "frame.glsl"
 

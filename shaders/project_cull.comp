@@ -1,5 +1,5 @@
-// Stage 1, project, first part: which Gaussians any view of an order group draws, told by their depth. One invocation a
-// Gaussian of the model's page and eye.
+// Stage 1, project, first part: stores the depth of each Gaussian that any view of an order group draws, as its key.
+// One invocation for each Gaussian of the model's page and each of EYES.
 #include "shared/limits.h"
 #include "shared/types.h"
 #include "shared/grid.glsl"
@@ -18,11 +18,11 @@ layout(std430, binding = 8) writeonly buffer NextBounds { float next_bounds[]; }
 uniform uint view_begin;
 uniform uint view_end;  // without the probe
 
-// What the next frame is to know of a Gaussian that this view does not draw: a bound of 1 again for one out of view,
-// a little more than before for one that Th leaves out, or it would never be measured again. The drawn are measured.
+// The next frame's bound of a Gaussian that this view does not draw. It is 1 for one out of view. For one that Th drops
+// it grows slightly; otherwise it would never be measured again. Drawn ones are measured.
 #if MEASURES
 void age_bound(View view, uint gaussian, uint v, bool projected, bool drawn, Splat splat) {
-  if (v >= frame.asked) return;  // a probe
+  if (v >= frame.asked) return;  // a probe measures nothing
   bool left_out = false;
 #if TH != TH_TAU
   if (projected && !drawn) {
@@ -35,7 +35,7 @@ void age_bound(View view, uint gaussian, uint v, bool projected, bool drawn, Spl
 }
 #endif
 
-// The Gaussian's key, if any view of this invocation draws it: the same in all views of an order group.
+// The Gaussian's key, if any view of this invocation draws it. It is the same in all views of an order group.
 uint key_of(uint i) {
   uvec2 place = place_in_page(i);
   Gaussian g = GAUSSIAN(place.x);
@@ -51,14 +51,14 @@ uint key_of(uint i) {
     bool projected = is_kept(i, v) && project(view, g, axes, splat);
     if (projected) splat.colour.w = tile_level(view, v, page_first + i, splat);
 #if HALF
-    if (projected) splat = rounded(splat);  // or an eye could get what it has not alone
+    if (projected) splat = rounded(splat);  // an eye must not differ from the same eye alone
 #endif
     bool drawn = projected && touches_a_tile(splat, view);
 #if MEASURES
     age_bound(view, page_first + i, v, projected, drawn, splat);
 #endif
 #if PROBED
-    // All of it that leaves a mark, where the probe is of this group.
+    // A probe of this group draws every visible Gaussian.
     if (projected && !drawn && v == frame.probed && view.order_group == views[frame.asked].order_group) {
       splat.colour.w = visible_level(splat.opacity);
       drawn = touches_a_tile(splat, views[frame.asked]);  // in tiles that all instances share
@@ -66,7 +66,7 @@ uint key_of(uint i) {
 #endif
     if (drawn) key = floatBitsToUint(order_depth(view, g));
 #if !MEASURES
-    if (drawn) break;  // no need to ask the other eye
+    if (drawn) break;  // one eye decides for both
 #endif
   }
   return key;

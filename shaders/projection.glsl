@@ -1,5 +1,5 @@
-// A Gaussian as a view sees it (docs/method.md 2), all but its colour. `precise` because several programs compute it and
-// must get the same bits.
+// The projection of a Gaussian into a view (docs/method.md 2), without its colour. `precise`, because several programs
+// compute it and must get the same bits.
 //   ORDER        ORDER_ of shared/axes.h
 //   PROJECTION   PROJECTION_ of shared/axes.h; its file is projection/NAME.glsl
 #include "shared/axes.h"
@@ -7,7 +7,7 @@
 #define REGIONS 0
 #endif
 
-// Columns: the Gaussian's axes in the world, each as long as its standard deviation. M of docs/method.md 2.
+// M of docs/method.md 2. Columns: the Gaussian's axes in the world, with the standard deviations as lengths.
 mat3 scaled_axes(Gaussian g) {
   precise float w = g.rotation.x;
   precise float x = g.rotation.y;
@@ -29,7 +29,7 @@ float dot_precise(vec2 a, vec2 b) {
   return d;
 }
 
-// The point relative to the anchor in the eye's axes.
+// Transforms a point relative to the anchor into the eye's axes.
 vec3 to_eye(View view, vec3 d) {
   precise float x = dot_precise(view.row_x.xyz, d) + view.row_x.w;
   precise float y = dot_precise(view.row_y.xyz, d) + view.row_y.w;
@@ -37,25 +37,25 @@ vec3 to_eye(View view, vec3 d) {
   return vec3(x, y, z);
 }
 
-// The low-pass: a variance of KERNEL_PX2 across and down, as it falls on a picture that leans against the ray by `slope` and
-// is scaled by `scale`, whose product is 1.
+// The low-pass: a variance of KERNEL_PX2 across and down. `slope` leans the picture's plane against the ray. `scale`
+// stretches the axes; its product is 1.
 struct LowPass {
   vec2 slope;
   vec2 scale;
 };
 
-// (Q.xx, Q.xy, Q.yy, sqrt(det C2)), and the share of its mass that a Gaussian keeps under the low-pass: sqrt(det P / det C2), P
-// being C2 without it (Mip-Splatting, Yu 2024), or with the share `free` of it alone. With s L the low-pass, det P = |across x
-// down|^2 and det C2 = det P + s (L.yy |across|^2 - 2 L.xy across . down + L.xx |down|^2) + s^2 det L, where what is in brackets
-// is a sum of squares, too: all are positive, so that what is long and thin keeps its width, which xx yy - xy^2 would lose. What
-// is not drawn is told by w = 0.
+// Returns (Q.xx, Q.xy, Q.yy, sqrt(det C2)), with w = 0 for a Gaussian that is not drawn. `kept` is the share of the
+// Gaussian's mass left under the low-pass: sqrt(det P / det C2). P is C2 without the low-pass (Mip-Splatting, Yu 2024),
+// or with the share `free` of it. With s L the low-pass, det P = |across x down|^2 and det C2 = det P + s (L.yy
+// |across|^2 - 2 L.xy across . down + L.xx |down|^2) + s^2 det L. The bracket is also a sum of squares. All terms are
+// positive, so long thin splats keep their width, which xx yy - xy^2 would lose.
 vec4 conic_of(vec3 across, vec3 down, LowPass low, float free, out float kept) {
   const float s = float(KERNEL_PX2);
   precise float xx = dot_precise(across, across) + s * (low.scale.x * low.scale.x * (1.0 + low.slope.x * low.slope.x));
   precise float xy = dot_precise(across, down) + s * (low.slope.x * low.slope.y);
   precise float yy = dot_precise(down, down) + s * (low.scale.y * low.scale.y * (1.0 + low.slope.y * low.slope.y));
   kept = 0.0;
-  // A power of two takes the size out, so that no product overflows.
+  // Scales by a power of two, so that no product overflows.
   int exponent = int(floatBitsToUint(max(xx, yy)) >> 23);
   if (exponent == 0 || exponent >= 254) return vec4(0.0);
   int size = (exponent - 127) >> 1;
@@ -88,8 +88,8 @@ vec4 conic_of(vec3 across, vec3 down, LowPass low, float free, out float kept) {
   return vec4(q, root_det);
 }
 
-// What the order goes by, above 0 for what is drawn. Distances are taken in the world, so that no turn of the head rounds them
-// otherwise.
+// The sort key, above 0 for a drawn Gaussian. Distances are computed in the world, so that their rounding does not
+// depend on the turn of the head.
 float order_depth(View view, Gaussian g) {
   precise vec3 d = g.position.xyz - view.anchor.xyz;
 #if ORDER == ORDER_DISTANCE
@@ -105,7 +105,7 @@ vec3 onto_axes(vec3 direction, mat3 axes) {
   return vec3(dot_precise(direction, axes[0]), dot_precise(direction, axes[1]), dot_precise(direction, axes[2]));
 }
 
-// The scaled axes as they fall on the picture where its plane leans against the ray by `slope`, px: `gain` px a world unit.
+// The scaled axes in the picture, px. Its plane leans against the ray by `slope`; `gain` is px per world unit.
 void axes_on_picture(View view, vec2 slope, vec2 gain, mat3 axes, out vec3 across, out vec3 down) {
   precise vec3 jx = gain.x * (view.row_x.xyz - slope.x * view.row_z.xyz);
   precise vec3 jy = gain.y * (view.row_y.xyz - slope.y * view.row_z.xyz);
@@ -113,8 +113,8 @@ void axes_on_picture(View view, vec2 slope, vec2 gain, mat3 axes, out vec3 acros
   down = onto_axes(jy, axes);
 }
 
-// The share of the low-pass by which no Gaussian loses weight: none in anti-aliased models, and otherwise all, as trained; but in
-// a picture of fewer pixels only what it is in the one that has all, so that thin Gaussians are as bright in both.
+// The share of the low-pass that costs Gaussians no weight. It is 0 in anti-aliased models, otherwise 1, as trained. A
+// picture of fewer pixels uses the low-pass of the full picture, so that thin Gaussians are equally bright in both.
 float free_of(View view) {
 #if ANTIALIASED
   return 0.0;
@@ -125,7 +125,7 @@ float free_of(View view) {
 #endif
 }
 
-// What a splat has whatever the projection, but for its colour. `kept` as conic_of() has it.
+// Sets the opacity of a splat, and clears its colour. `kept` comes from conic_of().
 void finish(View view, Gaussian g, float kept, inout Splat splat) {
   splat.opacity = view.opacity * g.position.w;
 #if ANTIALIASED || REGIONS

@@ -1,11 +1,11 @@
-// Other colours for the splats of a frame of one view. One invocation a slot.
+// Replaces the colours of the splats of a one-view frame. One invocation a slot.
 #include "shared/limits.h"
 #include "shared/grid.glsl"
 
 layout(local_size_x = THREADS) in;
 
 layout(std430, binding = 0) readonly buffer Colours { vec4 colours[]; };
-layout(std430, binding = 12) buffer Splats { vec4 splats[]; };  // three each, the last the colour and the level of Th
+layout(std430, binding = 12) buffer Splats { vec4 splats[]; };  // three each, the last: colour, level of Th
 uniform uint slot_count;
 
 void main() {

@@ -1,4 +1,4 @@
-// An exclusive scan over the THREADS values of a work group (WITH_SUBGROUPS: by those of 32).
+// An exclusive scan over the THREADS values of a work group (WITH_SUBGROUPS: with subgroups of 32).
 #ifndef WITH_SUBGROUPS
 #define WITH_SUBGROUPS 0
 #endif
@@ -9,7 +9,7 @@ shared uint row_sums[SCAN_ROWS];
 shared uint scan_values[THREADS];
 #endif
 
-// The sum of the values before this invocation's; every invocation must call it.
+// Returns the sum of the values of earlier invocations; every invocation must call it.
 uint scan_group(uint value) {
 #if WITH_SUBGROUPS
   uint sum = subgroupExclusiveAdd(value), lane = gl_SubgroupInvocationID;
@@ -18,7 +18,7 @@ uint scan_group(uint value) {
   barrier();
   sum += subgroupAdd(lane < gl_SubgroupID ? row_sums[lane] : 0u);
 #else
-  // An invocation a row of 32 values, then one for the rows: few barriers, which software renderers are slow at.
+  // One invocation per row of 32 values, then one for the rows: few barriers, which are slow on software renderers.
   uint self = gl_LocalInvocationIndex;
   scan_values[self] = value;
   memoryBarrierShared();

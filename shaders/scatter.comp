@@ -1,4 +1,4 @@
-// Moves records that were uploaded side by side to their places. One invocation a word.
+// Moves uploaded records to their places. One invocation a word.
 #include "shared/limits.h"
 #include "shared/grid.glsl"
 

@@ -4,13 +4,14 @@
 #extension GL_KHR_shader_subgroup_ballot : require
 #endif
 #pragma optionNV(unroll all)
-// Stage 3, sort, last: a work group sorts a supertile's entries by depth, those that are as far by splat, and writes its tiles'
-// lists. LIST_THREADS invocations of LIST_EACH entries.
+// Stage 3, sort, last: a work group sorts a supertile's entries by depth, ties by splat, and writes its tiles' lists.
+// It has LIST_THREADS invocations of LIST_EACH entries.
 //
-// Depths are parted into as many equal steps as there are invocations, and each step gets as many bins as it has entries, so that a
-// bin holds one or two; these are compared with one another. In what order entries come to a bin does not matter, so one atomic in
-// shared memory an entry and histogram does what takes a radix sort passes of ballots (README.md of render). A list in which a bin
-// holds more than SORT_BIN_MOST, since many have one of a few depths, is left to CROWDED, which sorts by a bitonic network in the buffer.
+// The range of depths is split into as many equal steps as there are invocations. Each step gets as many bins as it has
+// entries, so that a bin holds one or two, which are compared with one another. Entries may come to a bin in any order.
+// So one atomic in shared memory per entry and histogram replaces the ballots of a radix sort (src/render/README.md).
+// If many entries have one of a few depths, a bin holds more than SORT_BIN_MOST. Such a list is left to CROWDED, which
+// sorts by a bitonic network in the buffer.
 #include "shared/limits.h"
 #include "shared/types.h"
 #include "shared/grid.glsl"
@@ -38,21 +39,21 @@ uniform uint kind;  // of lists
 #define ITEMS_BINDING 8
 #include "sort_items.glsl"
 #include "tile_ranges.glsl"  // bindings 6 and 7
-uniform uint capacity;  // of tile_values
+uniform uint capacity;  // room of tile_values
 
-shared uint board[MOST];    // entries of each bin, then where it begins; then depths; then entries in their order
-shared uint steps[THREADS];  // bins before the step's, and from bit 16 its own
+shared uint board[MOST];    // entries by bin, then first places; then depths; then sorted entries
+shared uint steps[THREADS];  // bins before the step's; its own from bit 16 on
 shared uint low, high, of_tiles, list_begin, is_tied, is_crowded;
 shared uint of_rows[ROWS][LIST_TILES], of_list[LIST_TILES];
 #if !WITH_SUBGROUPS
 shared uint touching[ROWS][EACH][LIST_TILES];
 #endif
 
-// The tiles' lists, of the entries that lie in their order on the board.
+// Writes the tiles' lists from the sorted entries on the board.
 void write_lists(uvec4 item) {
   uint self = gl_LocalInvocationIndex, row = self / 32u, lane = self % 32u, length = item.z;
   uint value[EACH];
-  // Each row of 32 invocations takes EACH times 32 of them: how many of each 32 are in each tile, then which.
+  // Each row of 32 invocations takes EACH times 32 entries: first counts those in each tile, then writes them.
   uint from = row * 32u * EACH + lane;
   for (uint i = 0u; i < EACH; ++i) value[i] = from + 32u * i < length ? board[from + 32u * i] : 0u;
 #if WITH_SUBGROUPS
@@ -68,7 +69,7 @@ void write_lists(uvec4 item) {
   memoryBarrierShared();
   barrier();
 #endif
-  uint sum = 0u;  // each row's lanes count a tile each
+  uint sum = 0u;  // each lane of a row counts one tile
 #if WITH_SUBGROUPS
   for (uint tile = 0u; tile < LIST_TILES; ++tile) {
     uint touched = 0u;
@@ -117,7 +118,8 @@ void write_lists(uvec4 item) {
 }
 
 #if CROWDED
-// By depth, then by splat, in the buffer itself. Each merge compares mirrored halves first: all go one way, whatever the length.
+// Sorts by depth, then by splat, in the buffer itself. Each merge first compares mirrored halves: then all comparisons
+// have one direction, for any length.
 void sort_list(uvec4 item) {
   uint self = gl_LocalInvocationIndex, in_tiles = 0u;
   if (self == 0u) of_tiles = 0u;
@@ -150,7 +152,7 @@ void sort_list(uvec4 item) {
 }
 
 #else
-// Of those that hold an entry, the least and the greatest key.
+// Sets `low` and `high` to the smallest and the largest key of all entries.
 void find_range(uint key[EACH], uint length) {
   uint self = gl_LocalInvocationIndex, least = 0xFFFFFFFFu, most = 0u;
   if (self == 0u) {
@@ -197,7 +199,7 @@ void sort_list(uvec4 item) {
   if (gl_SubgroupInvocationID == 0u)
 #endif
   atomicAdd(of_tiles, in_tiles);
-  if (low == high) {  // all as far: by splat alone
+  if (low == high) {  // all depths are equal: sorts by splat
     for (uint i = 0u; i < EACH; ++i) key[i] = SPLAT_OF(value[i]);
     memoryBarrierShared();
     barrier();
@@ -245,9 +247,9 @@ void sort_list(uvec4 item) {
     if (self == 0u) add_item(SORT_CROWDED_KIND, make_room(SORT_CROWDED_KIND, 1u), item);
     return;
   }
-  uint begin = 0u;  // of the list, if it is no part of one: asked for here, needed later
+  uint begin = 0u;  // of a whole list: requested here, because it is needed later
   if (self == 0u && !is_part(item)) begin = atomicAdd(counters.tile_pairs, of_tiles);
-  uint bin[EACH];  // where it begins, and from bit 16 how many it holds
+  uint bin[EACH];  // first place; count from bit 16 on
   for (uint i = 0u; i < EACH; ++i) {
     bin[i] = 0u;
     if (i * THREADS + self >= length) continue;
@@ -273,7 +275,7 @@ void sort_list(uvec4 item) {
     }
     place[i] = first + less + earlier;
     if (as_far <= 1u) continue;
-    bin[i] = first + less | as_far << 16;  // of those that are as far
+    bin[i] = first + less | as_far << 16;  // of the equal depths
     is_tied = 1u;
   }
   if (self == 0u) list_begin = begin;
@@ -302,7 +304,7 @@ void sort_list(uvec4 item) {
 }
 #endif
 
-// As many groups as there are lists, unless there are too many for a launch.
+// There is one group per list, unless that exceeds a dispatch.
 void main() {
   if ((counters.overflow & OVERFLOW_UNSORTED) != 0u) return;
   uint count = counters.lists[kind].count;

@@ -2,9 +2,9 @@
 #extension GL_KHR_shader_subgroup_basic : require
 #extension GL_KHR_shader_subgroup_arithmetic : require
 #endif
-// Stage 3, sort, where a list is too long for a work group (sort_items.glsl): a group parts it by depth, or where all are as far by
-// splat, into slabs, finds where each slab's part of each tile's list begins, and adds the slabs to the lists that are to be
-// sorted, or to be parted by the next round. Each round moves entries to the other half of the buffer.
+// Stage 3, sort, for lists too long for a work group (sort_items.glsl). A group splits a list into slabs by depth, or
+// by splat if all depths are equal. It finds the begin of each slab's part of each tile's list. It adds the slabs to
+// the lists to be sorted, or to be split by the next round. Each round moves entries to the other half of the buffer.
 #include "shared/limits.h"
 #include "shared/types.h"
 #include "shared/grid.glsl"
@@ -23,11 +23,11 @@ layout(std430, binding = 5) readonly buffer ItemsRead { uvec4 items_read[]; };
 #include "sort_items.glsl"
 #include "tile_ranges.glsl"  // bindings 6 and 7
 uniform uint round;        // from 0
-uniform uint first_entry;  // of the other half
-uniform uint capacity;     // of tiles' lists
+uniform uint first_entry;  // of the other half of the buffer
+uniform uint capacity;     // of all tiles' lists
 
-#define STEPS (2u * THREADS)  // of depth, that are not parted in this round
-shared uint steps[STEPS];      // entries; then where the next one goes
+#define STEPS (2u * THREADS)  // of depth, which this round does not split
+shared uint steps[STEPS];      // entries of each, then the place of the next one
 shared uint slab_of[STEPS];
 shared uint slab_begin[SORT_SLABS];
 shared uint slab_sums[SORT_SLABS][LIST_TILES];
@@ -78,7 +78,8 @@ void split_list(uvec4 item) {
   barrier();
   uint first = steps[2u * self], second = steps[2u * self + 1u], before = scan_group(first + second);
   for (uint k = 0u; k < 2u; ++k) {
-    // By its middle, so that a step which is too large by itself is a slab by itself, and a round never leaves all as it was.
+    // The middle of a step selects its slab. So a step that is too large alone becomes a slab alone, and no round
+    // leaves a list unchanged.
     uint count = k == 0u ? first : second, slab = min((before + count / 2u) / slab_length, SORT_SLABS - 1u);
     steps[2u * self + k] = before;
     slab_of[2u * self + k] = slab;
@@ -123,7 +124,7 @@ void split_list(uvec4 item) {
       begin += slab_sums[slab][self];
     }
   }
-  if (self < SORT_SLABS && slab_begin[self] < length) {  // a slab that no step begins in is empty, and the one before it longer
+  if (self < SORT_SLABS && slab_begin[self] < length) {  // no step begins in an empty slab
     uint end = length;
     for (uint slab = self + 1u; slab < SORT_SLABS; ++slab) end = min(end, slab_begin[slab]);
     uint count = end - slab_begin[self], kind = kind_of(count, round + 1u);

@@ -1,6 +1,6 @@
-// The splats of a frame (slots.glsl): SPLAT(at), or with SPLATS_WRITTEN write_splat().
+// Access to the splats of a frame (slots.glsl): SPLAT(at), or with SPLATS_WRITTEN write_splat().
 //   HALF             1: in half precision
-//   WITH_SUBGROUPS   1: write_splat() by subgroups
+//   WITH_SUBGROUPS   1: write_splat() uses subgroups
 #if HALF
 #include "halves.glsl"
 #define SPLAT_PARTS 2u
@@ -14,7 +14,7 @@
 
 layout(std430, binding = 12) writeonly buffer Splats { SPLAT_PART splats[]; };  // SPLAT_PARTS each
 
-// This invocation's splat, if it has one. All invocations must call it, neighbours with neighbouring places.
+// Writes this invocation's splat, if it has one. All invocations must call it, neighbours with neighbouring places.
 void write_splat(uint at, bool has_one, Splat splat) {
 #if HALF
   if (has_one) {
@@ -22,10 +22,10 @@ void write_splat(uint at, bool has_one, Splat splat) {
     splats[SPLAT_PARTS * at + 1u] = packed_shape(splat);
   }
 #elif WITH_SUBGROUPS
-  // Of the one's and then of the other's splat two neighbours write half each of those 32 bytes that lie in one line of memory,
-  // which is faster than each writing both of its own.
+  // Two neighbours write both splats together, one after the other: each writes half of the 32 bytes that lie in one
+  // line of memory. This is faster than each writing its own splat.
   bool is_even = gl_SubgroupInvocationID % 2u == 0u;
-  bool is_first = at % 2u == 0u;  // whether these are the first 32
+  bool is_first = at % 2u == 0u;  // whether these are a splat's first 32 bytes
   vec4 place = vec4(splat.mean, splat.depth, splat.opacity);
   vec4 low = is_first ? place : splat.conic, high = is_first ? splat.conic : splat.colour;
   vec4 got = subgroupShuffleXor(is_even ? high : low, 1u);

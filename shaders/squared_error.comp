@@ -1,5 +1,5 @@
-// The squared error of drawn pixels against wanted ones, summed by work group: calibration compares many frames without
-// reading a picture back. One invocation for every so manieth pixel.
+// The squared error of drawn pixels against wanted ones, summed by work group, so that calibration compares many frames
+// without reading pictures back. An invocation takes every (group_count * THREADS)th pixel.
 #include "shared/limits.h"
 #include "shared/grid.glsl"
 
@@ -8,10 +8,10 @@ layout(local_size_x = THREADS) in;
 layout(std430, binding = 0) readonly buffer Colours { vec4 colours[]; };  // C, and T left; over black
 layout(std430, binding = 1) readonly buffer Wanted { vec4 wanted[]; };    // C
 layout(std430, binding = 2) writeonly buffer Sums { float sums_of_groups[]; };
-layout(std430, binding = 3) readonly buffer Exposure { vec4 exposure[3]; };  // what becomes of a drawn (r, g, b, 1)
+layout(std430, binding = 3) readonly buffer Exposure { vec4 exposure[3]; };  // rows that transform a drawn (r, g, b, 1)
 uniform uint pixel_count;
 uniform uint group_count;
-uniform uint levels;  // 0: as they are; 255: both as 8 bits would keep them
+uniform uint levels;  // 0: unchanged; 255: both rounded to 8 bits
 
 shared float sums[THREADS];
 

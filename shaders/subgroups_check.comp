@@ -3,9 +3,9 @@
 #extension GL_KHR_shader_subgroup_ballot : require
 #extension GL_KHR_shader_subgroup_shuffle : require
 #extension GL_KHR_shader_subgroup_vote : require
-// Whether invocations 32 k to 32 k + 31 of a work group are its subgroup k, with lanes in their order, and hear all of each other
-// and nobody else: what every shader with subgroups takes for granted, in the shapes of those shaders (gl/subgroups.cpp). A
-// driver says which size its subgroups have, but may run others.
+// Whether invocations 32 k to 32 k + 31 of a work group are its subgroup k, with lanes in order, and exchange data only
+// with each other. Every shader with subgroups relies on this. The test uses those shaders' group shapes
+// (gl/subgroups.cpp). A driver reports the size of its subgroups, but may run others.
 #define INVOCATIONS (COLUMNS * ROWS)
 #define PATTERN 0x5EA1C0DEu
 layout(local_size_x = COLUMNS, local_size_y = ROWS) in;
@@ -14,7 +14,7 @@ layout(std430, binding = 0) buffer Wrong { uint wrong; };  // a bit for each fau
 
 void main() {
   uint self = gl_LocalInvocationIndex, lane = self % 32u, subgroup = self / 32u;
-  // Every other subgroup's last lane speaks, which the others of its own hear, and nobody else.
+  // The last lane of every other subgroup votes: only its own subgroup may see the vote.
   bool speaks = lane == 31u && subgroup % 2u == 0u;
   uint from = (lane * 13u + 7u) % 32u;
   uvec4 all = subgroupBallot(true), some = subgroupBallot((PATTERN >> lane & 1u) != 0u);

@@ -1,11 +1,11 @@
-// Where each tile's list is, as the stage sort finds it. Tiles with long lists are noted, too: a launch of their own draws them,
-// which starts before the others' and has more invocations a tile. The file that includes this declares `counters`.
+// Stores the place of each tile's list, in stage sort. Also collects the tiles with long lists: a dispatch of their own
+// draws them, which starts first and has more invocations a tile. The including file declares `counters`.
 #include "frame.glsl"
 
 layout(std430, binding = 6) writeonly buffer TileRanges { uvec2 tile_ranges[]; };  // begin, end
 layout(std430, binding = 7) writeonly buffer LongLists { uint long_lists[]; };    // tiles
 
-// Of the nth tile of a list that is no part.
+// Stores the range of the nth tile of a whole list.
 void set_range(uvec4 item, uint nth, uint begin, uint length) {
   if (nth >= SUPERTILE_TILES && item.w == NO_SECOND) return;
   uint tile = (nth < SUPERTILE_TILES ? item.x : item.w) * SUPERTILE_TILES + nth % SUPERTILE_TILES;

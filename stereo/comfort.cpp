@@ -8,7 +8,7 @@ namespace binosplat::stereo {
 
 namespace {
 
-// Where a world point lies in a camera's picture.
+// Projects a world point into a camera's picture, px.
 glm::dvec2 projected(const Camera& camera, const glm::dvec3& point) {
   const glm::dvec3 v = glm::transpose(camera.rotation) * (point - camera.position);
   return {camera.fx * v.x / v.z + camera.cx, camera.fy * v.y / v.z + camera.cy};
@@ -20,7 +20,7 @@ struct Sample {
   double vertical_px;
 };
 
-// The angle between the lines from both eyes to a point.
+// The angle at a point between the lines to both eyes, in degrees.
 double angle_at(const std::array<Camera, 2>& eyes, const glm::dvec3& point) {
   const glm::dvec3 a = point - eyes[0].position, b = point - eyes[1].position;
   return glm::degrees(std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b)));
@@ -33,8 +33,8 @@ Sample sample_at(const std::array<Camera, 2>& eyes, const glm::dvec2& pixel, dou
       left.rotation * glm::dvec3((pixel.x - left.cx) / left.fx, (pixel.y - left.cy) / left.fy, 1.0);
   const glm::dvec3 point = left.position + z * ray;
   const glm::dvec2 seen = projected(eyes[1], point);
-  // The left eye sees the point and what is focused on in one pixel, the right one in two. What is infinitely
-  // far lies in one direction from both.
+  // In the left eye the point and the focus share a pixel; in the right eye they have two. An infinitely far
+  // focus has one direction in both eyes.
   const glm::dvec3 focused = (focus ? left.position : eyes[1].position) + focus.value_or(1.0) * ray;
   const double at_focus = focus ? angle_at(eyes, focused) : 0.0;
   const double px = projected(eyes[1], focused).x - seen.x;
@@ -62,14 +62,14 @@ std::optional<DisparityRange> disparity_range(const std::array<Camera, 2>& eyes,
   const Image depth = depth_map(left);
   std::vector<double> px, degrees;
   DisparityRange range;
-  // Of a large picture sixty thousand pixels tell as much.
+  // Sixty thousand pixels of a large picture are enough.
   const int step = std::max(1, static_cast<int>(std::sqrt(left.width * (left.height / 60e3))));
   for (int y = 0; y < left.height; y += step) {
     for (int x = 0; x < left.width; x += step) {
       const double z = depth.at(x, y, 0);
       if (!std::isfinite(z) || z <= 0.0) continue;
       const Sample sample = sample_at(eyes, {x + 0.5, y + 0.5}, z, focus);
-      if (!std::isfinite(sample.px)) continue;  // beside or behind the right eye
+      if (!std::isfinite(sample.px)) continue;  // outside the right eye's view
       px.push_back(sample.px);
       degrees.push_back(sample.degrees);
       range.vertical_px = std::max(range.vertical_px, sample.vertical_px);
@@ -89,8 +89,8 @@ bool comfortable(const DisparityRange& range) {
 }
 
 ComfortableRig comfortable_rig(const DisparityRange& range, const std::array<Camera, 2>& eyes) {
-  // Of parallel eyes a disparity in px is fx ipd (1/z - 1/D), and over fx about the angle straight ahead,
-  // which to the sides is less.
+  // For parallel eyes a disparity in px is fx ipd (1/z - 1/D). Divided by fx it is about the angle straight
+  // ahead; to the sides the angle is smaller.
   const double ipd = glm::length(eyes[1].position - eyes[0].position);
   const auto screen = screen_distance(eyes);
   const double middle = 0.5 * (range.near_px + range.far_px) / (eyes[0].fx * ipd);
@@ -106,7 +106,7 @@ std::optional<double> suitable_convergence(const std::array<Camera, 2>& eyes, co
   const auto screen = screen_distance(eyes);
   const auto range = disparity_range(eyes, left, screen);
   if (!range) return std::nullopt;
-  // A little less than is comfortable, as angles to the sides differ.
+  // Slightly below the limit, because angles to the sides differ.
   const double reach = eyes[0].fx * glm::radians(0.99 * comfortable_degrees);
   const auto [least, most] = std::minmax({range->near_px - reach, range->far_px + reach});
   const double px = std::clamp(range->middle_px, least, most);

@@ -12,7 +12,7 @@ namespace binosplat::stereo {
 
 namespace {
 
-constexpr float none = -1.0f;  // where a map has no number
+constexpr float none = -1.0f;  // marks pixels without a number
 
 // The largest channel of each pixel, in 255ths.
 Image largest_channel(const Image& colours) {
@@ -40,8 +40,8 @@ Image depth(const Picture& picture) {
   return map;
 }
 
-// The first of 1, 2, 5, 10 ... that this share of the numbers does not exceed; where those are all 0, that
-// none exceeds.
+// The first of 1, 2, 5, 10 ... that this share of the numbers does not exceed. If those are all 0, the first
+// that none exceeds.
 double range_of(const std::vector<Image>& maps, double share) {
   std::vector<float> numbers;
   for (const Image& map : maps) {
@@ -84,7 +84,7 @@ Picture split_at(double share, const Picture& left, const Picture& right) {
 
 }  // namespace
 
-// A polynomial of degree 6 through matplotlib's table (Smith and van der Walt), within 0.02 of it.
+// A polynomial of degree 6 through matplotlib's viridis (Smith and van der Walt), within 0.02 of it.
 glm::vec3 map_colour(float number) {
   constexpr std::array<glm::vec3, 7> c = {
       glm::vec3(0.27773f, 0.00541f, 0.33410f),   glm::vec3(0.10509f, 1.40461f, 1.38459f),
@@ -152,7 +152,7 @@ DebugPictures DebugView::make(int what, const DrawnFrame& drawn, const Backgroun
       shown.pictures.push_back(split_at(split, pictures[v], right[v]));
   } else {
     const std::vector<Image> maps = map(what, drawn, background);
-    // What is near tells eyes apart; the sky would leave it one colour.
+    // Near depths show the scene; with the sky they would all have one colour.
     shown.most = range_of(maps, what == SHOW_DEPTH || what == SHOW_MEDIAN_DEPTH ? 0.8 : 0.99);
     for (const Image& map : maps) shown.pictures.push_back(coloured(map, *shown.most));
   }

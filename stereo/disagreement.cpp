@@ -35,7 +35,7 @@ Image error_of(const Picture& approximate, const Picture& exact) {
   return error;
 }
 
-// Where a view sees a point given by its depth in another: pixel coordinates and depth.
+// Projects a pixel of one view, with its depth, into another view: pixel coordinates and depth.
 glm::dvec3 seen_by(const shared::View& to, const shared::View& from, int x, int y, double z) {
   const glm::dvec4 lens = from.lens;
   const glm::dvec3 v((x + 0.5 - lens[2]) / lens[0] * z - from.row_x.w,
@@ -49,7 +49,7 @@ glm::dvec3 seen_by(const shared::View& to, const shared::View& from, int x, int 
           depth};
 }
 
-// Between the four pixels around; x and y lie within the picture.
+// Interpolates between four pixels; x and y must lie within the picture.
 glm::dvec3 bilinear(const Image& image, double x, double y) {
   const int x0 = std::min(static_cast<int>(x), image.width - 2 < 0 ? 0 : image.width - 2);
   const int y0 = std::min(static_cast<int>(y), image.height - 2 < 0 ? 0 : image.height - 2);
@@ -63,7 +63,8 @@ glm::dvec3 bilinear(const Image& image, double x, double y) {
   return colour;
 }
 
-// The point of the right picture that shows what pixel (x, y) of the left shows, if it does.
+// The point of the right picture that shows the same point as the left pixel (x, y); none if it is hidden or
+// outside.
 std::optional<glm::dvec2> partner(const std::array<shared::View, 2>& views, const Image& left_depth,
                                   const Image& right_depth, int x, int y) {
   const double z = left_depth.at(x, y, 0);
@@ -78,7 +79,7 @@ std::optional<glm::dvec2> partner(const std::array<shared::View, 2>& views, cons
   return glm::dvec2(seen);
 }
 
-// What the pixels of a row that count come to.
+// Sums over the pixels of a row that count.
 struct Counted {
   double sum = 0.0;  // squared differences of channels
   std::size_t count = 0;
@@ -95,7 +96,7 @@ Disagreement disagreement(const std::array<shared::View, 2>& views, std::span<co
   Disagreement result;
   result.picture = Image(left.width, left.height, 3);
   result.right = left;
-  // One sum a row, added up in order: the same number whatever the threads do.
+  // One sum a row, added in order: the result does not depend on threads.
   std::vector<Counted> rows(static_cast<std::size_t>(left.height));
   parallel_for(left.height, [&](int y) {
     Counted& row = rows[static_cast<std::size_t>(y)];

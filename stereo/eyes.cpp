@@ -9,7 +9,7 @@ namespace binosplat::stereo {
 
 namespace {
 
-/// The axes right, up, backward of an eye, as columns.
+/// The right, up and backward axes of an eye, as columns.
 glm::dmat3 axes_of(const glm::dvec4& q) {
   const double length = glm::length(q);
   if (!(length > 0.0) || !std::isfinite(length))

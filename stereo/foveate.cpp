@@ -16,14 +16,14 @@ constexpr double inset_least = 1.0, inset_most = 120.0;  // degrees
 constexpr double gaze_most = 80.0;
 constexpr double scale_least = 0.05;
 
-// Pixels of the context that one beside it is made of, on each side.
+// Neighbours on each side from which a pixel of the context is interpolated.
 constexpr std::uint32_t inset_reach = 2;
 
 glm::dvec3 direction_of(const glm::dvec2& gaze) {
   return glm::normalize(glm::dvec3(std::tan(glm::radians(gaze.x)), -std::tan(glm::radians(gaze.y)), 1.0));
 }
 
-// Slopes along axis k between which the cone of that half angle about a direction lies.
+// The range of slopes along axis k of the cone with that half angle about a direction.
 glm::dvec2 slopes_of(const glm::dvec3& direction, int k, double half) {
   const double middle = std::atan2(direction[k], direction.z);
   const double sine = std::sin(half) / std::hypot(direction[k], direction.z);
@@ -38,7 +38,7 @@ struct Span {
   std::uint32_t begin = 0, end = 0;
 };
 
-// Pixels of a picture, `size` of them, that lie between.
+// The pixels of a picture, `size` of them, between two positions.
 Span pixels_between(double begin, double end, std::uint32_t size) {
   const auto within = [&](double at) {
     return static_cast<std::uint32_t>(std::clamp(at, 0.0, static_cast<double>(size)));
@@ -46,7 +46,7 @@ Span pixels_between(double begin, double end, std::uint32_t size) {
   return {within(std::floor(begin)), within(std::ceil(end))};
 }
 
-// Widened to where windows may begin and end.
+// Widened to multiples of BLEND_CELL, where windows may begin and end.
 Span to_cells(const Span& span, std::uint32_t size) {
   return {span.begin / BLEND_CELL * BLEND_CELL,
           std::min(size, (span.end + BLEND_CELL - 1) / BLEND_CELL * BLEND_CELL)};
@@ -55,7 +55,7 @@ Span to_cells(const Span& span, std::uint32_t size) {
 }  // namespace
 
 void check(const Foveation& f, std::string_view prefix) {
-  // Written so that values that are not finite fail, too.
+  // Each condition also fails for values that are not finite.
   if (!(f.inset_degrees >= inset_least && f.inset_degrees <= inset_most))
     fail("{}inset {}: expected {} to {} degrees", prefix, f.inset_degrees, inset_least, inset_most);
   if (!(f.context_scale >= scale_least && f.context_scale <= 1.0))
@@ -102,7 +102,7 @@ FoveatedEye foveate(const shared::View& eye, const Foveation& foveation, std::si
     out.context.lens[k] = static_cast<float>(eye.lens[k] * scale);
     out.context.lens[k + 2] = static_cast<float>(eye.lens[k + 2] * scale);
     out.context_part.low_pass_share *= static_cast<float>(scale);
-    // What no pixel beside the inset is made of.
+    // The hole: no pixel outside the inset is interpolated from it.
     const auto begin = static_cast<std::uint32_t>(std::ceil(out.inset_begin[k] * scale)) + inset_reach;
     const auto end = static_cast<std::uint32_t>(std::floor(out.inset_end[k] * scale));
     const bool at_begin = out.inset_begin[k] == 0, at_end = out.inset_end[k] == size[k];
@@ -131,7 +131,7 @@ FoveatedViews foveated_views(std::span<const shared::View> eyes, const Foveation
   return out;
 }
 
-// To a function of the frame that draws the parts.
+// Passes the parts to `to`, a function of the frame that draws them.
 void FoveatedFrame::hand_over(std::span<const shared::View> eyes, const Foveation& foveation,
                               const render::FrameSettings& settings, const render::Workings& workings,
                               const render::CallersTextures& textures, decltype(&render::Frame::submit) to) {
@@ -176,7 +176,7 @@ render::FrameReport FoveatedFrame::finish() {
 void FoveatedFrame::compose(gl::Dispatcher& dispatcher) {
   for (std::size_t k = 0; k < eyes_.size(); ++k) compose_eye(dispatcher, k);
   dispatcher.wait_for_writes();
-  // However canvases are read next.
+  // For any use of the canvases.
   if (!to_.empty()) dispatcher.context().gl().MemoryBarrier(GL_ALL_BARRIER_BITS);
 }
 

@@ -1,6 +1,6 @@
 #pragma once
-// Foveated pictures: for each eye a window about its gaze, exact to the bit, and around it the same picture
-// in fewer pixels, brought to one size on the GPU. Both are views of one frame and are projected together.
+// Foveated pictures: each eye has a window about its gaze, exact to the bit, and around it a context with
+// fewer pixels, which the GPU scales up. Both are views of one frame and are projected together.
 
 #include <binosplat/settings.h>
 
@@ -19,32 +19,32 @@ namespace binosplat::stereo {
 
 using Foveation = binosplat::Foveation;
 
-/// Throws Error for numbers that no eye has; `prefix` goes before their names.
+/// Throws Error for illegal numbers; `prefix` precedes their names in the text.
 void check(const Foveation& foveation, std::string_view prefix = "");
 
-/// How one eye's picture is drawn, px.
+/// The parts of one eye's picture, px.
 struct FoveatedEye {
-  glm::uvec2 inset_begin{0}, inset_end{0};  // the pixels that are exact
+  glm::uvec2 inset_begin{0}, inset_end{0};  // the exact pixels
   double seam = 0.0;                        // the border's width around them
-  shared::View context;                     // the picture in fewer pixels
-  render::ViewRegion context_part;          // without what only the inset shows
-  render::ViewRegion window;                // what is drawn of the eye's own view: the inset and its seam
+  shared::View context;                     // the context's view, with fewer pixels
+  render::ViewRegion context_part;          // without the pixels that only the inset shows
+  render::ViewRegion window;                // the drawn part of the eye's own view: the inset and its seam
 };
 
-/// What is drawn of an eye's view. `nth` is the eye's place in foveation.gaze. Throws Error for what check()
-/// refuses, a list of gazes without that eye, and a gaze whose inset lies outside the picture.
+/// Plans the parts of an eye's view. `nth` is the eye's index in foveation.gaze. Throws Error as check()
+/// does, for a list of gazes without that eye, and for a gaze whose inset lies outside the picture.
 FoveatedEye foveate(const shared::View& eye, const Foveation& foveation, std::size_t nth = 0);
 
-/// The views of a frame that draws these eyes, two each (its context, then its window), and the frame's
-/// settings, whose tolerance is for the contexts. The insets are exact.
+/// The views of a frame that draws these eyes, two per eye (its context, then its window), and the frame's
+/// settings. The tolerance applies to the contexts; the insets are exact.
 struct FoveatedViews {
   std::vector<FoveatedEye> eyes;
   std::vector<shared::View> views;
   render::FrameSettings settings;
 };
 
-/// Throws Error for more than MAX_VIEWS / 2 eyes, for settings that already have regions or ask for the
-/// median depth, and as foveate() does.
+/// Throws Error for more than MAX_VIEWS / 2 eyes, for settings with regions or the median depth, and as
+/// foveate() does.
 FoveatedViews foveated_views(std::span<const shared::View> eyes, const Foveation& foveation,
                              const render::FrameSettings& settings = {});
 
@@ -56,10 +56,10 @@ class FoveatedFrame {
         z_sums_(frame_.model()->context(), "their depth"),
         canvases_(frame_.model()->context(), "their canvases") {}
 
-  /// Draws all eyes in one frame and composes their pictures, which is a stage of its own, "compose". With
-  /// canvases, one an eye, the pictures are there and nowhere else, over settings.background. With mesh
-  /// depths, too one an eye, what lies behind is not drawn, and there must be canvases. Throws as
-  /// foveated_views() and render::Frame::draw() do.
+  /// Draws all eyes in one frame and composes their pictures in a further stage, "compose". With canvases,
+  /// one per eye, the pictures are only there, over settings.background. Mesh depths, also one per eye,
+  /// require canvases; splats behind meshes are not drawn. Throws as foveated_views() and
+  /// render::Frame::draw() do.
   render::FrameReport draw(std::span<const shared::View> eyes, const Foveation& foveation,
                            const render::FrameSettings& settings = {}, const render::Workings& workings = {},
                            const render::CallersTextures& textures = {}) {
@@ -67,7 +67,7 @@ class FoveatedFrame {
     return finish();
   }
 
-  /// The same in two calls, as those of frame().
+  /// The same in two calls, like those of frame().
   void submit(std::span<const shared::View> eyes, const Foveation& foveation,
               const render::FrameSettings& settings = {}, const render::Workings& workings = {},
               const render::CallersTextures& textures = {}) {
@@ -75,21 +75,22 @@ class FoveatedFrame {
   }
   render::FrameReport finish();
 
-  /// As render::Frame::prepare().
+  /// Same as render::Frame::prepare().
   void prepare(std::span<const shared::View> eyes, const Foveation& foveation,
                const render::FrameSettings& settings, const render::CallersTextures& textures) {
     hand_over(eyes, foveation, settings, {}, textures, &render::Frame::prepare);
   }
 
-  /// The composed pictures of the last frame, one an eye; and on the GPU, as a frame's lie: vec4 (C, T) by
-  /// pixel, a view's from its pixel_offset on; unless they went onto canvases.
+  /// The composed pictures of the last frame, one per eye. colours() has them on the GPU, in the layout of
+  /// Frame::colours(): vec4 (C, T) by pixel; each view begins at its pixel_offset. Undefined for a frame on
+  /// canvases.
   std::vector<Picture> read_pictures() const;
   const gl::Buffer& colours() const { return colours_; }
   const std::vector<shared::View>& views() const { return eyes_; }
 
-  /// What the last frame drew of each eye.
+  /// The parts of each eye in the last frame.
   const std::vector<FoveatedEye>& parts() const { return parts_; }
-  /// What draws the parts: twice as many views.
+  /// The frame that draws the parts: twice as many views.
   render::Frame& frame() { return frame_; }
 
  private:
@@ -101,8 +102,8 @@ class FoveatedFrame {
 
   render::Frame frame_;
   gl::Buffer colours_, z_sums_, canvases_;
-  // Of the frame that was submitted last:
-  std::vector<render::Canvas> to_;  // empty: into the buffers above
+  // Of the last submitted frame:
+  std::vector<render::Canvas> to_;  // empty: the pictures go into the buffers above
   bool among_meshes_ = false;
   glm::vec3 background_{0.0f};
   std::vector<shared::View> eyes_;

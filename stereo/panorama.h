@@ -1,6 +1,6 @@
 #pragma once
-// What an eye sees of all that lies ahead, as VR180 has it: half a sphere as an equirectangular picture, each
-// pixel along its own ray.
+// An eye's VR180 picture: the hemisphere ahead as an equirectangular picture, in which each pixel has its own
+// ray.
 
 #include <array>
 #include <memory>
@@ -21,7 +21,7 @@ constexpr int panorama_side_most = 8192;
 /// z forward): longitude from -90 to 90 degrees with i, latitude from 90 to -90 with j.
 glm::dvec3 panorama_ray(int side, int i, int j);
 
-/// The pinhole views that hold an eye's rays between them: ahead, to the right, to the left, up, down.
+/// The pinhole views that together contain all rays of an eye: ahead, right, left, up, down.
 constexpr std::size_t panorama_faces = 5;
 Camera panorama_face(int side, const Camera& eye, std::size_t nth);
 
@@ -31,14 +31,14 @@ class Panorama {
   /// panorama_side_most.
   Panorama(std::shared_ptr<render::GpuModel> model, int side);
 
-  /// Draws what one eye or two see from their places, which their cameras say with the directions; the lenses
-  /// of these do not matter. Uses the settings that exact_of() keeps, but always sorts by distance (from the
-  /// point between the eyes) and takes the tangent projection. `near_plane` is a distance, world units. The
-  /// report sums up five views. Throws as render::RayBlend does.
+  /// Draws the panoramas of one or two eyes, from the positions and directions of their cameras; the lenses
+  /// do not matter. Uses the settings that exact_of() keeps, but always sorts by distance (from the point
+  /// between the eyes) with the tangent projection. `near_plane` is a distance in world units. The report
+  /// sums over five views. Throws as render::RayBlend does.
   render::FrameReport draw(std::span<const Camera> eyes, double near_plane,
                            const render::FrameSettings& settings = {});
 
-  /// The pictures of the eyes drawn last; z_sum is of distances.
+  /// The pictures of the last eyes; z_sum holds distances.
   std::vector<Picture> read_pictures() const;
 
  private:

@@ -15,14 +15,14 @@ namespace binosplat::stereo {
 
 namespace {
 
-/// How a compute shader writes a texture of the caller's in place; GL_NONE: not at all.
+/// How a compute shader writes a caller's texture in place; GL_NONE: it cannot.
 struct InPlace {
   GLenum format = GL_NONE;
-  bool by_view = false;  // of the format above
+  bool by_view = false;  // through a texture view of `format`
 };
 
-/// What a framebuffer shows if that is one texture and no more: written without a copy, which servers' GPUs
-/// make slowly.
+/// The texture of a framebuffer that has only this one. It is written without a copy, which is slow on server
+/// GPUs.
 Target texture_behind(const gl::Functions& gl, const Target& target) {
   if (target.texture != 0 || target.framebuffer == 0) return target;
   const auto attached = [&](GLenum place, GLenum what) {
@@ -30,7 +30,7 @@ Target texture_behind(const gl::Functions& gl, const Target& target) {
     gl.GetNamedFramebufferAttachmentParameteriv(target.framebuffer, place, what, &value);
     return value;
   };
-  for (GLenum other = 1; other < 8; ++other) {  // every driver has so many
+  for (GLenum other = 1; other < 8; ++other) {  // every driver has at least eight
     if (attached(GL_COLOR_ATTACHMENT0 + other, GL_FRAMEBUFFER_ATTACHMENT_OBJECT_TYPE) != GL_NONE)
       return target;
   }
@@ -53,17 +53,16 @@ InPlace in_place(const gl::Functions& gl, const Target& target, bool over_target
   gl.GetTextureParameteriv(target.texture, GL_TEXTURE_IMMUTABLE_FORMAT, &immutable);
   gl.GetTextureLevelParameteriv(target.texture, target.level, GL_TEXTURE_INTERNAL_FORMAT, &format);
   if (kind != GL_TEXTURE_2D && kind != GL_TEXTURE_2D_ARRAY) return {};
-  // sRGB is written as the plain bytes that display values are; only immutable textures have views.
+  // Display values are the plain bytes of an sRGB texture. Only immutable textures have views.
   if (format == GL_SRGB8_ALPHA8 && immutable != 0) return {GL_RGBA8, true};
   constexpr std::array formats = {GL_RGBA8, GL_RGB10_A2, GL_RGBA16, GL_RGBA16F, GL_RGBA32F};
   if (std::find(formats.begin(), formats.end(), format) == formats.end()) return {};
-  // A texture that is read, too, is read by a view, to which what its owner has set of swizzles and levels
-  // does not apply.
+  // A texture that is also read needs a view, which ignores the owner's swizzles and levels.
   if (over_target && immutable == 0) return {};
   return {static_cast<GLenum>(format), over_target};
 }
 
-/// The format that holds a picture until it is copied into a framebuffer, with no fewer bits than are there.
+/// The format of a picture that is copied into a framebuffer, with at least the framebuffer's bits.
 GLenum copied_from(const gl::Functions& gl, GLuint framebuffer) {
   GLenum place = GL_COLOR_ATTACHMENT0;
   if (framebuffer == 0) {
@@ -73,7 +72,7 @@ GLenum copied_from(const gl::Functions& gl, GLuint framebuffer) {
   }
   GLint bits = 0;
   gl.GetNamedFramebufferAttachmentParameteriv(framebuffer, place, GL_FRAMEBUFFER_ATTACHMENT_RED_SIZE, &bits);
-  gl.GetError();  // nothing there: whether there is elsewhere shows when it is copied
+  gl.GetError();  // no such attachment: the copy fails if it needs one
   return bits > 0 && bits <= 8 ? GL_RGBA8 : GL_RGBA32F;
 }
 
@@ -81,7 +80,7 @@ glm::ivec2 size_of(const gl::Functions& gl, const DepthTarget& target) {
   glm::ivec2 size(0);
   gl.GetTextureLevelParameteriv(target.texture, target.level, GL_TEXTURE_WIDTH, &size.x);
   gl.GetTextureLevelParameteriv(target.texture, target.level, GL_TEXTURE_HEIGHT, &size.y);
-  gl.GetError();  // no texture: whoever draws into it says so
+  gl.GetError();  // no texture: drawing into it reports the error
   return size;
 }
 
@@ -89,12 +88,12 @@ glm::ivec2 size_of(const gl::Functions& gl, const DepthTarget& target) {
 
 Presenter::~Presenter() {
   const std::array framebuffers = {target_framebuffer_, scratch_framebuffer_,
-                                   depth_framebuffer_};  // 0 is passed over
+                                   depth_framebuffer_};  // OpenGL ignores 0
   dispatcher_.context().gl().DeleteVertexArrays(1, &no_vertices_);
   dispatcher_.context().gl().DeleteFramebuffers(framebuffers.size(), framebuffers.data());
 }
 
-// Throws Error for what is no such texture.
+// Throws Error unless the texture can be attached.
 void Presenter::attach(std::uint32_t framebuffer, GLenum place, std::uint32_t texture, int level, int layer,
                        const char* kind) {
   const gl::Functions& gl = dispatcher_.context().gl();
@@ -132,7 +131,7 @@ void Presenter::copy(const glm::ivec2& size, std::uint32_t to, const glm::ivec2&
   }
 }
 
-// What is in a framebuffer, to the scratch texture.
+// Copies a framebuffer's content to the scratch texture.
 void Presenter::copy_back(const glm::ivec2& size, std::uint32_t from, const glm::ivec2& corner) {
   const gl::Functions& gl = dispatcher_.context().gl();
   gl.BlitNamedFramebuffer(from, scratch_framebuffer_, corner.x, corner.y, corner.x + size.x,
@@ -149,7 +148,7 @@ void Presenter::copy_back(const glm::ivec2& size, std::uint32_t from, const glm:
 const gl::Texture& Presenter::scratch(const glm::ivec2& size, GLenum format) {
   const gl::Functions& gl = dispatcher_.context().gl();
   if (scratch_ != nullptr && scratch_->is(format, size.x, size.y)) return *scratch_;
-  scratch_.reset();  // its memory first
+  scratch_.reset();  // frees its memory first
   scratch_ = std::make_unique<gl::Texture>(dispatcher_.context(), format, size.x, size.y);
   if (scratch_framebuffer_ == 0) gl.CreateFramebuffers(1, &scratch_framebuffer_);
   gl.NamedFramebufferTexture(scratch_framebuffer_, GL_COLOR_ATTACHMENT0, scratch_->id(), 0);
@@ -206,7 +205,7 @@ void Presenter::draw(const gl::Buffer& colours, std::span<const shared::View> vi
                        {"keeps_alpha", background ? 0u : 1u},
                        {"linear", target.linear ? 1u : 0u},
                        {"steps", render::steps_of(format)}});
-    context.gl().MemoryBarrier(GL_ALL_BARRIER_BITS);  // however the picture is read next
+    context.gl().MemoryBarrier(GL_ALL_BARRIER_BITS);  // for any use of the picture
   };
   const std::uint32_t framebuffer = framebuffer_of(target);
   const Target texture = texture_behind(context.gl(), target);
@@ -222,7 +221,7 @@ void Presenter::draw(const gl::Buffer& colours, std::span<const shared::View> vi
   } else {
     write(texture, format);
   }
-  // What is the caller's to delete is not held on to.
+  // Detaches the caller's texture, which the caller may delete.
   if (target.texture != 0)
     context.gl().NamedFramebufferTexture(target_framebuffer_, GL_COLOR_ATTACHMENT0, 0, 0);
 }
@@ -242,7 +241,7 @@ Canvases Presenter::canvases(std::span<const Target> targets, const Background& 
   gl::Context& context = dispatcher_.context();
   if (targets.size() > MAX_CANVASES) return {};
   for (const Target& target : targets) {
-    framebuffer_of(target);  // throws where it is none
+    framebuffer_of(target);  // throws if it cannot be drawn into
     if (target.texture != 0)
       context.gl().NamedFramebufferTexture(target_framebuffer_, GL_COLOR_ATTACHMENT0, 0, 0);
     const Target texture = texture_behind(context.gl(), target);

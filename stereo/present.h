@@ -1,7 +1,7 @@
 #pragma once
-// A frame's pictures into any texture or framebuffer of the context, by the layouts of stereo/layout.h. Waits
-// for nothing. Textures that a compute shader can write are written in place; others, and framebuffers, are
-// copied into.
+// Writes a frame's pictures into any texture or framebuffer of the context, in the layouts of
+// stereo/layout.h, without waiting for the GPU. A compute shader writes textures in place, if it can. Other
+// textures and framebuffers get a copy.
 
 #include <binosplat/targets.h>
 #include <cstddef>
@@ -22,14 +22,14 @@ namespace binosplat::stereo {
 /// render::Canvas by view, and the texture views that they use.
 struct Canvases {
   std::vector<render::Canvas> list;
-  std::vector<std::unique_ptr<gl::Texture>> views;  // of targets that are sRGB textures, or are read, too
+  std::vector<std::unique_ptr<gl::Texture>> views;  // of targets that are sRGB textures, or are also read
 };
 
-/// The CallersTextures::depth_rows with which a frame on canvases knows enough depths to fill these targets.
+/// The CallersTextures::depth_rows with which a frame on canvases stores enough depths for these targets.
 int depth_rows(const gl::Context& context, std::span<const shared::View> views,
                std::span<const DepthTarget> targets);
 
-/// What a picture is shown over: a colour, nothing, or, with mesh depths, what is in the target already.
+/// The background of a picture: a colour, none, or, with mesh depths, the target's own colours.
 struct Backdrop {
   Backdrop(const Background& colour, bool is_there = false) : background(colour), is_in_target(is_there) {}
   Backdrop(const glm::vec3& colour) : background(colour) {}
@@ -46,41 +46,43 @@ class Presenter {
   Presenter& operator=(const Presenter&) = delete;
 
   /// Draws view `first` of the last frame (LAYOUT_SEPARATE), or views `first` and `first + 1` as left and
-  /// right eye in another layout; layout_size() says how many px that takes. The picture's top is the
-  /// texture's top as OpenGL sees it, t = 1.
+  /// right eye in another layout; layout_size() returns the size in px. The picture's top is the texture's
+  /// top in OpenGL, t = 1.
   ///
-  /// Colours are display-referred, as trained, and written as they are, without conversion by
-  /// GL_FRAMEBUFFER_SRGB: what a window shows, and what a texture of format SRGB8_ALPHA8 means. Without a
-  /// background they are premultiplied by the alpha beside them. All draw buffers of a framebuffer get the
-  /// picture; blending, masks and tests do not touch it. All state is as before afterwards (gl/state.h), and
-  /// whatever reads the target next sees the picture. Throws Error(bad_input) for views that are not there or
-  /// differ in size, a target that cannot be drawn into, and what layout_size() and lay_out() refuse.
+  /// Colours are display-referred, as trained, and written without conversion by GL_FRAMEBUFFER_SRGB. A
+  /// window shows such values, and a texture of format SRGB8_ALPHA8 holds them. Without a background they are
+  /// premultiplied by alpha. All draw buffers of a framebuffer receive the picture; blending, masks and tests
+  /// do not affect it. The context's state is restored (gl/state.h), and later reads of the target see the
+  /// picture.
   ///
-  /// A frame with mesh depths goes over the colours that are there, premultiplied by the alpha beside them,
-  /// whatever the background (LAYOUT_SEPARATE).
+  /// Throws Error(bad_input) for views that do not exist or differ in size, for a target that cannot be drawn
+  /// into, and as layout_size() and lay_out() do.
+  ///
+  /// A frame with mesh depths is blended over the target's colours, premultiplied by alpha, and ignores the
+  /// background (LAYOUT_SEPARATE).
   void draw(const render::Frame& frame, std::size_t first, int layout, const Target& target,
             const Background& background = glm::vec3(0.0f)) {
     draw(frame.colours(), frame.views(), first, layout, target,
          {background, !frame.plan().meshes.depths.empty()});
   }
 
-  /// The same of other pictures that lie in a buffer as a frame's do: vec4 (C, T) by pixel, a view's from its
-  /// pixel_offset on.
+  /// The same for other pictures in the layout of Frame::colours(): vec4 (C, T) by pixel; each view begins at
+  /// its pixel_offset.
   void draw(const gl::Buffer& colours, std::span<const shared::View> views, std::size_t first, int layout,
             const Target& target, const Backdrop& backdrop);
 
-  /// Compiles the programs of draw(), over a colour or what is in the target, and, where `frame` tells depths
-  /// to be written, of draw_depth().
+  /// Compiles the programs of draw(), over a colour or the target's colours. If `with_depths`, also those of
+  /// draw_depth().
   void prepare(const render::Frame& frame, bool with_depths);
 
-  /// The canvases through which a frame's own blend may draw into these targets, one a view
-  /// (LAYOUT_SEPARATE): the same bits as draw() writes afterwards, in less time. None for more than
-  /// MAX_CANVASES targets, or where one of them takes a copy. Throws as draw() does.
+  /// The canvases through which a frame's own blend can draw into these targets, one per view
+  /// (LAYOUT_SEPARATE). They get the same bits as from draw(), in less time. Empty for more than MAX_CANVASES
+  /// targets, or if one of them needs a copy. Throws as draw() does.
   Canvases canvases(std::span<const Target> targets, const Background& background, bool over_target = false);
 
-  /// Fills all of a target with the depths of view `v` of the last frame. State as for draw(). Throws
-  /// Error(bad_input) for a view that is not there, a frame drawn without depth, a target that is no such
-  /// texture, and planes that bound nothing.
+  /// Fills a whole target with the depths of view `v` of the last frame. The context's state is restored.
+  /// Throws Error(bad_input) for a view that does not exist, a frame without depth, a target of another kind,
+  /// and planes that bound nothing.
   void draw_depth(const render::Frame& frame, std::size_t v, const DepthTarget& target);
 
  private:
@@ -93,7 +95,7 @@ class Presenter {
 
   gl::Dispatcher dispatcher_;
   gl::Sampler nearest_;
-  // Made at first use: of the caller's textures, and of what is copied into framebuffers.
+  // Created at first use: for the caller's textures, and for pictures to copy into framebuffers.
   std::uint32_t target_framebuffer_ = 0, scratch_framebuffer_ = 0;
   std::unique_ptr<gl::Texture> scratch_;
   std::uint32_t depth_framebuffer_ = 0, no_vertices_ = 0;

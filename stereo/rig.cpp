@@ -9,12 +9,12 @@ namespace binosplat::stereo {
 
 namespace {
 
-/// Relative deviation up to which two given eyes count as parallel: the rounding of poses that went through
+/// Relative deviation up to which two given eyes count as parallel. It allows for poses that were rounded in
 /// text.
 constexpr double parallel_tolerance = 1e-9;
 
 void check_rig(const RigSettings& s) {
-  // Written so that values that are not finite fail too.
+  // Each condition also fails for values that are not finite.
   if (!(s.ipd >= 0.0 && std::isfinite(s.ipd))) fail("--ipd {}: expected metres, zero or more", s.ipd);
   if (!(s.units_per_metre > 0.0 && std::isfinite(s.units_per_metre))) {
     fail("--units-per-metre {}: expected a number above zero", s.units_per_metre);
@@ -38,14 +38,14 @@ void check_near(double near_plane) {
     fail("--near {}: expected world units above zero", near_plane);
 }
 
-/// Turns a camera about its own y axis, so that its forward axis moves towards its x axis.
+/// Turns a camera about its own y axis: its forward axis moves towards its x axis.
 glm::dmat3 turned_right(const glm::dmat3& rotation, double radians) {
   const double c = std::cos(radians), s = std::sin(radians);
   return glm::dmat3(c * rotation[0] - s * rotation[2], rotation[1], s * rotation[0] + c * rotation[2]);
 }
 
-/// Fills in an eye that is the head, moved by `offset` along the head's x axis. The head's translation serves
-/// both eyes, changed in x alone: recomputed from each eye's position, its y and z would differ by rounding.
+/// The view of an eye that is the head, moved by `offset` along the head's x axis. It uses the head's
+/// translation and changes only x: from each eye's position, y and z would differ by rounding.
 shared::View shifted_view(const Camera& eye, const Camera& head, double offset, const glm::vec3& anchor,
                           double near_plane) {
   shared::View view = make_view(head, anchor, near_plane);
@@ -56,7 +56,7 @@ shared::View shifted_view(const Camera& eye, const Camera& head, double offset, 
   return view;
 }
 
-/// All sort by the distance from one point, so that a head that turns about it changes nothing.
+/// All views sort by the distance from one point, so that turning the head about it changes nothing.
 void share_centre(std::span<shared::View> views, const glm::dvec3& centre, const glm::vec3& anchor) {
   for (shared::View& view : views)
     view.centre = glm::vec4(glm::vec3(centre - glm::dvec3(anchor)), view.centre.w);
@@ -84,8 +84,7 @@ EyePair make_rig(const Camera& head, const RigSettings& settings) {
   pair.parallel = settings.cant_degrees == 0.0;
   for (std::size_t k = 0; k < 2; ++k) {
     const double side = k == 0 ? -1.0 : 1.0;
-    // Adding to zero keeps an offset of zero positive, so that the sign of a zero does not tell the eyes
-    // apart.
+    // Adding to zero makes a zero offset positive, so that the eyes do not differ in the sign of a zero.
     const double offset = 0.0 + side * half;
     Camera& eye = pair.cameras[k];
     eye = head;

@@ -1,5 +1,5 @@
 #pragma once
-// The cost of a drawn frame, and how much the next one may draw within its time.
+// The cost of a drawn frame, and the work that the next one can do in its time.
 
 #include <cstdint>
 #include <optional>
@@ -13,8 +13,7 @@ struct StageTime {
   double ms = 0;          // on the GPU
 };
 
-/// When the GPU was at a stage, in ns on its own clock, which GL_TIMESTAMP tells. A stage may come more than
-/// once.
+/// When the GPU ran a stage, in ns on its own clock (GL_TIMESTAMP). A stage may occur more than once.
 struct StageSpan {
   std::string name = {};
   std::int64_t begin_ns = 0, end_ns = 0;
@@ -23,54 +22,53 @@ struct StageSpan {
 /// Times are sums over all attempts at a quality, without drawings for which a buffer was too small. They
 /// exclude writes into targets after the blend.
 struct Report {
-  std::vector<StageTime> stages = {};  // empty where the driver tells no times
+  std::vector<StageTime> stages = {};  // empty if the driver reports no times
   double gpu_ms = 0;                   // their sum
-  std::vector<StageSpan> spans = {};   // of all drawings, one after the other
-  double plan_ms = 0;    // CPU time of deciding what is drawn, which submit() takes, as are the next two:
-  double upload_ms = 0;  // of handing parameters to the driver
-  double submit_ms = 0;  // of handing it the stages, with shaders that had to be compiled
-  double wait_ms = 0;    // CPU time that finish() waits for the GPU
-  double read_ms = 0;    // and that it takes to read back what the GPU counted and timed
-  std::int64_t gpu_bytes = 0;  // in the renderer's buffers, the model's included
+  std::vector<StageSpan> spans = {};   // of all drawings, in order
+  double plan_ms = 0;                  // CPU time of planning the frame, in submit(), as the next two
+  double upload_ms = 0;                // CPU time of passing parameters to the driver
+  double submit_ms = 0;        // CPU time of passing the stages to the driver, including compiled shaders
+  double wait_ms = 0;          // CPU time for which finish() waits for the GPU
+  double read_ms = 0;          // CPU time in which finish() reads back counts and times
+  std::int64_t gpu_bytes = 0;  // in the renderer's buffers, including the model's
 
   std::uint64_t visible = 0;  // Gaussians drawn, summed over the order groups
   std::uint64_t pairs = 0;    // (Gaussian, tile) over all views
-  /// Depth orders: one where the views look the same way from the same depth, as those of parallel eyes do.
+  /// 1 if all views have the same direction and depth, as parallel eyes do.
   std::uint32_t order_groups = 0;
 
-  float tolerance = 0.0f;  // that the frame was drawn with; 0: it is exact
-  /// With Settings::quality: the PSNR in dB of the view that errs most, by what this frame and earlier ones
-  /// measured; infinite where nothing differs.
+  float tolerance = 0.0f;  // the frame's tolerance; 0: it is exact
+  /// With Settings::quality: the PSNR in dB of the worst view, from the measurements of this frame and
+  /// earlier ones. Infinite if nothing differs.
   double quality = 0.0;
-  bool quality_is_estimate = false;  // not measured on all of this frame: it may be some dB off
-  int attempts = 0;                  // times that it was drawn until the quality held
-  int redrawn = 0;                   // times that it was drawn again, since a buffer was too small
-  int programs_made = 0;             // shaders that were compiled for it, or loaded from the cache
-  bool used_measured = false;        // it used the transmittance that an earlier frame measured
-  bool sampled_error = false;        // it drew some tiles exactly, too, to measure its error
-  /// With a quality or a measured transmittance: it could not go by earlier frames, as the first one cannot,
-  /// nor one after a camera cut.
+  bool quality_is_estimate = false;  // measured on a part of this frame: may be some dB off
+  int attempts = 0;                  // drawings until the quality held
+  int redrawn = 0;                   // drawings that were repeated because a buffer was too small
+  int programs_made = 0;             // shaders that were compiled for the frame, or loaded from the cache
+  bool used_measured = false;        // the frame used the transmittance that an earlier one measured
+  bool sampled_error = false;        // the frame also drew some tiles exactly, to measure its error
+  /// With a quality or measured transmittance: the frame could not use earlier measurements. True for the
+  /// first frame and after a camera cut.
   bool is_cut = false;
 
-  /// All pictures were blended straight into their targets. Not where there are more than 4 views, a layout
-  /// other than `separate` or a target that takes a copy, nor in frames that measure the error for a quality:
-  /// these are blended into a buffer of the renderer's, and from there written into the targets.
+  /// All pictures were blended straight into their targets. False for more than 4 views, a layout other than
+  /// `separate`, a target that needs a copy, and frames that measure their error for a quality. These are
+  /// blended into the renderer's own buffer, and copied from there.
   bool in_place = false;
-  /// OpenGL errors that were recorded before the frame began: the caller's own. The frame is drawn all the
-  /// same.
+  /// OpenGL errors of the caller, recorded before the frame began. The frame is drawn all the same.
   std::vector<std::uint32_t> callers_errors = {};
 };
 
-/// How much is drawn.
+/// How much work a frame does.
 struct Effort {
-  std::optional<float> quality = {};  // dB, as Settings::quality; none: exactly
-  double scale = 1.0;                 // both sides of the pictures over those asked for
+  std::optional<float> quality = {};  // dB, as Settings::quality; none: exact
+  double scale = 1.0;                 // the picture's sides over their full size
 };
 
-/// As much quality as a frame's time allows: exact frames where these are in time; else less quality, down to
-/// 37 dB, and then smaller pictures, down to half of both sides.
+/// Chooses the best quality that fits a frame's time. It starts with exact frames, then lowers the quality
+/// down to 37 dB, then the size of pictures down to half of both sides.
 ///
-///   binosplat::FrameBudget budget(0.8 * period_ms);  // an OpenXR runtime draws, too
+///   binosplat::FrameBudget budget(0.8 * period_ms);  // the OpenXR runtime needs the rest
 ///   // Each frame:
 ///   const binosplat::Effort effort = budget.effort();
 ///   // ... views of effort.scale times the pixels along each side, drawn with effort.quality ...
@@ -82,10 +80,10 @@ class FrameBudget {
 
   Effort effort() const;
 
-  /// A frame of this effort took `ms` (Report::gpu_ms), where one is shown every `period_ms`. The first of an
-  /// effort does not count. One that is late by a third, or two in a row that are late, lessen the effort. A
-  /// second of frames that take less than three quarters of the time raises it again; after each raise that
-  /// was too much, the next one takes twice as many seconds, up to 32.
+  /// Records that a frame of this effort took `ms` (Report::gpu_ms); the display shows one every `period_ms`.
+  /// Ignores the first frame of an effort. Lowers the effort after one frame that is late by a third, or two
+  /// late ones in a row. Raises it after a second of frames that take less than three quarters of the time.
+  /// After each raise that was too much, the next one takes twice as many seconds, up to 32.
   void took(double ms, double period_ms);
 
  private:
@@ -93,8 +91,8 @@ class FrameBudget {
   void set(int step);
 
   double ms_;
-  int step_ = 0;  // less and less effort
-  int late_ = 0;  // frames in a row
+  int step_ = 0;  // index of the effort; 0 is the most
+  int late_ = 0;  // late frames in a row
   bool fresh_ = true, raised_ = false;
   double early_ms_ = 0.0, since_raised_ms_ = 0.0, wait_ms_ = wait_least_ms;
 };

@@ -1,13 +1,13 @@
-// The affine projection of 3D-GS (Kerbl 2023): the perspective is made linear where the Gaussian lies.
+// The affine projection of 3D-GS (Kerbl 2023): linearises the perspective at the Gaussian's position.
 
-// Everything but the colour and the level of Th. False where this view does not draw it.
+// Computes everything but the colour and the level of Th. Returns false if the view does not draw the Gaussian.
 bool project(View view, Gaussian g, mat3 axes, out Splat splat) {
   precise vec3 d = g.position.xyz - view.anchor.xyz;
   vec3 v = to_eye(view, d);
   if (!(v.z > view.anchor.w)) return false;
   vec3 across;
   vec3 down;
-  // J is taken at v with its slopes clamped, because the linearisation blows up far outside the picture.
+  // J uses clamped slopes, because the linearisation grows without limit far outside the picture.
   precise vec2 slope = clamp(v.xy / v.z, view.slopes.xy, view.slopes.zw);
   precise vec2 gain = view.lens.xy / v.z;
   axes_on_picture(view, slope, gain, axes, across, down);
@@ -23,5 +23,5 @@ bool project(View view, Gaussian g, mat3 axes, out Splat splat) {
 
 bool is_wide(Splat splat) { return false; }
 
-// sqrt(det C2), px^2: what a threshold goes by.
+// The size that a threshold rule uses: sqrt(det C2), px^2.
 float size_of(View view, Splat splat) { return splat.conic.w; }

@@ -1,15 +1,15 @@
-// The tangent projection (docs/method.md 2.2): a unit ray d, dropped at a right angle onto the plane that touches the unit
-// sphere in the Gaussian's direction, goes by a covariance in that plane. It depends on place and ray only, so that turning the
-// head changes nothing. In the picture q = (p - mean)^T Q (p - mean) / |d|^2, |d| the length of p's ray with d.z = 1: Q is what
-// a splat keeps, and sqrt(det Q^-1).
+// The tangent projection (docs/method.md 2.2). It drops a unit ray d at a right angle onto the plane that touches the
+// unit sphere in the Gaussian's direction. A covariance in that plane gives alpha. The result depends only on position
+// and ray, so that turning the head changes nothing. In the picture q = (p - mean)^T Q (p - mean) / |d|^2, with |d| the
+// length of p's ray with d.z = 1. A splat stores Q and sqrt(det Q^-1).
 //
-// A wide splat, whose level lines need not be ellipses there, is told by a negative depth. Its mean may lie behind the eye,
-// which is told by a negative sqrt(det Q^-1): then it is where the line through Gaussian and eye meets the picture's plane.
+// The level lines of a wide splat may be no ellipses. A negative depth marks it. A negative sqrt(det Q^-1) marks a mean
+// behind the eye. The stored mean is then the point where the line through Gaussian and eye meets the picture's plane.
 
-// The largest squared sine at which anything is seen, as a multiple of the variance in the tangent plane: a little more than
-// 2 ln 255.
+// The largest squared sine of a visible ray, as a multiple of the variance in the tangent plane: slightly more than 2
+// ln 255.
 #define LEVEL_MAX 11.2
-// Of a direction: it must not be level with the picture's plane, or the mean would have no place there.
+// The least |z| of a direction: parallel to the picture's plane, it would have no mean.
 #if HALF
 #define RISE_MIN 1e-3  // so that fp16 holds the conic
 #else
@@ -23,7 +23,8 @@ vec2 slope_at(View view, vec2 pixel) {
   return slope;
 }
 
-// Where a wide splat lies, in a float's bits: rays at less than a right angle to it may see it, and long before that it has faded.
+// The direction of a wide splat, in the bits of a float. Rays at a right angle to it are the last that could see it,
+// and it fades long before.
 float direction_in_bytes(View view, Splat splat) {
   vec3 direction = vec3(slope_at(view, splat.mean), 1.0);
   return uintBitsToFloat(packSnorm4x8(vec4(sign(splat.conic.w) * normalize(direction), 0.0)));
@@ -31,7 +32,7 @@ float direction_in_bytes(View view, Splat splat) {
 
 vec3 direction_of(float bytes) { return unpackSnorm4x8(floatBitsToUint(bytes)).xyz; }
 
-// Whether a Gaussian at v is too far from all rays of the picture to be seen.
+// Whether a Gaussian at v is too far from all rays of the picture to be visible.
 bool is_beside(View view, vec3 v, float distance, vec3 scale) {
   float spread = view.eye.w * max(max(scale.x, scale.y), scale.z) / distance;
   float variance = spread * spread + float(KERNEL_PX2) / (view.lens.x * view.lens.y);
@@ -40,8 +41,8 @@ bool is_beside(View view, vec3 v, float distance, vec3 scale) {
   return v.z < distance * (cosine - 1e-4);
 }
 
-// The conic of a wide splat at v, no wider than it may be, and with the sign of v.z its place. It is found in the tangent plane,
-// since the picture's plane may be nearly level with the direction: there its terms would cancel one another.
+// The conic of a wide splat at v, limited in width; w has the sign of v.z. It is computed in the tangent plane. The
+// picture's plane may be nearly parallel to the direction, and terms would cancel there.
 vec4 wide_conic(View view, vec3 v, float distance, mat3 axes, out float kept) {
   precise vec3 n = v / distance;
   vec3 least = abs(n.x) < 0.6 ? vec3(1.0, 0.0, 0.0) : vec3(0.0, 1.0, 0.0);
@@ -54,13 +55,13 @@ vec4 wide_conic(View view, vec3 v, float distance, mat3 axes, out float kept) {
   precise vec3 down = gain * (second.x * view.row_x.xyz + second.y * view.row_y.xyz + second.z * view.row_z.xyz);
   vec4 q = conic_of(onto_axes(along, axes), onto_axes(down, axes), LowPass(vec2(0.0), vec2(1.0)), free_of(view), kept);
   if (q.w == 0.0) return q;
-  // None is wider than WIDEST_TANGENT: both eigenvalues grow by as much.
+  // Limits the width to WIDEST_TANGENT: adds the same number to both eigenvalues.
   precise float half_difference = 0.5 * (q.x - q.z);
   precise float most = 0.5 * (q.x + q.z) + sqrt(half_difference * half_difference + q.y * q.y);
   precise float det = 1.0 / (q.w * q.w);
   precise float more = max(0.0, 1.0 / (float(WIDEST_TANGENT * WIDEST_TANGENT) * focal * focal) - det / most);
   precise float grown = det + more * (q.x + q.z + more);
-  // As squares of two rows, seen in the picture.
+  // Squares of two rows, transformed to the picture.
   precise float root = sqrt(q.x + more);
   precise vec2 scale = focal / view.lens.xy;
   precise vec2 upper = scale * (root * first.xy + q.y / root * second.xy);
@@ -82,7 +83,7 @@ bool project(View view, Gaussian g, mat3 axes, out Splat splat) {
 #endif
   if (v.z < 0.0 && is_beside(view, v, distance, g.scale.xyz)) return false;
   if (abs(v.z) < RISE_MIN * distance) v.z = v.z < 0.0 ? -RISE_MIN * distance : RISE_MIN * distance;
-  // As the affine projection without a limit to its slopes, at the distance in place of the depth.
+  // Same as the affine projection without clamped slopes, with the distance instead of the depth.
   precise vec2 slope = v.xy / v.z;
   precise vec2 gain = view.lens.xy / distance;
   vec3 across;
@@ -93,7 +94,7 @@ bool project(View view, Gaussian g, mat3 axes, out Splat splat) {
   splat.conic = conic_of(across, down, LowPass(slope, vec2(stretch, 1.0 / stretch)), free_of(view), kept);
   if (splat.conic.w == 0.0) return false;
   splat.depth = distance;
-  // Wide: not both eigenvalues of Q, in slopes of the picture, are above WIDE_LEVEL.
+  // Wide: an eigenvalue of Q, in slopes of the picture, is at most WIDE_LEVEL.
   precise vec2 q = view.lens.xy * view.lens.xy * splat.conic.xz;
   precise float root = view.lens.x * view.lens.y / splat.conic.w;
   precise float above = root * root - float(WIDE_LEVEL) * (q.x + q.y - float(WIDE_LEVEL));
@@ -109,7 +110,7 @@ bool project(View view, Gaussian g, mat3 axes, out Splat splat) {
   return true;
 }
 
-// sqrt(det C2), in px^2 of the picture's middle: what a threshold goes by.
+// The size that a threshold rule uses: sqrt(det C2), in px^2 at the middle of the picture.
 float size_of(View view, Splat splat) {
   vec2 slope = slope_at(view, splat.mean);
   precise float size = abs(splat.conic.w) / sqrt(1.0 + dot_precise(slope, slope));

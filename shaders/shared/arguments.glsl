@@ -1,4 +1,5 @@
-// Filling dispatch arguments: group counts for things that are counted on the GPU. `groups_max` is the driver's limit along x.
+// Computes dispatch arguments: group counts for objects that the GPU counts. `groups_max` is the driver's limit along
+// x.
 
 uvec2 split_groups(uint groups, uint groups_max) {
   uint rows = (groups + groups_max - 1u) / groups_max;

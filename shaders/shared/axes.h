@@ -3,7 +3,7 @@
 #ifndef BINOSPLAT_SHARED_AXES_H
 #define BINOSPLAT_SHARED_AXES_H
 
-// --tiles: which Gaussian-tile pairs are made (docs/method.md 4).
+// --tiles: which Gaussian-tile pairs exist (docs/method.md 4).
 #define TILES_AABB 0
 #define TILES_ELLIPSE 1
 #define TILES_ALL 2
@@ -15,28 +15,28 @@
 #define TH_PERIPHERAL 1
 #define TH_SQUARED 2
 
-// --transmittance: where T_upper comes from, the transmittance bound of a Gaussian.
+// --transmittance: the source of T_upper, the upper bound of a Gaussian's transmittance.
 #define TRANSMITTANCE_ONE 0
 #define TRANSMITTANCE_DEPTH 1
 #define TRANSMITTANCE_LAST 2  // measured by frames
 
-// --decode: for which eye the networks of Scaffold-GS make Gaussians.
+// --decode: the eye for which the networks of Scaffold-GS make Gaussians.
 #define DECODE_EYES 0
 #define DECODE_CYCLOPEAN 1
 
-// --order: what Gaussians are sorted by, front to back (docs/method.md 2).
+// --order: the sort key of Gaussians, front to back (docs/method.md 2).
 #define ORDER_DEPTH 0
 #define ORDER_DISTANCE 1
 
-// --projection: how a Gaussian is projected (docs/method.md 2).
+// --projection: the projection of a Gaussian (docs/method.md 2).
 #define PROJECTION_AFFINE 0
 #define PROJECTION_TANGENT 1
 
-// --precision: in how many bits a frame keeps Gaussians and splats.
+// --precision: the number format of stored Gaussians and splats.
 #define PRECISION_FULL 0
 #define PRECISION_HALF 1
 
-// --layout: how both eyes are shown. Those from LAYOUT_ANAGLYPH on mix their colours.
+// --layout: the arrangement of both eyes. The layouts from LAYOUT_ANAGLYPH on mix their colours.
 #define LAYOUT_SEPARATE 0
 #define LAYOUT_MULTI_VIEW 1
 #define LAYOUT_QUAD_BUFFER 2
@@ -51,8 +51,8 @@
 #define LAYOUT_HALF_COLOUR 11
 #define LAYOUT_GREY 12
 
-// --show: what of a frame is shown. Those from SHOW_DIFFERENCE on are maps in colours; those from SHOW_ALPHAS
-// on are made by walks through the blend's lists.
+// --show: the picture or a map of the frame. The numbers from SHOW_DIFFERENCE on are colour maps; from
+// SHOW_ALPHAS on they walk through the blend's lists.
 #define SHOW_PICTURE 0
 #define SHOW_SPLIT 1
 #define SHOW_DIFFERENCE 2
@@ -65,7 +65,7 @@
 #define SHOW_MEDIAN_DEPTH 9
 #define SHOW_LEFT_OUT 10
 
-// What a GPU does at best (shaders/floors.comp).
+// The peak rates of a GPU (shaders/floors.comp).
 #define FLOOR_BYTES 0
 #define FLOOR_ALPHAS 1
 #define FLOOR_FMAS 2
@@ -73,7 +73,7 @@
 #ifdef __cplusplus
 namespace binosplat {
 
-/// A choice as options and charts name it, in the order of the numbers above.
+/// A choice of an option, in the order of the numbers above.
 struct Choice {
   const char* name;
   const char* help;

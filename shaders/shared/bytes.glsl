@@ -1,2 +1,2 @@
-// A colour as pictures of 8 bits keep it: whole numbers from 0 to 255.
+// Rounds a colour to 8 bits: integers from 0 to 255.
 vec3 in_bytes(vec3 colour) { return floor(clamp(colour, 0.0, 1.0) * 255.0 + 0.5); }

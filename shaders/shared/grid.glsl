@@ -1,5 +1,4 @@
-// Where an invocation stands in a launch that may have been split over y (gl/dispatch.h); groups of THREADS
-// along x.
+// The index of an invocation in a dispatch that may be split over y (gl/dispatch.h); groups of THREADS along x.
 
 uint group_index() { return gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x; }
 

@@ -1,5 +1,5 @@
-// How two pictures of equal size become one, as GLSL and C++ both compile it: files and the screen show the
-// same. Vectors and uints only, floats with an f: each language reads it its own way.
+// Combines two pictures of equal size into one. GLSL and C++ both compile this file, so that files and the
+// screen show the same. It uses only vectors, uints, and floats with an f, which both languages accept.
 #ifndef BINOSPLAT_SHARED_LAYOUT_H
 #define BINOSPLAT_SHARED_LAYOUT_H
 
@@ -23,8 +23,8 @@ using std::pow;
 #define EYE_RIGHT 1u
 #define EYE_BOTH 2u
 
-// Where a pixel comes from: the mean of `columns` x `rows` pixels of an eye from (x, y) to the right and
-// down, or of both eyes, mixed.
+// The source of a pixel: the mean of `columns` x `rows` pixels of an eye, from (x, y) to the right and down.
+// EYE_BOTH mixes both eyes.
 struct LayoutSource {
   uint eye;  // EYE_
   uint x;
@@ -79,12 +79,12 @@ SHARED_FUNCTION vec3 layout_to_linear(vec3 v) {
   return vec3(layout_to_linear(v.x), layout_to_linear(v.y), layout_to_linear(v.z));
 }
 
-// Both eyes' display values through red-cyan glasses, red before the left eye.
+// Mixes both eyes' display values for red-cyan glasses, with red for the left eye.
 //
 // LAYOUT_ANAGLYPH: Dubois, Conversion of a Stereo Pair to Anaglyph with the Least-Squares Projection Method,
-// 2009: the projection is of light, so the display's curve is taken off before and put on after. The other
-// two mix display values, as is the custom: red from the left eye's luma (Rec. 601), green and blue from the
-// right eye's colour or luma.
+// 2009. The projection applies to linear light, so display values are converted before and after. The other
+// two mix display values, as is usual: red from the left eye's luma (Rec. 601), green and blue from the right
+// eye's colour or luma.
 SHARED_FUNCTION vec3 layout_mix(uint kind, vec3 left, vec3 right) {
   vec3 luma = vec3(0.299f, 0.587f, 0.114f);
   if (kind == uint(LAYOUT_HALF_COLOUR)) return vec3(dot(luma, left), right.y, right.z);

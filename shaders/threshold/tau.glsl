@@ -1,3 +1,3 @@
-// Exact: what leaves a mark makes a pair.
+// Exact: every visible splat makes a pair.
 
 float threshold(float size, float bound, float tolerance) { return float(ALPHA_MIN); }

@@ -1,5 +1,5 @@
-// Th: the alpha below which a Gaussian makes no pair with a tile, or with a block (5.2); the blend keeps tau and the true alpha (docs/method.md 5). A
-// rule is a file beside this one with one function:
+// Th: the alpha below which a Gaussian makes no pair with a tile, or with a block (5.2). The blend keeps tau and the
+// true alpha (docs/method.md 5). A rule is a file in this folder with one function:
 //   float threshold(float size, float bound, float tolerance)   at least tau
 // size: sqrt(det C2), px^2; bound: T_upper, above 0; tolerance: K or kappa.
 
@@ -13,19 +13,20 @@ float threshold_of(View view, Splat splat, float bound) {
   return threshold(size_of(view, splat), bound, tolerance);
 }
 
-// Th of a Gaussian in the view of number v, where it is `splat`.
+// Th of a Gaussian in view v; a probe has tau.
 float threshold_in(View view, uint v, uint gaussian, Splat splat) {
   if (v >= frame.asked) return float(ALPHA_MIN);
   return threshold_of(view, splat, bound_of(view, v, gaussian, abs(splat.depth)));
 }
 
-// The same for what leaves a mark at all.
+// The level at which alpha reaches tau: 2 ln(sigma / tau).
 float visible_level(float opacity) {
   precise float rho = 1.3862943611198906 * log2(opacity / float(ALPHA_MIN));
   return rho;
 }
 
-// 2 ln(sigma / Th), the level of the tile tests; negative where no alpha reaches Th. `precise`: cull and project must agree.
+// 2 ln(sigma / Th), the level of the tile tests; negative if no alpha reaches Th. `precise`: cull and project must
+// agree.
 float tile_level(View view, uint v, uint gaussian, Splat splat) {
   precise float rho = 1.3862943611198906 * log2(splat.opacity / threshold_in(view, v, gaussian, splat));
   return rho;

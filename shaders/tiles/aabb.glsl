@@ -1,18 +1,19 @@
-// The square of 3D-GS (Kerbl 2023): three standard deviations of the longer axis, whatever the opacity, its tiles found by
-// C's truncation. Opacities below tau are not left out, as there. It clips tails that can be seen: alpha is still 0.011 there for an opaque splat.
+// The square of 3D-GS (Kerbl 2023): three standard deviations of the longer axis, whatever the opacity. C's truncation
+// finds its tiles. As there, opacities below tau also count. It clips visible tails: an opaque splat still has an alpha
+// of 0.011 there.
 
 uvec4 tile_box(Outline outline, View view) {
 #if TH != TH_TAU
   if (outline.level < RHO_NONE) return uvec4(0u);
 #endif
-  // The covariance back from the conic; the half trace m and det of INRIA's lambda.
+  // The covariance from the conic; then m (half the trace) and det of INRIA's lambda.
   precise float det = outline.conic.w * outline.conic.w;
   precise float m = 0.5 * (outline.conic.x + outline.conic.z) * det;
   precise float lambda = m + sqrt(max(0.1, m * m - det));
   precise float radius = ceil(3.0 * sqrt(lambda));
   precise vec2 low = (outline.mean - radius) / float(TILE_SIZE);
   precise vec2 high = (outline.mean + radius + float(TILE_SIZE - 1)) / float(TILE_SIZE);
-  // Of a probe those of its tiles that are among them.
+  // A probe has only some of these tiles.
   vec2 step = vec2(tile_pitch(view) / uint(TILE_SIZE)), shift = vec2(tile_shift(view) / uint(TILE_SIZE));
   vec2 grid = vec2(view.tiles_x, view.tiles_y);
   uvec2 first = uvec2(clamp(ceil((max(trunc(low), 0.0) - shift) / step), vec2(0.0), grid));

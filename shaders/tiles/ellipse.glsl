@@ -1,6 +1,6 @@
-// Exact (FlashGS, AdR-Gaussian): a tile is touched where the smallest q over the rectangle of its pixel centres is at most
-// rho = 2 ln(sigma / Th), that is where alpha reaches Th. The rounding of fp32 must not drop a pair that the blend would
-// show, so the test has a margin (docs/method.md 4).
+// Exact (FlashGS, AdR-Gaussian): a splat touches a tile if alpha reaches Th in it. That is: the smallest q over the
+// rectangle of its pixel centres is at most rho = 2 ln(sigma / Th). Rounding in fp32 must not drop a visible pair, so
+// the test has a margin (docs/method.md 4).
 
 // The test itself.
 bool ellipse_touches(Outline outline, float rho, vec2 low, vec2 high) {
@@ -12,10 +12,10 @@ float lowest_level(Outline outline, View view, out vec2 at) {
   return lowest_level(outline, vec2(first_drawn(view)) - REACH, vec2(last_drawn(view)) + REACH, at);
 }
 
-// What bounds the ellipse is a little too large on purpose: the test above decides, this only says where to ask it.
+// A level for bounds, which is slightly too large: they only say where to run the test above.
 float ellipse_outer_rho(float rho) { return 1.001 * max(rho, 0.0) + 1e-3; }
 
-// And this a little too small, by far more than the test's rounding.
+// A level that is slightly too small, by far more than the test's rounding.
 float ellipse_inner_rho(float rho) { return 0.999 * rho - 1e-3; }
 
 uvec4 tile_box(Outline outline, View view) {
@@ -25,7 +25,7 @@ uvec4 tile_box(Outline outline, View view) {
   precise vec2 extent = sqrt(ellipse_outer_rho(rho) * c.xz) * 1.0001 + 0.01;
   uvec2 columns = tile_columns(outline.mean.x - extent.x, outline.mean.x + extent.x, view);
   uvec2 rows = tile_rows(outline.mean.y - extent.y, outline.mean.y + extent.y, view);
-  // Of tall ones beside the picture no row need be asked.
+  // A tall ellipse beside the picture needs no test by row.
   vec2 at;
   if (rows.y - rows.x > TALL_ROWS && lowest_level(outline, view, at) > ellipse_outer_rho(rho)) return uvec4(0u);
   return uvec4(columns.x, rows.x, columns.y, rows.y);
@@ -44,18 +44,18 @@ uvec2 tile_row(Outline outline, View view, uvec4 box, uint row) {
   vec3 c = covariance(outline);
   float low = tile_low(uvec2(0u, row), view).y - outline.mean.y;
   float high = tile_high(uvec2(0u, row), view).y - outline.mean.y;
-  // Where the ellipse reaches furthest to the right and, mirrored, to the left; then the nearest heights in this row.
+  // The y of the rightmost point and, mirrored, of the leftmost; then the nearest values in this row.
   precise float apex = c.y * sqrt(outer / c.x);
   precise float right_y = clamp(apex, low, high);
   precise float left_y = clamp(-apex, low, high);
-  precise float lean = c.y / c.z;                             // of the line through the middles of its rows
+  precise float lean = c.y / c.z;                             // slope of the line through its rows' middles
   precise float width = outline.conic.w * outline.conic.w / c.z;  // det / C2.yy: the variance within a row
   precise float left = lean * left_y - sqrt(max(0.0, (outer - left_y * left_y / c.z) * width));
   precise float right = lean * right_y + sqrt(max(0.0, (outer - right_y * right_y / c.z) * width));
   precise float slack = 0.01 + 1e-5 * (abs(left) + abs(right));
   uvec2 columns = tile_columns(outline.mean.x + left - slack, outline.mean.x + right + slack, view);
   columns = clamp(columns, box.xx, box.zz);
-  // Where a slightly smaller ellipse reaches, too, the test would say yes.
+  // If a slightly smaller ellipse reaches a tile, the test would pass.
   precise float inner = ellipse_inner_rho(rho);
   precise vec2 heights = vec2(left_y, right_y);
   precise vec2 room = inner - heights * heights / c.z;

@@ -1,24 +1,23 @@
-// The ellipse by which a splat's tiles are found, and how near a rectangle comes to its middle: q(d) = d^T Q d.
+// The ellipse that decides a splat's tiles, and the smallest q(d) = d^T Q d over a rectangle.
 
 struct Outline {
   vec2 mean;    // px
-  vec2 aside;   // what rounding left of it
+  vec2 aside;   // the rounding error of `mean`
   vec4 conic;   // Q, and sqrt(det Q^-1)
-  float level;  // rho = 2 ln(sigma / Th): alpha reaches Th where q comes to no more
-  bool is_wide; // of the tangent projection: mean and conic are the splat's
+  float level;  // rho = 2 ln(sigma / Th): alpha reaches Th while q is at most this
+  bool is_wide; // with the tangent projection: mean and conic are the splat's
 };
 
-// From the middle to a pixel's centre.
+// From the ellipse's middle to a pixel's centre.
 vec2 from_middle(Outline outline, vec2 pixel) {
   precise vec2 d = pixel - outline.mean - outline.aside;
   return d;
 }
 
-
-// rho below this: alpha cannot reach the threshold. What fp32's log2 and exp2 may err by lies above it.
+// Below this rho no alpha reaches the threshold. The rounding of fp32's log2 and exp2 stays above it.
 #define RHO_NONE (-4e-6)
 
-// The smallest q over the pixel centres from `low` to `high`, less its rounding, and where that is, seen from the mean.
+// The smallest q over the pixel centres from `low` to `high`, minus its rounding, and its place relative to the mean.
 float lowest_level(Outline outline, vec2 low, vec2 high, out vec2 at) {
   precise vec2 a = from_middle(outline, low);
   precise vec2 b = from_middle(outline, high);
@@ -28,7 +27,7 @@ float lowest_level(Outline outline, vec2 low, vec2 high, out vec2 at) {
   precise float xx = outline.conic.x;
   precise float xy = outline.conic.y;
   precise float yy = outline.conic.z;
-  // q is convex: its smallest value lies on an edge that faces the mean, one or two of the four.
+  // q is convex: its smallest value lies on one of the edges that face the mean, of which there are one or two.
   precise float best = 3.4e38;
   if (nearest.x != 0.0) {
     precise float y = clamp(-xy * nearest.x / yy, a.y, b.y);

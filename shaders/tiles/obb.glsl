@@ -1,8 +1,8 @@
-// GSCore's oriented box of three standard deviations against the tile's pixel centres, by separating axes. It clips tails
-// that can be seen, as aabb does.
+// GSCore's oriented box of three standard deviations against the tile's pixel centres, by separating axes. Like aabb it
+// clips visible tails.
 
 struct OrientedBox {
-  vec2 axis;    // of the longer side; the other is perpendicular
+  vec2 axis;    // direction of the longer side; the other is perpendicular
   vec2 extent;  // half lengths along the two, px
 };
 
@@ -14,7 +14,7 @@ OrientedBox oriented_box(Outline outline) {
   precise float shorter = outline.conic.w / longer * outline.conic.w;  // the product of both is det
   OrientedBox box;
   box.extent = 3.0 * sqrt(vec2(longer, shorter));
-  // The eigenvector from the row that does not cancel.
+  // The eigenvector, from the row without cancellation.
   precise vec2 along = half_difference >= 0.0 ? vec2(half_difference + root, c.y) : vec2(c.y, root - half_difference);
   box.axis = root > 0.0 ? normalize(along) : vec2(1.0, 0.0);
   return box;
@@ -44,7 +44,7 @@ uvec4 tile_box(Outline outline, View view) {
   return uvec4(columns.x, rows.x, columns.y, rows.y);
 }
 
-// x of centres within `limit` of the box's line in this row, for an axis (ax, ay): |ax x + ay y| <= limit.
+// The x in this row within `limit` of the box's line, for an axis (ax, ay): |ax x + ay y| <= limit.
 vec2 strip(vec2 axis, float y, float limit) {
   if (abs(axis.x) < 1e-6) return vec2(-3e38, 3e38);
   precise vec2 ends = (vec2(-limit, limit) - axis.y * y) / axis.x;
@@ -55,7 +55,7 @@ uint likely_row(Outline outline, View view, uvec4 box) { return box.y; }
 
 uvec2 tile_row(Outline outline, View view, uvec4 box, uint row) {
   OrientedBox oriented = oriented_box(outline);
-  // Where the box's strips leave room for a tile's middle, a little too wide; then the test itself from both ends.
+  // The tiles whose middles fit in the box's strips, widened slightly; then the test itself from both ends.
   float y = 0.5 * (tile_low(uvec2(0u, row), view).y + tile_high(uvec2(0u, row), view).y) - outline.mean.y;
   float tile = float(TILE_SIZE);
   vec2 a = abs(oriented.axis);

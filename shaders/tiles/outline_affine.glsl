@@ -1,4 +1,4 @@
-// With the affine projection a splat is an ellipse at every level.
+// With the affine projection a splat's level lines are ellipses.
 
 Outline outline_of(Splat splat, View view) { return Outline(splat.mean, vec2(0.0), splat.conic, splat.colour.w, false); }
 

@@ -1,6 +1,7 @@
-// With the tangent projection {q <= level} is what the picture's plane cuts out of a cone around the Gaussian's direction. Of a
-// narrow splat that is an ellipse, whose shape and middle depend on the level. Wide ones, of which there are few, are offered to
-// all tiles in which they can be seen at all, and some more, with every tile test and threshold (docs/method.md 4).
+// With the tangent projection {q <= level} is a section of the picture's plane with a cone around the Gaussian's
+// direction. For a narrow splat this is an ellipse, whose shape and middle depend on the level. Wide splats are few:
+// every tile test and threshold pairs them with all tiles in which they may be visible, and some more (docs/method.md
+// 4).
 
 #if TILES == TILES_AABB || TILES == TILES_OBB
 #define OUTLINE_LEVEL(rho) 9.0  // three standard deviations
@@ -8,10 +9,10 @@
 #define OUTLINE_LEVEL(rho) max(rho, 0.0)
 #endif
 
-// With s the slope of the mean, b = s / focal and F = diag(1 / focal^2), |d|^2 = 1 + s^2 + 2 b.x + x^T F x at x px from the mean;
-// so that q <= level is x^T (Q - level F) x - 2 level b.x <= level (1 + s^2).
+// With s the slope of the mean, b = s / focal and F = diag(1 / focal^2), |d|^2 = 1 + s^2 + 2 b.x + x^T F x at x px from
+// the mean. So q <= level becomes x^T (Q - level F) x - 2 level b.x <= level (1 + s^2).
 Outline outline_of(Splat splat, View view) {
-  const float more = 1e-5;  // what rounding may take
+  const float more = 1e-5;  // a margin for rounding
   if (is_wide(splat)) {
     precise float seen = splat.colour.w < RHO_NONE ? -1.0 : 1.3862943611198906 * log2(splat.opacity / float(ALPHA_MIN));
     precise float level = seen + more;
@@ -33,7 +34,8 @@ Outline outline_of(Splat splat, View view) {
   return Outline(mean, aside, conic, reached, false);
 }
 
-// A wide splat: q |d|^2 is the sum of the squares of first . d and second . d; seen are rays with direction . d above 0.
+// A wide splat: q |d|^2 is the sum of the squares of first . d and second . d. Only rays with direction . d above 0 see
+// it.
 struct Cone {
   vec3 first, second, direction;
   float level;
@@ -47,12 +49,13 @@ Cone cone_of(Outline outline, View view) {
   precise vec3 first = vec3(across, -dot_precise(across, slope));
   precise vec3 second = vec3(0.0, down, -down * slope.y);
   precise vec3 direction = outline.conic.w < 0.0 ? vec3(-slope, -1.0) : vec3(slope, 1.0);
-  precise float level = max(outline.level, 0.0) + 3e-6 * (abs(across.x) + abs(across.y) + down);  // and for rounding
+  precise float level = max(outline.level, 0.0) + 3e-6 * (abs(across.x) + abs(across.y) + down);  // plus rounding
   return Cone(first, second, direction, level);
 }
 
-// Slopes across between which a wide splat is seen, if it is, in the rows of pixels [first, last]: a little too far apart. The
-// first is above the second where it is not. What is across depends on where |d| is largest between them, so it is found thrice.
+// The range of horizontal slopes in which a wide splat may be visible in the rows of pixels [first, last], widened
+// slightly. An empty range has first > second. The range depends on the largest |d| within it, so it is computed three
+// times.
 vec2 seen_across(Cone cone, View view, float first, float last) {
   vec2 low = slope_at(view, vec2(float(first_drawn(view).x) - 0.5, first - 0.5));
   vec2 high = slope_at(view, vec2(float(last_drawn(view).x) + 0.5, last + 0.5));
@@ -69,7 +72,7 @@ vec2 seen_across(Cone cone, View view, float first, float last) {
     seen = vec2(max(seen.x, middle - reach), min(seen.y, middle + reach));
     if (room < 0.0 || seen.x > seen.y) return vec2(1.0, 0.0);
   }
-  // Behind the eye there is nothing.
+  // The splat is invisible behind the eye.
   precise float ahead = cone.direction.y * y + abs(cone.direction.y) * size + cone.direction.z;
   precise float end = -ahead / cone.direction.x;
   if (cone.direction.x > 0.0) seen.x = max(seen.x, end);

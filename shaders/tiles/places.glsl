@@ -1,15 +1,15 @@
-// Where the tiles of a view lie in its picture.
+// The places of a view's tiles in its picture.
 #include "shared/types.h"
 
 #ifndef PROBED
 #define PROBED 0  // 1: the frame has a probe
 #endif
 #ifndef REGIONS
-#define REGIONS 0  // 1: of some views only regions are drawn
+#define REGIONS 0  // 1: some views have regions
 #endif
 
 #if PROBED
-// The tiles of a probe lie apart: its supertiles are of tiles that are neighbours among these.
+// The tiles of a probe lie apart; its supertiles join those that are neighbours among them.
 bool is_probe(View view) { return view.is_probe != 0u; }
 uint tile_pitch(View view) { return view.pitch; }
 #else
@@ -27,7 +27,7 @@ uvec2 first_drawn(View view) { return uvec2(view.left, view.top); }
 uvec2 first_drawn(View view) { return uvec2(0u); }
 #endif
 
-// The pixels of the picture that are drawn: from the first above to this one.
+// The last drawn pixel of the picture; first_drawn() is the first.
 uvec2 last_drawn(View view) { return first_drawn(view) + uvec2(view.width - 1u, view.height - 1u); }
 
 // The first pixel of a tile.

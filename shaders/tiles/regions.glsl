@@ -1,8 +1,8 @@
-// Which tiles of a view are drawn: of each of their rows those of a span of columns, but for those of a hole in it. All others
-// are paired with nothing, but where a splat reaches over the hole, and stay background.
+// The drawn tiles of a view: in each row of tiles a span of columns without those of a hole. Other tiles get no pairs
+// and stay background; only splats that reach across the hole have pairs in it.
 #if REGIONS
 
-layout(std430, binding = 13) readonly buffer RegionRows { uvec2 region_rows[]; };  // two columns of 16 bits: the span, the hole
+layout(std430, binding = 13) readonly buffer RegionRows { uvec2 region_rows[]; };  // 16-bit columns: span, hole
 
 uvec2 span_of(uint columns) { return uvec2(columns & 0xFFFFu, columns >> 16); }
 
@@ -13,7 +13,7 @@ bool is_drawn(uvec2 tile, View view) {
   return is_within(tile.x, span_of(row.x)) && !is_within(tile.x, span_of(row.y));
 }
 
-// Of the columns [x, y) of tiles that a splat touches in a row, those from the first to the last that is drawn.
+// The range from the first to the last drawn column among the columns [x, y) of tiles that a splat touches in a row.
 uvec2 drawn_columns(uvec2 columns, View view, uint row) {
   uvec2 drawn = span_of(region_rows[view.first_row + row].x), hole = span_of(region_rows[view.first_row + row].y);
   uvec2 left = uvec2(max(columns.x, drawn.x), min(columns.y, drawn.y));

@@ -1,7 +1,8 @@
-// The box around the ellipse where alpha reaches Th (SnugBox of Speedy-Splat) against the tile's pixel centres, touching
-// counts: makes every pair that can be seen, and those of the box's corners besides.
+// The box around the ellipse in which alpha reaches Th (SnugBox of Speedy-Splat) against the tile's pixel centres;
+// touching counts. It makes every visible pair, and also those in the box's corners.
 
-// The tiles of a span along an axis whose pixel centres reach within `extent` of the mean: `span` is a little too large.
+// Narrows `span`, which is slightly too large, to the tiles along an axis with pixel centres within `extent` of the
+// mean.
 uvec2 snug_span(uvec2 span, int axis, Outline outline, float extent, View view) {
   while (span.x < span.y && from_middle(outline, tile_high(span.xx, view))[axis] < -extent) ++span.x;
   while (span.x < span.y && from_middle(outline, tile_low(uvec2(span.y - 1u), view))[axis] > extent) --span.y;

@@ -1,8 +1,9 @@
-// Which tiles of a view a splat is offered to (docs/method.md 4). A shape is a file beside this one with three functions:
-//   uvec4 tile_box(Outline, View)                      columns [x, z) and rows [y, w) that it can touch, inside the grid
-//   uint likely_row(Outline, View, uvec4 box)          the row most likely to have such a tile; one of the box, if it has any
+// The tiles of a view with which a splat makes pairs (docs/method.md 4). A tile test is a file in this folder with
+// three functions:
+//   uvec4 tile_box(Outline, View)                      columns [x, z) and rows [y, w) that it can touch, in the grid
+//   uint likely_row(Outline, View, uvec4 box)          the row of the box most likely to have such a tile
 //   uvec2 tile_row(Outline, View, uvec4 box, uint row) columns [x, y) that it does touch in one of those rows
-// Counting and emission call the same code and must agree to the bit, so everything that decides is `precise`.
+// `project` and `bin` call the same code and must agree to the bit, so everything that decides is `precise`.
 #include "shared/axes.h"
 #include "shared/limits.h"
 #include "shared/types.h"
@@ -10,7 +11,8 @@
 #include "projection.glsl"
 #include "supertiles.glsl"
 
-// How far from a pixel's centre a splat may be seen: with BETWEEN also where only rays between pixels meet it (blend_rays.comp).
+// How far from a pixel's centre a splat may be visible. With BETWEEN rays between pixels may also meet it
+// (blend_rays.comp).
 #ifndef BETWEEN
 #define BETWEEN 0
 #endif
@@ -23,8 +25,8 @@
 #include "tiles/places.glsl"
 #include "tiles/level.glsl"
 
-// First and one-past-last tile along an axis for pixels [low, high] from where the first tile begins; beyond the grid is cut
-// off. Clamped as floats, since int() of a huge float is anything.
+// The first and one-past-last tile along an axis for pixels [low, high], counted from the begin of the first tile and
+// limited to the grid. Clamps floats, because int() of a huge float is undefined.
 uvec2 tile_span(float low, float high, uint pitch, uint tiles) {
   float first = clamp(ceil((low - float(TILE_SIZE - 1) - REACH) / float(pitch)), 0.0, float(tiles));
   float last = clamp(floor((high + REACH) / float(pitch)), -1.0, float(tiles) - 1.0);
@@ -41,32 +43,32 @@ uvec2 tile_rows(float low, float high, View view) {
   return tile_span(low - float(shift.y), high - float(shift.y), tile_pitch(view), view.tiles_y);
 }
 
-// The first and the last pixel centre of a tile, or what can be seen beyond, the last one clipped to the picture.
+// The first and the last pixel centre of a tile, widened by REACH; the last one is clipped to the picture.
 vec2 tile_low(uvec2 tile, View view) { return vec2(tile_corner(tile, view)) - REACH; }
 
 vec2 tile_high(uvec2 tile, View view) {
   return vec2(min(tile_corner(tile, view) + uint(TILE_SIZE - 1), last_drawn(view))) + REACH;
 }
 
-// C2 from the conic, multiplied in an order that does not overflow: xx, xy, yy.
+// C2 from the conic as xx, xy, yy, multiplied in an order that does not overflow.
 vec3 covariance(Outline outline) {
   precise float s = outline.conic.w;
   precise vec3 c = vec3(outline.conic.z * s * s, -outline.conic.y * s * s, outline.conic.x * s * s);
   return c;
 }
 
-// Half the box around {alpha >= Th}, px. rho is taken a little larger than it is, or the rounding of fp32 would drop pairs
-// (docs/method.md 4).
+// Half the size of the box around {alpha >= Th}, px. rho is slightly enlarged, because rounding in fp32 would drop
+// pairs (docs/method.md 4).
 vec2 level_extent(Outline outline) {
   vec3 c = covariance(outline);
-  // C2.xx C2.yy / det, at least 1: how far the rounding of a long leaning ellipse is magnified.
+  // C2.xx C2.yy / det, at least 1: the factor by which a long leaning ellipse magnifies rounding.
   precise float stretch = c.x * outline.conic.x;
   precise float rho = max(0.0, outline.level) * (1.0 + 8e-6 * stretch) + 4e-6;
   precise vec2 extent = sqrt(rho * c.xz);
   return extent;
 }
 
-// Whether that box holds the centre of a pixel that is drawn: a splat between centres is seen by none.
+// Whether that box holds the centre of a drawn pixel: a splat between centres is invisible.
 bool holds_a_centre(Outline outline, View view, vec2 extent) {
   if (outline.level < RHO_NONE) return false;
   vec2 first = vec2(first_drawn(view)) - REACH, last = vec2(last_drawn(view)) + REACH;
@@ -82,7 +84,7 @@ bool holds_a_centre(Outline outline, View view, vec2 extent) {
 #include "tiles/{TILES_NAME}.glsl"
 #include "tiles/outline_{PROJECTION_NAME}.glsl"
 
-// Of the columns that a splat touches in a row, those that are drawn; all the oracle's, whose tiles share one list.
+// The drawn columns among those that a splat touches in a row. TILES_ALL keeps all, because its tiles share one list.
 uvec2 paired_columns(uvec2 columns, View view, uint row) {
 #if TILES == TILES_ALL
   return columns;
@@ -96,8 +98,8 @@ uvec2 supertile_rows(uvec4 box) {
   return box.w <= box.y ? uvec2(0u) : uvec2(box.y / uint(SUPERTILE_SIDE), (box.w - 1u) / uint(SUPERTILE_SIDE) + 1u);
 }
 
-// A row of supertiles: the columns [x, y) of those that a splat is in, and the columns of tiles that it touches in the first row
-// of tiles [x, y) and in the second [z, w).
+// A row of supertiles: the columns [x, y) that a splat is in. Also the columns of tiles that it touches in the first
+// row of tiles [x, y) and in the second [z, w).
 struct SupertileRow {
   uvec2 columns;
   uvec4 tiles;
@@ -118,7 +120,7 @@ SupertileRow supertile_row(Outline outline, View view, uvec4 box, uint nth) {
   return supertile_row_of(tiles);
 }
 
-// The tiles that it touches in a column of such a row, a bit each.
+// The tiles that it touches in a column of such a row, one bit each.
 uint tiles_in(SupertileRow row, uint column) {
   uvec2 tiles = uvec2(2u * column, 2u * column + 1u);
   uvec2 upper = uvec2(greaterThanEqual(tiles, row.tiles.xx)) * uvec2(lessThan(tiles, row.tiles.yy));
@@ -126,7 +128,7 @@ uint tiles_in(SupertileRow row, uint column) {
   return upper.x | upper.y << 1 | lower.x << 2 | lower.y << 3;
 }
 
-// A splat's coverage (supertiles.glsl). Tile row by tile row, so that neighbours ask at the same time.
+// A splat's coverage (supertiles.glsl). Walks by rows of tiles, so that neighbours run the test at the same time.
 uint coverage_of(Outline outline, View view) {
   uvec4 box = box_of_tiles(outline, view);
   uvec2 rows = supertile_rows(box);
@@ -144,12 +146,12 @@ uint coverage_of(Outline outline, View view) {
   return bits == 0u ? 0u : IN_FEW_SUPERTILES | supertile << FEW_SHIFT | bits;
 }
 
-// Whether it touches any; of wide splats all that can be seen at all do, since asking more of these few is what the others
-// would wait for.
+// Whether a splat touches any tile. Every wide splat that may be visible counts: testing these few would delay the
+// others.
 bool touches_a_tile(Splat splat, View view) {
 #if TILES == TILES_ELLIPSE
-  // Most splats reach the pixel's centre that is nearest to theirs; nothing more need be asked of these, but in a probe, whose
-  // tiles may not hold it. (With the tangent projection q is smaller by |d|^2, which is at least 1.)
+  // Most splats reach the pixel centre nearest to their own, and need no further test. A probe's tiles may lack that
+  // centre. (With the tangent projection q is smaller by |d|^2, which is at least 1.)
   vec2 nearest = clamp(round(splat.mean), vec2(first_drawn(view)), vec2(last_drawn(view)));
   vec2 d = nearest - splat.mean;
   float q = splat.conic.x * d.x * d.x + 2.0 * splat.conic.y * d.x * d.y + splat.conic.z * d.y * d.y;

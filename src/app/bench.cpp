@@ -1,4 +1,4 @@
-// binosplat bench: the chart of speed against accuracy, over views, along frames, turns and levels of detail.
+// binosplat bench: charts speed against accuracy, over views, along frames, turns and levels of detail.
 
 #include <fmt/ranges.h>
 
@@ -26,7 +26,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Where the CPU draws: how long that takes, before it does.
+/// Warns before a long run on the CPU, with its expected time.
 void tell_work(double seconds) {
   constexpr double worth_telling_s = 60.0;
   if (seconds < worth_telling_s) return;
@@ -86,7 +86,7 @@ void measure_all(const BenchOptions& options, const BenchPlan& plan, const Bench
   }
 }
 
-/// Some of what was measured, as columns for a terminal.
+/// Prints some columns of the results to the terminal.
 void print_points(const std::vector<lab::Point>& points) {
   std::vector<std::string> charts;
   for (const lab::Point& point : points) {
@@ -174,7 +174,7 @@ void check_bench(const BenchOptions& o) {
 ExitCode bench(const BenchOptions& options) {
   check_bench(options);
   check_output(fs::path(options.output) / "results.json");
-  // While nothing is lost.
+  // Reads the older results first, before anything can overwrite them.
   const std::vector<lab::Row> before = rows_to_compare(options.compare, options.fail_if_slower);
   if (!options.merge.empty()) return finish(options, merge(options), before);
   const BenchPlan plan = make_plan(options);

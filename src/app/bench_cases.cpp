@@ -1,4 +1,4 @@
-// What a case of bench is measured on: views of a scene, frames along a path, or turns of the head.
+// Opens the cases of bench: views of a scene, frames along a path, or turns of the head.
 
 #include <fmt/ranges.h>
 
@@ -24,7 +24,7 @@ namespace {
 constexpr std::size_t stretches_of_a_tour = 3, frames_at_rest = 15;
 constexpr double sideways_metres_a_frame = 1.5 / headset_fps;
 constexpr std::size_t sideways_frames = 16;
-constexpr int sideways_side_max = 640;  // px: what is compared is warped on the CPU
+constexpr int sideways_side_max = 640;  // px: the CPU warps these pictures
 
 bool is_along_frames(const std::string& along) { return along != "views" && along != "turn"; }
 
@@ -40,12 +40,12 @@ Lens lens_of(const std::string& size) {
   return {.preset = size};
 }
 
-/// Photos are of single views in their own size.
+/// Photos belong to single views in their own size.
 bool has_photos(const BenchScene& scene, const CasePlan& which) {
   return !scene.photos.folder.empty() && which.eyes == 1 && which.size == "own" && which.along == "views";
 }
 
-/// Which views a case is of, and which are for training.
+/// The views that a case measures, and those that it trains tolerances on.
 struct ChosenViews {
   ViewChoice tested, training;
 };
@@ -62,7 +62,7 @@ ChosenViews choose_views(const BenchOptions& options, const lab::Axes& axes, con
   return chosen;
 }
 
-/// What a metre is in world units, as render has it.
+/// World units per metre, as render chooses them.
 double metre_of(const BenchOptions& options, const Known& known) {
   return options.rig.units_per_metre.value_or(known.units_per_metre.value_or(1.0));
 }
@@ -132,7 +132,7 @@ const Model& MeasuredScene::model() {
   return *model_;
 }
 
-// At some level, which shows as well as another which views see nothing.
+// A model for axes and for tests of what views see: any level serves for both.
 const Model& MeasuredScene::some_model() { return stream_ ? stream_->model() : model(); }
 
 lab::BenchCase MeasuredScene::open(const CasePlan& which) {

@@ -36,7 +36,7 @@ BenchScene open_bench_scene(const BenchOptions& options, const std::string& file
   return scene;
 }
 
-/// A calibration's ways to draw, with the tolerances as they are, after the axes' own.
+/// Appends the settings of a calibration with their tolerances, without duplicates.
 void add_calibrated(const std::string& file, lab::Axes& axes) {
   std::set<std::string> known;
   for (const lab::BenchSettings& settings : axes.settings) known.insert(lab::named(settings).dump());
@@ -61,7 +61,7 @@ std::vector<std::string> motions_of(const std::vector<std::string>& texts) {
   return names;
 }
 
-/// The axes that options choose, or name, with what they say in the place of that.
+/// Loads the axes that the options name or imply, and replaces values that options give.
 lab::Axes axes_of(const BenchOptions& o) {
   const bool along_frames = !o.motions.empty() || !o.camera.path.empty() || o.camera.tour;
   const char* const fitting = along_frames        ? "motion"
@@ -94,7 +94,7 @@ lab::Axes axes_of(const BenchOptions& o) {
   if (!o.size.empty()) axes.sizes = {o.size};
   if (o.rig.mono) axes.eyes = {1};
   if (!o.calibration.empty()) add_calibrated(o.calibration, axes);
-  // Where there are photos a drop against them is what a tolerance may cost.
+  // With photos, tolerances are searched by the loss against them; without, by PSNR against exact pictures.
   const bool drops = !o.photos.empty() && std::ranges::any_of(axes.settings, [](const lab::BenchSettings& s) {
     return s.max_drop.has_value();
   });

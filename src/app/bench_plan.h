@@ -1,5 +1,5 @@
 #pragma once
-// What `binosplat bench` is to measure, point by point, and which of it lies in a folder already.
+// The plan of `binosplat bench`: its points, and which of them a folder already holds.
 
 #include <filesystem>
 #include <memory>
@@ -20,20 +20,20 @@
 
 namespace binosplat::app {
 
-/// The cameras, photos and the rest are those of every scene.
+/// The inherited options (cameras, photos, ...) apply to every scene.
 struct BenchOptions : MeasuredOptions {
   std::vector<std::string> scenes;
-  std::string axes;  // empty: what fits the options below
+  std::string axes;  // empty: a preset that fits the options below
   std::vector<std::string> motions;
   bool turn = false;
   std::vector<std::string> details;
-  std::optional<int> frames;      // in the place of the axes'
-  std::string size;               // likewise
+  std::optional<int> frames;      // replaces the axes' value
+  std::string size;               // replaces the axes' value
   RigOptions rig;                 // mono: one eye
-  std::vector<std::string> test;  // views by name, where the axes have views for training
-  std::optional<int> hold_out;    // every which view is for tests
+  std::vector<std::string> test;  // views to measure by name, if the axes also have training views
+  std::optional<int> hold_out;    // every Nth view is for tests
   std::string output = "out/bench";
-  Shard shard;                           // of the points
+  Shard shard;                           // which of the points this run measures
   std::vector<std::string> merge;        // folders, instead of scenes
   std::string compare;                   // results.json of an older run
   std::optional<double> fail_if_slower;  // percent
@@ -42,7 +42,7 @@ struct BenchOptions : MeasuredOptions {
   bool floors = false;
 };
 
-/// One scene of the run, and its cameras; the model is read when a point needs it.
+/// One scene of the run and its cameras. The model is read when a point needs it.
 struct BenchScene {
   std::string name;  // the file's, without folders and ending
   SceneOptions options;
@@ -50,10 +50,10 @@ struct BenchScene {
   PhotoSource photos = {};
 };
 
-/// What tells a scene, its cameras and its photos from others of the same names.
+/// The values that identify a scene, its cameras and its photos, beyond their names: hashes of contents.
 nlohmann::ordered_json scene_identity(const MeasuredOptions& options, const BenchScene& scene);
 
-/// Points that share a model and what they are measured on: a chart.
+/// Points that share a model, views and pictures to compare with: one chart.
 struct CasePlan {
   std::size_t scene = 0;
   int eyes = 1;
@@ -65,38 +65,38 @@ struct BenchPlan {
   lab::Axes axes;
   std::vector<BenchScene> scenes;
   std::vector<CasePlan> cases;
-  std::vector<lab::Row> points;                        // what is known of each
-  std::shared_ptr<const nlohmann::ordered_json> json;  // what two runs must have in common to be one
+  std::vector<lab::Row> points;                        // the fixed columns of each: scene, case, settings
+  std::shared_ptr<const nlohmann::ordered_json> json;  // two runs are one if these are equal
 
-  /// The settings of a case's point; none: its contributions.
+  /// The settings of a case's point; null for the point of its contributions.
   const lab::BenchSettings* settings_of(const CasePlan& which, std::size_t point) const {
     const std::size_t k = point - which.first;
     return k < axes.settings.size() ? &axes.settings[k] : nullptr;
   }
 };
 
-/// Throws Error for scenes, cameras or axes that cannot be used. Reads no model.
+/// Throws Error for unusable scenes, cameras or axes. Reads no model.
 BenchPlan make_plan(const BenchOptions& options);
 
-/// In `along`: the frames of --path or of --tour.
+/// Values of `along`: the frames of --path, or of --tour.
 constexpr const char *along_path = "path", *along_tour = "tour";
 
-/// The points of a folder: what was measured, by number of the plan.
+/// A folder of results: each measured point in a file, by its number in the plan.
 class BenchFolder {
  public:
-  /// Goes on with the folder, or starts it once something is saved, so that a run that is refused leaves
-  /// nothing behind. Throws Error if it holds another plan; so do save() and save_results().
+  /// Resumes the run in the folder, or starts one. It writes nothing before the first save, so a refused run
+  /// leaves nothing behind. Throws Error if the folder holds another plan; so do save() and save_results().
   BenchFolder(std::filesystem::path folder, std::shared_ptr<const nlohmann::ordered_json> plan);
-  /// A folder that is there, with whatever plan it has. Throws Error if it has none.
+  /// Opens a folder with the plan that it holds. Throws Error if it has none.
   explicit BenchFolder(std::filesystem::path folder);
 
   const std::shared_ptr<const nlohmann::ordered_json>& plan() const { return plan_; }
   bool same_plan(const BenchFolder& other) const;
   std::size_t size() const;           // points of the plan
-  bool has(std::size_t point) const;  // whole
+  bool has(std::size_t point) const;  // complete
   lab::Point load(std::size_t point) const;
   void save(std::size_t point, const lab::Point& measured) const;
-  /// All points, measured or not, each beside the others.
+  /// All points, measured or not, with the columns that compare them (put_beside_others).
   lab::Results results() const;
   /// Writes report.html, results.json, results.csv and details.csv.
   void save_results(const lab::Results& results) const;
@@ -110,14 +110,14 @@ class BenchFolder {
   std::shared_ptr<const nlohmann::ordered_json> plan_;
 };
 
-/// A scene that is measured: its model, and what the cases of it are drawn from.
+/// An opened scene: its model, and the cases to measure on it.
 class MeasuredScene {
  public:
   MeasuredScene(gl::Context& context, const BenchOptions& options, const BenchPlan& plan, std::size_t scene);
 
-  /// What the points of a case are measured on.
+  /// The views, frames or turn that the points of a case are measured on.
   lab::BenchCase open(const CasePlan& which);
-  /// At its finest levels; read at first use.
+  /// The model at its finest levels; read at first use.
   const Model& model();
 
  private:
@@ -130,11 +130,11 @@ class MeasuredScene {
   const BenchOptions& options_;
   const BenchPlan& plan_;
   const BenchScene& scene_;
-  std::unique_ptr<PictureStream> stream_;  // of a scene with levels: its axes, and what can be seen of it
+  std::unique_ptr<PictureStream> stream_;  // only with levels: its model stands in for axes and visibility
   std::optional<Model> model_;
 };
 
-/// Throws Error for a plan whose cases cannot be opened, as far as that is known before a model is read.
+/// Throws Error if a case cannot be opened, as far as can be known before a model is read.
 void check_cases(const BenchPlan& plan, const BenchOptions& options);
 
 }  // namespace binosplat::app

@@ -15,7 +15,7 @@ namespace binosplat::app {
 
 namespace {
 
-/// The names of the views that see nothing, and why the first of them does not.
+/// The names of the views that see nothing, and the reason for the first of them.
 struct Blind {
   std::vector<std::string> names;
   std::string why;
@@ -62,7 +62,8 @@ void keep_those(const std::vector<bool>& sees, std::size_t first, std::vector<Vi
   views = std::move(kept);
 }
 
-/// Which cameras see something. Warns of those that do not; throws Error where none does, but one is needed.
+/// Returns for each camera whether it sees something. Warns of blind ones; throws Error if all are blind and
+/// `needs_one`.
 std::vector<bool> seeing_views(const std::string& command, gl::Context& context, const Model& model,
                                const std::vector<Camera>& cameras, double near_plane, bool needs_one = true) {
   std::vector<bool> sees = lab::seeing(context, model, cameras, near_plane);

@@ -1,5 +1,5 @@
 #pragma once
-// What commands that judge do with views that see nothing of the model.
+// Handling of views in which nothing of the model is visible, for commands that measure quality.
 
 #include <string>
 #include <vector>
@@ -11,12 +11,12 @@
 
 namespace binosplat::app {
 
-/// Throws Error where none of the shots, or of some spread evenly over many, sees anything of the model.
+/// Throws Error if the model is visible in none of the shots. Tests at most 16, spread evenly.
 void refuse_blind(const std::string& command, gl::Context& context, const Model& model,
                   const std::vector<Shot>& shots, double near_plane);
 
-/// Leaves out the shots whose first eye sees nothing of the model (lab::seeing). Warns of them, and why;
-/// throws Error where none does. `command` is what judges in them, `near_plane` in world units.
+/// Removes the shots whose first eye sees nothing of the model (lab::seeing), and warns with the reason.
+/// Throws Error if none is left. `command` names the command in messages; `near_plane` is in world units.
 void leave_out_blind(const std::string& command, gl::Context& context, const Model& model, double near_plane,
                      std::vector<Shot>& shots);
 
@@ -24,12 +24,12 @@ void leave_out_blind(const std::string& command, gl::Context& context, const Mod
 void leave_out_blind(const std::string& command, gl::Context& context, const Model& model, double near_plane,
                      std::vector<lab::CalibrationView>& views);
 
-/// The same for cameras in which something is judged beside what the command is for: all may be left out.
+/// The same for cameras of an additional measurement. All may be removed.
 void leave_out_blind(const std::string& command, gl::Context& context, const Model& model, double near_plane,
                      std::vector<Camera>& cameras);
 
-/// The same for each task of a split: those that weigh or are fitted, and those held back. Test views decide
-/// nothing, and may all be left out.
+/// The same for each set of a split. Throws Error if no training view or no view held back is left. All test
+/// views may be removed: they decide nothing.
 void leave_out_blind(const std::string& command, gl::Context& context, const Model& model,
                      lab::ViewSplit& views);
 

@@ -1,5 +1,5 @@
-// binosplat calibrate: the transmittance by depth and the tolerances of a model, in a file that render and
-// bench take.
+// binosplat calibrate: measures a model's transmittance by depth and its tolerances, and writes them to a
+// file for render and bench.
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
@@ -25,7 +25,7 @@ namespace {
 struct CalibrateOptions : MeasuredOptions {
   TargetOptions target;
   int views = 16;
-  std::optional<int> hold_out;  // every which view
+  std::optional<int> hold_out;  // every Nth view is for tests
   measure::DepthTableSettings table;
   std::string output;
 };
@@ -80,7 +80,7 @@ ExitCode calibrate(const CalibrateOptions& o) {
   save_json(o.output, json_of(found));
   forget_steps(o.output);
   print_calibration(found, o);
-  // A tolerance goes with the size of the pictures: render warns where it differs.
+  // A tolerance fits one picture size. render warns if the size differs.
   if (o.camera.lens.size)
     log_info(
         "these tolerances are for pictures of {} x {} px: in larger ones they cost less than they may, "

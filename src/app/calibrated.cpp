@@ -19,7 +19,7 @@ render::ThresholdPolicy policy_of(const DrawingOptions& options) {
 
 render::FrameSettings settings_of(const render::ThresholdPolicy& policy, const Shot& shot,
                                   const render::FrameSettings& asked, const ModelAxes& axes) {
-  constexpr double same_focal = 0.05;  // share: nearer than this the tolerance needs no scaling to speak of
+  constexpr double same_focal = 0.05;  // relative; a smaller difference needs no warning
   if (!policy.is_calibrated()) return asked;
   const shared::View& view = shot.eyes.front().view;
   const double focal = policy.calibration().focal;

@@ -1,5 +1,5 @@
 #pragma once
-// --calibration: which settings a shot is drawn with.
+// --calibration: chooses the settings of each shot.
 
 #include <vector>
 
@@ -9,15 +9,15 @@
 
 namespace binosplat::app {
 
-/// Reads the options' file, if they name one; it must have an entry for what they ask for (else: Error).
+/// Reads the options' calibration, if any. Throws Error if it has no entry for the requested rule.
 render::ThresholdPolicy policy_of(const DrawingOptions& options);
 
-/// As ThresholdPolicy::settings(), with a warning where the shot is drawn exactly, or its dB are rough.
+/// As ThresholdPolicy::settings(). Warns if the shot is drawn exactly, or if its dB are rough.
 render::FrameSettings settings_of(const render::ThresholdPolicy& policy, const Shot& shot,
                                   const render::FrameSettings& asked, const ModelAxes& axes);
 
-/// What --transmittance depth is measured in where no calibration has a table: 16 cameras of the list, evenly
-/// chosen. Says so.
+/// The views in which --transmittance depth measures its table without a calibration: 16 cameras of the list,
+/// evenly spaced. Logs their number.
 std::vector<shared::View> views_of_depth_table(const Lens& lens, const CameraList& list, double near_plane,
                                                const ModelAxes& axes);
 

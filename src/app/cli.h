@@ -1,5 +1,5 @@
 #pragma once
-// CLI11's names, for headers that need no more of it.
+// Forward declarations of CLI11, for headers.
 
 namespace CLI {
 class App;

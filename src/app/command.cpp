@@ -24,7 +24,7 @@ namespace binosplat::app {
 
 namespace fs = std::filesystem;
 
-// Names come from files and may be in any encoding; what is not UTF-8 is replaced rather than refused.
+// Names come from files in any encoding; bytes that are not UTF-8 are replaced.
 std::string json_text(const nlohmann::ordered_json& value) {
   return value.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
 }
@@ -48,13 +48,13 @@ int end_by_what_was_thrown() {
     if (std::ferror(stdout) != 0)
       return end(ExitCode::bad_input,
                  fmt::format("cannot write to standard output: {}", error.code().message()));
-    // Threads for which there was no room.
+    // Threads that could not start for lack of memory.
     if (error.code() == std::errc::resource_unavailable_try_again ||
         error.code() == std::errc::not_enough_memory)
       return end(ExitCode::out_of_memory, no_memory);
     return end(ExitCode::bad_input, fmt::format("internal error: {}", error.what()));
   } catch (const std::exception& error) {
-    // As TBB tells of threads for which there was no room.
+    // TBB reports the same in this form.
     if (std::string_view(error.what()).find("pthread_create") != std::string_view::npos)
       return end(ExitCode::out_of_memory, no_memory);
     return end(ExitCode::bad_input, fmt::format("internal error: {}", error.what()));
@@ -65,17 +65,17 @@ void end_cleanly_on_signals() {
   sigset_t signals;
   sigemptyset(&signals);
   for (const int signal : {SIGHUP, SIGINT, SIGTERM}) {
-    // A job in the background may have been started with signals ignored, and is left alone then.
+    // A background job may start with ignored signals. It keeps ignoring them.
     struct sigaction action = {};
     if (sigaction(signal, nullptr, &action) == 0 && action.sa_handler != SIG_IGN) sigaddset(&signals, signal);
   }
-  // Threads made from here on inherit the mask: the signals reach nobody but the one that waits for them.
+  // Threads created later inherit the mask, so only the waiting thread receives the signals.
   pthread_sigmask(SIG_BLOCK, &signals, nullptr);
   std::thread([signals] {
     int signal = 0;
     if (sigwait(&signals, &signal) != 0) return;
     remove_unfinished_files();
-    // Ends the process the way the signal does by itself, so that a shell sees why.
+    // Ends the process by the signal itself, so that a shell sees the cause.
     pthread_sigmask(SIG_UNBLOCK, &signals, nullptr);
     raise(signal);
   }).detach();
@@ -84,7 +84,7 @@ void end_cleanly_on_signals() {
 fs::path place_of(const fs::path& path) {
   std::error_code error;
   fs::path whole = fs::absolute(path, error);
-  // Links to what is not there yet, too, as the other output may be.
+  // Resolves links to missing files, too: another output may create the target.
   for (int links = 0; links < 40 && fs::is_symlink(whole, error); ++links)
     whole = whole.parent_path() / fs::read_symlink(whole, error);
   const fs::path place = fs::weakly_canonical(whole, error);
@@ -93,7 +93,7 @@ fs::path place_of(const fs::path& path) {
 
 fs::path folder_there(fs::path folder) {
   std::error_code ignored;
-  // Links that lead nowhere are there, too.
+  // A dangling link exists, too.
   while (!fs::exists(fs::symlink_status(folder, ignored)) && folder.has_relative_path())
     folder = folder.parent_path();
   return folder;

@@ -1,5 +1,5 @@
 #pragma once
-// What the sub-commands share: how main learns of them, and how they end and write.
+// Functions that the sub-commands share: registration, exit codes, outputs.
 
 #include <cstdint>
 #include <filesystem>
@@ -12,11 +12,10 @@
 
 namespace binosplat::app {
 
-/// What the command line asked for; main runs it once all options are known to be well formed.
+/// The work of the chosen sub-command. main runs it after all options are parsed.
 using Command = std::function<ExitCode()>;
 
-/// Each adds its sub-command and the options of it to `program`, and sets `command` if it is the one that was
-/// named.
+/// Each adds its sub-command and options to `program`. If the user names it, the parse sets `command`.
 void add_render(CLI::App& program, Command& command);
 void add_compare(CLI::App& program, Command& command);
 void add_devices(CLI::App& program, Command& command);
@@ -30,47 +29,46 @@ void add_trim(CLI::App& program, Command& command);
 void add_refit(CLI::App& program, Command& command);
 void add_info(CLI::App& program, Command& command);
 
-/// Whether the preview was built and lies beside this program.
+/// Whether the preview was built and is installed beside this program.
 bool has_preview();
 
-/// In a handler of `main`: says what is wrong, and returns the exit code for it.
+/// Logs the current exception and returns its exit code. Call it in a handler of `main`.
 int end_by_what_was_thrown();
 
-/// From now on SIGHUP, SIGINT and SIGTERM end the program at once, and no half file is left
-/// (base/output_file.h). Call it before any thread is made.
+/// From now on SIGHUP, SIGINT and SIGTERM end the program and remove unfinished files (base/output_file.h).
+/// Call it before any thread starts.
 void end_cleanly_on_signals();
 
-/// Where a file is written that `path` names: the same for all its spellings and symbolic links.
+/// The place that `path` writes to, the same for all spellings and symbolic links.
 std::filesystem::path place_of(const std::filesystem::path& path);
 
-/// The folder itself, or the nearest above it that there is.
+/// The folder, or its nearest ancestor that exists.
 std::filesystem::path folder_there(std::filesystem::path folder);
 
-/// Throws Error if `path` cannot become an output: a file stands where a folder is needed, no permission, or
-/// it is a folder itself, or a file that this run reads (base/inputs.h). Leaves no trace; call it before long
-/// work.
+/// Throws Error if `path` cannot be written: a file in place of a folder, no permission, a folder, or a file
+/// that this run reads (base/inputs.h). Leaves no trace; call it before long work.
 void check_output(const std::filesystem::path& path);
 
-/// Throws Error for a file that is no JSON.
+/// Throws Error if the file is not JSON.
 nlohmann::ordered_json load_json(const std::filesystem::path& path);
 
-/// `value` as JSON for people and programs to read.
+/// `value` as indented JSON with a line break at the end.
 std::string json_text(const nlohmann::ordered_json& value);
 
-/// Writes `value` for people and programs to read. Numbers that are not finite become null, as JSON has none.
+/// Writes `value` as indented JSON. Numbers that are not finite become null, because JSON lacks them.
 void save_json(const std::filesystem::path& path, const nlohmann::ordered_json& value);
 
-/// In a folder of results, `file` says which run they are of, so that another goes on from them. Writes it if
-/// there is none: of runs that begin at the same time, whether alike or not, one does. Throws Error as
-/// check_same_run() does where it tells of another run.
+/// Marks a folder of results with the run that they belong to, in `file`, so that later runs can resume it.
+/// Of several runs that start at once, one writes the file. Throws as check_same_run() if it names another
+/// run.
 void claim_run(const std::filesystem::path& file, const nlohmann::ordered_json& run, const char* results);
 
-/// Throws Error, naming what differs, if `file` tells of another run than `run`. `results` is what they are,
-/// in the form "pictures".
+/// Throws Error with the differing keys if `file` describes another run than `run`. `results` names the
+/// results in the message, as in "pictures".
 void check_same_run(const std::filesystem::path& file, const nlohmann::ordered_json& run,
                     const char* results);
 
-/// Bytes as "1,210 MB", or "3.4 MB" where whole ones would say little.
+/// Bytes as "1,210 MB", or "3.4 MB" below 10 MB.
 std::string megabytes(std::int64_t bytes);
 
 }  // namespace binosplat::app

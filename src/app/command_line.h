@@ -1,5 +1,5 @@
 #pragma once
-// What holds for the arguments of every sub-command.
+// Handling of arguments that all sub-commands share.
 
 #include <atomic>
 #include <string>
@@ -9,45 +9,45 @@
 
 namespace binosplat::app {
 
-/// Throws Error for an argument that is empty, as an unset variable of a script leaves it.
+/// Throws Error for an empty argument: in scripts an unset variable.
 void check_arguments(int argc, const char* const* argv);
 
-/// Whether a window could be opened, as far as the environment tells.
+/// Whether the environment names a display.
 bool has_display();
 
-/// What the program is given, with the sub-command that is meant where it begins with a model: `view` where
-/// there are a display and the preview, else `render`; says so. Throws Error for a word that is neither.
+/// The arguments with the sub-command made explicit. If they begin with a model, adds `view` (with a display
+/// and the preview) or `render` and logs it. Throws Error for a word that is neither command nor model.
 std::vector<std::string> with_command(const CLI::App& program, int argc, const char* const* argv);
 
-/// "; did you mean WORD?", if one of the words is near enough.
+/// "; did you mean WORD?", or nothing if no word is similar.
 std::string suggestion(const std::string& word, const std::vector<std::string>& words);
 
-/// What a command line that cannot be parsed is told: what is wrong, what may be meant, and where to look;
-/// `name` is the command's whole name, to which that of the sub-command comes where the mistake is its own.
+/// The error text of a failed parse: the fault, a suggestion and where to read help. `name` is the full name
+/// of `command`; errors of a sub-command append its name.
 std::string explain(const CLI::App& command, const std::string& name, const CLI::ParseError& error);
 
-/// A relative XDG_CACHE_HOME is taken out of the environment: its specification has it ignored, and drivers
-/// make a folder below the working one instead. Where the disk of the user's caches is full, drivers are told
-/// to keep no shaders there: they write into mapped files, and SIGBUS would end the program; warns of that.
-/// Likewise where nothing can be written there, which each driver reports in its own words. Call it
-/// before any context is made.
+/// Prepares the shader caches of drivers; call it before any context is created.
+/// - Removes a relative XDG_CACHE_HOME. Its specification says to ignore it, but drivers create a folder
+///   below the working one.
+/// - If the user's cache folder is full or cannot be written, disables the drivers' caches and warns. On a
+///   full disk drivers write into mapped files, and SIGBUS ends the program.
 void settle_shader_caches();
 
-/// What pictures may take that are drawn and not written yet, in bytes (--max-memory).
+/// Limit of memory for pictures that are drawn but not yet written, in bytes (--max-memory).
 inline std::atomic<double> picture_memory_allowed{1e30};
 
-/// --max-memory for a sub-command that reads a model: how much of it is believed of a file that is small
+/// Adds --max-memory to a sub-command that reads a model: the memory that a small file may claim
 /// (formats/plausible.h).
 void add_max_memory(CLI::App& sub);
 
-/// --quiet.
+/// Adds --quiet.
 void add_quiet(CLI::App& sub);
 
-/// Notes the files that a parsed command line names to be read (base/inputs.h): all but its outputs. Throws
-/// Error where two of its outputs are one file.
+/// Records the files that a parsed command line names as inputs (base/inputs.h): all but its outputs. Throws
+/// Error if two outputs are the same file.
 void note_inputs(const CLI::App& program);
 
-/// Notes the pictures in a folder of photos.
+/// Records the pictures in a folder of photos as inputs.
 void note_photos(const std::string& folder);
 
 }  // namespace binosplat::app

@@ -1,4 +1,4 @@
-// binosplat compare: by how much two pictures differ, and where.
+// binosplat compare: measures the difference of two pictures and locates the largest.
 
 #include <algorithm>
 #include <cmath>
@@ -20,8 +20,8 @@ namespace binosplat::app {
 
 namespace {
 
-/// Bytes that a pixel of both pictures takes at most: 119 of grey, 169 of colour and alpha were seen, most of
-/// them FLIP's.
+/// Upper bound of memory per pixel of both pictures, mostly FLIP's. Measured: 119 for grey, 169 for colour
+/// and alpha.
 constexpr std::uint64_t bytes_per_pixel = 170;
 
 struct CompareOptions {
@@ -33,12 +33,12 @@ struct CompareOptions {
   std::string difference;
   std::string json;
   std::optional<measure::Gaze> gaze;
-  Background background;  // none: alpha counts where both have some
+  Background background;  // none: compares alpha if both have it
 };
 
 using measure::Comparison;
 
-/// What --max-memory says; three quarters of the machine's memory by themselves.
+/// --max-memory, or three quarters of the machine's memory.
 PictureLimit limit_of(const CompareOptions& options) {
   const double most = options.max_memory ? 1e6 * *options.max_memory : 0.75 * memory_bytes();
   return {static_cast<std::uint64_t>(std::min(most, 1e18)), bytes_per_pixel, "; --max-memory allows more"};
@@ -120,7 +120,7 @@ nlohmann::ordered_json comparison_json(const CompareOptions& options, const Comp
   const auto& largest = found.largest;
   return lab::object("version", BINOSPLAT_VERSION, "a", options.a, "b", options.b, "width", image.width,
                      "height", image.height, "equal", largest.max == 0.0, "psnr_db",
-                     found.psnr,  // null where equal, infinite, or undefined
+                     found.psnr,  // null if equal (infinite) or undefined
                      "ssim", found.ssim, "flip", found.flip, "pixels_per_degree", options.pixels_per_degree,
                      "largest_error",
                      lab::object("value", largest.max, "x", largest.x, "y", largest.y, "channel",

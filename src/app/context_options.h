@@ -1,5 +1,5 @@
 #pragma once
-// Where frames are drawn.
+// The options that choose the OpenGL context.
 
 #include <memory>
 #include <string>
@@ -11,24 +11,24 @@ namespace binosplat::app {
 
 struct ContextOptions {
   gl::Backend backend = gl::Backend::automatic;
-  int device = -1;         // of EGL's; -1: the first GPU
+  int device = -1;         // number of the EGL device; -1: the first GPU
   std::string shader_dir;  // empty: the embedded shaders
 };
 
-/// Adds all of them; `options` must outlive the parsing.
+/// Adds all of them; `options` must outlive parsing.
 void add_context_options(CLI::App& sub, ContextOptions& options);
 
 /// --device, for commands that take few.
 CLI::Option* add_device_option(CLI::App& sub, ContextOptions& options);
 
-/// Throws Error for a device of a backend that has none; it says which ones do.
+/// Throws Error for a device number with a backend without devices. `with_devices` lists the others.
 void check(const ContextOptions& options, const char* with_devices = "device or auto");
 
-/// The context that they name; the log says what it is.
+/// Opens the requested context and logs which it is.
 std::unique_ptr<gl::Context> open_context(const ContextOptions& options);
 
-/// The same for a command that keeps nothing of its work until all of it is done. The log says so, too, where
-/// that takes long: on a CPU, or with `on_gpus` anywhere.
+/// The same for a command that keeps no intermediate results. Logs that, on a CPU or if `on_gpus`, because
+/// the command may then take long.
 std::unique_ptr<gl::Context> open_context_for_all(const std::string& command, bool on_gpus,
                                                   const ContextOptions& options);
 

@@ -1,4 +1,4 @@
-// binosplat convert: a model in the format of other programs, and what that costs in dB.
+// binosplat convert: writes a model in another format, and measures the loss in dB.
 
 #include "formats/model_output.h"
 
@@ -32,13 +32,13 @@ namespace fs = std::filesystem;
 
 struct ConvertOptions : MeasuredOptions {
   std::string output;
-  std::optional<ModelFormat> to;  // none: by the output's ending
+  std::optional<ModelFormat> to;  // none: chosen by the output's ending
   std::optional<int> harmonic_bits;
   std::optional<int> report;  // views
   std::string json;
 };
 
-/// The same for every model; only its axes differ.
+/// Cameras and context that draw the original and the written model. Only the axes differ between the two.
 struct Views {
   std::vector<Camera> cameras;
   double near_plane = 0.0;
@@ -54,7 +54,7 @@ struct ViewCost {
 struct Converted {
   ModelFormat format = ModelFormat::ply;
   std::size_t count = 0;
-  std::optional<std::uintmax_t> bytes_before;  // where the model is one file
+  std::optional<std::uintmax_t> bytes_before;  // if the model is one file
   std::uintmax_t bytes = 0;
   std::vector<std::string> losses;
   std::vector<ViewCost> views;
@@ -74,7 +74,7 @@ void check_convert(const ConvertOptions& o, ModelFormat format) {
     fail("--cameras, --view and --size are of the pictures that --report draws: add it, or leave them out");
 }
 
-/// Those that --view names, or so many of the cameras, or of a ring around the model.
+/// The cameras of --view, or as many of the listed ones as requested, or a ring around the model.
 Views find_views(const ConvertOptions& o, CameraList list, const Model& model) {
   if (!list.listed) {
     log_info("no cameras beside {}: taking {} around the model", o.scene.name, *o.report);
@@ -89,7 +89,7 @@ Views find_views(const ConvertOptions& o, CameraList list, const Model& model) {
   return views;
 }
 
-/// Pictures of 8 bits.
+/// Draws the views as 8-bit pictures.
 std::vector<Image> draw(const Views& views, const Model& model, const char* label) {
   render::Frame frame(*views.context, model);
   Progress progress(label, views.cameras.size());
@@ -138,7 +138,7 @@ nlohmann::ordered_json converted_json(const ConvertOptions& o, const Converted& 
   if (c.views.empty()) return json;
   const auto psnr = [](const ViewCost& view) {
     return lab::object("name", view.name, "width", view.width, "height", view.height, "equal",
-                       std::isinf(view.psnr) && view.psnr > 0.0, "psnr_db", view.psnr);  // null where equal
+                       std::isinf(view.psnr) && view.psnr > 0.0, "psnr_db", view.psnr);  // null if equal
   };
   for (const ViewCost& view : c.views) json["views"].push_back(psnr(view));
   json["worst"] = psnr(worst_of(c.views));

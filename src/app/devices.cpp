@@ -1,4 +1,4 @@
-// binosplat devices: what this machine has to draw with.
+// binosplat devices: lists the OpenGL devices of this machine.
 
 #include "gl/devices.h"
 

@@ -1,4 +1,4 @@
-// Draws the shots of a run, and hands their pictures to threads that write them.
+// Draws the shots of a run, while threads encode and write the earlier ones.
 
 #include <algorithm>
 #include <array>
@@ -34,8 +34,8 @@ namespace binosplat::app {
 
 namespace {
 
-// How far the screen is, in metres, where no option says it: what suits the first view of the run, whichever
-// part of it is drawn here; nothing where that shows nothing.
+// The screen's distance in metres if no option gives it: it suits the first view of the run, in every shard.
+// Returns none if that view is empty.
 std::optional<double> find_screen(render::Frame& frame, const render::FrameSettings& settings,
                                   const Shot& first) {
   frame.draw(std::array{first.eyes[0].view},
@@ -49,10 +49,11 @@ std::optional<double> find_screen(render::Frame& frame, const render::FrameSetti
   return metres;
 }
 
-// What an exact frame takes in the place of the last of a long path, to say whether --quality paid; nothing
-// where a path is too short to tell, or its frames are not drawn whole.
+// Times an exact frame in the last view of a long path, to report whether --quality is faster. Returns none
+// if the path is short, or if the run draws with levels, insets, panoramas or several models.
 std::optional<double> exact_frame_ms(render::Frame& frame, const RenderRun& run) {
-  // Frames, of which these two are a small share, or by a CPU, where it hardly ever pays, the one.
+  // Minimal numbers of frames. On a CPU --quality is rarely faster, so fewer suffice for this one extra
+  // frame.
   constexpr std::size_t many = 24, some = 6;
   const RenderOptions& o = run.options;
   if (!o.drawing.quality || !run.list.path || run.drawn.size() < (run.context->software() ? some : many) ||
@@ -61,14 +62,14 @@ std::optional<double> exact_frame_ms(render::Frame& frame, const RenderRun& run)
   render::FrameSettings exact = render::exact_of(settings_of(o.drawing));
   exact.precision = o.drawing.precision;
   const std::vector<shared::View> views = views_of(run.drawn.back().shot);
-  if (run.drawn.size() >= many) frame.draw(views, exact);  // in which drivers compile their programs
+  if (run.drawn.size() >= many) frame.draw(views, exact);  // warms up: drivers compile the programs here
   return frame.draw(views, exact).total_ms;
 }
 
-/// A shot's pictures, and what is shown of them.
+/// A shot's pictures, and the debug view made of them.
 struct ShotPictures {
   std::vector<Picture> pictures;
-  std::optional<stereo::DebugPictures> shown;  // none: the pictures
+  std::optional<stereo::DebugPictures> shown;  // none: shows `pictures`
 };
 
 bool is_empty(const Picture& picture) {
@@ -76,15 +77,15 @@ bool is_empty(const Picture& picture) {
                      [](const glm::vec4& c) { return c.a == 1.0f; });
 }
 
-// At which the optics of headsets put their screens.
+// Focal distance of a headset's optics.
 constexpr double headset_focus_metres = 2.0;
 
-// Of a shot with both eyes and something that has a depth, from the left eye's picture; `headset`: seen in
-// one.
+// Comfort of a pair, from the left eye's picture. `headset`: the pair is seen in one. Returns none for one
+// eye or for a picture without depths.
 std::optional<Comfort> comfort_of(const Shot& shot, bool headset, const Picture& left) {
   if (shot.eyes.size() != 2) return std::nullopt;
   const std::array<Camera, 2> eyes = {shot.eyes[0].camera, shot.eyes[1].camera};
-  // No screen stands in the plane of zero disparity of a headset, and canted eyes have no such plane.
+  // A headset has no screen in the plane of zero disparity, and canted eyes have no such plane.
   const bool canted = glm::dot(eyes[0].rotation[2], eyes[1].rotation[2]) < 1.0 - 1e-9;
   const auto focus = canted || headset ? std::optional(headset_focus_metres * shot.units_per_metre)
                                        : stereo::screen_distance(eyes);
@@ -100,7 +101,7 @@ std::optional<Comfort> comfort_of(const Shot& shot, bool headset, const Picture&
   return comfort;
 }
 
-// PSNR of the picture as 8 bits would keep it against the photo, where there is a folder of them.
+// PSNR of the 8-bit picture against its photo, if --photos names a folder.
 std::optional<double> photo_psnr(const PhotoSource& photos, const glm::vec3& background, const Shot& shot,
                                  const Picture& picture) {
   if (photos.folder.empty()) return std::nullopt;
@@ -113,7 +114,7 @@ std::optional<double> photo_psnr(const PhotoSource& photos, const glm::vec3& bac
   return measure::photo_psnr(composite(picture, background), exposure_of(photos.exposures, shot.name), photo);
 }
 
-// Memory of a shot from the GPU to the file: twice its colours and depths, and what they are encoded to.
+// Memory of a shot from the GPU to the file: its colours and depths twice, and its encoded bytes.
 double bytes_of(const Shot& shot) {
   constexpr double bytes_a_pixel = 2 * 20 + 24;
   double pixels = 0.0;
@@ -121,28 +122,27 @@ double bytes_of(const Shot& shot) {
   return bytes_a_pixel * pixels;
 }
 
-/// What becomes of shots' pictures while the next shots are drawn: threads judge, encode and write them. A
-/// video gets its frames one by one, in order.
+/// Measures, encodes and writes shots on threads while the next ones are drawn. A video receives its frames
+/// in order.
 class ShotFiles {
  public:
-  /// For the shots to come. Pictures that are drawn and not written yet take a quarter of the machine's
-  /// memory at most, or what --max-memory allows if that is less; those of three shots in any case. There are
-  /// as many threads as cores where memory allows that.
+  /// Pictures that wait for writing take at most a quarter of the machine's memory, or --max-memory if that
+  /// is less; three shots are always allowed. Starts a thread for each core, if memory allows.
   explicit ShotFiles(RenderRun& run)
       : run_(run), read_back_(*run.context), video_(open_video(run.outputs, run.shots)) {
     double most = 1.0;
     for (const Shot& shot : run.shots) most = std::max(most, bytes_of(shot));
     const double budget = std::min(0.25 * memory_bytes(), picture_memory_allowed.load());
-    // Besides one that waits and one that is on its way from the GPU.
+    // Two further shots: one waits, and one is on its way from the GPU.
     const double fit = budget / most - 2.0;
     const double useful = std::min<double>(core_count(), static_cast<double>(run.shots.size()));
     run.times.threads = static_cast<int>(std::clamp(fit, 1.0, std::max(1.0, useful)));
     queue_ = std::make_unique<JobQueue>(run.times.threads, 1);
   }
 
-  /// Takes a shot, whose pictures `take` hands out on another thread; until finish() its comfort and PSNR of
-  /// `drawn` are to come, which must stay where it is. Waits while there is no memory for more. Throws Error
-  /// for a file of this or an earlier shot that could not be written; then no other is begun.
+  /// Queues a shot; another thread calls `take` for its pictures. That thread also writes comfort and PSNR
+  /// into `drawn`, which must stay in place until finish(). Waits while memory is full. Throws Error if this
+  /// or an earlier file cannot be written; later shots then do not start.
   void add(Drawn& drawn, std::function<ShotPictures()> take) {
     const auto frame = std::make_shared<std::string>();
     const auto encode_all = [this, &drawn, take = std::move(take), frame] {
@@ -165,13 +165,13 @@ class ShotFiles {
     run_.times.waiting += ms_since(begin);
   }
 
-  /// Asks for the pictures that the frame has of a shot; hand_over() takes them.
+  /// Requests the frame's pictures of a shot. hand_over() receives them.
   void read_back(Drawn& drawn, const render::Frame& frame) {
     on_way_ = read_back_.start(frame);
     of_ = &drawn;
   }
 
-  /// Adds the shot whose pictures were asked for, if any were, once the GPU has copied them.
+  /// Queues the shot whose pictures were requested, if any, after the GPU has copied them.
   void hand_over() {
     if (!on_way_) return;
     const auto begin = Clock::now();
@@ -180,7 +180,7 @@ class ShotFiles {
     add(*of_, [taken = std::exchange(on_way_, nullptr)] { return ShotPictures{taken->take(), {}}; });
   }
 
-  /// Waits until all is written. Throws as add() does.
+  /// Waits until every file is written. Throws as add() does.
   void finish() {
     hand_over();
     const auto begin = Clock::now();
@@ -191,7 +191,7 @@ class ShotFiles {
     run_.times.writing = 1e-3 * writing_ms_;
   }
 
-  /// Whether no picture shows anything.
+  /// Whether all pictures are empty.
   bool all_empty() const { return all_empty_; }
 
  private:
@@ -210,15 +210,15 @@ class ShotFiles {
 
   RenderRun& run_;
   render::ReadBack read_back_;
-  std::shared_ptr<render::ReadBack::Pictures> on_way_;  // from the GPU
-  Drawn* of_ = nullptr;                                 // whose they are
+  std::shared_ptr<render::ReadBack::Pictures> on_way_;  // requested from the GPU
+  Drawn* of_ = nullptr;                                 // their shot
   std::unique_ptr<Video> video_;
   std::atomic<bool> all_empty_ = true;
   std::atomic<double> encoding_ms_ = 0.0, writing_ms_ = 0.0;
-  std::unique_ptr<JobQueue> queue_;  // last: its jobs end first
+  std::unique_ptr<JobQueue> queue_;  // last: destroyed first, which ends its jobs
 };
 
-/// A scene at its finest levels, for --detail-report.
+/// The scene at its finest levels, the reference of --detail-report.
 struct FinestLevels {
   explicit FinestLevels(const RenderRun& run) : model(load_model(run.options.scene.name)) {
     set_as_asked(run.options.scene, model);
@@ -235,7 +235,7 @@ std::vector<Picture> exact_pictures(render::Frame& frame, std::span<const shared
   return frame.read_pictures();
 }
 
-/// What draws shots of a model: the frame, or what the options want in its place.
+/// Draws shots of a model: by a plain frame, a panorama or a foveated frame.
 struct Drawer {
   Drawer(RenderRun& of, const std::shared_ptr<render::GpuModel>& model) : run(of), frame(model), show(model) {
     if (run.outputs.vr180) panorama.emplace(model, run.shots[0].eyes[0].camera.width);
@@ -249,14 +249,14 @@ struct Drawer {
   std::optional<stereo::FoveatedFrame> foveated;
   std::optional<FinestLevels> finest;
 
-  /// Whether the frame's own pictures are all that is wanted, which are read while the next ones are drawn.
+  /// Whether the output needs only the frame's own pictures, which can be read while the next shot is drawn.
   bool reads_behind() const {
     const OutputOptions& o = run.options.output;
     return !panorama && !foveated && o.show == SHOW_PICTURE && !o.detail_report;
   }
 
-  /// Brings the stream's model to the levels that a shot needs; --detail-report of a turning head has what
-  /// their switch changes.
+  /// Loads the levels that a shot needs. For --detail-report with turning heads, also measures the change of
+  /// the picture when levels switch.
   ShotLevels settle(std::span<const shared::View> views, render::FrameSettings& settings) {
     const bool reports = run.options.output.detail_report && run.heads_turn;
     ShotLevels levels;
@@ -272,12 +272,12 @@ struct Drawer {
     const PictureStream::Times times = run.stream->take_times();
     levels.read_ms = times.read_ms;
     levels.upload_ms = times.upload_ms;
-    // What the frame leaves out has the rest of the error that may be there.
+    // The frame's threshold may use the error that the levels leave.
     settings.quality = static_cast<float>(run.stream->quality_left(settings.quality));
     return levels;
   }
 
-  /// Draws a shot. `meanwhile` is called where the GPU has its work and the CPU would wait.
+  /// Draws a shot. Calls `meanwhile` while the GPU works.
   render::FrameReport draw(const Shot& shot, const std::vector<shared::View>& views,
                            const render::FrameSettings& settings, const std::function<void()>& meanwhile) {
     const RenderOptions& o = run.options;
@@ -289,7 +289,7 @@ struct Drawer {
     return frame.finish();
   }
 
-  /// The pictures of a shot that was drawn, where they are read at once.
+  /// The pictures of the drawn shot, if they are read at once.
   ShotPictures read(Drawn& drawn, const std::vector<shared::View>& views,
                     const render::FrameSettings& settings) {
     ShotPictures of{panorama   ? panorama->read_pictures()
@@ -316,7 +316,7 @@ void draw_all(RenderRun& run) {
   const RenderOptions& o = run.options;
   render::FrameSettings settings = settings_of(o.drawing);
   settings.background = o.output.backdrop();
-  if (!run.list.path) settings.probe_tiles = std::numeric_limits<int>::max();  // single pictures: all
+  if (!run.list.path) settings.probe_tiles = std::numeric_limits<int>::max();  // single pictures: all tiles
   const auto drawer_of = [&](const Model& model) {
     return std::make_unique<Drawer>(
         run, std::make_shared<render::GpuModel>(*run.context, model, settings.precision));
@@ -332,14 +332,14 @@ void draw_all(RenderRun& run) {
   if (run.screen) run.convergence = find_screen(drawer->frame, settings, *run.screen);
 
   std::optional<ModelsInTurn> in_turn;
-  std::optional<Model> shown;  // of them, where it is not the first
+  std::optional<Model> shown;  // the current model, unless it is the first
   if (!run.shots[0].model.empty()) in_turn.emplace(o.scene, run.loaded, run.shots);
 
   const auto begin = Clock::now();
   ShotFiles files(run);
   Progress progress("drawing", run.shots.size() * static_cast<std::size_t>(o.drawing.frames),
                     o.drawing.frames == 1 ? "views" : "frames");
-  run.drawn.reserve(run.shots.size());  // threads refer to them
+  run.drawn.reserve(run.shots.size());  // threads hold references to elements
   for (const Shot& shot : run.shots) {
     if (in_turn && !run.drawn.empty()) {
       files.hand_over();
@@ -347,7 +347,7 @@ void draw_all(RenderRun& run) {
       shown = in_turn->take();
       drawer = drawer_of(*shown);
     }
-    // Single pictures do not depend on which were drawn before them.
+    // Single pictures must not depend on earlier ones.
     if (!run.list.path) (drawer->foveated ? drawer->foveated->frame() : drawer->frame).start_over();
     Drawn& drawn = run.drawn.emplace_back();
     drawn.shot = shot;

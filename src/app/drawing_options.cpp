@@ -60,7 +60,7 @@ void check(const DrawingOptions& o) {
     fail("--th adagscale goes by its table by depth: for --transmittance {} take --th peripheral",
          transmittance_choices[o.transmittance].name);
   }
-  // A tolerance beside a table that was calibrated goes by that table.
+  // --tolerance is allowed beside a calibrated depth table, which it does not replace.
   if (o.tolerance && calibrated && o.transmittance != TRANSMITTANCE_DEPTH)
     fail("--tolerance with --calibration: each chooses the tolerance: leave one of them out");
   if (!exact && !given && !calibrated)

@@ -1,5 +1,5 @@
 #pragma once
-// How a frame is drawn.
+// The options that choose how frames are drawn.
 
 #include <optional>
 #include <string>
@@ -12,36 +12,36 @@
 namespace binosplat::app {
 
 struct DrawingOptions {
-  int tiles = TILES_ELLIPSE;       // TILES_ of shared/axes.h, as are those below by their names
-  std::optional<int> th;           // none: threshold_of()
+  int tiles = TILES_ELLIPSE;       // TILES_ of shared/axes.h; the members below likewise
+  std::optional<int> th;           // none: chosen by threshold_of()
   std::optional<float> tolerance;  // K or kappa
   int transmittance = TRANSMITTANCE_ONE;
   bool adagscale = false;        // --th adagscale: TH_PERIPHERAL with TRANSMITTANCE_DEPTH
   std::optional<float> quality;  // dB
   std::string calibration;       // a file of binosplat calibrate
-  std::optional<int> decode;     // of a Scaffold-GS model; none: eyes
-  std::optional<int> order;      // none: what the model was trained with
+  std::optional<int> decode;     // for Scaffold-GS; none: eyes
+  std::optional<int> order;      // none: as the model was trained
   std::optional<int> projection;
-  std::optional<int> tile;  // px; none: chosen
+  std::optional<int> tile;  // px; none: automatic
   int precision = PRECISION_FULL;
   std::optional<render::Stage> reference_until;
-  int frames = 1;  // of each view
+  int frames = 1;  // drawn for each view
 };
 
-/// Adds all of them; `options` must outlive the parsing.
+/// Adds all of them; `options` must outlive parsing.
 void add_drawing_options(CLI::App& sub, DrawingOptions& options);
 
-/// Throws Error for options that contradict each other.
+/// Throws Error for contradicting options.
 void check(const DrawingOptions& options);
 
-/// What --th is, TH_: squared where only a tolerance, a quality or a calibration is given, which costs less
-/// at equal error than the paper's rule (docs/method.md 8).
+/// The rule (TH_) of --th. Without --th, a tolerance, quality or calibration selects `squared`: at equal
+/// error it is faster than the paper's rule (docs/method.md 8).
 int threshold_of(const DrawingOptions& options);
 
-/// What the options say of a frame; of a table of depths or a calibration it knows nothing.
+/// The options as settings, without calibration and without depth table.
 render::FrameSettings settings_of(const DrawingOptions& options);
 
-/// --reference-until.
+/// The debug options of a frame (--reference-until).
 render::Workings workings_of(const DrawingOptions& options);
 
 }  // namespace binosplat::app

@@ -10,11 +10,11 @@ namespace binosplat::app {
 
 namespace {
 
-// Where the model's Gaussians lie, as a camera sees their middles.
+// Counts of Gaussians by where their middles lie in a camera's view.
 struct MiddlesSeen {
-  std::size_t inside = 0;  // the picture, beyond the near plane
+  std::size_t inside = 0;  // in the picture and beyond the near plane
   std::size_t ahead = 0;   // beyond the near plane
-  std::size_t near = 0;    // before the camera, but not beyond it
+  std::size_t near = 0;    // between the camera and the near plane
 };
 
 MiddlesSeen look(const Model& model, Camera camera, double near_plane) {

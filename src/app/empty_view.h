@@ -1,5 +1,5 @@
 #pragma once
-// What to tell a user whose pictures show nothing.
+// Explains to a user why a picture is empty.
 
 #include <string>
 #include <string_view>
@@ -9,8 +9,8 @@
 
 namespace binosplat::app {
 
-/// The likely cause that no Gaussian was drawn in a shot, and the options that change it; `elsewhere` is what
-/// is said of those that look elsewhere. `near_plane` in world units.
+/// The likely reason why a shot draws no Gaussian, and the options that change it. `elsewhere` ends the
+/// message for views that miss the model. `near_plane` is in world units.
 std::string why_empty(const Model& model, const Shot& shot, double near_plane,
                       std::string_view elsewhere = ": see --eye and --at, or --orbit 8");
 

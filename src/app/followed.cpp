@@ -16,8 +16,8 @@ namespace binosplat::app {
 
 namespace {
 
-/// Bytes that a frame starts with, those of the model included; of one whose parts come later, which has room
-/// for so many, those of their uploads, too.
+/// Bytes of the model and of a first frame. For a stream (`in_parts`), buffers have room for all Gaussians,
+/// and the memory of uploads is added.
 std::int64_t bytes_for(render::FramePlan plan, std::uint32_t gaussians, bool in_parts) {
   plan.gaussian_count = in_parts ? 0 : gaussians;
   plan.gaussian_room = gaussians;
@@ -25,7 +25,7 @@ std::int64_t bytes_for(render::FramePlan plan, std::uint32_t gaussians, bool in_
   const render::MemoryNeeds needs = render::memory_needs(plan);
   if (!in_parts) return needs.model + needs.frame;
   const int precision = plan.settings.precision;
-  // Each of both with its place.
+  // Each record of an upload also stores its target index.
   const std::int64_t bytes_of_one = render::gaussian_bytes(precision) +
                                     render::harmonic_bytes(plan.models.front().degree, precision) + 2 * 4;
   const auto uploads = static_cast<std::int64_t>(
@@ -33,14 +33,14 @@ std::int64_t bytes_for(render::FramePlan plan, std::uint32_t gaussians, bool in_
   return needs.model + needs.frame + uploads * bytes_of_one;
 }
 
-// A pair of eyes of which nothing is known but how many pixels pictures usually have.
+// A pair of eyes of the usual size, as a stand-in before the views are known.
 std::vector<shared::View> usual_views(const Lens& lens = {}, std::size_t count = 2) {
   const Camera camera = look_at({0, 0, -1}, {0, 0, 0}, {0, -1, 0}, 60, 1280, 720);
   return std::vector<shared::View>(count, make_view(sized(lens, camera)));
 }
 
-/// --detail, or the finest, or what --quality leaves to levels, of more than few_gaussians; and --gpu-memory
-/// for the model and frames of such settings.
+/// Settings of a stream: --detail, or else the finest levels that --quality leaves error for, in models above
+/// few_gaussians; and the budget of --gpu-memory.
 StreamSettings stream_settings(const SceneOptions& options, const render::FrameSettings& settings) {
   StreamSettings result{.detail = options.detail.value_or(DetailRequest{}),
                         .shares = !options.detail,
@@ -59,7 +59,7 @@ StreamSettings stream_settings(const SceneOptions& options, const render::FrameS
 
 std::size_t gaussians_that_fit(double megabytes, render::FrameSettings settings,
                                std::span<const shared::View> views, int degree, bool in_parts) {
-  settings.depth_table = {1.0f, {1.0f}};  // not measured yet
+  settings.depth_table = {1.0f, {1.0f}};  // a stand-in: not measured yet
   const double bytes = 1e6 * megabytes;
   Model model;
   model.degree = degree;

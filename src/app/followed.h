@@ -1,5 +1,5 @@
 #pragma once
-// Levels of detail: those that --gpu-memory has room for, and with --detail those that follow what is drawn.
+// Levels of detail: a fixed choice within --gpu-memory, or streams that follow the views (--detail).
 
 #include <memory>
 #include <optional>
@@ -14,22 +14,21 @@
 
 namespace binosplat::app {
 
-/// How many Gaussians of a degree fit in so many MB beside what a frame of these views takes, and what their
-/// uploads do where they come `in_parts`.
+/// The number of Gaussians of a degree that fit into `megabytes`, beside a frame of these views. `in_parts`
+/// also reserves memory for streaming uploads.
 std::size_t gaussians_that_fit(double megabytes, render::FrameSettings settings,
                                std::span<const shared::View> views, int degree, bool in_parts);
 
-/// How many Gaussians fit in --gpu-memory beside what a frame of the views takes, and from where the
-/// views see the model, both eyes: known before it is read, unless its own place decides (--orbit, no
-/// cameras), where no eye counts.
+/// The number of Gaussians that fit into --gpu-memory, and the positions of all eyes. Both are known before
+/// the model is read. Without cameras or with --orbit the model decides the views, so `eyes` is empty.
 DetailBudget detail_budget(const RenderOptions& options, const CameraList& list);
 
-/// Opens a scene, with axes and anti-aliasing as options say, for frames that must not wait, which begin with
-/// the coarsest levels while the others are read; null where no levels follow what is seen.
+/// Opens a stream for frames that must not wait: it starts with the coarsest levels and reads finer ones
+/// meanwhile. Applies the axes and anti-aliasing of the options. Returns null if no levels follow the views.
 std::unique_ptr<Stream> open_for_frames(const SceneOptions& options, const render::FrameSettings& settings);
 
-/// The same for shots that may wait, of a head that turns, or single pictures: those with little memory, or a
-/// --detail, go by dB however few Gaussians there are. Throws Error where the scene is no streamed SOG.
+/// The same for pictures that may wait, of a turning head or single ones. With --gpu-memory or --detail, dB
+/// decide the levels even of small models. Throws Error if the scene is not a streamed SOG.
 std::unique_ptr<PictureStream> open_for_shots(const SceneOptions& options,
                                               const render::FrameSettings& settings, bool heads_turn);
 

@@ -11,7 +11,7 @@ namespace binosplat::app {
 
 namespace {
 
-// What --foveate takes, and what each word's numbers are.
+// The words of --foveate, and the numbers that each expects.
 constexpr std::pair<const char*, const char*> foveate_words[] = {
     {"inset", "degrees, as in inset=20deg"},
     {"context", "a share of the pixels along an axis, as in context=0.4"},
@@ -28,15 +28,15 @@ const char* numbers_of(const std::string& word, const std::string& text) {
        fmt::join(words, ", "));
 }
 
-// "inset=20deg,context=0.4,gaze=5,-3": what is not named is as stereo::Foveation has it. Throws Error, naming
-// --foveate, for what cannot be understood and for numbers that no eye has.
+// Parses "inset=20deg,context=0.4,gaze=5,-3"; other members keep the defaults of stereo::Foveation. Throws
+// Error, naming --foveate, for wrong syntax and for impossible numbers.
 stereo::Foveation parse_foveation(const std::string& text) {
   std::map<std::string, std::vector<double>> given;
   std::string word;
   std::istringstream in(text);
   for (std::string part; std::getline(in, part, ',');) {
     const std::size_t equals = part.find('=');
-    if (equals == std::string::npos && word != "gaze")  // which has several
+    if (equals == std::string::npos && word != "gaze")  // the only word with several numbers
       fail("--foveate {}: '{}' is no WORD=NUMBER, as in inset=20deg,context=0.4", text, part);
     if (equals != std::string::npos) {
       word = part.substr(0, equals);

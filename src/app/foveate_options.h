@@ -1,5 +1,5 @@
 #pragma once
-// `render --foveate`: sharp where an eye looks, in fewer pixels around it.
+// `render --foveate`: an exact inset about the gaze, and fewer pixels around it.
 
 #include <optional>
 

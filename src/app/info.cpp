@@ -1,4 +1,4 @@
-// binosplat info: what a model is made of, and what drawing it takes.
+// binosplat info: prints a model's contents and the memory that it takes to draw.
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
@@ -45,11 +45,11 @@ struct InfoOptions {
   std::string json;
 };
 
-/// What the model's Gaussians are worth in views of it.
+/// How many Gaussians contribute to the given views.
 struct SeenOfViews {
   std::size_t views = 0;
-  std::size_t unseen = 0;   // Gaussians that touch no pixel
-  std::size_t most_of = 0;  // Gaussians of the largest weights, which together have 99 % of all
+  std::size_t unseen = 0;   // Gaussians that contribute to no pixel
+  std::size_t most_of = 0;  // the fewest Gaussians with 99 % of all weight
 };
 
 std::optional<SeenOfViews> see(const InfoOptions& o, const Model& model) {
@@ -68,7 +68,7 @@ std::optional<SeenOfViews> see(const InfoOptions& o, const Model& model) {
   return seen;
 }
 
-/// Where the three axes point in the cameras' world, in words.
+/// The directions of the three axes in the cameras' world, in words.
 std::string axes_in_words(const Model& model) {
   static const std::map<char, const char*> words = {{'R', "right"}, {'L', "left"},    {'U', "up"},
                                                     {'D', "down"},  {'F', "forward"}, {'B', "back"}};
@@ -76,7 +76,7 @@ std::string axes_in_words(const Model& model) {
                      words.at(model.axes.letters[2]));
 }
 
-/// What a headset's frame of a model starts with, seen so that the model fills the eyes.
+/// Memory of a headset's first frame, in a view that the model fills.
 render::MemoryNeeds headset_needs(const Model& model) {
   const CoredModel cored(model);
   const Camera head = stereo::apply_preset(into_axes(frame_model(cored, 1280, 720), model.axes), "headset");
@@ -89,7 +89,7 @@ void print_bounds(const char* name, const Bounds& b) {
              coordinate(b.low.y), coordinate(b.high.y), coordinate(b.low.z), coordinate(b.high.z));
 }
 
-/// One line of a histogram: the share of all as a number and as a bar.
+/// One line of a histogram: count, share and bar.
 void print_bar(const std::string& label, std::size_t count, std::size_t all) {
   constexpr double widest = 40.0;
   const double share = static_cast<double>(count) / static_cast<double>(all);
@@ -97,7 +97,7 @@ void print_bar(const std::string& label, std::size_t count, std::size_t all) {
   fmt::print("  {:<16} {:>10} {:>6.2f} %  {}\n", label, count, 100.0 * share, std::string(length, '#'));
 }
 
-/// What `binosplat convert` would write.
+/// The sizes of the files that `binosplat convert` would write.
 void print_sizes(const Model& model) {
   std::vector<std::string> sizes;
   for (const ModelFormat format : written_formats()) {
@@ -119,7 +119,7 @@ void print_info(const SeenOfViews& seen, std::size_t all) {
       "`binosplat trim` writes the smallest model that keeps them");
 }
 
-/// How a model was trained, as far as the files beside it say, and its unit, where its own says it.
+/// The training run of a model and its exposures, from files beside it, and its unit, from the file itself.
 struct Trained {
   std::optional<TrainingRun> run;
   std::optional<Exposures> exposures;
@@ -240,7 +240,7 @@ ordered_json info_json(const Model& model, const ModelSummary& s, const render::
       projection_choices[model.perspective.projection].name, "bounds", info_json(s.all), "core_bounds",
       info_json(s.core), "origin", std::array{model.axes.origin.x, model.axes.origin.y, model.axes.origin.z},
       "gpu_bytes", object("model", needs.model, "headset_frame", needs.frame));
-  if (model.scaffold) return json;  // the rest is made for each eye
+  if (model.scaffold) return json;  // the rest depends on the eye
   for (const ModelFormat format : written_formats())
     json["file_bytes"][word_of(format)] = bytes_in(format, model.count(), model.degree);
   lab::FieldWriter{json}("opacity", object("median", s.opacity_median, "tenths", s.opacity), "largest_scale",
@@ -251,12 +251,12 @@ ordered_json info_json(const Model& model, const ModelSummary& s, const render::
   return json;
 }
 
-// The names that --view takes.
+// Prints the names that --view accepts.
 ExitCode list_views(const InfoOptions& options) {
   CameraList list = listed_cameras(options.scene, options.camera);
   if (list.cameras.empty() && list.known.unusable.empty())
     fail("{}: there are no cameras beside it; name their file with --cameras", options.scene.name);
-  if (list.cameras.empty())  // as render draws it
+  if (list.cameras.empty())  // as render makes them
     list = made_up_cameras(options.scene, options.camera, list.known, load_scene(options.scene));
   std::size_t widest = 0;
   for (const Camera& camera : list.cameras) widest = std::max(widest, camera.name.size());
@@ -281,7 +281,7 @@ ExitCode info(const InfoOptions& options) {
     model = load_scene(options.scene);
     model.format = "built in";
   } else {
-    // What the run beside it says is printed with the rest.
+    // load_model() would also log the training run; here it is printed below.
     const fs::path file = file_of(options.scene.name);
     model = load_model_alone(file, {.lod = options.scene.lod});
     trained = trained_as(file);

@@ -1,4 +1,4 @@
-// binosplat levels: a model at several levels of detail, in files that are read by themselves.
+// binosplat levels: writes a model at several levels of detail, in files that can be read separately.
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -46,12 +46,12 @@ struct LevelsOptions {
 
 constexpr const char* levels_run_name = "levels-run.json";
 
-/// The folder, which is asked for the same files again and again, by several threads.
+/// The output folder. Caches which files are complete, because several threads test the same ones repeatedly.
 class Folder {
  public:
   explicit Folder(fs::path folder) : folder_(std::move(folder)) {}
 
-  /// Whether a file is there with all that belongs to it; says which are there without.
+  /// Whether a file is complete; logs incomplete ones.
   bool has(const std::string& name) {
     const std::lock_guard lock(mutex_);
     const auto [at, is_new] = has_.try_emplace(name, false);
@@ -83,7 +83,7 @@ class Folder {
   std::map<std::string, bool> has_;
 };
 
-/// What tells a run from others.
+/// The values that identify a run.
 nlohmann::ordered_json identity_of(const LevelsOptions& o) {
   nlohmann::ordered_json run =
       lab::object("format", "binosplat levels", "version", 5, "program", BINOSPLAT_VERSION, "leaf",
@@ -96,12 +96,12 @@ nlohmann::ordered_json identity_of(const LevelsOptions& o) {
   return run;
 }
 
-/// Whether the folder has an earlier run like this one; throws Error where it has anything else.
+/// Whether the folder holds an earlier run of the same identity. Throws Error if it holds anything else.
 bool has_run(const LevelsOptions& o, const nlohmann::ordered_json& run) {
   const fs::path folder = o.output, file = folder / levels_run_name;
   check_output(file);
   check_output(folder / "lod-meta.json");
-  // Others first: whoever writes them has written that file before, under a name of its own.
+  // Look for other files first: every run writes its run file before any other, under a temporary name.
   std::error_code none;
   const bool others =
       std::any_of(fs::directory_iterator(folder, none), {}, [](const fs::directory_entry& entry) {
@@ -115,8 +115,8 @@ bool has_run(const LevelsOptions& o, const nlohmann::ordered_json& run) {
   return false;
 }
 
-/// Leaves the model's cameras beside its levels, in the world that they are in, so that they are drawn from
-/// there as the model was. Cameras that lie there stay, but for a file that was cut.
+/// Writes the model's cameras beside the levels, in their own world, so that the levels are drawn from the
+/// same views. Keeps an existing complete file.
 void write_cameras(const LevelsOptions& o) {
   const fs::path file = fs::path(o.output) / "cameras.json";
   if (is_whole(file)) return;

@@ -20,7 +20,7 @@ namespace {
   fail("{}: the scenes that are built in are called {} and {}", name, demo_room_name, demo_city_name);
 }
 
-// Nothing is said of those that cannot be read: they are not asked for.
+// Ignores unreadable cameras, because the user did not name them.
 std::vector<Camera> cameras_beside(const SceneOptions& o) {
   try {
     SceneOptions scene;
@@ -77,7 +77,7 @@ void settle_axes(const SceneOptions& o, std::span<const Camera> cameras, Model& 
   const std::string usual = model.axes.letters, other = usual == "RUB" ? "RDF" : "RUB";
   auto detected = detect_axes(model, other, cameras);
   if (!detected) detected = detect_axes(model, other, cameras_beside(o));
-  // What a file says is wrong only where cameras see hardly anything of the model so.
+  // Overrule the file only if almost nothing of the model is in view with its axes.
   constexpr double hardly = 0.05;
   if (said &&
       (!detected || detected->by_ground || detected->axes == usual || detected->seen_otherwise > hardly))

@@ -1,5 +1,5 @@
 #pragma once
-// Models to draw: from files, or made by the program itself.
+// Loads models from files or makes the built-in ones.
 
 #include <optional>
 #include <span>
@@ -13,24 +13,24 @@
 
 namespace binosplat::app {
 
-/// The city that the options ask for.
+/// The settings of the built-in city.
 CitySettings city_settings(const SceneOptions& options);
 
-/// What the options say of how a model file is to be taken: axes and anti-aliasing.
+/// Applies the options for axes and anti-aliasing to a model.
 void set_as_asked(const SceneOptions& options, Model& model);
 
-/// The cameras of a scene that is built in, quickly; of a file: none. Throws Error for a built-in one that
-/// there is not.
+/// The cameras of a built-in scene, without making its model; none for a file. Throws Error for an unknown
+/// built-in scene.
 std::vector<Camera> built_in_cameras(const SceneOptions& options);
 
-/// The axes of an spz, which is written in two frames, where no option says which: those in which
-/// `cameras`, or the ones beside the model, look at it (scene/detected_axes.h), or else the file's or the
-/// format's. Says which, unless it is what the file says, and how to choose others.
+/// Chooses the axes of an spz without --axes, because programs write spz in two frames. Prefers the axes in
+/// which `cameras`, or those beside the model, see it (scene/detected_axes.h), then the file's or the
+/// format's. Logs a choice that the file does not state, and how to change it.
 void settle_axes(const SceneOptions& options, std::span<const Camera> cameras, Model& model);
 
-/// The long part: reads or makes the model, and repeats it where the options ask for that. `budget` of a file
-/// with levels of detail; `cameras` are those that it is seen from, where they are known. Throws Error as
-/// built_in_cameras() and load_model() do.
+/// Reads or makes the model, which may take long, and repeats it by the options. `budget` applies to files
+/// with levels of detail. `cameras` are its views, if known. Throws Error as built_in_cameras() and
+/// load_model() do.
 Model load_scene(const SceneOptions& options, const std::optional<DetailBudget>& budget = {},
                  std::span<const Camera> cameras = {});
 

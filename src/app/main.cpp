@@ -1,4 +1,4 @@
-// The command line: finds the sub-command, runs it, and turns what went wrong into a line and an exit code.
+// The command line: runs a sub-command, and turns errors into a line and an exit code.
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
@@ -29,7 +29,7 @@ constexpr const char* epilogue =
     "usage is "
     "wrong; 3 no usable OpenGL, display or headset; 4 out of memory.";
 
-// As lines that roff does not fill. Its own commands begin with a dot or a quote; help has none in front.
+// A section of the manual page in roff, not filled. No line of help begins with a dot or a quote.
 std::string section(const std::string& title, std::string text) {
   text = CLI::detail::find_and_replace(text, "\\", "\\e");
   text = CLI::detail::find_and_replace(text, "-", "\\-");
@@ -37,7 +37,7 @@ std::string section(const std::string& title, std::string text) {
 }
 
 std::string manual_page(const CLI::App& program) {
-  // The options of `view` are those of the preview, a program of its own.
+  // `view` is a separate program, so its options are added here.
   binosplat::app::RenderOptions values;
   CLI::App view("", "binosplat view");
   binosplat::app::add_view_options(view, values);
@@ -55,7 +55,7 @@ std::string manual_page(const CLI::App& program) {
   return page;
 }
 
-// Options that cannot be understood end in CLI::ParseError, everything else that is wrong in Error.
+// Wrong options throw CLI::ParseError, other errors throw Error.
 int run(int argc, char** argv) {
   CLI::App program(
       "binosplat draws both eyes of a 3D Gaussian Splatting model, and proves the pictures right.",
@@ -82,14 +82,14 @@ int run(int argc, char** argv) {
     if (name != "compare" && name != "devices" && name != "view") binosplat::app::add_max_memory(*sub);
     if (name != "view") binosplat::app::add_quiet(*sub);
   }
-  // For packages, so help does not show it. As --version it ends well, and needs no sub-command.
+  // For packagers, hidden from help. Like --version, it ends the program without a sub-command.
   program
       .add_flag_callback("--print-manual", [&program] { throw CLI::CallForVersion(manual_page(program), 0); })
       ->group("");
   try {
     binosplat::app::check_arguments(argc, argv);
     std::vector<std::string> words = binosplat::app::with_command(program, argc, argv);
-    std::reverse(words.begin(), words.end());  // as CLI11 wants them
+    std::reverse(words.begin(), words.end());  // the order that CLI11 expects
     program.parse(std::move(words));
     binosplat::app::note_inputs(program);
     binosplat::watch_finished_files();
@@ -108,7 +108,7 @@ int run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  // Writing beyond a limit of file size then fails like a full disk, with an error that can be reported.
+  // A write beyond the limit of file size then fails with an error, as on a full disk.
   std::signal(SIGXFSZ, SIG_IGN);
   binosplat::app::settle_shader_caches();
   binosplat::end_cleanly_without_memory();

@@ -7,7 +7,7 @@ namespace binosplat::app {
 
 namespace {
 
-/// TH,SOURCE by their names.
+/// Parses TH,SOURCE.
 lab::Rule rule_of(const std::string& text) {
   std::string bare = text;
   std::erase(bare, ' ');

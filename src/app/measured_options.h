@@ -1,5 +1,5 @@
 #pragma once
-// What the commands that measure a scene share: which it is, its cameras, and where it is drawn.
+// Options of all commands that measure a scene: scene, cameras, context.
 
 #include <string>
 #include <vector>
@@ -23,10 +23,10 @@ struct MeasuredOptions {
 
 /// Adds --rule.
 void add_rule_option(CLI::App& sub, std::vector<std::string>& rules);
-/// What it names. Throws Error for what is no rule.
+/// The rules of these options, or all. Throws Error for an unknown rule.
 std::vector<lab::Rule> rules_of(const std::vector<std::string>& texts);
 
-/// Adds --near, --count, --seed, --backend and --device; `options` must outlive the parsing.
+/// Adds --near, --count, --seed, --backend and --device; `options` must outlive parsing.
 void add_measured_options(CLI::App& sub, MeasuredOptions& options);
 
 }  // namespace binosplat::app

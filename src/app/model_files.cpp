@@ -22,7 +22,7 @@ fs::path model_file(const std::string& scene) {
   std::error_code ignored;
   if (!fs::is_directory(scene, ignored)) return scene;
   const std::vector<fs::path> found = models_in(scene);
-  // A SOG's meta.json is not the model, but names its files.
+  // A SOG's meta.json only lists the model's files.
   return found.size() == 1 && found[0].extension() != ".json" ? found[0] : fs::path();
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-// What the values of options are checked and read by.
+// Checks and parsers of option values.
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -23,7 +23,7 @@
 
 namespace binosplat::app {
 
-/// From `low` to `high`, both included, which "nan" is not.
+/// A number from `low` to `high`, both included; rejects "nan".
 inline CLI::Validator between(double low, double high, const char* expected) {
   return CLI::Validator(
       [=](std::string& text) {
@@ -34,7 +34,7 @@ inline CLI::Validator between(double low, double high, const char* expected) {
       "");
 }
 
-/// What numbers of 32 bits hold, and what is computed from them.
+/// Ranges that float and values computed from it can hold.
 inline const CLI::Validator positive = between(1e-30, 1e30, "a number above zero (1e-30 to 1e30)");
 inline const CLI::Validator not_negative = between(0.0, 1e30, "a number from 0 to 1e30");
 inline const CLI::Validator seconds_range = between(1e-6, 1e6, "seconds above zero (0.000001 to 1000000)");
@@ -44,7 +44,7 @@ inline const CLI::Validator fps_range =
 inline const CLI::Validator quality_range =
     between(render::quality_least, render::quality_most, "decibels from 10 to 100");
 
-/// From 0 to 2^64 - 1; CLI11 by itself would take -1 for the largest.
+/// From 0 to 2^64 - 1. CLI11 itself reads -1 as the largest.
 inline const CLI::Validator whole_number(
     [](std::string& text) {
       std::uint64_t value = 0;
@@ -54,11 +54,11 @@ inline const CLI::Validator whole_number(
     },
     "");
 
-/// Words, and what each stands for.
+/// Words, and their values.
 template <typename Value>
 using Words = std::vector<std::pair<std::string, Value>>;
 
-/// The names of a list of shared/axes.h, which stand for their numbers; without one that is left out.
+/// The names of a list of shared/axes.h, which stand for their indices, except `left_out`.
 inline Words<int> words_of(std::span<const Choice> choices, int left_out = -1) {
   Words<int> words;
   for (int k = 0; k < static_cast<int>(choices.size()); ++k) {
@@ -67,7 +67,7 @@ inline Words<int> words_of(std::span<const Choice> choices, int left_out = -1) {
   return words;
 }
 
-/// A new option that takes one of the words, which its help names as its type, for what that stands for.
+/// Adds an option that takes one of the words and stores its value. Help lists the words.
 template <typename Value, typename Into>
 CLI::Option* choose(CLI::App& sub, const char* option, Into& into, const std::string& help,
                     const Words<Value>& words) {
@@ -83,7 +83,7 @@ CLI::Option* choose(CLI::App& sub, const char* option, Into& into, const std::st
       ->type_name(fmt::format("{}", fmt::join(names, "|")));
 }
 
-/// One of a list of shared/axes.h, by its number; the help has a line for each but the one that is left out.
+/// The same for a list of shared/axes.h, with a line of help for each choice except `left_out`.
 template <typename Into>
 CLI::Option* choose_explained(CLI::App& sub, const char* option, Into& into, std::string help,
                               std::span<const Choice> choices, int left_out = -1) {
@@ -93,14 +93,14 @@ CLI::Option* choose_explained(CLI::App& sub, const char* option, Into& into, std
   return choose(sub, option, into, help, words);
 }
 
-/// A new option of one value, which the check must let pass.
+/// Adds an option of one value, with a check.
 template <typename Into>
 CLI::Option* add_value(CLI::App& sub, const char* option, const char* type, Into& into,
                        const CLI::Validator& check, const std::string& help) {
   return sub.add_option(option, into, help)->type_name(type)->check(check);
 }
 
-/// A new option of one value, which `parse` makes of its text. It throws Error for what it cannot understand.
+/// Adds an option whose text `parse` converts. `parse` throws Error for bad text.
 template <typename Into, typename Parse>
 CLI::Option* add_parsed(CLI::App& sub, const char* option, const char* type, Into& into, Parse parse,
                         const std::string& help) {
@@ -108,7 +108,8 @@ CLI::Option* add_parsed(CLI::App& sub, const char* option, const char* type, Int
   return sub.add_option_function<std::string>(option, take, help)->type_name(type);
 }
 
-/// A new option of names: one a word. It may be given again, or have several with commas (separated()).
+/// Adds an option of names, which may be repeated. One value may hold several names with commas
+/// (separated()).
 inline CLI::Option* add_names_option(CLI::App& sub, const char* option, std::vector<std::string>& into,
                                      const std::string& help, const char* type = "NAME") {
   return sub.add_option(option, into, help)
@@ -118,7 +119,7 @@ inline CLI::Option* add_names_option(CLI::App& sub, const char* option, std::vec
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
 }
 
-/// Each text by itself where it `is_one` name, since names may have commas; else its parts between commas.
+/// Splits texts at commas, except those that are one name (`is_one`): names may contain commas.
 template <typename IsOne>
 std::vector<std::string> separated(const std::vector<std::string>& texts, const IsOne& is_one) {
   std::vector<std::string> names;
@@ -129,7 +130,7 @@ std::vector<std::string> separated(const std::vector<std::string>& texts, const 
   return names;
 }
 
-/// "1,-2.5,3". Throws Error, naming the option, for anything else.
+/// Parses "1,-2.5,3". Throws Error, naming the option, for other text.
 inline glm::dvec3 parse_three(const std::string& option, const std::string& text) {
   glm::dvec3 v{0.0};
   char comma_1 = 0, comma_2 = 0;
@@ -141,8 +142,8 @@ inline glm::dvec3 parse_three(const std::string& option, const std::string& text
   return v;
 }
 
-/// "1280x720", both above zero. Throws Error, naming the option, for anything else; `expected` says what they
-/// mean.
+/// Parses "1280x720", both above zero. Throws Error, naming the option, for other text; `expected` describes
+/// the value.
 inline glm::ivec2 parse_two(const std::string& option, const std::string& text, const char* expected) {
   const auto two = two_numbers(text, 'x');
   constexpr unsigned most = std::numeric_limits<int>::max();

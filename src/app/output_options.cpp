@@ -7,7 +7,7 @@ namespace binosplat::app {
 
 namespace {
 
-// --photos, which may be `found_beside` the cameras, and --exposure.
+// Adds --photos and --exposure. `found_beside` allows the photos beside the cameras.
 void add_photos(CLI::App& sub, std::string& photos, std::string& exposure, const char* help,
                 bool found_beside) {
   const auto is = [](const char* word) { return CLI::IsMember({word}).description(""); };

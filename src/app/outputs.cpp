@@ -29,7 +29,7 @@ bool has(const Outputs& outputs, const char* ending) {
   return std::ranges::count(outputs.endings, ending) > 0;
 }
 
-// What a picture's file says of how it was drawn: a stereo picture is right only at its scale.
+// Metadata of a picture: how it was drawn. A stereo picture is right only at its scale.
 Notes notes_of(const PictureFile& file, const RenderOptions& render, const Outputs& outputs, const Shot& shot,
                const std::optional<double>& most_shown) {
   Notes notes = {{"Software", "binosplat " BINOSPLAT_VERSION},
@@ -46,7 +46,7 @@ Notes notes_of(const PictureFile& file, const RenderOptions& render, const Outpu
   return notes;
 }
 
-// The layout that is asked for or that fits -o FILE, whose ending is `ending`, or a folder.
+// The layout of the options, or one that fits the output: a folder, or a file with this ending.
 int layout_of(const RenderOptions& render, bool video, const std::string& ending) {
   const OutputOptions& options = render.output;
   const bool one_picture = render.rig.one_picture(), exr_file = ending == ".exr",
@@ -77,7 +77,7 @@ int layout_of(const RenderOptions& render, bool video, const std::string& ending
   return layout;
 }
 
-// From the times of a path's cameras, where they are evenly spaced; the usual where they say nothing.
+// Frame rate from the times of a path's cameras if they are evenly spaced, else the default.
 double frames_a_second(const std::vector<Shot>& shots) {
   const auto& first = shots.front().eyes[0].camera.time;
   const auto& last = shots.back().eyes[0].camera.time;
@@ -90,7 +90,7 @@ double frames_a_second(const std::vector<Shot>& shots) {
   return 1.0 / step;
 }
 
-// Whether a path's ending, as in .gif or .jp2, is one of a file; not .2 and .v2, which folders have.
+// Whether the path ends like a file, such as .gif or .jp2. Folders may end in .2 or .v2.
 bool names_a_file(const fs::path& path) {
   const std::string ending = lowered_ending(path);
   std::error_code ignored;
@@ -101,7 +101,7 @@ bool names_a_file(const fs::path& path) {
          std::count_if(ending.begin() + 1, ending.end(), is_letter) > 1;
 }
 
-// Whether trainers and exporters call every model's file or folder so, maybe with a number behind it.
+// Whether the name is a generic one of trainers and exporters, possibly with a number.
 bool tells_nothing(std::string name) {
   while (!name.empty() && (std::isdigit(static_cast<unsigned char>(name.back())) != 0 || name.back() == '_' ||
                            name.back() == '-'))
@@ -112,7 +112,7 @@ bool tells_nothing(std::string name) {
   return said.contains(name);
 }
 
-// In a folder of pictures, the model that they are of, by its whole path, or a built-in scene.
+// In a folder of pictures: names their model by its full path, or the built-in scene.
 constexpr const char* owner_name = "model.txt";
 
 fs::path path_of(const std::string& scene) {
@@ -121,7 +121,7 @@ fs::path path_of(const std::string& scene) {
   return path.has_filename() ? path : path.parent_path();
 }
 
-// Empty where nobody's pictures lie.
+// Empty if no run has claimed the folder.
 fs::path owner_of(const fs::path& folder) {
   std::ifstream file(folder / owner_name);
   std::string owner;
@@ -129,13 +129,13 @@ fs::path owner_of(const fs::path& folder) {
   return owner;
 }
 
-// Whether pictures of another model lie there.
+// Whether the folder holds pictures of another model.
 bool is_anothers(const fs::path& folder, const fs::path& model) {
   const fs::path owner = owner_of(folder);
   return !owner.empty() && owner != model;
 }
 
-// The name, or where that is another model's one that tells the two apart.
+// The name, with prefixes or a number if another model has taken it.
 std::string free_name(std::string name, const fs::path& model) {
   const auto is_taken = [&](const std::string& asked) { return is_anothers(fs::path("out") / asked, model); };
   for (fs::path path = model.parent_path(); is_taken(name) && path.has_relative_path();
@@ -146,7 +146,7 @@ std::string free_name(std::string name, const fs::path& model) {
   return name;
 }
 
-// As players of VR180 tell its pictures from others by their names.
+// File names of VR180, by whose suffix players recognise the layout.
 std::string stem_in_folder(const Outputs& outputs, const Shot& shot) {
   if (!outputs.vr180) return shot.stem;
   return shot.stem + (outputs.layout == LAYOUT_PARALLEL     ? "_180_LR"
@@ -168,7 +168,7 @@ std::vector<PictureFile> files_of(const Outputs& outputs, const Shot& shot) {
   return files;
 }
 
-// Options that the files do not go with.
+// Throws Error for options that do not fit the files.
 void check_formats(const RenderOptions& render, const Outputs& outputs) {
   const OutputOptions& o = render.output;
   const bool exr = has(outputs, ".exr"), vr_photo = has(outputs, ".jpg");
@@ -200,7 +200,7 @@ fs::path default_folder(const std::string& scene) {
   fs::path path = model;
   std::error_code ignored;
   std::string name = fs::is_directory(path, ignored) ? path.filename().string() : path.stem().string();
-  // A name with a number tells apart what one training saved.
+  // A number distinguishes models of one training.
   std::string number;
   while (tells_nothing(name) && path.has_relative_path()) {
     if (number.empty() && name.find_first_of("0123456789") != std::string::npos) number = "_" + name;
@@ -223,7 +223,7 @@ void claim_folder(const fs::path& folder, const std::string& scene) {
 
 Outputs outputs_of(const RenderOptions& render) {
   const OutputOptions& options = render.output;
-  const bool named = !options.output.empty();  // else it is a folder, however its model is called
+  const bool named = !options.output.empty();  // else a folder, even if the model's name has an ending
   const fs::path output = named ? fs::path(options.output) : default_folder(render.scene.name);
   const std::string ending = named ? lowered_ending(output) : "";
   Outputs outputs;
@@ -243,7 +243,7 @@ Outputs outputs_of(const RenderOptions& render) {
         "of that name, make it first",
         output.string());
   }
-  check_output(is_file ? output : output / "picture");  // a name in the folder stands for all of them
+  check_output(is_file ? output : output / "picture");  // "picture" represents any name in the folder
   if (outputs.video) find_ffmpeg();
   if (!options.json.empty()) check_output(options.json);
   (is_file ? outputs.file : outputs.folder) = output;

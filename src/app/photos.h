@@ -1,5 +1,5 @@
 #pragma once
-// The photos that a model was trained on, by the names of its views.
+// The photos of a scene's views, for comparisons and fits.
 
 #include <filesystem>
 #include <optional>
@@ -17,83 +17,80 @@
 
 namespace binosplat::app {
 
-/// What views are compared with, and what becomes of their pictures before that.
+/// Photos, and the exposures that pictures get before the comparison.
 struct PhotoSource {
   std::string folder;  // of photos; empty: none
   Exposures exposures = {};
 };
 
-/// The photos of --photos, and the exposures of --exposure: of a file, none, or where the option is empty
-/// those of the exposure.json beside the model. Says whose are taken. Throws Error for a file that holds
-/// none, and for --exposure without photos.
+/// The photos of --photos with the exposures of --exposure. If that is empty, uses the exposure.json beside
+/// the model. Logs the source. Throws Error for a file without exposures, and for --exposure without photos.
 PhotoSource photo_source(const std::string& scene, const std::string& photos, const std::string& exposure);
 PhotoSource photos_of(const MeasuredOptions& options);
 
-/// The exposure of a view's picture; says once where there are exposures, and none for this view.
+/// The exposure of a view's picture. Warns once if the file lacks the view.
 glm::mat4x3 exposure_of(const Exposures& exposures, const std::string& view);
 
-/// Reads a view's photo as RGB: grey in three equal channels, and what has alpha before the background of the
-/// pictures that it is compared with, which is said once. Throws Error unless it has the camera's size.
+/// Reads a view's photo as RGB. Grey becomes three equal channels; a photo with alpha is put before
+/// `background`, which is logged once. Throws Error unless it has the camera's size.
 Image load_view_photo(const std::filesystem::path& file, const Camera& camera,
                       const glm::vec3& background = glm::vec3(0.0f));
 
-/// Throws Error where there are photos, and the cameras that they should be of cannot be used.
+/// Throws Error if there are photos but their cameras cannot be used.
 void check_cameras_of(const std::string& photos, const CameraList& list);
 
-/// Throws Error as load_view_photo() does, but as far as the headers and ends of the cameras' photos tell
-/// (picture_size): quick, before a model is read. Views without a photo are no error here; no folder, none to
-/// check.
+/// Throws Error as load_view_photo() does, but reads only headers and ends of files (picture_size), so it is
+/// quick. Accepts views without a photo. Checks nothing without a folder.
 void check_photos(const std::string& photos, std::span<const Camera> cameras);
 
-/// The photos of a folder for a fit, with their exposures taken back, so that a model fits all of them at
-/// once; none where there is no folder. Throws Error, when asked for a photo, for an exposure that cannot be
-/// taken back.
+/// Finds photos for a fit, with inverted exposures, so that one model fits all of them. Empty without a
+/// folder. The finder throws Error for an exposure that cannot be inverted.
 compact::PhotoOf photo_finder(const PhotoSource& photos);
 
-/// What pictures may lose: --max-drop against the photos, or --quality against the exact pictures.
+/// The allowed loss: --max-drop against photos, or --quality against exact pictures.
 struct TargetOptions {
   std::optional<double> max_drop, quality;  // dB
 
   CalibrationTarget target() const;
 };
 
-/// Throws Error unless there is one of the two, with what it needs; `command` needs `what`, as in "a bound".
+/// Throws Error unless exactly one target is set, with what it needs. `command` needs `what`, as in "a
+/// bound".
 void check_target(const std::string& command, const std::string& what, const TargetOptions& target,
                   const MeasuredOptions& options);
 
-/// A camera; with a folder of photos its photo and exposure, too. Throws Error where there is no photo.
+/// A camera, with its photo and exposure if there is a folder. Throws Error if its photo is missing.
 lab::CalibrationView with_photo(const PhotoSource& photos, const Camera& camera);
 
-/// Which views of a scene are taken.
+/// A choice of views.
 struct ViewChoice {
   std::vector<std::string> views;         // by name
-  std::size_t wanted = 0;                 // of all, evenly spread, where none is named
-  std::vector<std::string> without = {};  // those called so are left out
+  std::size_t wanted = 0;                 // if none is named: this many, evenly spaced
+  std::vector<std::string> without = {};  // excludes these names
 };
 
-/// The cameras of a choice: with a folder of photos only those count, of all, that have one.
+/// The cameras of a choice. With a folder of photos, unnamed choices take only cameras that have one.
 std::vector<Camera> photographed_cameras(const ViewChoice& choice, const std::string& photos,
                                          const Lens& lens, const CameraList& list);
 
-/// The folder of photos that --photos names, or with photos_beside the one beside the cameras. Throws Error
-/// where there is none.
+/// The folder of --photos; photos_beside finds the one beside the cameras. Throws Error if there is none.
 std::string photos_folder(const std::string& asked, const CameraList& list);
 
-/// Views for tests, which no calibration may see, and all others, by name.
+/// Test views, which calibrations must not use, and training views, by name.
 struct HeldOut {
   std::vector<std::string> test, training;
-  std::string how;  // they were told apart, for people
+  std::string how;  // how they were separated, for the log
 };
 
-/// Every `every`th view by the order of names is for tests, as the field holds them out; without a number
-/// every 8th, or the views that a cameras.json of INRIA's trainer lists first: it has those for tests by
-/// name, and then the others by name.
+/// Every `every`th view in the order of names is a test view, as is usual in the field. Without a number:
+/// every 8th, or the first views of a cameras.json of INRIA's trainer. That file lists test views by name,
+/// then training views by name.
 HeldOut hold_out(const CameraList& list, const std::optional<int>& every);
 
-/// --hold-out.
+/// Adds --hold-out.
 void add_hold_out_option(CLI::App& sub, std::optional<int>& every);
 
-/// Each with its photo, where there is a folder of them.
+/// The cameras of a choice, each with its photo if there is a folder.
 std::vector<lab::CalibrationView> photographed_views(const ViewChoice& choice, const PhotoSource& photos,
                                                      const Lens& lens, const CameraList& list);
 

@@ -1,4 +1,4 @@
-// binosplat profile: every frame of a path through a scene, what it waited for, and why some took longer.
+// binosplat profile: records every frame of a path and explains the slow ones.
 
 #include "app/profile.h"
 
@@ -32,8 +32,8 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr double seconds_default = 10.0;
-constexpr double frames_most = 1e6, frame_bytes = 4096.0;  // of a recording, and what each takes in memory
-constexpr double quality_to_try = 40.0;                    // dB: an error that is hard to see
+constexpr double frames_most = 1e6, frame_bytes = 4096.0;  // largest recording; memory of each frame
+constexpr double quality_to_try = 40.0;                    // dB: an error that is hardly visible
 
 struct ProfileOptions : RenderOptions {
   double fps = headset_fps;  // 0: as fast as possible
@@ -43,7 +43,7 @@ struct ProfileOptions : RenderOptions {
   bool asks_clock = true;
 };
 
-/// What only `render` does, or what is no path through a scene.
+/// Options of `render` that a path through a scene cannot use.
 constexpr std::array not_profiled = {"--orbit", "--keys", "--frames", "--reference-until"};
 
 void check(const ProfileOptions& o) {
@@ -54,11 +54,11 @@ void check(const ProfileOptions& o) {
   check_foveate(o);
 }
 
-/// Frames a second that the poses are for.
+/// Frame rate of the poses.
 double pose_rate(const ProfileOptions& o) { return o.fps > 0.0 ? o.fps : headset_fps; }
 
-/// The cameras that the head goes through, one a frame, and what that is called. A scene whose cameras nobody
-/// named is toured if it has two or more.
+/// Replaces the cameras by the path's frames and returns the name of the path. Without any option, a scene
+/// with two or more cameras is toured. Returns "" for a head that stands still.
 std::string choose_path(ProfileOptions& o, CameraList& list) {
   const bool stands = !o.camera.views.empty() || o.camera.eye || !list.listed;
   if (!o.camera.path.empty()) {
@@ -104,14 +104,14 @@ std::vector<std::vector<shared::View>> frames_to_profile(const ProfileOptions& o
   return frames;
 }
 
-/// What is drawn, and by what.
+/// Everything that a profile draws with.
 struct Profiled {
-  std::unique_ptr<gl::Context> context;  // outlives what draws with it
+  std::unique_ptr<gl::Context> context;  // first: destroyed last
   std::unique_ptr<Stream> stream;
   Model loaded;
   lab::ProfileRun run;
   lab::Profile profile;
-  std::vector<shared::View> table_views;  // --transmittance depth is measured in; empty: it is known
+  std::vector<shared::View> table_views;  // for the table of --transmittance depth; empty: known
 
   const Model& model() const { return stream ? stream->model() : loaded; }
 };

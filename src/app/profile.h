@@ -1,5 +1,5 @@
 #pragma once
-// The folder that a profile leaves: of `binosplat profile`, and of what `view` records.
+// Writes the folder of a profile, for `binosplat profile` and for recordings of `view`.
 
 #include <array>
 #include <filesystem>
@@ -14,16 +14,16 @@ namespace binosplat::app {
 inline constexpr std::array profile_files = {"report.html", "trace.json", "frames.csv", "results.json",
                                              "results.csv"};
 
-/// Writes them, all or none; `changes` as RunComparison has its lines, empty for no comparison. Throws Error
-/// where that fails, and for a recording without frames.
+/// Writes all files or none. `changes` are the lines of a RunComparison; empty: no comparison. Throws Error
+/// for a failed write, and for a recording without frames.
 void save_profile(const std::filesystem::path& folder, const lab::Profile& profile,
                   const std::vector<std::string>& changes);
 
-/// Draws what a view of a frame showed once more.
+/// Draws a view of a recorded frame again.
 using DrawAgain = std::function<Image(const shared::View& view)>;
 
-/// The same of frames that were recorded while somebody looked: "in the window". Of the worst, worst first,
-/// it has as many pictures as `draw` makes in a second, for which somebody may wait.
+/// Writes a recording of the window. It adds pictures of the worst frames, worst first, as many as `draw`
+/// makes in a second, because a user may be waiting.
 void save_recording(const std::filesystem::path& folder, const lab::ProfileFacts& facts,
                     render::Recording recording, const DrawAgain& draw = {});
 

@@ -1,4 +1,4 @@
-// binosplat refit: colours that fit the pictures best, in whatever order and projection.
+// binosplat refit: fits colours to pictures, for a given order and projection.
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -52,14 +52,14 @@ ModelFormat check_refit(const RefitOptions& o) {
   return format;
 }
 
-/// PSNR in dB, means over views: against the photos, or against the model's own pictures.
+/// Mean PSNR over views in dB, against photos or the model's own pictures.
 struct Step {
   std::string name;
   double held_back = 0.0, test = 0.0;
-  double held_back_own = 0.0, test_own = 0.0;  // in the cameras' own size, where --size is smaller
+  double held_back_own = 0.0, test_own = 0.0;  // in the cameras' own size, if --size is smaller
 };
 
-/// A model's pictures against what they should be, in views that have no say.
+/// Measures a model's pictures in views that the fit does not use.
 class Judge {
  public:
   Judge(gl::Context& context, const Model& original, const lab::ViewSplit& views, TargetKind kind)
@@ -84,7 +84,7 @@ class Judge {
   }
 
  private:
-  /// Of a cost, which against photos is what is lost of what the model had.
+  /// Against photos, a cost is the loss relative to the original model.
   double psnr(const Calibrator& views, double db) const {
     return kind_ == TargetKind::drop ? views.exact_photo_db() - db : db;
   }

@@ -1,4 +1,4 @@
-// binosplat render: from options to pictures, in the order in which mistakes are cheapest to find.
+// binosplat render: from options to pictures. Checks run in the order of their cost.
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -38,16 +38,17 @@ void check_any_photo(const std::string& folder, const std::vector<Camera>& camer
   fail("--photos {}: there is no photo of any view drawn, for one {}.jpg", folder, stem_of(cameras[0].name));
 }
 
-// What the model takes on the GPU, and the shot that takes most.
+// Memory of the model on the GPU, and of the shot that needs most.
 render::MemoryNeeds memory_needs(const RenderRun& run) {
   render::FrameSettings settings = settings_of(run.options.drawing);
-  settings.depth_table = {1.0f, {1.0f}};  // not measured yet
+  settings.depth_table = {1.0f, {1.0f}};  // a stand-in: not measured yet
   render::MemoryNeeds most;
   for (const Shot& shot : run.shots) {
     stereo::FoveatedViews drawn{.views = views_of(shot), .settings = settings};
-    std::int64_t composed = 0;  // bytes of the pictures that are made of these views
+    std::int64_t composed = 0;  // bytes of the pictures composed of these views
     if (run.outputs.vr180) {
-      // The largest face of each eye. A ray's place, and its colour and distance for each eye.
+      // The largest face of each eye. 16 bytes of a ray, and 20 of its colour and distance, per pixel and
+      // eye.
       const int side = shot.eyes[0].camera.width;
       drawn.views.clear();
       for (const Camera& eye : eyes_in_axes(shot, run.model().axes))
@@ -67,8 +68,8 @@ std::optional<double> finite(const std::optional<double>& metres) {
   return metres && std::isfinite(*metres) ? metres : std::nullopt;
 }
 
-// The shot that tells how far the screen is, which no option says: where pictures are for one, with both eyes
-// in one picture, and not for a headset.
+// The shot that decides the screen's distance, if no option does: for pictures with both eyes in one, to be
+// seen on a screen and not in a headset.
 std::optional<Shot> shot_for_screen(const RenderRun& run) {
   const RenderOptions& o = run.options;
   const bool flat = run.outputs.layout != LAYOUT_SEPARATE && run.outputs.layout != LAYOUT_MULTI_VIEW;
@@ -79,7 +80,7 @@ std::optional<Shot> shot_for_screen(const RenderRun& run) {
   return head == run.shots.end() ? std::nullopt : std::optional(*head);
 }
 
-// Of those that are drawn, before the model is read; and that each has a photo of its own.
+// Checks the photos of the views to draw before the model is read. Each view needs its own photo.
 void check_photos_drawn(const RenderRun& run) {
   const std::string& folder = run.photos.folder;
   if (folder.empty() || !run.list.listed) return;
@@ -105,10 +106,10 @@ void log_model(const std::string& scene, const std::optional<int>& decode, const
   }
 }
 
-// Those that options or a saved pose choose; none where they are to be made up.
+// The cameras that options or a saved pose choose; empty if they must be made from the model.
 CameraList find_list(const RenderOptions& o, const Outputs& outputs) {
   const auto saved = find_saved(o.scene);
-  // Photos are of the cameras that the model was trained on.
+  // The photos belong to the training cameras, not to a saved pose.
   if (const auto pose = o.output.photos.empty() ? saved_camera(o.scene, o.camera, saved) : std::nullopt) {
     log_info("drawing from the pose saved there (--view or --cameras for others)");
     return *pose;
@@ -119,12 +120,12 @@ CameraList find_list(const RenderOptions& o, const Outputs& outputs) {
   return list;
 }
 
-// Holds the head of a shot level, as one who wears a headset does: it looks where it did (a pair of eyes
-// between them), seen from above, and the eyes lie level about their middle.
+// Levels the head of a shot, as a headset's wearer holds it. Keeps the heading of its gaze, the middle of its
+// eyes and their distance.
 void level(Shot& shot, const glm::dvec3& up) {
   const glm::dvec3 down = -glm::normalize(up);
   Camera &first = shot.eyes.front().camera, &last = shot.eyes.back().camera;
-  // Where it looks straight up or down, its own right.
+  // If the head looks straight up or down, use its own right.
   glm::dvec3 right = glm::cross(down, first.rotation[2] + last.rotation[2]);
   if (glm::length(right) < 1e-3) right = first.rotation[0] - glm::dot(first.rotation[0], down) * down;
   right = glm::normalize(right);
@@ -135,7 +136,7 @@ void level(Shot& shot, const glm::dvec3& up) {
   for (Eye& eye : shot.eyes) eye.camera.rotation = glm::dmat3(right, down, glm::cross(right, down));
 }
 
-// What the cameras become: the views that are drawn, and the files of each.
+// The shots of the cameras, with the files of each.
 std::vector<Shot> plan_shots(const RenderRun& run, const std::vector<fs::path>& sequence) {
   const RenderOptions& o = run.options;
   std::vector<Shot> shots =
@@ -148,7 +149,7 @@ std::vector<Shot> plan_shots(const RenderRun& run, const std::vector<fs::path>& 
   return shots;
 }
 
-// Leaves the shots that this run is to draw. What tells it from others, with --resume.
+// Keeps only the shots that this run must draw. Returns the run's identity with --resume.
 std::optional<ordered_json> take_what_is_left(RenderRun& run) {
   const RenderOptions& o = run.options;
   const std::size_t all = run.shots.size();
@@ -165,16 +166,16 @@ std::optional<ordered_json> take_what_is_left(RenderRun& run) {
   return identity;
 }
 
-// A built-in scene's own views are drawn, where no option says anything of eyes, screen, lens or way, with a
-// pair of eyes and a screen that make all of them comfortable (stereo/comfort.h). A head's eyes with the
-// screen infinitely far, as for models, ask for more than that of whoever looks at the pictures on a screen.
+// Chooses comfortable eyes and a screen for a built-in scene's own views (stereo/comfort.h), unless options
+// set eyes, screen, lens or path. A head's eyes with the screen at infinity, the default for models, strain
+// the viewer of a screen.
 RenderOptions with_eyes_of_demo(RenderOptions o) {
   const bool asked = o.rig.places_eyes() || o.rig.units_per_metre || o.camera.lens.headset() ||
                      o.camera.lens.vr180() || !o.camera.file.empty() || o.camera.made_up() ||
                      o.camera.along_path();
   if (asked || o.rig.mono || !is_built_in(o.scene.name)) return o;
   if (o.scene.name == demo_room_name) {
-    // A plant stands half a metre from the first view, and that looks out of the window.
+    // A plant stands half a metre from the first view, which also looks out of the window.
     o.rig.ipd = 0.020;
     o.rig.convergence = 1.2;
     log_info(
@@ -201,7 +202,7 @@ ExitCode render(const RenderOptions& asked) {
   check_photos_drawn(run);
   const render::FrameSettings settings = settings_of(o.drawing);
   if (o.scene.detail || may_share(o)) {
-    run.heads_turn = run.list.path || run.outputs.vr180;  // such a picture shows what lies beside the view
+    run.heads_turn = run.list.path || run.outputs.vr180;  // turning the head shows what is beside the view
     run.stream = open_for_shots(o.scene, settings, run.heads_turn);
     if (!o.scene.detail && !run.stream->files().has_errors()) run.stream.reset();
   }
@@ -211,7 +212,7 @@ ExitCode render(const RenderOptions& asked) {
   if (!run.stream) {
     std::optional<DetailBudget> budget;
     if (o.scene.gpu_memory) budget = detail_budget(o, run.list);
-    // The model is read while the driver begins; with --resume there may be nothing left to draw.
+    // Reads the model while the driver starts. With --resume there may be nothing to draw.
     auto loading =
         std::async(std::launch::async, [&] { return load_scene(o.scene, budget, run.list.cameras); });
     if (!o.resume) run.context = open_context(o.context);
@@ -226,8 +227,7 @@ ExitCode render(const RenderOptions& asked) {
   run.shots = plan_shots(run, sequence);
   if (!run.photos.folder.empty() && !run.list.listed) check_any_photo(run.photos.folder, run.list.cameras);
   run.screen = shot_for_screen(run);
-  const std::vector<shared::View> first =
-      views_of(run.shots[0]);  // whichever part of the views is drawn here
+  const std::vector<shared::View> first = views_of(run.shots[0]);  // the same for every shard
   const std::optional<ordered_json> identity = take_what_is_left(run);
   if (run.shots.empty()) return ExitCode::done;
   if (!run.context) run.context = open_context(o.context);

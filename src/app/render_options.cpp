@@ -19,7 +19,7 @@ namespace binosplat::app {
 
 namespace {
 
-// What is drawn in parts must not go by what would have been drawn before it.
+// Refuses --shard and --resume with settings that use earlier frames: pictures would depend on the shard.
 void check_regions(const RenderOptions& o) {
   if (o.shard.all() && !o.resume) return;
   const char* const part = o.resume ? "--resume" : "--shard";
@@ -79,7 +79,7 @@ void add_headset_options(CLI::App& sub, HeadsetOptions& o) {
       "--no-mirror", [&o] { o.mirror = false; }, "No window that shows what the left eye sees");
 }
 
-// Options that do not go with a headset, and what is said of them.
+// Options that conflict with a headset, and the reasons.
 constexpr const char* of_windows = "leave it out, a headset decides that itself";
 constexpr const char* of_studies = "leave it out, a headset's pictures have exact tiles of 16 px";
 constexpr std::pair<const char*, const char*> not_in_headsets[] = {
@@ -92,7 +92,7 @@ constexpr std::pair<const char*, const char*> not_beside_a_budget[] = {
     {"--quality", "choose one, the budget chooses the quality"},
     {"--tolerance", "choose one, the budget chooses what is left out"}};
 
-// Throws Error for options that a headset decides, and for those of a headset where there is none.
+// Throws Error for options that a headset decides itself, and for headset options without --xr.
 void check_headset(const HeadsetOptions& o, const CLI::App& sub) {
   const auto is_given = [&](const char* name) {
     const CLI::Option* const option = sub.get_option_no_throw(name);
@@ -109,10 +109,10 @@ void check_headset(const HeadsetOptions& o, const CLI::App& sub) {
   }
 }
 
-// What a window that goes where its user goes does not do.
+// Options that a window with free navigation lacks.
 constexpr std::array render_only = {"--mono", "--only",   "--preset",         "--orbit",
                                     "--path", "--frames", "--reference-until"};
-// What a window's system decides, and a headset does not.
+// Options that the window system decides, but a headset's run accepts.
 constexpr std::array not_in_windows = {"--backend", "--device"};
 
 std::string keys_text() {

@@ -15,13 +15,13 @@
 
 namespace binosplat::app {
 
-/// Of `binosplat view --xr`.
+/// Options of `binosplat view --xr`.
 struct HeadsetOptions {
   bool xr = false;
-  double scale = 1.0;               // of the sizes that the runtime recommends
-  std::optional<double> budget_ms;  // 0: what the runtime has for a frame
-  std::optional<double> record_s;   // so much is recorded, from the first frame on
-  bool mirror = true;               // the left eye in a window, where there is a display
+  double scale = 1.0;               // factor for the sizes that the runtime recommends
+  std::optional<double> budget_ms;  // 0: the time that the runtime has for a frame
+  std::optional<double> record_s;   // duration to record from the first frame on
+  bool mirror = true;               // shows the left eye in a window if there is a display
 };
 
 struct RenderOptions {
@@ -32,28 +32,27 @@ struct RenderOptions {
   ContextOptions context;
   OutputOptions output;
   std::optional<stereo::Foveation> foveate;
-  HeadsetOptions headset;          // of the preview
-  Shard shard;                     // of the views
-  bool resume = false;             // what is there of this run is not drawn again
+  HeadsetOptions headset;          // only for the preview
+  Shard shard;                     // which of the views this run draws
+  bool resume = false;             // skips views that an earlier run of the same options drew
   std::vector<std::string> given;  // options_given(), for resume
 };
 
-/// Adds those that say which pictures are drawn, and how; nothing of what is done with them.
+/// Adds the options that define the pictures, but not those of output.
 void add_picture_options(CLI::App& sub, RenderOptions& options);
 
-/// Adds all of them to the sub-command; `options` must outlive the parsing. Values that cannot be understood
-/// end it with CLI::ParseError or Error.
+/// Adds all of them; `options` must outlive parsing. Wrong values throw CLI::ParseError or Error.
 void add_options(CLI::App& sub, RenderOptions& options);
 
-/// Adds those that the preview takes. The help ends with the window's keys.
+/// Adds the options of the preview. The help ends with the window's keys.
 void add_view_options(CLI::App& sub, RenderOptions& options);
 
-/// Whether --quality is for levels of detail, too, if the scene has any that tell what they lose.
+/// Whether --quality may also apply to levels of detail, if the scene's files have errors of levels.
 bool may_share(const RenderOptions& options);
 
-/// Throws Error for options that contradict each other, within a part and between them;
+/// Throws Error for contradicting options.
 void check(const RenderOptions& options);
-/// of --foveate alone.
+/// The same for --foveate alone.
 void check_foveate(const RenderOptions& options);
 
 }  // namespace binosplat::app

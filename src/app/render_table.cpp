@@ -1,4 +1,4 @@
-// What `binosplat render` says of what it drew: a table for people, and JSON.
+// Prints and saves the results of `binosplat render`: a table, and JSON.
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -26,30 +26,30 @@ using lab::FieldWriter;
 using lab::object;
 using nlohmann::ordered_json;
 
-/// What is left out of the JSON otherwise, and of the table.
+/// The value if `is`, else none, which JSON and table omit.
 template <typename T>
 std::optional<T> given(bool is, const T& value) {
   return is ? std::optional(value) : std::nullopt;
 }
 
-// dB that a frame reports: with what its levels lose, where they share --quality.
+// Reported dB of a shot. If levels share --quality, they include the levels' loss.
 double reported_psnr(const Drawn& drawn) {
   const bool shares = drawn.levels && drawn.levels->predicted_psnr;
   const double frame = drawn.report.quality;
   return shares ? psnr_of_both(frame, *drawn.levels->predicted_psnr) : frame;
 }
 
-// Whether that was not measured on all of the frame.
+// Whether reported dB are estimated, not measured over the whole frame.
 bool is_estimate(const Drawn& drawn) {
   return drawn.report.quality_is_estimate || (drawn.levels && drawn.levels->predicted_psnr);
 }
 
-// GPU time of a frame, in ms; none where the reference drew it.
+// GPU time of a frame in ms; none if the reference drew it.
 std::optional<double> ms_of(const render::FrameReport& report) {
   return given(!report.stages.empty(), report.total_ms);
 }
 
-/// A number of each view that has it.
+/// A column of the table: a number of each view that has it.
 struct Column {
   std::string title;
   int digits;
@@ -91,8 +91,8 @@ std::vector<Column> columns_of(const RenderOptions& o) {
   };
 }
 
-// A row for each view with its files, and below several views what their numbers come to. Of the many frames
-// of a way or a video only that: rows would bury it.
+// Prints a row with files for each view, and a summary if there are several. Long paths and videos have only
+// the summary.
 void print_views(const RenderRun& run) {
   constexpr std::size_t few = 8;
   const std::vector<Drawn>& all = run.drawn;
@@ -139,10 +139,10 @@ struct StageRow {
   double median_ms = 0.0, p99_ms = 0.0;
 };
 
-// The first frame of all makes the driver compile shaders: it counts only while it is alone.
+// Excludes the first frame, in which the driver compiles shaders, unless it is the only one.
 std::size_t timed_frames(const RenderRun& run) { return std::max<std::size_t>(run.frames.size(), 2) - 1; }
 
-// GPU times of frames, by stage; none where the reference drew them.
+// GPU times of frames by stage; empty if the reference drew them.
 std::vector<StageRow> stage_rows(const RenderRun& run) {
   const std::span frames = std::span(run.frames).last(timed_frames(run));
   if (frames.front().stages.empty()) return {};
@@ -159,7 +159,7 @@ std::vector<StageRow> stage_rows(const RenderRun& run) {
   return rows;
 }
 
-// Where most of the time is waited for files.
+// The reason if most of the time is spent waiting for files.
 std::string what_bounds(const RenderRun& run) {
   const RunTimes& times = run.times;
   const OutputOptions& o = run.options.output;
@@ -224,7 +224,7 @@ double discomfort(const Drawn& drawn) {
   return std::max(r.near_degrees, -r.far_degrees);
 }
 
-// Warns of the pair that asks most of the eyes, and how many others do, of those that options can change.
+// Warns of the least comfortable pair that options can improve, with the number of other such pairs.
 void warn_of_discomfort(const std::vector<Drawn>& all) {
   const Drawn* worst = nullptr;
   int others = -1;

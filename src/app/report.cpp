@@ -17,7 +17,7 @@ namespace binosplat::app {
 
 namespace {
 
-// As it was typed, for a shell to read again.
+// The command line, quoted for a shell.
 std::string command_line() {
   std::ifstream file("/proc/self/cmdline");
   std::vector<std::string> words;

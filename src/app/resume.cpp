@@ -23,7 +23,7 @@ namespace {
 
 constexpr const char* render_run_name = "render-run.json";
 
-// Where it is drawn and which part of it, and what is believed of files.
+// Options of place, share, speed and memory: no picture depends on them.
 constexpr const char* no_matter[] = {"--output",     "--shard", "--resume",    "--backend",        "--device",
                                      "--max-memory", "--quiet", "--png-level", "--exr-compression"};
 
@@ -55,13 +55,13 @@ std::vector<std::string> options_given(const CLI::App& sub) {
 
 ordered_json identity_of(const RenderOptions& o, const CameraList& list, double near_plane,
                          const std::vector<Shot>& shots) {
-  // The list itself: of it --transmittance depth measures views that are not drawn.
+  // All cameras, because --transmittance depth also measures views that are not drawn.
   ordered_json run = lab::object("format", "binosplat render", "program", BINOSPLAT_VERSION, "options",
                                  o.given, "cameras", content_key(list.cameras), "views", views_key(shots),
                                  "near", near_plane, "units_per_metre", shots[0].units_per_metre);
   if (!is_built_in(o.scene.name)) run["model"] = content_key(fs::path(o.scene.name));
   if (!o.drawing.calibration.empty()) run["calibration"] = file_key(o.drawing.calibration);
-  // As save_json() leaves it: names may be in any encoding.
+  // In the encoding of save_json(): names may be in any encoding.
   return ordered_json::parse(run.dump(-1, ' ', false, ordered_json::error_handler_t::replace));
 }
 
@@ -69,7 +69,7 @@ void leave_out_drawn(const fs::path& folder, const ordered_json& run, std::vecto
   const fs::path file = folder / render_run_name;
   const auto is_there = [](const PictureFile& picture) { return fs::exists(picture.name); };
   for (const Shot& shot : shots) {
-    // Pictures first: whoever draws them has written the file before.
+    // Look for pictures first: every run writes its file before any picture.
     const auto picture = std::ranges::find_if(shot.files, is_there);
     if (picture == shot.files.end()) continue;
     if (fs::exists(file)) break;

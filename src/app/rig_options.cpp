@@ -12,7 +12,7 @@ namespace binosplat::app {
 
 namespace {
 
-// In metres, which a bare number is taken for.
+// Parses a length into metres. A number without unit is in metres.
 double parse_length(const char* option, const std::string& text, const char* examples) {
   std::string_view unit = text;
   if (unit.starts_with("+")) unit.remove_prefix(1);
@@ -25,7 +25,7 @@ double parse_length(const char* option, const std::string& text, const char* exa
   return *value;
 }
 
-// Metres. A bare number beyond what a human or a low flight has is taken for millimetres that were meant.
+// Parses metres. Refuses a bare number above 1, which probably means millimetres.
 double parse_ipd(const std::string& text) {
   constexpr double most = 1.0;
   const double metres = parse_length("--ipd", text, "as in 0.064, 64mm or 3m");

@@ -1,5 +1,5 @@
 #pragma once
-// Which eyes are drawn of a camera, and where they are.
+// The options that choose the eyes of each camera.
 
 #include <cstddef>
 #include <optional>
@@ -9,25 +9,25 @@
 namespace binosplat::app {
 
 struct RigOptions {
-  bool mono = false;                  // the camera itself
-  std::optional<std::size_t> only;    // one eye of the pair: 0 the left one, 1 the right one
+  bool mono = false;                  // draws the camera itself
+  std::optional<std::size_t> only;    // one eye of the pair: 0 left, 1 right
   std::optional<double> ipd;          // m
   std::optional<double> convergence;  // m, or infinite
   std::optional<double> cant;         // degrees
   std::optional<double> units_per_metre;
 
   bool one_picture() const { return mono || only; }
-  /// Whether they say where the eyes are.
+  /// Whether options set the positions of the eyes.
   bool places_eyes() const { return ipd || convergence || cant; }
 };
 
-/// For commands that know no rig.
+/// For commands without a rig.
 inline const RigOptions no_rig{.mono = true};
 
-/// Adds all of them; `options` must outlive the parsing.
+/// Adds all of them; `options` must outlive parsing.
 void add_rig_options(CLI::App& sub, RigOptions& options);
 
-/// One of them, for commands that take few.
+/// A single option, for commands that take few.
 CLI::Option* add_ipd_option(CLI::App& sub, RigOptions& options);
 
 }  // namespace binosplat::app

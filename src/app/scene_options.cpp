@@ -15,7 +15,7 @@ namespace binosplat::app {
 
 void add_scene_options(CLI::App& sub, SceneOptions& o) {
   std::string formats = names_of_formats();
-  constexpr std::size_t columns = 62;  // of help beside the options' names
+  constexpr std::size_t columns = 62;  // width of help beside the options' names
   formats[formats.rfind(' ', columns)] = '\n';
   sub.add_option("SCENE", o.name,
                  "A model's file or folder, of the formats\n" + formats +

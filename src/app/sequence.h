@@ -11,22 +11,22 @@
 
 namespace binosplat::app {
 
-/// The files of the scene where it is a folder with several models and --fps says how fast they follow each
-/// other; empty where it is no such folder. Throws Error for options that are for one model.
+/// The model files if the scene is a folder with several and --fps is set, else empty. Throws Error for
+/// options that need a single model.
 std::vector<std::filesystem::path> sequence_of(const RenderOptions& options);
 
-/// Each shot shows a model, in order, and is called after its file; one shot stands for as many as there are
-/// models. Those beyond the shorter of the two are left out, which is said.
+/// Assigns the models to the shots in order, and names each shot after its file. A single shot is repeated
+/// for all models. If the numbers differ, drops the surplus and logs it.
 void show_in_turn(const std::vector<std::filesystem::path>& files, std::vector<Shot>& shots);
 
-/// The models of the shots after the first, which is there. While one is drawn, the next one is read.
+/// The models of all shots but the first. Reads the next one while the current one is drawn.
 class ModelsInTurn {
  public:
-  /// The others take the axes and the origin of `first`, and must have its format.
+  /// All models take the axes and origin of `first`, and must have its format.
   ModelsInTurn(const SceneOptions& scene, const Model& first, const std::vector<Shot>& shots);
 
-  /// That of the next shot, beginning with the second. Throws Error as load_scene() does, and for a file of
-  /// another kind.
+  /// The model of the next shot, starting with the second. Throws Error as load_scene() does, and for a file
+  /// of another format.
   Model take();
 
  private:

@@ -1,5 +1,5 @@
 #pragma once
-// --shard I/N: work that is shared out among N runs, on as many machines or devices.
+// --shard I/N: divides work among N runs on several machines or devices.
 
 #include <cstddef>
 #include <string>
@@ -10,7 +10,7 @@
 
 namespace binosplat::app {
 
-/// Which things are this run's: those whose number leaves `index` when divided by `count`.
+/// The items of this run: those whose number modulo `count` is `index`.
 struct Shard {
   std::size_t index = 0;
   std::size_t count = 1;
@@ -18,10 +18,10 @@ struct Shard {
   bool all() const { return count == 1; }
 };
 
-/// Adds --shard. Text that is no I/N ends the parsing with Error.
+/// Adds --shard. Text that is not I/N throws Error.
 CLI::Option* add_shard_option(CLI::App& sub, Shard& shard, const std::string& help);
 
-/// Leaves what is the shard's, in its order.
+/// Keeps only the shard's items, in order.
 template <typename Thing>
 void take_share(const Shard& shard, std::vector<Thing>& things) {
   std::vector<Thing> share;

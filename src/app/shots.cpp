@@ -23,16 +23,15 @@ namespace {
 
 constexpr int made_up_width = 1280;
 constexpr int made_up_height = 720;
-constexpr double eye_height = 1.6;  // m, of somebody who stands
+constexpr double eye_height = 1.6;  // m, of a standing person
 
-// A view by name: one camera, a head or itself, or a pair of eyes.
+// A named view: one camera (a head, or the picture itself), or a pair of eyes.
 struct ShotChoice {
   std::string name;
   std::vector<Camera> cameras;
 };
 
-// The cameras as views in their order; where pairs are wanted, a NAME_left and its NAME_right are the one
-// view NAME.
+// The cameras as views in their order. With `pairs`, NAME_left and NAME_right form the view NAME.
 std::vector<ShotChoice> all_choices(const std::vector<Camera>& cameras, bool pairs) {
   std::vector<ShotChoice> choices;
   std::set<std::string> taken;
@@ -118,7 +117,7 @@ Known known_of(const std::optional<SavedPose>& saved) {
   return {saved->units_per_metre, saved->ipd, saved->up, {}};
 }
 
-// What the cameras beside a model tell of those that are made up.
+// Stores what the cameras of a capture imply for new cameras.
 void learn(const std::vector<Camera>& cameras, Known& known) {
   const auto capture = capture_of(cameras, known.up);
   if (!capture) return;
@@ -126,7 +125,7 @@ void learn(const std::vector<Camera>& cameras, Known& known) {
   known.around = capture->around;
 }
 
-// In the model's world, which may not be the cameras' own.
+// Reads cameras and moves them into the model's world, which may differ from the file's.
 std::vector<Camera> cameras_for(const std::string& scene, const std::string& file,
                                 const std::optional<double>& fov = {}) {
   std::vector<Camera> cameras = load_cameras(file, fov);
@@ -136,7 +135,7 @@ std::vector<Camera> cameras_for(const std::string& scene, const std::string& fil
   return cameras;
 }
 
-// Cameras are made up all the same where those beside the model cannot be read.
+// Ignores unreadable cameras beside the model, with a warning.
 void learn_beside(const std::string& scene, Known& known) {
   const auto found = find_cameras(scene);
   if (!found) return;
@@ -148,7 +147,7 @@ void learn_beside(const std::string& scene, Known& known) {
   }
 }
 
-// Those of the file that an option names or that lies beside the model, or the built-in ones.
+// The cameras of the named file, of the file beside the model, or of the built-in scene.
 CameraList camera_list(const SceneOptions& scene, const CameraOptions& camera,
                        const std::vector<Camera>& built_in) {
   const std::string named = camera.path.empty() ? camera.file : camera.path;
@@ -164,8 +163,8 @@ CameraList camera_list(const SceneOptions& scene, const CameraOptions& camera,
   }
 }
 
-// What the model tells where no cameras do. Returns what cameras go by that are made up, for the log; nothing
-// where --eye and --up say all.
+// Derives up and centre from the model if no cameras define them. Returns the origin of both for the log;
+// empty if --eye and --up define all.
 std::string learn_from(const CoredModel& cored, const SceneOptions& scene, const CameraOptions& camera,
                        Known& known) {
   if (known.around && !camera.eye)
@@ -214,7 +213,7 @@ CameraList listed_cameras(const SceneOptions& scene, const CameraOptions& camera
   list.path = camera.along_path();
   known.unusable = list.known.unusable;
   list.known = known;
-  // Keys of a path may all lean the same way; of the many beside the model the mean does not.
+  // Keys of a path may all be tilted alike. The mean of the many cameras beside the model is level.
   if (built_in.empty() && camera.lens.vr180() && !(camera.path + camera.file).empty())
     learn_beside(scene.name, list.known);
   if (built_in.empty()) learn(list.cameras, list.known);

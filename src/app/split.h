@@ -1,5 +1,5 @@
 #pragma once
-// Views of three tasks, for the commands that learn from pictures.
+// Splits views into training, held-back and test views, for trim and refit.
 
 #include <functional>
 #include <string>
@@ -13,31 +13,30 @@
 namespace binosplat::app {
 
 struct SplitOptions {
-  int held_back = 0;                     // views, at most
-  std::vector<std::string> judges = {};  // views by name, instead
+  int held_back = 0;                     // at most this many views
+  std::vector<std::string> judges = {};  // views by name, which replace `held_back`
   std::vector<std::string> tests = {};   // views by name
 };
 
-/// Adds --cameras, --views, --held-back, --test, --size, --lod and --axes; both options must outlive the
-/// parsing.
+/// Adds --cameras, --views, --held-back, --test, --size, --lod and --axes; both options must outlive parsing.
 void add_split_options(CLI::App& sub, MeasuredOptions& measured, SplitOptions& split, const char* views_help);
 
-/// The cameras that pictures of the scene are of. Throws Error, which names the command, where there are
-/// none, or where their photos differ from them in size.
+/// The cameras of the scene's pictures. Throws Error, with the command's name, if there are none or if a
+/// photo has another size.
 CameraList needed_cameras(const std::string& command, const MeasuredOptions& options);
 
-/// How many views are held back at most, of so many that can be and so many cameras.
+/// The largest number of held-back views, by the numbers of candidates and of cameras.
 using MostHeldBack = std::function<std::size_t(std::size_t can_judge, std::size_t cameras)>;
 
-/// Held back are those that are named, or as many as were asked for and `most` allows, one at least, evenly
-/// spread among those that have a photo where there are photos; the rest is for training. The test views are
-/// neither. Throws Error for views that are not there or have two tasks.
+/// Holds back the named views, or up to the requested number within `most`, evenly spread over the
+/// candidates, at least one. Candidates need a photo if there are photos. The other views train; test views
+/// do neither. Throws Error for unknown views and for views named twice.
 lab::ViewSplit split_views(const std::string& command, const MeasuredOptions& options,
                            const PhotoSource& photos, const SplitOptions& split, const CameraList& list,
                            const MostHeldBack& most);
 
-/// Where --size makes the views smaller than their cameras are: those held back and of test in the cameras'
-/// own size as well, and says so. A bound that holds in a small picture may not hold in the large one.
+/// If --size makes views smaller, adds the held-back and test views in the cameras' own size and logs it. A
+/// bound that holds in small pictures may fail in large ones.
 void add_own_size(const MeasuredOptions& options, const CameraList& list, lab::ViewSplit& views);
 
 }  // namespace binosplat::app

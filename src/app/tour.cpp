@@ -15,7 +15,7 @@ namespace binosplat::app {
 
 namespace {
 
-// The name of a motion, or "1.5,45": metres and degrees a second.
+// Parses the name of a motion, or "1.5,45": metres and degrees a second.
 Motion parse_motion(const std::string& text) {
   std::vector<std::string> names;
   for (const Motion& motion : head_motions()) {

@@ -1,4 +1,4 @@
-// binosplat trim: the smallest model that keeps the pictures.
+// binosplat trim: finds the smallest model within a bound on the loss.
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
@@ -48,13 +48,13 @@ ModelFormat check_trim(const TrimOptions& o) {
   return format;
 }
 
-/// The file that was read, where it has the format that is to be written and says by itself how it is drawn.
+/// The input file, if it has the output's format and draws equally without other files.
 std::optional<fs::path> same_format(const TrimOptions& o, const Model& model, ModelFormat format) {
   const fs::path file = model_file(o.scene.name);
   const auto run = run_of(file);
   if (!kernel_loss(model, format).empty() || (run && run->antialiased)) return std::nullopt;
   const std::string_view name = row_of(format).name;
-  // A SOG may be read from a meta.json beside its pictures, and is written as an archive.
+  // A SOG may be read from a meta.json with pictures, but is written as an archive.
   const bool same = (model.format == name || model.format.starts_with(fmt::format("{} ", name))) &&
                     (format != ModelFormat::sog || model_format_of(file) == format);
   return same && fs::is_regular_file(file) ? std::optional(file) : std::nullopt;
@@ -138,7 +138,7 @@ ordered_json trimmed_json(const TrimOptions& o, const compact::Trimmed& found, c
   return json;
 }
 
-/// Writes what was found; the file itself where nothing of it could be left out.
+/// Writes the trimmed model, or a copy of the input if nothing could be removed.
 std::vector<std::string> write_trimmed(const TrimOptions& o, const compact::Trimmed& found,
                                        ModelFormat format, const std::optional<fs::path>& original) {
   if (!found.less && original) {

@@ -27,7 +27,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// Matroska's StereoMode; empty: mono, or none for this layout.
+// Matroska's StereoMode; empty for one eye, anaglyph for the other layouts.
 std::string stereo_mode(int layout) {
   static const std::map<int, std::string> modes = {
       {LAYOUT_PARALLEL, "left_right"},        {LAYOUT_HALF_WIDTH, "left_right"},
@@ -45,7 +45,7 @@ fs::path temporary_beside(const fs::path& target) {
 
 std::vector<std::string> arguments_for(const fs::path& target, const fs::path& temporary, int width,
                                        int height, double frames_a_second, int layout) {
-  // Each eye's colours must stay its own where its neighbours are the other eye's.
+  // Layouts that interleave or mix the eyes need chroma in full resolution.
   const bool mixed = layout >= LAYOUT_ROWS;
   std::vector<std::string> arguments = {"ffmpeg", "-hide_banner", "-loglevel",     "error", "-y",
                                         "-f",     "rawvideo",     "-pixel_format", "rgb24"};
@@ -88,7 +88,7 @@ std::string full_box(std::string_view type, const std::string& content) {
 
 std::string boxes_of(int layout) {
   const char mode = layout == LAYOUT_SEPARATE ? 0 : layout == LAYOUT_OVER_UNDER ? 1 : 2;
-  // Shares of the sphere that the picture leaves out at the top, the bottom, the left and the right: /2^32.
+  // Shares of the sphere outside the picture: top, bottom, left, right, each times 2^32.
   const std::string bounds = number(0) + number(0) + number(0x40000000) + number(0x40000000);
   const std::string pose = number(0) + number(0) + number(0);
   return full_box("st3d", std::string(1, mode)) +
@@ -102,7 +102,7 @@ std::uint64_t box_size_at(std::string_view bytes, std::size_t at) {
   return std::uint64_t{number_at(bytes, at + 8)} << 32 | number_at(bytes, at + 12);
 }
 
-// The first box of a type in [begin, end), or npos.
+// Position of the first box of a type in [begin, end), or npos.
 std::size_t find_box(std::string_view bytes, std::size_t begin, std::size_t end, std::string_view type) {
   for (std::size_t at = begin; at + 8 <= end;) {
     const std::uint64_t size = box_size_at(bytes, at);
@@ -113,8 +113,7 @@ std::size_t find_box(std::string_view bytes, std::size_t begin, std::size_t end,
   return std::string_view::npos;
 }
 
-// Where the boxes are from the movie to the first track's description of its pictures, each in the one
-// before; empty if one is missing.
+// Positions of the nested boxes from the movie to the first track's sample entry; empty if one is missing.
 std::vector<std::size_t> way_to_entry(std::string_view movie) {
   std::vector<std::size_t> way = {0};
   std::size_t begin = 8, end = movie.size();
@@ -125,15 +124,15 @@ std::vector<std::size_t> way_to_entry(std::string_view movie) {
     begin = at + 8;
     end = at + number_at(movie, at);
   }
-  begin += 8;  // the version of stsd, and how many entries it has
+  begin += 8;  // the version of stsd, and its number of entries
   if (begin + 8 > end || begin + number_at(movie, begin) > end) return {};
   way.push_back(begin);
   return way;
 }
 
-// Tells players that a finished .mp4 or .mov with one track, whose `moov` comes last as ffmpeg leaves it, is
-// half a sphere: equirectangular, 180 degrees across, of one eye (LAYOUT_SEPARATE) or both as `layout` has
-// them. The boxes st3d and sv3d of Google's Spherical Video V2 say that, which no option of ffmpeg writes.
+// Marks a finished .mp4 or .mov as VR180: equirectangular, 180 degrees, one eye (LAYOUT_SEPARATE) or both in
+// `layout`. The file must have one track, and `moov` last, as ffmpeg writes it. Adds the boxes st3d and sv3d
+// of Google's Spherical Video V2, for which ffmpeg has no option.
 void mark_half_sphere(const fs::path& path, int layout) {
   std::string movie;
   std::size_t at = 0;
@@ -195,13 +194,12 @@ void Video::start(const std::vector<std::string>& arguments) {
   for (const std::string& argument : arguments) pointers.push_back(const_cast<char*>(argument.c_str()));
   pointers.push_back(nullptr);
   int ends[2];
-  // A socket, not a pipe: writing to one whose reader is gone is an error that can be asked not to be a
-  // signal.
+  // A socket instead of a pipe: MSG_NOSIGNAL turns a write without a reader into an error.
   if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0 || said_ == nullptr)
     fail("cannot talk to ffmpeg: {}", std::strerror(errno));
   ffmpeg_ = fork();
   if (ffmpeg_ == 0) {
-    // Ends with this program; Ctrl-C, which this program waits for elsewhere, reaches it.
+    // ffmpeg ends with this program. Its signals are unblocked, so Ctrl-C ends it, too.
     prctl(PR_SET_PDEATHSIG, SIGKILL);
     sigset_t none;
     sigemptyset(&none);

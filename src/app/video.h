@@ -1,5 +1,5 @@
 #pragma once
-// Videos, by an ffmpeg that is there: pictures go into its standard input.
+// Videos through an installed ffmpeg, which reads pictures from its standard input.
 
 #include <sys/types.h>
 
@@ -18,31 +18,31 @@
 
 namespace binosplat::app {
 
-/// Whether a file's ending is one of .mp4, .mov, .mkv and .webm, in small or capital letters.
+/// Whether the ending is .mp4, .mov, .mkv or .webm, in any case.
 bool is_video(const std::filesystem::path& path);
 
-/// ffmpeg as the shell would find it. Throws Error that says what to install, or to name a folder.
+/// The ffmpeg of $PATH. Throws Error that names the package to install, and a folder as the alternative.
 std::filesystem::path find_ffmpeg();
 
 class Video {
  public:
-  /// Starts ffmpeg: H.264 of a quality at which losses are hard to see, VP9 in .webm. Matroska's files
-  /// say which layout the pictures are in. Colours are stored at half resolution, as players expect, except
-  /// in layouts whose neighbouring pixels belong to different eyes. A picture of odd size is given another
-  /// row or column. With `vr180` .mp4 and .mov say that each eye's picture is half a sphere.
+  /// Starts ffmpeg: H.264 of visually lossless quality, or VP9 in .webm. Matroska files store the layout.
+  /// Chroma has half resolution, as players expect, except in layouts that interleave the eyes' pixels or mix
+  /// their colours. An odd size gains a row or column. With `vr180`, .mp4 and .mov are marked as half a
+  /// sphere per eye.
   Video(const std::filesystem::path& path, int width, int height, double frames_a_second, int layout,
         bool vr180 = false);
   ~Video();
   Video(const Video&) = delete;
   Video& operator=(const Video&) = delete;
 
-  /// The bytes of a frame, from RGB.
+  /// A frame as RGB bytes.
   static std::string bytes_of(const Image& image);
 
-  /// The next frame. Throws Error with what ffmpeg said if it has ended.
+  /// Sends the next frame. If ffmpeg has ended, throws Error with its message.
   void add(std::string_view bytes);
 
-  /// Waits for ffmpeg, then gives the file its name: it appears whole or not at all.
+  /// Waits for ffmpeg, then renames the file, so that it is complete or absent.
   void finish();
 
  private:

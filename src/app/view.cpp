@@ -1,4 +1,4 @@
-// binosplat view: starts the preview, a program beside this one. This one needs no window system.
+// binosplat view: starts the preview, a separate program. This program links no window system.
 
 #include <dlfcn.h>
 #include <unistd.h>
@@ -30,7 +30,7 @@ ExitCode view(std::vector<std::string> arguments) {
             "another system than Debian, GLFW and Dear ImGui first); `binosplat render` needs no window",
             program.string()));
   }
-  // What the preview is linked to and servers lack: the loader would say no more than that it is not there.
+  // Test the preview's library here: the loader's message for a missing library is terse.
   if (const char* const library = BINOSPLAT_PREVIEW_NEEDS; *library != 0 && !dlopen(library, RTLD_LAZY)) {
     throw Error(ExitCode::no_gl,
                 fmt::format("{}: the window needs it (on Debian: apt install libx11-6); `binosplat render` "
@@ -41,7 +41,7 @@ ExitCode view(std::vector<std::string> arguments) {
   std::vector<char*> pointers;
   for (std::string& argument : arguments) pointers.push_back(argument.data());
   pointers.push_back(nullptr);
-  // Signals wait for a thread of this program, which ends here.
+  // This program blocks signals for its waiting thread, which ends at exec; unblock them.
   sigset_t none;
   sigemptyset(&none);
   sigprocmask(SIG_SETMASK, &none, nullptr);
@@ -55,7 +55,7 @@ bool has_preview() { return access(preview().c_str(), X_OK) == 0; }
 
 void add_view(CLI::App& program, Command& command) {
   CLI::App* sub = program.add_subcommand("view", "Look at a model with both eyes, in a window");
-  sub->set_help_flag();  // all is for the preview, --help too
+  sub->set_help_flag();  // the preview handles all options, also --help
   sub->prefix_command();
   sub->callback([sub, &command] {
     const std::vector<std::string> arguments = sub->remaining();

@@ -1,5 +1,5 @@
 #pragma once
-// Choices of shared/axes.h by their names.
+// The choices of shared/axes.h by name.
 
 #include <fmt/ranges.h>
 
@@ -21,8 +21,8 @@ inline std::vector<std::string> names_of(std::span<const Choice> choices) {
   return names;
 }
 
-/// The number of a name of one of these lists. Throws Error, beginning with `place`, for a name that is not
-/// in it; the text lists those that are.
+/// The index of a name in one of these lists. Throws Error, beginning with `place`, for an unknown name; the
+/// text lists the known ones.
 inline int find_choice(std::string_view place, std::string_view name, std::span<const Choice> choices) {
   const auto found = std::ranges::find(choices, name, &Choice::name);
   if (found == choices.end())

@@ -1,5 +1,5 @@
 #pragma once
-// Time that never runs backwards.
+// A monotonic clock.
 
 #include <chrono>
 

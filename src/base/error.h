@@ -1,5 +1,5 @@
 #pragma once
-// Throws Error, the one exception type of the project; `main` prints what() and returns code().
+// Throws Error, the only exception type of the project. `main` prints what() and returns code().
 
 #include <fmt/core.h>
 
@@ -9,7 +9,7 @@
 
 namespace binosplat {
 
-/// Throws Error(bad_input) with a formatted text: a file, an option or an output that cannot be used.
+/// Throws Error(bad_input) with a formatted text, for an unusable file, option or output.
 template <typename... Args>
 [[noreturn]] void fail(fmt::format_string<Args...> format, Args&&... args) {
   throw Error(ExitCode::bad_input, fmt::format(format, std::forward<Args>(args)...));

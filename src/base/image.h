@@ -1,5 +1,5 @@
 #pragma once
-// Pictures in memory: what a blend leaves (Picture), and plain images of channels (Image).
+// Pictures in memory: the result of a blend (Picture), and images with channels (Image).
 
 #include <algorithm>
 #include <array>
@@ -12,8 +12,7 @@
 
 namespace binosplat {
 
-/// Channels of floats, rows from the top, channels interleaved: value (x, y, c) is data[(y * width + x) *
-/// channels + c].
+/// Floats, rows from the top, channels interleaved: value (x, y, c) is data[(y * width + x) * channels + c].
 struct Image {
   int width = 0;
   int height = 0;
@@ -28,13 +27,12 @@ struct Image {
   }
 };
 
-/// What a blend leaves of one view (docs/method.md 3), before any background. Rows from the top.
+/// The result of blending a view (docs/method.md 3), before any background. Rows from the top.
 struct Picture {
   int width = 0;
   int height = 0;
-  std::vector<glm::vec4>
-      colour;  // C = sum of alpha T c (display-referred) in rgb; T, the transmittance left, in a
-  std::vector<float> z_sum;  // Z = sum of alpha T z, world units
+  std::vector<glm::vec4> colour;  // rgb: C = sum of alpha T c, display-referred; a: the remaining T
+  std::vector<float> z_sum;       // Z = sum of alpha T z, world units
 
   Picture() = default;
   Picture(int w, int h)
@@ -44,13 +42,13 @@ struct Picture {
         z_sum(static_cast<std::size_t>(w) * h) {}
 };
 
-/// A pixel's depth: not asked for, the mean of all that is seen in it, or where T falls below a half.
+/// The depth of a pixel: none, the mean weighted by visibility, or the depth at which T falls below a half.
 enum class Depth { none, mean, median };
 
-/// Whether pictures are the same in number, size and every bit.
+/// Whether the pictures agree in number, sizes and every bit.
 bool same_bits(std::span<const Picture> a, std::span<const Picture> b);
 
-/// RGB behind the scene, display-referred; none: the picture keeps straight alpha.
+/// RGB behind the scene, display-referred; none: pictures keep straight alpha.
 using Background = std::optional<glm::vec3>;
 
 /// The display-referred image of a picture: C + T * background as RGB or, without a background, RGBA with
@@ -60,25 +58,25 @@ Image composite(const Picture& picture, const Background& background);
 /// The same over black.
 Image on_black(const Picture& picture);
 
-/// A picture of three channels with each colour changed: its red, green and blue times the first three
-/// columns, and the last one added. Not clamped.
+/// Applies an exposure to an RGB picture: red, green and blue times the first three columns, plus the last
+/// one. Not clamped.
 Image exposed(const Image& rgb, const glm::mat4x3& exposure);
 
-/// What takes an exposure back; nothing where that is lost, as where all becomes grey.
+/// The inverse of an exposure; none if it is singular, as one that maps all to grey.
 std::optional<glm::mat4x3> inverse_exposure(const glm::mat4x3& exposure);
 
 /// Depth Z/A where A > 0.5, +infinity elsewhere; view-space z in world units; one channel.
 Image depth_map(const Picture& picture);
 
-/// The step, 0 to `top`, by which a file of whole numbers keeps a value from 0 to 1: round(top clamp(value));
-/// 0 for one that is not a number.
+/// The integer from 0 to `top` that a file stores for a value from 0 to 1: round(top clamp(value)); 0 for
+/// NaN.
 inline int step_of(float value, float top) {
   const float scaled = (value > 0.0f ? std::min(value, 1.0f) : 0.0f) * top;
   const int whole = static_cast<int>(scaled);
-  return scaled - static_cast<float>(whole) >= 0.5f ? whole + 1 : whole;  // as std::lround, and fast
+  return scaled - static_cast<float>(whole) >= 0.5f ? whole + 1 : whole;  // equals std::lround, but faster
 }
 
-/// Every value as 8 bits (or, with a `top` of 65535, 16) would keep it.
+/// Every value rounded to 8 bits, or to 16 with a `top` of 65535.
 Image quantised(const Image& image, float top = 255.0f);
 
 }  // namespace binosplat

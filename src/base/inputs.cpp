@@ -37,7 +37,7 @@ void check_no_input(const std::filesystem::path& path) {
   const std::lock_guard<std::mutex> lock(inputs().mutex);
   const auto noted = inputs().files.find({found.st_dev, found.st_ino});
   if (noted == inputs().files.end()) return;
-  // A new file may have the number of one that is gone: a model that was written anew meanwhile, say.
+  // A new file may reuse the inode of a deleted input.
   struct stat now = {};
   if (stat(noted->second.c_str(), &now) == 0 && now.st_dev == found.st_dev && now.st_ino == found.st_ino)
     fail("cannot write {}: this run reads it, and it would be lost; name another file", path.string());

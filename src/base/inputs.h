@@ -1,15 +1,15 @@
 #pragma once
-// The files that a run reads, which none of its outputs may replace.
+// The input files of a run. OutputFile refuses to replace them.
 
 #include <filesystem>
 
 namespace binosplat {
 
-/// From now on OutputFile refuses this file, under whatever name, as long as it is there under this one. One
-/// that there is not is ignored.
+/// Protects this file from OutputFile, under any name, while it exists under this one. Ignores a missing
+/// file.
 void note_input(const std::filesystem::path& path);
 
-/// Throws Error if `path` is a file that was noted.
+/// Throws Error if `path` is a protected file.
 void check_no_input(const std::filesystem::path& path);
 
 }  // namespace binosplat

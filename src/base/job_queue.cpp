@@ -22,13 +22,13 @@ void JobQueue::work(const std::stop_token& stop) {
     changed_.notify_all();
     run(lock, job.work);
     if (job.then) {
-      changed_.wait(lock, [&] { return turn_ == job.turn; });  // jobs before it have begun, and will end
+      changed_.wait(lock, [&] { return turn_ == job.turn; });  // earlier jobs have started and will finish
       run(lock, job.then);
       ++turn_;
       changed_.notify_all();
     }
     lock.unlock();
-    job = {};  // what it holds goes before it counts as done
+    job = {};  // destroy the job's captures before it counts as done
     lock.lock();
     --running_;
     changed_.notify_all();
@@ -67,7 +67,7 @@ void JobQueue::finish() {
 
 void JobQueue::share(std::size_t count, std::size_t chunk, const Body& body) {
   if (threads_.empty() || count <= chunk || is_sharing_.exchange(true)) return body(0, count);
-  // Nothing is handed over from chunk to chunk: relaxed, so that the thread sanitizer sees where bodies do.
+  // Chunks share no data, so relaxed order suffices, and the thread sanitizer can see races in bodies.
   std::atomic<std::size_t> next = 0;
   const auto work = [&] {
     const auto take = [&] { return next.fetch_add(chunk, std::memory_order_relaxed); };

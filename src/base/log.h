@@ -1,5 +1,5 @@
 #pragma once
-// Lines for the user on standard error; standard output is kept for results.
+// Messages for the user on standard error; standard output has only results.
 
 #include <fmt/core.h>
 
@@ -9,20 +9,20 @@
 
 namespace binosplat {
 
-/// Writes `binosplat: TEXT` and a newline to standard error. Texts may quote files and libraries: control
-/// characters but newlines, which could drive the terminal, come out as '?'.
+/// Writes `binosplat: TEXT` and a newline to standard error. Replaces control characters except newlines by
+/// '?', because quoted files and libraries could control the terminal.
 void log_line(const std::string& text);
 
-/// What set_quiet() said last.
+/// The last value of set_quiet().
 bool is_quiet();
 
-/// Something worth knowing: which device is used, what was left out, that a frame was drawn again.
+/// Reports useful facts: the device, omissions, repeated frames.
 template <typename... Args>
 void log_info(fmt::format_string<Args...> format, Args&&... args) {
   if (!is_quiet()) log_line(fmt::format(format, std::forward<Args>(args)...));
 }
 
-/// Something that is probably not what the user meant.
+/// Reports a probable mistake of the user.
 template <typename... Args>
 void log_warning(fmt::format_string<Args...> format, Args&&... args) {
   log_line("warning: " + fmt::format(format, std::forward<Args>(args)...));

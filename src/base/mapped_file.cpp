@@ -18,14 +18,14 @@ namespace binosplat {
 
 namespace {
 
-/// What a signal's handler may look at: it can take no lock, and threads map and unmap meanwhile.
+/// A mapping for the signal handler, which cannot lock, while threads map and unmap.
 struct Mapping {
-  std::atomic<const std::byte*> data = nullptr;  // none: the place is free
+  std::atomic<const std::byte*> data = nullptr;  // null: the entry is free
   std::atomic<std::size_t> size = 0;
   std::atomic<const char*> name = nullptr;
 };
 
-/// More than are ever mapped at a time; those beyond have no name in the handler.
+/// More than are mapped at once; the handler cannot name further ones.
 std::array<Mapping, 256> mappings;
 static_assert(std::atomic<const char*>::is_always_lock_free && std::atomic<std::size_t>::is_always_lock_free);
 
@@ -48,7 +48,7 @@ void forget(const std::byte* data) {
   }
 }
 
-/// Calls nothing but what a handler may (signal-safety(7)).
+/// Calls only async-signal-safe functions (signal-safety(7)).
 void on_cut_file(int, siginfo_t* info, void*) {
   const auto say = [](const char* text) {
     static_cast<void>(!write(STDERR_FILENO, text, std::strlen(text)));
@@ -62,7 +62,7 @@ void on_cut_file(int, siginfo_t* info, void*) {
     say(" was cut short while it was read: leave it alone until this is done, and start again\n");
     _exit(static_cast<int>(ExitCode::bad_input));
   }
-  std::signal(SIGBUS, SIG_DFL);  // nothing of a file: the fault comes again
+  std::signal(SIGBUS, SIG_DFL);  // not in a mapped file: fault again
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 #pragma once
-// A file's bytes in memory, read by the system as they are touched.
+// A file mapped into memory. The system reads pages on access.
 
 #include <cstddef>
 #include <filesystem>
@@ -8,18 +8,18 @@
 
 namespace binosplat {
 
-/// From now on a file that another program cuts short while it is mapped ends this one with
-/// ExitCode::bad_input and a line that names the file, where the system would end it with SIGBUS and say
-/// nothing. For `main`: a handler is the whole process's.
+/// If another program truncates a mapped file, ends the program with ExitCode::bad_input and a line that
+/// names the file, instead of a silent SIGBUS. Only for `main`, because it installs a handler for the
+/// process.
 void end_cleanly_on_cut_files();
 
-/// Throws the Error of a file that is not there or not readable; `reason` is as errno has it.
+/// Throws the Error of a missing or unreadable file; `reason` is an errno.
 [[noreturn]] void fail_to_read(const std::filesystem::path& path, int reason);
 
 class MappedFile {
  public:
-  /// Maps the whole file for reading. Throws Error if it is missing, a folder or not readable; an empty file
-  /// is mapped as no bytes.
+  /// Maps the whole file for reading; an empty file gives no bytes. Throws Error if it is missing, a folder
+  /// or unreadable.
   explicit MappedFile(const std::filesystem::path& path);
   ~MappedFile();
   MappedFile(const MappedFile&) = delete;

@@ -13,7 +13,7 @@ namespace {
 
 struct sigaction before_abort, before_fault;
 
-/// Whether the system refuses as much as drivers ask for at a time.
+/// Whether the system refuses an allocation of a size that drivers request.
 bool is_out_of_memory() {
   constexpr std::size_t much = std::size_t{256} << 20;
   void* const taken = mmap(nullptr, much, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
@@ -22,7 +22,7 @@ bool is_out_of_memory() {
   return false;
 }
 
-/// Calls nothing but what a handler may (signal-safety(7)), and mmap, which asks the system alone.
+/// Calls only async-signal-safe functions (signal-safety(7)), and mmap, a bare system call.
 void on_crash(int signal) {
   if (is_out_of_memory()) {
     constexpr char text[] =
@@ -32,7 +32,7 @@ void on_crash(int signal) {
     static_cast<void>(!write(STDERR_FILENO, text, sizeof(text) - 1));
     _exit(static_cast<int>(ExitCode::out_of_memory));
   }
-  // The fault comes again, and abort() ends by itself.
+  // Restores the handler: the fault repeats, and abort() continues.
   sigaction(signal, signal == SIGABRT ? &before_abort : &before_fault, nullptr);
 }
 

@@ -5,14 +5,14 @@
 
 namespace binosplat {
 
-/// All of it, in bytes.
+/// The machine's physical memory in bytes.
 inline double memory_bytes() {
   return static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
 }
 
-/// From now on a crash ends the program with ExitCode::out_of_memory and a line that says so, if no more
-/// memory is to be had by then: drivers of OpenGL do not look whether they got what they asked for. Other
-/// crashes end it as they did. For `main`: a handler is the whole process's.
+/// If a library crashes when memory is exhausted, ends the program with ExitCode::out_of_memory and a line:
+/// OpenGL drivers do not check their allocations. Other crashes are unchanged. Only for `main`, because it
+/// installs handlers for the process.
 void end_cleanly_without_memory();
 
 }  // namespace binosplat

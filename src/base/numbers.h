@@ -1,5 +1,5 @@
 #pragma once
-// Numbers in text.
+// Parsers of numbers in text.
 
 #include <charconv>
 #include <optional>
@@ -8,8 +8,8 @@
 
 namespace binosplat {
 
-/// The digits that `text` begins with as a number, which are taken off it; nothing where there are none, or
-/// too many for 32 bits.
+/// Parses the digits at the start of `text` and removes them. None if there are none, or for more than 32
+/// bits.
 inline std::optional<unsigned> take_number(std::string_view& text) {
   unsigned value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
@@ -18,7 +18,7 @@ inline std::optional<unsigned> take_number(std::string_view& text) {
   return value;
 }
 
-/// The same for a number with a fraction, a sign or an exponent; "inf" and "nan" are numbers, too.
+/// The same for a real number with sign and exponent; accepts "inf" and "nan".
 inline std::optional<double> take_real(std::string_view& text) {
   double value = 0.0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
@@ -27,7 +27,7 @@ inline std::optional<double> take_real(std::string_view& text) {
   return value;
 }
 
-/// "1280x720" or "2/8" as two numbers with `between` between them; nothing for other text.
+/// Parses "1280x720" or "2/8": two numbers with `between` between them; none for other text.
 inline std::optional<std::pair<unsigned, unsigned>> two_numbers(std::string_view text, char between) {
   const auto first = take_number(text);
   if (!first || text.empty() || text.front() != between) return std::nullopt;

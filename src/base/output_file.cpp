@@ -20,8 +20,8 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Waits until the disk has what is in a file or folder; false with errno where it cannot. Of disks that do
-/// not know how to, and folders that may not be read, nothing more can be had.
+/// Waits until the disk has a file or folder; false, with errno, on failure. Disks without fsync and
+/// unreadable folders count as done.
 bool is_on_disk(const fs::path& path) {
   const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC);
   if (file < 0) return errno == EACCES;
@@ -32,11 +32,11 @@ bool is_on_disk(const fs::path& path) {
   return good;
 }
 
-/// The unfinished files of all threads. Nobody destroys it: a thread may hold the lock when the process ends.
+/// The unfinished files of all threads. Never destroyed, because a thread may hold the lock at exit.
 struct Unfinished {
   std::mutex mutex;
   std::multiset<fs::path> paths;
-  bool watches = false;  // what is finished, too
+  bool watches = false;  // also records finished files
   std::set<fs::path> finished, folders;
 };
 
@@ -94,7 +94,7 @@ void remove_unfinished_files() {
 
 OutputFile::OutputFile(const fs::path& path) : target_(path) {
   std::error_code ignored;
-  // A rename would replace the link and leave the file that it points to as it was.
+  // A rename would replace the link, not the file that it points to.
   if (fs::is_symlink(target_, ignored)) target_ = fs::weakly_canonical(target_, ignored);
   if (!target_.has_filename()) fail("cannot write '{}': expected the name of a file", path.string());
 
@@ -122,10 +122,10 @@ OutputFile::OutputFile(const fs::path& path) : target_(path) {
          error.message());
   }
 
-  // Processes of one number may share a disk, in containers or on several machines.
+  // Processes with equal ids may share a disk, in containers or across machines.
   temporary_.emplace(target_.string() + fmt::format(".part-{}-{:08x}", getpid(), std::random_device()()));
   {
-    // Else it could appear after the unfinished files were removed.
+    // Under the lock, so that no file appears after remove_unfinished_files().
     const std::lock_guard lock(unfinished().mutex);
     file_ = std::fopen(temporary_->path().c_str(), "wb");
   }
@@ -166,20 +166,20 @@ bool OutputFile::commit_as_first() {
   {
     const std::lock_guard lock(unfinished().mutex);
     first = link(from, target_.c_str()) == 0;
-    // Some disks have no links.
+    // Some disks have no hard links.
     if (!first && errno != EEXIST)
       first = renameat2(AT_FDCWD, from, AT_FDCWD, target_.c_str(), RENAME_NOREPLACE) == 0;
   }
   if (!first && errno != EEXIST) fail_to_write();
   if (first) note_finished(target_);
   if (first) sync_folders();
-  return first;  // the temporary name goes with this
+  return first;  // the destructor removes the temporary name
 }
 
 void OutputFile::finish() {
-  // What is buffered may find the disk full only now.
+  // Closing flushes buffers, so a full disk may surface here.
   if (std::fclose(std::exchange(file_, nullptr)) != 0) fail_to_write();
-  // A system may write the new name to the disk before the bytes, and then lose its power.
+  // A system may store the new name before the data, and then lose power.
   if (!is_on_disk(temporary_->path())) fail_to_write();
 }
 

@@ -1,6 +1,6 @@
 #pragma once
-// Files that appear whole or not at all: what is written goes to a temporary name beside the target, which
-// commit() renames. Every output of the program is written through this.
+// Files that are complete or absent: writes go to a temporary file beside the target, which commit() renames.
+// The program writes every output this way.
 
 #include <cstddef>
 #include <cstdio>
@@ -12,11 +12,11 @@
 
 namespace binosplat {
 
-/// A file that is being written under a temporary name, for as long as this lives.
+/// The path of a temporary file, registered while this exists.
 class UnfinishedFile {
  public:
   explicit UnfinishedFile(std::filesystem::path path);
-  /// Leaves the file: who made it removes it.
+  /// Unregisters the file, but does not remove it: its creator does.
   ~UnfinishedFile();
   UnfinishedFile(const UnfinishedFile&) = delete;
   UnfinishedFile& operator=(const UnfinishedFile&) = delete;
@@ -27,23 +27,22 @@ class UnfinishedFile {
   std::filesystem::path path_;
 };
 
-/// From now on finished files have to stay. An OutputFile in a folder that held one, and is gone meanwhile,
-/// is an Error and no new folder. For `main`: who calls the library may do with files what they like.
+/// From now on, finished files must stay. If a folder with a finished file disappears, OutputFile throws
+/// Error and does not create the folder again. Only for `main`: users of the library may remove files.
 void watch_finished_files();
 
-/// Throws Error naming a file that was finished since then and is not there now.
+/// Throws Error, naming a file that was finished since then and no longer exists.
 void check_finished_files();
 
-/// Removes all unfinished files of the process, which is to end now: threads that are about to begin another
-/// one, or to give one its name, wait for that end.
+/// Removes all unfinished files; the process must end now. Threads that start or commit a file block until
+/// then.
 void remove_unfinished_files();
 
 class OutputFile {
  public:
-  /// Creates the folders above `path` where they are missing and opens PATH.part-PID-RANDOM in the same
-  /// folder. A symbolic link is followed. Throws Error naming the path and the reason: a file stands where a
-  /// folder is needed, no permission, or the path names something that is not a regular file (a folder, a
-  /// device) or an input of the run (base/inputs.h).
+  /// Creates missing folders above `path` and opens PATH.part-PID-RANDOM in its folder. Follows a symbolic
+  /// link. Throws Error with path and reason: a file in place of a folder, no permission, a folder or device,
+  /// or an input of the run (base/inputs.h).
   explicit OutputFile(const std::filesystem::path& path);
 
   /// Removes the temporary file unless it was committed.
@@ -51,25 +50,24 @@ class OutputFile {
   OutputFile(const OutputFile&) = delete;
   OutputFile& operator=(const OutputFile&) = delete;
 
-  /// The temporary file, for libraries that write by name; what write() is given may not be in it
-  /// before commit().
+  /// The temporary file, for libraries that write by name. Before commit() it may lack data from write().
   const std::filesystem::path& path() const { return temporary_->path(); }
 
-  /// Appends. Throws Error, for one when the disk is full.
+  /// Appends. Throws Error, for example on a full disk.
   void write(std::span<const std::byte> bytes);
   void write(std::string_view text);
 
-  /// Puts all that was written into the temporary file, so that it can be read before commit(). Throws Error
-  /// as write() does.
+  /// Flushes all writes to the temporary file, so that it can be read before commit(). Throws Error as
+  /// write() does.
   void flush();
 
-  /// Flushes, closes and renames to the target, replacing what stood there; a loss of power from then on
-  /// leaves the file whole. Throws Error where any of it fails; then the target is as it was. A file of a
-  /// cache, which others may remove, need not stay.
+  /// Flushes, closes and renames to the target, which it replaces. Then even a power failure leaves a
+  /// complete file. Throws Error if any step fails, and leaves the target as before. `has_to_stay`: false for
+  /// files of caches, which others may remove.
   void commit(bool has_to_stay = true);
 
-  /// The same where nothing stands there; else false, and what stands there stays. Of several that do so at
-  /// once, in whatever processes, one gets true.
+  /// As commit(), but only if the target does not exist; else returns false. Of several processes at once,
+  /// exactly one gets true.
   bool commit_as_first();
 
  private:
@@ -78,12 +76,12 @@ class OutputFile {
   [[noreturn]] void fail_to_write() const;
 
   std::filesystem::path target_;
-  std::vector<std::filesystem::path> folders_;  // the file's, and those above it that were made for it
-  std::optional<UnfinishedFile> temporary_;     // until it has its name
+  std::vector<std::filesystem::path> folders_;  // the file's, and those created above it
+  std::optional<UnfinishedFile> temporary_;     // until it is renamed
   std::FILE* file_ = nullptr;
 };
 
-/// Writes a file whose contents are there as a whole. Throws as OutputFile does.
+/// Writes a complete file. Throws as OutputFile does.
 void write_file(const std::filesystem::path& path, std::string_view contents);
 
 }  // namespace binosplat

@@ -1,4 +1,4 @@
-// All there is of TBB.
+// Implements parallel.h with TBB. Only this file and parallel_sort.h include TBB.
 
 #include "base/parallel.h"
 
@@ -46,8 +46,8 @@ void parallel_stages(std::size_t ahead, const std::function<bool(std::size_t k)>
 
 namespace {
 
-/// Threads that help others in the background give way to frames, and do so from then on: back needs a
-/// privilege.
+/// Lowers the priority of threads that help in the background, in favour of frames. The low priority stays,
+/// because raising it needs a privilege.
 class GivesWay : tbb::task_scheduler_observer {
  public:
   explicit GivesWay(tbb::task_arena& arena) : tbb::task_scheduler_observer(arena) { observe(true); }

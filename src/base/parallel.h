@@ -1,5 +1,5 @@
 #pragma once
-// Loops on all cores.
+// Parallel loops on all cores.
 
 #include <concepts>
 #include <cstddef>
@@ -8,13 +8,12 @@
 
 namespace binosplat {
 
-/// Calls body(begin, end) for chunks of about `chunk` that make up [0, count), on any number of threads at
-/// once. What body throws is thrown here.
+/// Calls body(begin, end) for chunks of about `chunk` that cover [0, count), on several threads. Rethrows
+/// exceptions of body.
 void parallel_chunks(std::size_t count, std::size_t chunk,
                      const std::function<void(std::size_t begin, std::size_t end)>& body);
 
-/// Calls body(i) for each i of [0, count) that way; each call is taken to be worth a thread's while unless
-/// `chunk` says how many are.
+/// Calls body(i) for each i of [0, count) in parallel. `chunk` calls should be worth a thread's overhead.
 template <std::integral Count, typename Body>
 void parallel_for(Count count, const Body& body, std::size_t chunk = 1) {
   parallel_chunks(static_cast<std::size_t>(count), chunk, [&](std::size_t begin, std::size_t end) {
@@ -24,21 +23,21 @@ void parallel_for(Count count, const Body& body, std::size_t chunk = 1) {
 
 enum class HandOver { in_order, as_done };
 
-/// Calls work(k) for k = 0, 1, 2... for as long as begins(k) says yes, up to `ahead` of them at once, and
-/// hand_over(k) for each whose work is done. Of calls of begins there is one at a time, and of hand_over too.
-/// What they throw is thrown here.
+/// A pipeline: calls work(k) for k = 0, 1, 2... while begins(k) is true, up to `ahead` at once, and
+/// hand_over(k) after each. Calls of begins are serial, and so are those of hand_over. Rethrows their
+/// exceptions.
 void parallel_stages(std::size_t ahead, const std::function<bool(std::size_t k)>& begins,
                      const std::function<void(std::size_t k)>& work,
                      const std::function<void(std::size_t k)>& hand_over, HandOver how);
 
-/// Calls body() in the background: its loops have a share of the cores at most, and one at least, and threads
-/// that take part, this one too, give way to others from then on.
+/// Runs body() in the background: its loops use at most this share of the cores, and at least one. All
+/// participating threads, including this one, keep a low priority afterwards.
 void on_some_cores(double share, const std::function<void()>& body);
 
-/// All loops run on the threads that call them alone for as long as what is returned lives.
+/// While the returned object exists, every loop runs only on its calling thread.
 [[nodiscard]] std::shared_ptr<void> without_helpers();
 
-/// Cores that loops may use.
+/// Number of cores for loops.
 int core_count();
 
 }  // namespace binosplat

@@ -1,8 +1,9 @@
 #pragma once
-// Sorting on all cores.
+// Parallel sorting on all cores.
 
-#ifdef __SANITIZE_THREAD__  // which would see nothing of ours in TBB's sort, and takes what TBB does for
-                            // races
+// The thread sanitizer's build sorts without TBB: TBB is not instrumented, so it hides races and reports
+// false ones.
+#ifdef __SANITIZE_THREAD__
 #include <algorithm>
 #else
 #include <tbb/parallel_sort.h>
@@ -12,7 +13,7 @@
 
 namespace binosplat {
 
-/// Sorts [begin, end). Equal ones are in any order.
+/// Sorts [begin, end). The order of equal elements is unspecified.
 template <typename Iterator, typename Less = std::less<>>
 void parallel_sort(Iterator begin, Iterator end, const Less& less = {}) {
 #ifdef __SANITIZE_THREAD__

@@ -1,5 +1,5 @@
-// parallel.cpp without TBB, in its place in the thread sanitizer's build: TBB is built without that, which
-// then sees neither what its threads hand each other nor where they race.
+// Replaces parallel.cpp in the thread sanitizer's build. TBB is not instrumented, so the sanitizer would miss
+// both its synchronisation and races in loops.
 
 #include <sys/resource.h>
 #include <unistd.h>
@@ -18,12 +18,12 @@ namespace binosplat {
 
 namespace {
 
-// More than there may be cores, so that there is something to see. Loops within loops have what is left.
+// More threads than some machines have cores, so that races can occur. Nested loops use the remaining ones.
 constexpr int helpers_of_a_loop = 3;
 std::atomic<int> free_helpers = 4 * helpers_of_a_loop;
 std::atomic<int> loops_alone = 0;
 
-// None of the counters of this file orders anything that bodies do: it would hide their races.
+// The counters here must not order accesses in bodies: that would hide their races.
 constexpr auto unordered = std::memory_order_relaxed;
 
 bool is_a_helper_free() {
@@ -33,7 +33,7 @@ bool is_a_helper_free() {
   return false;
 }
 
-/// Calls work() on this thread and on up to so many others; what any of them throws is thrown here.
+/// Calls work() on this thread and on up to `most` others. Rethrows the first exception.
 void with_helpers(std::size_t most, const std::function<void()>& work) {
   std::mutex mutex;
   std::exception_ptr trouble;
@@ -63,7 +63,7 @@ void with_helpers(std::size_t most, const std::function<void()>& work) {
 void parallel_chunks(std::size_t count, std::size_t chunk,
                      const std::function<void(std::size_t begin, std::size_t end)>& body) {
   if (count == 0) return;
-  constexpr std::size_t most_chunks = 64;  // each takes a while, as those of TBB do
+  constexpr std::size_t most_chunks = 64;  // of some duration each, as TBB's
   const std::size_t step = std::max(chunk, count / most_chunks);
   std::atomic<std::size_t> next = 0;
   with_helpers((count - 1) / step, [&] {
@@ -121,7 +121,7 @@ void parallel_stages(std::size_t ahead, const std::function<bool(std::size_t k)>
   });
 }
 
-// Of the cores there is no share here: helpers are few as it is.
+// Ignores the share: there are few helpers.
 void on_some_cores(double, const std::function<void()>& body) {
   constexpr int niceness = 10;
   setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), niceness);
@@ -133,7 +133,7 @@ std::shared_ptr<void> without_helpers() {
   return {nullptr, [](void*) { --loops_alone; }};
 }
 
-// Enough for all that has threads by their number to have some.
+// Large enough that code which divides the cores still starts threads.
 int core_count() { return 16; }
 
 }  // namespace binosplat

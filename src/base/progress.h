@@ -1,7 +1,6 @@
 #pragma once
-// Progress of long work: a line that is rewritten on a terminal, a line every few seconds in a log, nothing
-// for work that is over within a second or for a program that is to be quiet. After five seconds it says how
-// long the rest will take at this pace.
+// Progress of long work: a rewritten line on a terminal, a line every few seconds in a log. Silent for work
+// under a second and in quiet programs. After five seconds it also estimates the remaining time.
 
 #include <chrono>
 #include <cstdint>
@@ -11,15 +10,14 @@ namespace binosplat {
 
 class Progress {
  public:
-  /// `label` says what is being done, in the form "reading garden.ply". With `counted`, as in "views", it
-  /// also says how many of them are done a second.
+  /// `label` describes the work, as in "reading garden.ply". With `counted`, as in "views", the line also has
+  /// their rate per second.
   Progress(std::string label, std::uint64_t total, std::string counted = {});
   ~Progress();
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
-  /// Reports how much of `total` is done so far. Cheap enough for every few thousand elements; one thread
-  /// only.
+  /// Reports how much of `total` is done. Cheap enough for every few thousand elements. For one thread only.
   void update(std::uint64_t done);
 
  private:
@@ -30,14 +28,14 @@ class Progress {
   bool shown_ = false;
   Clock::time_point start_ = Clock::now();
   Clock::time_point next_;
-  Clock::time_point next_line_;  // of a log
+  Clock::time_point next_line_;  // next line in a log
 };
 
-/// A time as people say it: "40 s", "3 min 20 s", "2 h 5 min".
+/// A duration in words: "40 s", "3 min 20 s", "2 h 5 min".
 std::string spoken_time(double seconds);
 
-/// What work that is under way in any thread said last, as "reading garden.ply 43 %"; empty while there is
-/// none that takes longer than a second.
+/// The latest progress of any thread, as in "reading garden.ply 43 %"; empty unless work has taken over a
+/// second.
 std::string latest_progress();
 
 }  // namespace binosplat

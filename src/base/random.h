@@ -1,11 +1,11 @@
 #pragma once
-// Random numbers that are the same on every machine, which a library's distributions are not.
+// Random numbers that are equal on every machine, unlike those of standard distributions.
 
 #include <cstdint>
 
 namespace binosplat {
 
-/// The finaliser of SplitMix64: every bit of z changes half of the result's.
+/// The finaliser of SplitMix64: flipping any bit of z flips half of the result's bits on average.
 constexpr std::uint64_t scramble(std::uint64_t z) {
   z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ull;
   z = (z ^ (z >> 27)) * 0x94d049bb133111ebull;

@@ -1,6 +1,6 @@
 #pragma once
-// What threads do, and when: `binosplat profile` shows it as a track for each thread. Nothing is kept until
-// somebody asks for it, so that a span costs a test of one flag.
+// Records what threads do; `binosplat profile` shows a track for each. Off by default, when a span costs only
+// the test of a flag.
 
 #include <string>
 #include <vector>
@@ -9,27 +9,27 @@
 
 namespace binosplat {
 
-/// Something that a thread did from `begin` to `end`.
+/// An interval of a thread's work.
 struct Span {
   std::string name, thread;
   Clock::time_point begin = {}, end = {};
 };
 
-/// From now on the spans of all threads are kept. Those of before are forgotten.
+/// Starts recording on all threads, and discards earlier spans.
 void keep_spans();
-/// Returns those that were kept, in the order of their ends, and keeps no more.
+/// Stops recording and returns the spans, in the order of their ends.
 std::vector<Span> take_spans();
 
-/// How spans of this thread name it; "draws" until it is called.
+/// Names this thread in spans; the default is "draws".
 void name_thread(const char* name);
 
-/// Keeps a span that ends now, if spans are kept.
+/// Records a span that ends now, if recording is on.
 void add_span(const std::string& name, Clock::time_point begin);
 
-/// A span of as long as this lives.
+/// A span with the lifetime of this object.
 class TimedSpan {
  public:
-  /// The name, a literal, must outlive it. `ms`: a sum that the span's length is added to.
+  /// `name`, a literal, must outlive it. The span's length is added to `ms`.
   explicit TimedSpan(const char* name, double* ms = nullptr) : name_(name), ms_(ms) {}
   ~TimedSpan();
   TimedSpan(const TimedSpan&) = delete;

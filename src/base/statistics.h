@@ -1,5 +1,5 @@
 #pragma once
-// What a set of timings says.
+// Statistics of measurements.
 
 #include <vector>
 
@@ -9,19 +9,19 @@ namespace binosplat {
 /// The values must not be empty.
 double quantile(std::vector<double> values, double share);
 
-/// The arithmetic mean: of frames some of which do more than others, what they cost. The values must not be
+/// The arithmetic mean. For frames of differing work it gives their average cost. The values must not be
 /// empty.
 double mean(const std::vector<double>& values);
 
-/// Of numbers that scatter by chance around one value, of which `freedom` + 1 told how far, the mean of n
-/// lies within so many times (their standard deviation / sqrt(n)) of it, but for a share `outside` of all
-/// cases: Student's t, both sides. `freedom` is at least 1.
+/// Student's t, two-sided, for means of n normal samples. They lie within t * (standard deviation / sqrt(n))
+/// of the true mean, except for a share `outside` of all cases. `freedom` (at least 1) is that of the
+/// standard deviation.
 double student_t(double outside, int freedom);
 
-/// The standard deviation that a sample of two or more tells of what it is from.
+/// The standard deviation of a population, estimated from a sample of two or more.
 double deviation(const std::vector<double>& values);
 
-/// The least of 1, 2 and 5 times a power of ten that is no less than a number above 0: for scales and grids.
+/// The least of 1, 2 and 5 times a power of ten that is not below a positive number, for scales and grids.
 double round_up(double number);
 
 }  // namespace binosplat

@@ -1,6 +1,6 @@
 #pragma once
-// The ways to a context without a window, for Context::open. Each opens and makes current, or throws
-// Error(no_gl) that says what is missing.
+// The ways to open a context without a window, for Context::open. Each opens a context and makes it current,
+// or throws Error(no_gl) that names what is missing.
 
 #include <dlfcn.h>
 
@@ -11,11 +11,11 @@
 
 namespace binosplat::gl {
 
-/// Throws Error for a library that dlopen() has just not opened, with what it said: (out_of_memory) where
-/// there was no room for it, else (no_gl) with `what_to_install`.
+/// Throws Error for a library that dlopen() has just failed to open, with dlopen()'s message: (out_of_memory)
+/// if it did not fit, else (no_gl) with `what_to_install`.
 [[noreturn]] void fail_to_load(const char* library, const char* what_to_install);
 
-/// The function `name` of a library that dlopen() has opened, or Error(no_gl) with `what_to_install`.
+/// Loads the function `name` of an open library. Throws Error(no_gl) with `what_to_install` if it is missing.
 template <typename F>
 void load_function(void* opened, const char* library, const char* name, const char* what_to_install,
                    F& function) {
@@ -24,14 +24,14 @@ void load_function(void* opened, const char* library, const char* name, const ch
     throw Error(ExitCode::no_gl, fmt::format("{} has no {}. {}", library, name, what_to_install));
 }
 
-/// Through EGL's device platform; `device` as in Context::open. Throws Error(bad_input) for a number that
-/// there is not.
+/// Through EGL's device platform; `device` as in Context::open. Throws Error(bad_input) for an unknown
+/// number.
 std::unique_ptr<Context> open_egl_device(int device);
 
 /// Through EGL's surfaceless platform, which Mesa has.
 std::unique_ptr<Context> open_egl_surfaceless();
 
-/// Mesa's renderer as a library of its own, libOSMesa: no EGL, no driver.
+/// Through libOSMesa, Mesa's renderer as a library: needs no EGL and no driver.
 std::unique_ptr<Context> open_osmesa();
 
 }  // namespace binosplat::gl

@@ -10,8 +10,8 @@ namespace binosplat::gl {
 
 namespace {
 
-// Uploads and read-backs go through pieces of this size: NVIDIA moves data ten times faster through a mapped
-// buffer than through glGetNamedBufferSubData, and a piece bounds what the driver has to pin.
+// Uploads and read-backs use pieces of this size. NVIDIA moves data ten times faster through a mapped buffer
+// than through glGetNamedBufferSubData, and a piece limits the memory that the driver pins.
 constexpr std::int64_t piece_bytes = std::int64_t{64} << 20;
 
 // A binding of size 0 is an error.
@@ -58,7 +58,7 @@ void Buffer::grow(std::int64_t bytes) {
   if (before == 0) return;
   gl.MemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
   gl.CopyNamedBufferSubData(before, id_, 0, 0, bytes_before);
-  gl.Finish();  // uploads that follow overtook a clear on an H200 (driver 580)
+  gl.Finish();  // later uploads overtook a clear on an H200 (driver 580)
   gl.DeleteBuffers(1, &before);
   context_.count_allocation(-bytes_before);
 }
@@ -100,7 +100,7 @@ void Buffer::allocate(std::int64_t bytes) {
             context_.renderer(), bytes >> 20, label_, context_.allocated_bytes() >> 20));
   }
   bytes_ = bytes;
-  if (use_ != Use::read) context_.count_allocation(bytes);  // else it lies in the machine's memory
+  if (use_ != Use::read) context_.count_allocation(bytes);  // others are in the CPU's memory
   gl.ObjectLabel(GL_BUFFER, id_, -1, label_.c_str());
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-// Storage on the GPU.
+// Buffers on the GPU.
 
 #include <cstdint>
 #include <span>
@@ -10,27 +10,27 @@
 
 namespace binosplat::gl {
 
-/// A buffer for storage or uniform blocks with a name for debuggers and error texts. Empty until reserved;
-/// contents are undefined until written.
+/// A buffer for storage or uniform blocks, with a name for debuggers and error texts. Empty until reserved.
+/// The contents are undefined until written.
 class Buffer {
  public:
-  /// Where it is `written` or `read`, it lies where the CPU writes to it (room()) or reads it (mapped()),
-  /// over and over.
+  /// `written` and `read` buffers stay mapped: the CPU writes through room(), or reads through mapped().
   enum class Use { on_gpu, written, read };
   Buffer(Context& context, std::string label, Use use = Use::on_gpu);
   ~Buffer();
   Buffer(const Buffer&) = delete;
   Buffer& operator=(const Buffer&) = delete;
 
-  /// Makes room for at least `bytes`; what was in it is lost when it has to grow. Throws Error(out_of_memory)
-  /// if the GPU has no room, or if a shader on this driver could not reach all of it.
+  /// Makes room for at least `bytes`. If the buffer has to grow, its contents are lost. Throws
+  /// Error(out_of_memory) if the GPU has no room, or if a shader on this driver cannot address the whole
+  /// buffer.
   void reserve(std::int64_t bytes);
 
-  /// Makes room for at least `bytes`; what was in it stays. Throws as reserve does.
+  /// Makes room for at least `bytes` and keeps the contents. Throws as reserve() does.
   void grow(std::int64_t bytes);
 
-  /// Makes room, and writes from the start. Draws that read this buffer must have run: NVIDIA's driver 580
-  /// let uploads overtake them, and a picture had the lines of the next one.
+  /// Makes room, and writes from the start. Draws that read this buffer must be complete: with NVIDIA's
+  /// driver 580 uploads overtook them, and a picture showed lines of the next one.
   template <typename T>
   void upload(std::span<const T> data) {
     reserve(static_cast<std::int64_t>(data.size_bytes()));
@@ -41,34 +41,36 @@ class Buffer {
     upload(std::span<const T>(data));
   }
 
-  /// Makes room for `count` elements and says where to write them; a driver would copy what is uploaded once
-  /// more. What was given to the GPU before and reads this buffer must have run (gl/fence.h). Not to be read.
+  /// Makes room for `count` elements and returns it for writing, without the driver's extra copy of an
+  /// upload. Earlier commands that read this buffer must be complete (gl/fence.h). Do not read through it.
   template <typename T>
   std::span<T> room(std::size_t count) {
     reserve(static_cast<std::int64_t>(count * sizeof(T)));
     return {static_cast<T*>(mapped_), count};
   }
 
-  /// What was copied into it (copy()). The GPU must have done that (gl/fence.h); any thread may read it.
+  /// The elements that copy() has written. The GPU must have completed the copy (gl/fence.h). Any thread may
+  /// read them.
   template <typename T>
   std::span<const T> mapped(std::size_t count, std::size_t first = 0) const {
     return std::span(static_cast<const T*>(mapped_) + first, count);
   }
 
-  /// Elements from element `first` on, within what is reserved; the others stay.
+  /// Writes elements from element `first` on, within the reserved size; the others stay.
   template <typename T>
   void upload_part(std::span<const T> data, std::size_t first) {
     write(data.data(), static_cast<std::int64_t>(data.size_bytes()),
           static_cast<std::int64_t>(first * sizeof(T)));
   }
 
-  /// `bytes` of another, from its byte `first` on, at a place within what is reserved; the rest stays.
+  /// Copies `bytes` of another buffer, from its byte `first` on, to byte `at` of the reserved size; the rest
+  /// stays.
   void copy(const Buffer& from, std::int64_t first, std::int64_t bytes, std::int64_t at);
 
-  /// Room for so many bytes, and zeros everywhere.
+  /// Makes room for this many bytes, all zero.
   void reserve_zeros(std::int64_t bytes);
 
-  /// `count` elements from element `first` on, after everything before it has run.
+  /// Reads `count` elements from element `first` on, after all earlier commands.
   template <typename T>
   std::vector<T> read(std::size_t count, std::size_t first = 0) const {
     std::vector<T> out(count);

@@ -26,7 +26,7 @@ std::string text(const Functions& gl, GLenum name) {
   return value == nullptr ? "" : value;
 }
 
-// Tries to open; keeps the reason if there is no such OpenGL here.
+// Calls `open`. If this OpenGL is unavailable, stores the reason and returns null.
 template <typename Open>
 std::unique_ptr<Context> attempt(const Open& open, std::string& reasons) {
   try {
@@ -34,12 +34,12 @@ std::unique_ptr<Context> attempt(const Open& open, std::string& reasons) {
   } catch (const Error& error) {
     if (error.code() != ExitCode::no_gl) throw;
     const std::string reason = fmt::format("\n  {}", error.what());
-    if (!reasons.ends_with(reason)) reasons += reason;  // two ways may fail by one library
+    if (!reasons.ends_with(reason)) reasons += reason;  // two ways may need the same missing library
     return nullptr;
   }
 }
 
-/// What the environment makes Mesa draw with, a line for each of its variables.
+/// A line for each environment variable that selects Mesa's driver or version.
 std::string asked_of_mesa() {
   std::string lines;
   for (const char* name : {"GALLIUM_DRIVER", "MESA_LOADER_DRIVER_OVERRIDE", "MESA_GL_VERSION_OVERRIDE"}) {
@@ -50,9 +50,8 @@ std::string asked_of_mesa() {
   return lines;
 }
 
-/// What tells which context is current, of the library that the one which is current now comes from; null:
-/// not known. Not found by the caller's loader: glX's and EGL's make up a function for names that they do not
-/// know.
+/// Finds the function that returns the current context, in the library of the current context; null: unknown.
+/// The caller's loader cannot find it: glX's and EGL's return a function even for unknown names.
 void* (*find_current_handle())() {
   struct Source {
     const char *library, *function;
@@ -60,7 +59,7 @@ void* (*find_current_handle())() {
   for (const Source& source :
        {Source{"libEGL.so.1", "eglGetCurrentContext"}, Source{"libGLX.so.0", "glXGetCurrentContext"},
         Source{"libGL.so.1", "glXGetCurrentContext"}, Source{"libOSMesa.so.8", "OSMesaGetCurrentContext"}}) {
-    void* const library = dlopen(source.library, RTLD_LAZY | RTLD_NOLOAD);  // only where the program has it
+    void* const library = dlopen(source.library, RTLD_LAZY | RTLD_NOLOAD);  // only if already loaded
     if (library == nullptr) continue;
     const auto found = reinterpret_cast<void* (*)()>(dlsym(library, source.function));
     if (found != nullptr && found() != nullptr) return found;
@@ -114,7 +113,7 @@ void Context::initialise(GetProcAddress get_proc_address, std::string backend, b
   set_program_cache(ProgramCache::default_folder());
   if (own && has_extension(functions_, "GL_KHR_parallel_shader_compile"))
     functions_.MaxShaderCompilerThreadsKHR(
-        UINT32_MAX);  // as many as the driver likes; NVIDIA waits to be asked
+        UINT32_MAX);  // as many as the driver likes; NVIDIA's requires the call
 
   read_limits();
   GLint bindings = 0;
@@ -149,8 +148,7 @@ void Context::read_limits() {
   functions_.GetQueryiv(GL_TIMESTAMP, GL_QUERY_COUNTER_BITS, &bits);
   limits_.timestamp_bits = static_cast<std::uint32_t>(bits);
   functions_.GetInteger64v(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &limits_.storage_block_bytes);
-  // llvmpipe states 128 MiB and works right up to 2 GiB, where a read crashes; no driver is trusted beyond
-  // that.
+  // llvmpipe reports 128 MiB and works up to 2 GiB, where a read crashes. No driver may bind more than that.
   const std::int64_t two_gib = std::int64_t{1} << 31;
   limits_.storage_block_bytes = software() ? two_gib : std::min(limits_.storage_block_bytes, two_gib);
 }
@@ -230,7 +228,7 @@ void Context::prepare(const std::function<void()>& record) {
       const auto program = next++;
       try {
         if (!program->second.is_complete()) complete(variants, program);
-      } catch (const Error&) {  // its use says why
+      } catch (const Error&) {  // using the program reports it
       }
     }
   }

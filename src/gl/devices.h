@@ -1,5 +1,5 @@
 #pragma once
-// What this machine has to draw with, for `binosplat devices`.
+// Lists the OpenGL devices of this machine, for `binosplat devices`.
 
 #include <string>
 #include <vector>
@@ -8,20 +8,20 @@
 
 namespace binosplat::gl {
 
-/// One way to a context: opened for a moment and closed again.
+/// One way to a context. Listing opens it briefly.
 struct Device {
-  std::string options;  // the command line that chooses it
+  std::string options;  // the command line options that choose it
   bool usable = false;
-  std::string trouble;  // why not, where it is not usable
+  std::string trouble;  // why it is not usable
   std::string renderer;
   std::string version;
   bool software = false;
   Limits limits;
-  std::vector<std::string> lacks;  // what binosplat can do without, at a cost that each says
+  std::vector<std::string> lacks;  // missing optional features, each with its cost
 };
 
-/// Every EGL device, then EGL's surfaceless platform, then OSMesa. Without EGL one entry says so; nothing is
-/// thrown.
+/// Every EGL device, then EGL's surfaceless platform, then OSMesa. Without EGL one entry reports that. Never
+/// throws.
 std::vector<Device> list_devices();
 
 }  // namespace binosplat::gl

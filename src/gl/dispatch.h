@@ -1,7 +1,7 @@
 #pragma once
-// The one place that launches work: it splits what exceeds a driver's group count, labels for debuggers,
-// times by stage, and refuses a dispatch with a buffer or uniform forgotten (GL would read zeros without a
-// word).
+// Dispatches all work. It splits dispatches that exceed a driver's group count, labels them for debuggers,
+// and times them by stage. It refuses a dispatch that lacks a buffer or uniform, for which GL would silently
+// read zeros.
 
 #include <cstdint>
 #include <initializer_list>
@@ -14,14 +14,15 @@
 
 namespace binosplat::gl {
 
-/// How much to launch. Shaders find their place with group_index() and thread_index() of shared/grid.glsl and
-/// leave when it lies beyond their count: a split launch has some groups too many.
+/// The size of a dispatch. Shaders find their place with group_index() and thread_index() of
+/// shared/grid.glsl. They return if it is beyond their count, because a split dispatch has some groups too
+/// many.
 struct DispatchSize {
   std::uint64_t groups = 0;           // direct
   const Buffer* arguments = nullptr;  // or indirect: three uints at `offset`, already split
   std::int64_t offset = 0;
 
-  /// One invocation for each of `count` things, at `local_size` a group.
+  /// One invocation for each of `count` objects, `local_size` per group.
   static DispatchSize threads(std::uint64_t count, std::uint32_t local_size) {
     return {(count + local_size - 1) / local_size};
   }
@@ -47,7 +48,7 @@ struct StageTime {
   double ms = 0;
 };
 
-/// When the GPU was at a stage, on its own clock (Context::gpu_time_ns).
+/// When the GPU ran a stage, on its own clock (Context::gpu_time_ns).
 struct StageSpan {
   std::string name;
   std::int64_t begin_ns = 0, end_ns = 0;
@@ -69,39 +70,39 @@ class Dispatcher {
 
   /// Starts a frame: forgets the last frame's stages.
   void begin_frame() { marks_.clear(); }
-  /// What is dispatched from here on belongs to the stage `name`; a name may come again and is summed up.
+  /// Later dispatches belong to the stage `name`. The times of a repeated name are summed.
   void begin_stage(const char* name);
   void end_frame();
-  /// Whether the GPU has done all of the frame.
+  /// Whether the GPU has completed the frame.
   bool is_done() { return frame_end_.is_done(); }
 
-  /// Runs a program, with a barrier after it so that whatever comes next sees what it wrote.
-  /// Throws std::logic_error if a block or uniform of the program is not given.
+  /// Runs a program, then a barrier, so that later commands see its writes. Throws std::logic_error if a
+  /// block or uniform of the program is missing.
   void run(const Program& program, const DispatchSize& work, std::initializer_list<Binding> bindings,
            std::initializer_list<Uniform> uniforms = {});
 
-  /// As run(), without the barrier: what comes next may run at the same time.
+  /// Same as run(), without the barrier: later commands may run at the same time.
   void start(const Program& program, const DispatchSize& work, std::initializer_list<Binding> bindings,
              std::initializer_list<Uniform> uniforms = {});
 
-  /// Draws all of the framebuffer that is bound, by a fragment shader (KeptDrawing of gl/state.h).
+  /// Draws the whole bound framebuffer by a fragment shader (KeptDrawing of gl/state.h).
   void draw_whole(const Program& program, std::initializer_list<Binding> bindings,
                   std::initializer_list<Uniform> uniforms) {
     draw(program, 3, bindings, uniforms);
   }
-  /// Draws so many vertices, as triangles, into it.
+  /// Draws this many vertices, as triangles, into it.
   void draw(const Program& program, int vertices, std::initializer_list<Binding> bindings,
             std::initializer_list<Uniform> uniforms = {});
 
-  /// The barrier that start() leaves out.
+  /// The barrier that start() omits.
   void wait_for_writes();
 
-  /// Waits for the frame on the GPU.
+  /// Waits until the GPU has completed the frame.
   void wait() { frame_end_.wait(); }
-  /// When the stages of a frame that is done were drawn, one after the other, from timestamps (llvmpipe
-  /// reports nothing between a GL_TIME_ELAPSED pair).
+  /// The times of a completed frame's stages, in order, from timestamps (llvmpipe reports nothing between a
+  /// GL_TIME_ELAPSED pair).
   std::vector<StageSpan> read_spans();
-  /// Waits, then the time of each stage.
+  /// Waits, then returns the time of each stage.
   std::vector<StageTime> wait_and_time() {
     wait();
     return sums_of(read_spans());

@@ -1,5 +1,5 @@
-// EGL contexts without a window. libEGL is loaded at run time: a machine without it gets a message instead of
-// a loader error, and the caller's-own-context use needs no EGL at all.
+// EGL contexts without a window. Loads libEGL at run time: a machine without it gets a message instead of a
+// loader error, and the caller's own context needs no EGL.
 
 #include <EGL/egl.h>
 #include <EGL/eglext.h>
@@ -21,7 +21,7 @@ constexpr const char* egl_to_install =
     "installer), or "
     "libegl-mesa0 libgl1-mesa-dri for software rendering.";
 
-// EGL's entry points that are used here.
+// The EGL entry points used here.
 struct Egl {
   decltype(&eglGetProcAddress) get_proc_address = nullptr;
   decltype(&eglInitialize) initialize = nullptr;
@@ -141,8 +141,7 @@ std::unique_ptr<Context> open_egl_device(int device) {
   }
   std::string reasons;
   for (int i = 0; i < static_cast<int>(list.size()); ++i) {
-    // A software device is taken only when it is asked for: surfaceless is the plain way to the same
-    // llvmpipe.
+    // A software device is only used on request: surfaceless is the usual way to the same llvmpipe.
     if (device >= 0 ? i != device : is_software(list[static_cast<std::size_t>(i)])) continue;
     try {
       return std::make_unique<EglContext>(EGL_PLATFORM_DEVICE_EXT, list[static_cast<std::size_t>(i)],

@@ -1,11 +1,11 @@
 #pragma once
-// Waiting for the GPU.
+// Waits for the GPU.
 
 #include "gl/context.h"
 
 namespace binosplat::gl {
 
-/// A mark among the commands that the GPU gets.
+/// A mark in the GPU's command stream.
 class Fence {
  public:
   explicit Fence(Context& context) : context_(context) {}
@@ -13,11 +13,11 @@ class Fence {
   Fence(const Fence&) = delete;
   Fence& operator=(const Fence&) = delete;
 
-  /// Marks the commands given so far, instead of those marked before.
+  /// Marks the commands so far; replaces the last mark.
   void set();
-  /// Waits until the GPU has run the commands marked, if any. Throws std::runtime_error if it is lost.
+  /// Waits until the GPU has run the marked commands, if any. Throws std::runtime_error if the wait fails.
   void wait();
-  /// Whether it would not have to wait.
+  /// Whether wait() would return at once.
   bool is_done();
 
  private:

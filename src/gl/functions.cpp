@@ -6,7 +6,7 @@ namespace binosplat::gl {
 
 namespace {
 
-// Before anything else is loaded: older contexts lack functions, and the first that is missing says little.
+// Checked first: older contexts lack functions, and the first missing one would not explain why.
 void check_version(GetProcAddress get_proc_address) {
   if (get_proc_address == nullptr)
     fail(
@@ -25,7 +25,7 @@ void check_version(GetProcAddress get_proc_address) {
   };
   const std::string_view version = text(GL_VERSION);
   if (version.empty()) throw Error(ExitCode::no_gl, no_context);
-  // "4.6.0 of such a driver", or "OpenGL ES 3.2 of such a driver".
+  // "4.6.0 DRIVER", or "OpenGL ES 3.2 DRIVER".
   const bool is_es = version.starts_with("OpenGL ES");
   if (!is_es && version >= "4.5") return;
   throw Error(

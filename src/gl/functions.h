@@ -1,6 +1,6 @@
 #pragma once
-// The OpenGL entry points that the project calls, filled from the context's own getProcAddress: EGL, OSMesa
-// and a caller's context may live in one process, and their pointers differ.
+// The OpenGL entry points that the project calls, loaded by the context's own getProcAddress. EGL, OSMesa and
+// a caller's context may exist in one process, and their pointers differ.
 
 #include <GL/glcorearb.h>
 
@@ -8,7 +8,7 @@
 
 namespace binosplat::gl {
 
-// X(name without gl, the upper-case name that GL's function pointer types use)
+// X(name without gl, the upper-case name in GL's function pointer types)
 #define BINOSPLAT_GL_FUNCTIONS(X)                                                       \
   X(ActiveTexture, ACTIVETEXTURE)                                                       \
   X(AttachShader, ATTACHSHADER)                                                         \
@@ -119,9 +119,9 @@ struct Functions {
 #define BINOSPLAT_GL_MEMBER(name, upper) PFNGL##upper##PROC name = nullptr;
   BINOSPLAT_GL_FUNCTIONS(BINOSPLAT_GL_MEMBER)
 #undef BINOSPLAT_GL_MEMBER
-  /// Of GL_KHR_parallel_shader_compile, where there is that.
+  /// From GL_KHR_parallel_shader_compile; null without it.
   PFNGLMAXSHADERCOMPILERTHREADSKHRPROC MaxShaderCompilerThreadsKHR = nullptr;
-  /// Of GL_EXT_memory_object, likewise; the headers do not have it.
+  /// From GL_EXT_memory_object; null without it. The headers lack it.
   using GetBytes = void(APIENTRY*)(GLenum name, GLuint index, GLubyte* bytes);
   GetBytes GetUnsignedBytei_vEXT = nullptr;
 };
@@ -129,11 +129,12 @@ struct Functions {
 constexpr const char* no_context =
     "no OpenGL context is current on this thread: make the one that binosplat draws in current first";
 
-/// The table of the context that is current. Throws Error(no_gl) where none is, or one older than 4.5 or of
-/// OpenGL ES, and names the first entry point not found; Error(bad_input) for no function.
+/// Loads the table of the current context. Throws Error(no_gl) without a current context, for one older than
+/// 4.5 or of OpenGL ES, and for a missing entry point, which it names. Throws Error(bad_input) for a null
+/// function.
 Functions load_functions(GetProcAddress get_proc_address);
 
-/// Whether the context that is current has an extension.
+/// Whether the current context has an extension.
 bool has_extension(const Functions& gl, std::string_view name);
 
 }  // namespace binosplat::gl

@@ -1,6 +1,6 @@
 #pragma once
-// How fast the GPU's clock runs, which frame times go by: NVIDIA's management library tells it, where it is
-// installed. It is opened when the program runs.
+// Reads the GPU's clock rate, on which frame times depend, from NVIDIA's management library. Loads that
+// library at run time, if it is installed.
 
 #include <array>
 #include <atomic>
@@ -14,22 +14,22 @@
 
 namespace binosplat::gl {
 
-/// Asks for the clock again and again in a thread of its own, since an answer may take longer than a frame.
+/// Reads the clock repeatedly in its own thread, because a reading may take longer than a frame.
 class GpuClock {
  public:
   using Uuid = std::array<std::uint8_t, 16>;
 
-  /// Of the GPU that the context draws with.
+  /// For the GPU of the context.
   explicit GpuClock(const Context& context);
-  /// Of the GPU that a library of this name knows by its UUID; without a UUID, of its only one.
+  /// For the GPU with this UUID in the library of this name; without a UUID, its only GPU.
   GpuClock(const char* library, const std::optional<Uuid>& uuid);
   ~GpuClock();
   GpuClock(const GpuClock&) = delete;
   GpuClock& operator=(const GpuClock&) = delete;
 
-  /// MHz, some milliseconds ago; none where nothing tells.
+  /// MHz, some milliseconds old; none if unavailable.
   std::optional<double> mhz() const;
-  /// Why nothing tells; empty where something does.
+  /// Why the clock is unavailable; empty if it is available.
   const std::string& problem() const { return problem_; }
 
  private:
@@ -39,7 +39,7 @@ class GpuClock {
   std::unique_ptr<Library> library_;
   std::string problem_;
   std::atomic<unsigned> mhz_ = 0;
-  std::jthread thread_;  // last: it ends first
+  std::jthread thread_;  // last, so that it ends first
 };
 
 }  // namespace binosplat::gl

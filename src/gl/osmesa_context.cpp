@@ -1,5 +1,5 @@
-// Mesa as a plain library. It is loaded at run time: neither the program nor a bundle for GPUs drags Mesa
-// along, and its few names are written down here instead of taken from a package of headers.
+// Mesa as a library. It is loaded at run time, so that neither the program nor a bundle for GPUs depends on
+// Mesa. Its few names are defined here, so that no package of headers is needed.
 
 #include <dlfcn.h>
 
@@ -17,7 +17,7 @@ namespace {
 
 constexpr const char* osmesa_to_install = "On Debian: apt install libosmesa6.";
 
-// GL/osmesa.h.
+// From GL/osmesa.h.
 constexpr int osmesa_format = 0x22;
 constexpr int osmesa_profile = 0x33;
 constexpr int osmesa_core_profile = 0x34;
@@ -49,8 +49,8 @@ const OsMesa& osmesa() {
   return loaded;
 }
 
-/// While one lives, Mesa draws with llvmpipe. OSMesa crashes where the environment asks for a driver that it
-/// was built without, as WSL's users do with d3d12 for other programs, and its others have no 4.5.
+/// Makes Mesa draw with llvmpipe during its lifetime. OSMesa crashes if the environment selects a driver that
+/// it was built without, such as d3d12, which WSL's users set for other programs. Its other drivers lack 4.5.
 class WithLlvmpipe {
  public:
   WithLlvmpipe() {
@@ -99,7 +99,7 @@ class OsMesaContext final : public Context {
 
  private:
   void* context_ = nullptr;
-  std::array<std::uint8_t, 4> pixel_{};  // its default framebuffer, which nothing is drawn into
+  std::array<std::uint8_t, 4> pixel_{};  // its default framebuffer, which stays unused
 };
 
 }  // namespace

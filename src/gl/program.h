@@ -1,5 +1,6 @@
 #pragma once
-// A compiled compute shader, or a fragment shader with the vertex shader before it, and the names in it.
+// A compiled compute shader, or a fragment shader with its vertex shader, and the names of its blocks and
+// uniforms.
 
 #include <cstdint>
 #include <string>
@@ -24,18 +25,18 @@ class Program {
     std::int32_t location;
   };
 
-  /// A name that ends with .frag is a fragment shader's, which is linked with the vertex shader of the same
-  /// name, or else with whole.vert. Takes the program from the cache, or asks the driver to compile and link
-  /// it, which does so for several at once where it can.
+  /// Loads the program from the cache, or starts to compile and link it; drivers may do so for several at
+  /// once. A name that ends with .frag is a fragment shader's, linked with the vertex shader of the same
+  /// name, or else with whole.vert.
   Program(const Functions& gl, const std::string& name, const Defines& defines,
           const std::filesystem::path& folder, const ProgramCache& cache);
   ~Program();
 
-  /// Waits for compiler and linker, keeps what they made in the cache, and learns the names in it; to be
-  /// called before the program is used. Throws Error(no_gl) with the driver's log, places given as file:line.
+  /// Waits for compiler and linker, stores the result in the cache, and reads the names. Call it before using
+  /// the program. Throws Error(no_gl) with the driver's log, in which places are file:line.
   void complete(const ProgramCache& cache);
   bool is_complete() const { return is_complete_; }
-  /// Until it is complete: whether the cache did not have it.
+  /// Whether the cache lacked it; valid until it is complete.
   bool is_compiled() const { return !shaders_.empty(); }
 
   Program(Program&& other) noexcept;
@@ -46,11 +47,11 @@ class Program {
   std::uint32_t id() const { return id_; }
   const std::string& name() const { return name_; }
   std::uint32_t local_size() const { return local_size_; }            // invocations of a work group; 1: none
-  const std::vector<Block>& blocks() const { return blocks_; }        // those the shader really uses
-  const std::vector<Uniform>& uniforms() const { return uniforms_; }  // likewise, outside blocks
+  const std::vector<Block>& blocks() const { return blocks_; }        // only those that the shader uses
+  const std::vector<Uniform>& uniforms() const { return uniforms_; }  // the same, outside blocks
 
  private:
-  /// What the driver is compiling.
+  /// A shader that the driver is compiling.
   struct Shader {
     std::uint32_t id = 0;
     ShaderSource source;
@@ -66,7 +67,7 @@ class Program {
   std::string name_;
   std::string text_;  // of all shaders, until they are compiled
   std::uint32_t id_ = 0;
-  std::vector<Shader> shaders_;  // all that it is compiled from, until that is done
+  std::vector<Shader> shaders_;  // all its shaders, until it is complete
   bool is_complete_ = false;
   std::uint32_t local_size_ = 1;
   std::vector<Block> blocks_;

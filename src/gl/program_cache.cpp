@@ -16,7 +16,7 @@ namespace binosplat::gl {
 
 namespace {
 
-// FNV-1a: names the file only; the whole key stands in the file and is compared.
+// FNV-1a. It only names the file, which also holds the whole key for comparison.
 std::uint64_t hash(const std::string& text) {
   std::uint64_t h = 14695981039346656037ull;
   for (const char c : text) h = (h ^ static_cast<unsigned char>(c)) * 1099511628211ull;
@@ -29,7 +29,7 @@ ProgramCache::ProgramCache(std::filesystem::path folder, std::string driver)
     : folder_(std::move(folder)), driver_(std::move(driver)) {}
 
 std::filesystem::path ProgramCache::default_folder() {
-  // XDG's specification has relative paths ignored: they would mean another place in every folder.
+  // XDG's specification ignores relative paths: they would depend on the current folder.
   const char* cache = std::getenv("XDG_CACHE_HOME");
   if (cache != nullptr && std::filesystem::path(cache).is_absolute())
     return std::filesystem::path(cache) / "binosplat" / "programs";
@@ -47,7 +47,7 @@ std::filesystem::path ProgramCache::file(const std::string& key) const {
   return folder_ / fmt::format("{:016x}.bin", hash(key));
 }
 
-// The key, the sum of what follows, and that.
+// A file holds the key, a checksum of the rest, and the rest.
 std::optional<std::string> ProgramCache::read(const std::string& wanted) const {
   if (folder_.empty()) return std::nullopt;
   std::error_code ignored;
@@ -73,19 +73,19 @@ void ProgramCache::write(const std::string& wanted, const std::string& kept) con
     out.write(kept);
     out.commit(false);
   } catch (const Error&) {
-    // A cache that cannot be written only costs time.
+    // Without a cache programs only start slower.
   }
 }
 
 bool ProgramCache::load(const Functions& gl, std::uint32_t program, const std::string& source) const {
-  // NVIDIA's driver crashes on a damaged binary: it must never see one.
+  // NVIDIA's driver crashes on a damaged binary, so the checksum comes first.
   const std::optional<std::string> kept = read(key(source));
   GLenum format = 0;
   if (!kept || kept->size() <= sizeof(format)) return false;
   std::memcpy(&format, kept->data(), sizeof(format));
   gl.ProgramBinary(program, format, kept->data() + sizeof(format),
                    static_cast<GLsizei>(kept->size() - sizeof(format)));
-  gl.GetError();  // a format that the driver no longer knows is recorded as an error
+  gl.GetError();  // clears the error of a format that the driver no longer supports
   GLint good = 0;
   gl.GetProgramiv(program, GL_LINK_STATUS, &good);
   return good != 0;

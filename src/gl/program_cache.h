@@ -1,6 +1,6 @@
 #pragma once
-// Compiled programs kept on disk: NVIDIA compiles a shader in a third of a second and loads its binary in a
-// few milliseconds. It also keeps what running some programs showed about a driver.
+// Stores compiled programs on disk. NVIDIA compiles a shader in a third of a second, and loads its binary in
+// a few milliseconds. Also stores the results of tests of a driver.
 
 #include <cstdint>
 #include <filesystem>
@@ -11,26 +11,26 @@
 
 namespace binosplat::gl {
 
-/// A folder of program binaries. Nothing here is an error: a binary that is missing, damaged, of another
-/// driver or refused is compiled again, and a folder that cannot be written is left alone.
+/// A folder of program binaries. No failure here is an error. A binary that is missing, damaged, refused, or
+/// of another driver is compiled again. A folder that cannot be written stays unchanged.
 class ProgramCache {
  public:
-  /// No folder, no cache. `driver` names the driver and its version: binaries of another are never offered to
-  /// it.
+  /// An empty folder turns the cache off. `driver` names the driver and its version; binaries of others are
+  /// never loaded.
   ProgramCache(std::filesystem::path folder, std::string driver);
 
-  /// The user's: $XDG_CACHE_HOME/binosplat/programs or ~/.cache/binosplat/programs; empty if there is no
+  /// The user's folder: $XDG_CACHE_HOME/binosplat/programs or ~/.cache/binosplat/programs; empty without a
   /// home.
   static std::filesystem::path default_folder();
 
-  /// Loads the binary of a program that was made from `source` before. False: compile it.
+  /// Loads the binary of a program that was compiled from `source`. If it returns false, compile it.
   bool load(const Functions& gl, std::uint32_t program, const std::string& source) const;
 
-  /// Keeps a linked program. Drivers without program binaries keep none.
+  /// Stores a linked program. Does nothing for drivers without program binaries.
   void store(const Functions& gl, std::uint32_t program, const std::string& source) const;
 
-  /// What remember() was told of this driver; nothing: find it out. `asked` names the question, such as by
-  /// the sources of the shaders that answer it.
+  /// Returns the result that remember() stored for this driver; none if there is none yet. `asked` identifies
+  /// the test, such as by its shaders' sources.
   std::optional<std::string> recall(const std::string& asked) const;
   void remember(const std::string& asked, const std::string& found) const;
 

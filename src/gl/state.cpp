@@ -62,7 +62,7 @@ KeptState::~KeptState() {
   if (scissors_ != GL_FALSE) gl_.Enablei(GL_SCISSOR_TEST, 0);
   if (encodes_ != GL_FALSE) gl_.Enable(GL_FRAMEBUFFER_SRGB);
   if (discards_ != GL_FALSE) gl_.Enable(GL_RASTERIZER_DISCARD);
-  // One that was deleted while it was in use went with its last use.
+  // A current program that was deleted no longer exists.
   const auto program = static_cast<GLuint>(program_);
   gl_.UseProgram(gl_.IsProgram(program) == GL_TRUE ? program : 0);
 }
@@ -102,7 +102,7 @@ KeptDrawing::KeptDrawing(const Context& context, std::uint32_t framebuffer, std:
     enabled_[k] = gl_.IsEnabled(test);
     if (enabled_[k] != GL_FALSE) gl_.Disable(test);
   }
-  gl_.Enable(GL_DEPTH_TEST);  // without it nothing is written
+  gl_.Enable(GL_DEPTH_TEST);  // depth writes need the test
   gl_.DepthFunc(GL_ALWAYS);
   gl_.DepthMask(GL_TRUE);
   gl_.ClipControl(GL_LOWER_LEFT, GL_NEGATIVE_ONE_TO_ONE);

@@ -1,5 +1,5 @@
 #pragma once
-// The state of a context that drawing changes: for those who draw in a context that is not theirs alone.
+// Saves and restores the state of a context that drawing changes, for contexts that others also use.
 
 #include <array>
 #include <cstdint>
@@ -10,16 +10,17 @@
 
 namespace binosplat::gl {
 
-/// Remembers all state that a frame, and pictures written into a texture or framebuffer, change, and sets it
-/// again when it goes: the program; storage and uniform buffers, those of the first storage_bindings_needed
-/// bindings, of binding 0 and the general ones; the buffer of indirect dispatches; the images of the first
-/// MAX_CANVASES units; the scissor test of index 0, the conversion to sRGB and the rasterizer's discarding.
+/// Saves all state that a frame, and pictures written into a texture or framebuffer, change, and restores it
+/// when destroyed. This is the program; storage and uniform buffers, those of the first
+/// storage_bindings_needed bindings, of binding 0 and the general ones; the buffer of indirect dispatches;
+/// the images of the first MAX_CANVASES units; the scissor test of index 0, the conversion to sRGB and the
+/// rasterizer's discarding.
 ///
-/// A program that was deleted while it was in use cannot be set again: then none is. Frames and pictures
-/// leave all else alone, such as vertex arrays, framebuffers, textures, samplers, other images, pixel store,
-/// clear values, viewports, masks, tests, blending and the debug callback; where a triangle is drawn, a
-/// KeptDrawing keeps what that changes of these. Not to be used within transform feedback or conditional
-/// rendering; queries that are active count what is done here.
+/// A current program that was deleted cannot be restored; then none is current. Frames and pictures change no
+/// other state, such as vertex arrays, framebuffers, textures, samplers, other images, pixel store, clear
+/// values, viewports, masks, tests, blending and the debug callback. Drawing a triangle changes some of
+/// these, which a KeptDrawing restores. Do not use it within transform feedback or conditional rendering.
+/// Active queries count the work done here.
 class KeptState {
  public:
   explicit KeptState(const Context& context);
@@ -28,7 +29,7 @@ class KeptState {
   KeptState& operator=(const KeptState&) = delete;
 
   /// Sets the state in which a copy reaches a framebuffer whole and unchanged: no scissors, no conversion to
-  /// sRGB, nothing discarded (NVIDIA's driver discards copies, too).
+  /// sRGB, no discarding (NVIDIA's driver also discards copies).
   void set_plain() const;
 
  private:
@@ -50,8 +51,8 @@ class KeptState {
   Range uniforms_;
 };
 
-/// Remembers the 2D textures and samplers of the first 2 MAX_CANVASES units, which a frame with
-/// mesh depths reads the caller's textures through, and sets them again when it goes. Beside a KeptState.
+/// Saves the 2D textures and samplers of the first 2 MAX_CANVASES units, and restores them when destroyed. A
+/// frame with mesh depths reads the caller's textures through these units. Use it with a KeptState.
 class KeptTextures {
  public:
   explicit KeptTextures(const Context& context);
@@ -69,10 +70,10 @@ class KeptTextures {
   std::array<Unit, std::size_t{2} * MAX_CANVASES> units_;
 };
 
-/// Remembers the state that drawing a triangle into a texture of depths uses, sets it so that the triangle
-/// writes all of the texture, and restores it when destroyed: the framebuffer and vertex array to draw with,
-/// viewport 0, clip control, polygon mode, and the tests of depth, stencil, faces and clip distances. Beside
-/// a KeptState.
+/// Saves the state for drawing a triangle into a depth texture, and restores it when destroyed. In between,
+/// the triangle writes the whole texture. The state is the framebuffer and vertex array to draw with,
+/// viewport 0, clip control, polygon mode, and the tests of depth, stencil, faces and clip distances. Use it
+/// with a KeptState.
 class KeptDrawing {
  public:
   KeptDrawing(const Context& context, std::uint32_t framebuffer, std::uint32_t vertices, int width,

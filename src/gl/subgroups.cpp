@@ -18,12 +18,12 @@ namespace {
 
 constexpr const char* check_shader = "subgroups_check.comp";
 
-/// A work group of a shader that knows subgroups.
+/// The work group of a shader with subgroups.
 struct GroupShape {
   std::uint32_t columns, rows;
 };
 
-/// Of sorts and scans, and of blend_subgroups.comp.
+/// The shapes of sorts and scans, and of blend_subgroups.comp.
 constexpr std::array group_shapes = {GroupShape{256, 1}, GroupShape{1024, 1}, GroupShape{32, 2},
                                      GroupShape{32, 4}, GroupShape{32, 8}};
 
@@ -32,7 +32,7 @@ struct Fault {
   const char* text;
 };
 
-/// What subgroups_check.comp looks for, worst first.
+/// The faults that subgroups_check.comp detects, worst first.
 constexpr std::array subgroup_faults = {
     Fault{"SUBGROUPS_OF_OTHER_SIZE", "are said to have 32 invocations, and have others"},
     Fault{"SUBGROUPS_IN_OTHER_ORDER", "have their invocations in another order"},
@@ -89,7 +89,7 @@ std::string why_no_subgroups(Context& context) {
     std::string found = found_in_subgroups(context);
     context.program_cache().remember(asked, found);
     return found;
-  } catch (const Error& error) {  // a compiler that does not take what its driver says that it has
+  } catch (const Error& error) {  // a compiler without a feature that its driver reports
     if (error.code() != ExitCode::no_gl) throw;
     return fmt::format("its shaders with subgroups do not compile: {}", error.what());
   }

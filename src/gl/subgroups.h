@@ -1,5 +1,5 @@
 #pragma once
-// Whether a context's subgroups are as the shaders that use subgroups expect.
+// Tests whether a context's subgroups behave as shaders with subgroups expect.
 
 #include <string>
 
@@ -7,13 +7,14 @@
 
 namespace binosplat::gl {
 
-/// Why shaders must do without subgroups here, as in "its subgroups have 64 invocations"; empty where they
-/// may use them: GL_KHR_shader_subgroup is there with all that they need, in groups of 32, and small
-/// dispatches in the shapes of those shaders find the lanes where they should be; the program cache keeps
-/// what they found. Leaves the context's state as it is.
+/// Returns why shaders must not use subgroups here, as in "its subgroups have 64 invocations"; empty if they
+/// may. They may if GL_KHR_shader_subgroup has all required features in groups of 32, and small dispatches in
+/// those shaders' group shapes find all lanes in place. The program cache stores the result. Does not change
+/// the context's state.
 std::string why_no_subgroups(Context& context);
 
-/// Runs those dispatches, whatever the driver and the cache say; what they found wrong, or empty.
+/// Runs those dispatches, whatever the driver and the cache report. Returns the fault found, or an empty
+/// text.
 std::string found_in_subgroups(Context& context);
 
 }  // namespace binosplat::gl

@@ -1,5 +1,5 @@
 #pragma once
-// Pictures on the GPU.
+// Textures on the GPU.
 
 #include <cstdint>
 
@@ -7,8 +7,8 @@
 
 namespace binosplat::gl {
 
-/// A 2D texture of one level: its own, or a view of a level and layer of another as if that were of a format
-/// of as many bits a pixel.
+/// A 2D texture of one level. It has its own storage, or is a view of a level and layer of another texture. A
+/// view's format has as many bits a pixel.
 class Texture {
  public:
   Texture(Context& context, GLenum format, int width, int height);
@@ -32,7 +32,7 @@ class Texture {
   std::uint32_t id_ = 0;
 };
 
-/// Reads a texel as it is, whatever filters and comparisons its texture asks for.
+/// Reads texels unchanged: overrides the filter and the comparison of a texture.
 class Sampler {
  public:
   explicit Sampler(Context& context);
@@ -40,7 +40,7 @@ class Sampler {
   Sampler(const Sampler&) = delete;
   Sampler& operator=(const Sampler&) = delete;
 
-  /// Has shaders read a 2D texture by it at a unit.
+  /// Binds a 2D texture and this sampler to a unit.
   void bind(GLuint unit, std::uint32_t texture) const;
 
  private:

@@ -1,5 +1,5 @@
 #pragma once
-// What tells the variants of a shader apart.
+// The numbers that distinguish the variants of a shader.
 
 #include <cstdint>
 #include <span>
@@ -12,13 +12,13 @@ namespace binosplat::gl {
 struct Number {
   const char* name;
   std::uint64_t value;
-  std::uint64_t count;         // how many values it may have, from 0 on
-  const char* word = nullptr;  // the value's name, defined as NAME_NAME: files of the variant are called so
-  bool is_real = false;        // bits of a float; 0 leaves the shader its own number
+  std::uint64_t count;         // number of legal values, from 0 on
+  const char* word = nullptr;  // the value's name, defined as NAME_NAME: it selects the variant's files
+  bool is_real = false;        // the bits of a float; 0 keeps the shader's default
 };
 
-/// One number for all of them, which no other variant of the shader has: all list the same numbers in one
-/// order. Throws std::logic_error for a value that its number may not have, and where 64 bits are too few.
+/// Combines all numbers into one, unique among the shader's variants: all list the same numbers in one order.
+/// Throws std::logic_error for an illegal value, and if 64 bits are too few.
 std::uint64_t key_of(std::span<const Number> numbers);
 
 Defines defines_of(std::span<const Number> numbers);

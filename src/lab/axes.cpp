@@ -22,7 +22,7 @@ namespace binosplat::lab {
 
 namespace {
 
-/// An object of the file with a place for errors; every key must be a known one.
+/// A JSON object, with its name for errors. Refuses unknown keys.
 class Block {
  public:
   Block(std::string place, const nlohmann::json& object, const std::set<std::string>& known)
@@ -33,7 +33,7 @@ class Block {
     }
   }
 
-  /// The key's values: a list, a single one, or `otherwise`.
+  /// The key's values: its list, its single value, or `otherwise`.
   std::vector<nlohmann::json> values(const std::string& key, const nlohmann::json& otherwise) const {
     const nlohmann::json value = object_.contains(key) ? object_.at(key) : otherwise;
     if (!value.is_array()) return {value};
@@ -80,7 +80,7 @@ class Block {
   const nlohmann::json& object_;
 };
 
-/// One key of a block: how a value of it is set.
+/// One key of a block, and how it sets a member.
 struct Key {
   const char* name;
   nlohmann::json otherwise;
@@ -89,9 +89,9 @@ struct Key {
 
 constexpr Choice found_on_choices[] = {{"test", "the views that are measured"}, {"training", "others"}};
 
-constexpr std::size_t most_settings = 10000;  // of all blocks; nobody measures that many
+constexpr std::size_t most_settings = 10000;  // of all blocks together
 
-/// All combinations of a block's lists, appended; the last key's values follow one another.
+/// Appends all combinations of a block's lists. The last key varies fastest.
 void add_settings(const Block& block, std::vector<BenchSettings>& settings) {
   using S = BenchSettings;
   const auto choice = [&block](const char* key, int render::FrameSettings::*member,

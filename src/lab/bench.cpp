@@ -24,16 +24,16 @@ namespace binosplat::lab {
 
 namespace {
 
-constexpr double reference_db = 60.0;  // against float64: the bar below which a driver draws wrongly
-// A pair at its very threshold may fall either way, and calibrated tolerances lie at such thresholds, where
-// the search ends; at most half of what the tolerance costs may come from that.
+constexpr double reference_db = 60.0;  // against float64; a lower value means that a driver draws wrongly
+// Pairs at the threshold may fall on either side, and calibrated tolerances lie at such thresholds. At most
+// half of the tolerance's loss may come from them.
 constexpr double share_db = 3.0;
 
 const glm::vec3 black(0.0f);
 
 // The float64 analysis of contributions takes seconds a view.
 constexpr std::size_t contribution_views = 3;
-constexpr float paper_far = 100.0f;  // world units: where AdaGScale's table by depth ends
+constexpr float paper_far = 100.0f;  // world units: end of AdaGScale's table by depth
 
 bool is_finite(const Picture& picture) {
   return std::all_of(picture.colour.begin(), picture.colour.end(), [](const glm::vec4& v) {
@@ -56,13 +56,13 @@ bool same_inset(const Image& a, const Image& b, const stereo::FoveatedEye& parts
   return true;
 }
 
-/// Along the eye's axis, which meets the picture at its principal point; of a lens whose middle lies
-/// elsewhere the angles beside it are a little off.
+/// The gaze along the eye's axis, through the principal point. If that is not the picture's middle, angles
+/// are slightly wrong.
 measure::Gaze gaze_of(const shared::View& eye) {
   return {eye.lens[2], eye.lens[3], glm::degrees(2.0 * std::atan(0.5 * eye.width / eye.lens[0]))};
 }
 
-/// Of pictures of one size, one number each by pixel: of all, and by rings around where the eye looks.
+/// Means over pictures of one size, weighted by pixels: of whole pictures, and by rings around the gaze.
 double pooled(const std::vector<measure::FoveatedComparison>& found, std::vector<Row>& details) {
   struct OfRing {
     double to = 0.0, share = 0.0, squared_error = 0.0, visible = 0.0;
@@ -104,7 +104,7 @@ double mean_of(const std::vector<Image>& images) {
   return sum / pixels;
 }
 
-/// Adds what a frame, one of `frames`, had to do.
+/// Adds the work of a frame, one of `frames`.
 void add_work(const render::Frame& frame, const render::FrameReport& report, std::size_t frames,
               FrameWork& work) {
   const double weight = 1.0 / static_cast<double>(frames);
@@ -124,7 +124,7 @@ constexpr const char* quality_numbers[] = {
     "visible",       "alphas",  "alphas_visible", "pairs_removed", "reported_db",     "gaussians",
     "photo_psnr_db", "drop_db", "photo_ssim",     "photo_flip",    "attempts"};
 
-/// The means of what was found of views, and the worst of them.
+/// The means over the views, and the worst view.
 void put_means(const std::vector<Row>& views, Row& row) {
   for (const char* name : quality_numbers) put(row, name, mean_number(views, name));
   const auto psnr = [](const Row& view) {
@@ -138,8 +138,8 @@ void put_means(const std::vector<Row>& views, Row& row) {
   if (photos > 0) put(row, "photo_views", photos);
 }
 
-/// Draws until the GPU's clock has settled: the medians of two successive windows of frames agree. Returns
-/// whether it did in time; a software renderer's always has.
+/// Draws until the GPU's clock has settled: the medians of two successive windows agree. Returns whether it
+/// settled in time, which a software renderer always does.
 bool warm_up(BenchDrawer& drawer, const BenchView& view, bool software) {
   constexpr std::size_t window = 10;
   constexpr double agreement = 0.03, at_most_ms = 3000.0;
@@ -259,7 +259,7 @@ double Bench::work_ms(const BenchSettings& settings, std::size_t points) {
   first.transmittance = first.transmittance == TRANSMITTANCE_DEPTH ? TRANSMITTANCE_ONE : first.transmittance;
   BenchDrawer drawer = this->drawer(first);
   double ms = 0.0;
-  for (int n = 0; n < 2; ++n) {  // in the first one drivers compile their programs
+  for (int n = 0; n < 2; ++n) {  // in the first one drivers compile the programs
     const auto start = Clock::now();
     drawer.draw(what_.first());
     ms = ms_since(start);
@@ -273,8 +273,8 @@ double Bench::work_ms(const BenchSettings& settings, std::size_t points) {
   return ms * frames * static_cast<double>(points);
 }
 
-// What a threshold by measurements draws has no reference; that the frame's other stages are right is seen
-// with all others. Levels of detail are compared with the finest.
+// Compares a small picture with the float64 reference. Rules that use measurements have no reference; other
+// points verify their stages. Levels of detail are compared with the finest.
 std::string Bench::verify(const BenchSettings& settings) {
   const bool by_reference = settings.transmittance == TRANSMITTANCE_ONE && settings.quality == 0.0f &&
                             !settings.detail && !settings.order && !settings.projection;
@@ -347,7 +347,7 @@ void Bench::time_views(BenchDrawer& drawer, Row& row) {
   const bool software = context_.software(), follows = drawer.follows();
   bool settled = true;
   render::FrameReport last;
-  std::vector<double> repeats, all_ms, submit_ms;  // repeats: means over the views
+  std::vector<double> repeats, all_ms, submit_ms;  // repeats: means over views
   std::vector<CpuUse> cpu_repeats;
   std::vector<Typical> turns;
   for (int repeat = 0; repeat < effort_.repeats; ++repeat) {
@@ -356,7 +356,7 @@ void Bench::time_views(BenchDrawer& drawer, Row& row) {
     double drawn = 0.0;
     for (const BenchView& view : what_.views) {
       drawer.bring(view.eyes);
-      // The clock of a GPU that waited, for pictures to be compared or levels to be read, is down.
+      // A GPU's clock drops while pictures are compared or levels are read.
       if (repeat == 0 && &view == &what_.views.front())
         wake(context_, 1000.0, [&] { drawer.draw(view.eyes); });
       if (follows) wake(context_, 300.0, [&] { drawer.draw(view.eyes); });
@@ -407,7 +407,7 @@ void Bench::judge_views(const BenchSettings& settings, BenchDrawer& drawer, Poin
         levels.predicted_db);
     if (settings.quality > 0.0f) put(row, "reported_db", capped(report.quality), "attempts", report.attempts);
     if (v == 0) point.picture = for_page(composite(drawn.front(), black));
-    if (settings.foveation) continue;  // whose pixels are of two pictures
+    if (settings.foveation) continue;  // its pixels belong to two pictures
     add_work(drawer.frame(), report, what_.views.size(), work);
     put(row, "alphas", mean_of(drawer.frame().read_debug_view(SHOW_ALPHAS)), "alphas_visible",
         mean_of(drawer.frame().read_debug_view(SHOW_VISIBLE)));
@@ -429,7 +429,7 @@ void Bench::judge_views(const BenchSettings& settings, BenchDrawer& drawer, Poin
   }
 }
 
-// PSNR and drops alone, from sums on the GPU: no picture is read back but the first.
+// Computes only PSNR and drops, from sums on the GPU. Reads back only the first picture.
 void Bench::judge_by_sums(const BenchSettings& settings, BenchDrawer& drawer, Point& point) {
   const Calibrator::Cost cost = calibrator(false, false, settings).cost(settings);
   std::vector<Row> views;
@@ -462,7 +462,7 @@ Point Bench::measure(BenchSettings settings) {
     put(point.row, "problem", problem);
     return point;
   }
-  // A head that moves is drawn without depth, unless that is what is compared.
+  // A moving head is drawn without depth, unless popping is compared, which needs it.
   if (!what_.stretches.empty() && !effort_.popping) settings.depth = Depth::none;
   BenchDrawer drawer = this->drawer(settings);
   if (!what_.stretches.empty()) {

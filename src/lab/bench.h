@@ -1,6 +1,5 @@
 #pragma once
-// One point of a measurement: a way to draw, first verified, then timed, then compared with exact pictures
-// and with photos.
+// Measures one point: a setting is verified, timed, and compared with exact pictures and photos.
 
 #include <functional>
 #include <map>
@@ -20,23 +19,23 @@ namespace binosplat::lab {
 
 class BenchDrawer;
 
-/// The points that share a model and what they are measured on. What is exact is drawn once, at first use.
+/// Measures points that share a model and a case. Draws exact pictures once, at first use.
 class Bench {
  public:
-  /// `load` returns the model, at its finest levels, which outlives the bench; as the context does.
+  /// `load` returns the model at its finest levels. Model and context must outlive the bench.
   Bench(gl::Context& context, std::function<const Model&()> load, BenchCase what, const BenchEffort& effort);
   ~Bench();
 
-  /// About how long so many points will take that are like this one, in ms. Draws two frames.
+  /// Estimates the time for this many similar points, in ms. Draws two frames.
   double work_ms(const BenchSettings& settings, std::size_t points);
 
-  /// A point that fails verification is not timed: it has a problem instead. Where the finest levels of a
-  /// scene have no room, what needs them is left out, and "no_exact" says so. TRANSMITTANCE_DEPTH goes by a
-  /// table of the views for training, or of the bench's own. Throws Error where the GPU cannot draw the views
-  /// at all.
+  /// Measures one point. A point that fails verification is not timed and has a problem instead. If the
+  /// finest levels of a scene do not fit, the numbers that need them are missing, and "no_exact" gives the
+  /// reason. TRANSMITTANCE_DEPTH uses a table of the training views, or else of the bench's own. Throws Error
+  /// if the GPU cannot draw the views at all.
   Point measure(BenchSettings settings);
 
-  /// What single Gaussians contribute (contributions.h), as details; with bounds of the paper's table.
+  /// The contributions of single Gaussians (contributions.h) as details, with bounds of the paper's table.
   Point contributions();
 
  private:
@@ -45,18 +44,18 @@ class Bench {
     return {settings.order.value_or(-1), settings.projection.value_or(-1)};
   }
 
-  /// A view's exact pictures by eye; and what they are worth against the photo.
+  /// The exact pictures of a view's eyes, and their PSNR against the photo.
   struct Exact {
     std::vector<Picture> pictures;
-    std::vector<Image> eyes;  // the same over black
+    std::vector<Image> eyes;  // the pictures over black
     double pairs = 0.0;
     std::optional<double> photo_psnr;  // dB, 8 bits
   };
 
   const std::shared_ptr<render::GpuModel>& gpu_model();
-  /// Whether the finest levels can be drawn; why not goes into the row.
+  /// Whether the finest levels can be drawn. If not, writes the reason into the row.
   bool has_finest(Row& row);
-  /// Of the order and projection that the settings ask for.
+  /// Exact pictures in the order and projection of the settings.
   const std::vector<Exact>& exact(const BenchSettings& settings);
   ExactFrames& exact_frames(const BenchSettings& settings);
   const DepthTable& depth_table(const std::optional<float>& far);
@@ -83,8 +82,7 @@ class Bench {
   std::unique_ptr<ExactFrames> exact_frames_;
   Seen exact_frames_seen_ = {-1, -1};
   std::map<std::optional<float>, DepthTable> tables_;
-  std::map<std::tuple<bool, bool, Seen>, std::unique_ptr<Calibrator>>
-      calibrators_;  // by calibrator()'s three
+  std::map<std::tuple<bool, bool, Seen>, std::unique_ptr<Calibrator>> calibrators_;  // keys: arguments
 };
 
 }  // namespace binosplat::lab

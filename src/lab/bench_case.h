@@ -1,5 +1,5 @@
 #pragma once
-// What settings are measured on: views, frames that follow one another, or a head that turns.
+// The objects of a measurement: views, successive frames, or a turning head.
 
 #include <functional>
 #include <memory>
@@ -19,62 +19,62 @@
 
 namespace binosplat::lab {
 
-/// What one frame draws: a camera by itself, or both eyes.
+/// One frame: a single camera, or both eyes.
 struct BenchView {
   std::string name;
   std::vector<shared::View> eyes;
   std::optional<Image> photo = {};  // of the only eye, in its size
-  glm::mat4x3 exposure{1.0f};       // of pictures, before they are compared with it
+  glm::mat4x3 exposure{1.0f};       // applied to pictures before the comparison
 };
 
-/// Frames that follow one another, drawn as by a program that has just started.
+/// Successive frames. Drawing starts without earlier measurements, as in a program that has just started.
 struct Stretch {
-  std::vector<std::vector<shared::View>> frames;  // the views of each
-  std::size_t moving = 0;                         // the first so many count; then the head stands still
+  std::vector<std::vector<shared::View>> frames;  // the views of each frame
+  std::size_t moving = 0;                         // number of frames that count; then the head stands still
 };
 
-/// Where `count` stretches of `length` frames begin that are spread evenly over `total` frames, first and
-/// last included: fewer where so many would overlap, one at 0 where not even one fits.
+/// The first frames of `count` stretches of `length` frames, spread evenly over `total`, both ends included.
+/// Fewer if they would overlap; one at 0 if none fits.
 std::vector<std::size_t> stretch_starts(std::size_t total, std::size_t length, std::size_t count);
 
-/// What a model was brought to.
+/// The levels that a model was brought to.
 struct LevelsBrought {
   std::size_t gaussians = 0;
-  std::optional<double> predicted_db = {};  // PSNR against the finest; none where nothing is predicted
+  std::optional<double> predicted_db = {};  // PSNR against the finest; none: not predicted
 };
 
-/// A model whose levels of detail follow what is drawn; without `bring` one that stays as it is.
+/// A model whose levels follow the views; without `bring` its levels are fixed.
 struct FollowingModel {
   std::shared_ptr<render::GpuModel> model;
-  std::function<LevelsBrought(std::span<const shared::View> views)> bring = {};  // to what these need
+  std::function<LevelsBrought(std::span<const shared::View> views)> bring = {};  // reads needed levels
 };
 
-/// One of the three is there: views, stretches or the camera that turns.
+/// Exactly one of the three is set: views, stretches or turned.
 struct BenchCase {
   std::vector<BenchView> views;
   std::vector<Stretch> stretches;
   std::optional<Camera> turned;  // in the model's axes
   double near_plane = near_default;
-  shared::View small = {};  // of few pixels: the GPU is compared with the float64 reference there
-  /// The same views in the world, and others to find tolerances and tables by depth in; where that is asked.
+  shared::View small = {};  // few pixels, to compare with the float64 reference
+  /// The views in the world, and training views for tolerances and tables by depth, if requested.
   std::vector<CalibrationView> tested, training;
-  std::function<FollowingModel(const DetailRequest&)> follow;  // of a scene with levels of detail
+  std::function<FollowingModel(const DetailRequest&)> follow;  // only for a scene with levels of detail
 
-  /// What is drawn first.
+  /// The views of the first frame.
   const std::vector<shared::View>& first() const;
 };
 
 struct BenchEffort {
-  int frames = 30;                               // timed, a view and repeat
-  int repeats = 3;                               // each a pass over all; their spread is the noise
+  int frames = 30;                               // timed, per view and repeat
+  int repeats = 3;                               // passes over everything; their spread is the noise
   double ppd = measure::flip_pixels_per_degree;  // for FLIP
-  std::optional<Peaks> peaks = {};               // of the GPU: whole pictures get floors
-  bool perception = true;                        // SSIM, FLIP and what pixels blend; else PSNR alone, quickly
-  bool seen = false;                             // what eyes see that look along their axes
-  bool popping = false;                          // of the first frames of the first stretch
+  std::optional<Peaks> peaks = {};               // of the GPU; adds floors to whole pictures
+  bool perception = true;  // SSIM, FLIP and blended pixels; else only PSNR, which is fast
+  bool seen = false;       // visibility of errors for a gaze along each axis
+  bool popping = false;    // measures popping in the first stretch
 };
 
-/// `count` of `all` things, spread evenly, first and last among them; all where there are no more.
+/// `count` indices spread evenly over `all`, both ends included; all if there are no more.
 std::vector<std::size_t> spread_evenly(std::size_t all, std::size_t count);
 
 }  // namespace binosplat::lab

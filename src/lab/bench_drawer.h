@@ -1,5 +1,5 @@
 #pragma once
-// Draws by settings: whole pictures or foveated ones, of the finest levels or of those that are needed.
+// Draws frames by bench settings: whole or foveated, at the finest levels or at those that views need.
 
 #include <utility>
 #include <vector>
@@ -15,9 +15,9 @@ class BenchDrawer {
   BenchDrawer(FollowingModel model, const BenchSettings& settings)
       : model_(std::move(model)), frame_(model_.model), settings_(settings) {}
 
-  /// Whether levels follow what is drawn.
+  /// Whether levels follow the views.
   bool follows() const { return bool(model_.bring); }
-  /// To the levels that the views need.
+  /// Reads the levels that the views need.
   LevelsBrought bring(std::span<const shared::View> eyes) {
     return model_.bring ? model_.bring(eyes) : LevelsBrought{model_.model->size().gaussians};
   }

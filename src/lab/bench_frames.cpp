@@ -1,5 +1,4 @@
-// A point along frames that follow one another: the true quality of each, the quality that it reports, and
-// its cost.
+// Measures a point along successive frames: true quality, reported quality and time of each.
 
 #include <fmt/core.h>
 
@@ -20,11 +19,11 @@ namespace binosplat::lab {
 namespace {
 
 constexpr std::array apart_frames = {1, 7};
-constexpr std::int64_t exact_bytes = std::int64_t{8} << 30;  // of exact frames that stay on the GPU
+constexpr std::int64_t exact_bytes = std::int64_t{8} << 30;  // memory for exact frames on the GPU
 
 bool is_moving(const Row& frame) { return text(frame, "part") == "moving"; }
 
-/// What the moving frames come to, and those at rest after them.
+/// Summarises the moving frames, and those at rest after them.
 void put_summary(const std::vector<Row>& frames, double exact_pairs, Row& row) {
   std::vector<Row> moving, stop, once;
   for (const Row& frame : frames) {
@@ -34,7 +33,7 @@ void put_summary(const std::vector<Row>& frames, double exact_pairs, Row& row) {
   for (const char* name : {"pairs", "visible", "gaussians", "attempts", "reported_db"})
     put(row, name, mean_number(moving, name));
   put(row, "once_ms", mean_number(once, "frame_ms"));
-  if (!moving.front().contains("psnr_db")) return;  // there is nothing to compare with
+  if (!moving.front().contains("psnr_db")) return;  // no exact frames to compare with
   const std::vector<double> db = numbers(moving, "psnr_db");
   const Row& worst = *std::ranges::min_element(moving, {}, [](const Row& f) { return number(f, "psnr_db"); });
   put(row, "pairs_removed", 100.0 * (1.0 - mean_number(moving, "pairs") / exact_pairs), "psnr_db", mean(db),
@@ -49,15 +48,15 @@ void put_summary(const std::vector<Row>& frames, double exact_pairs, Row& row) {
   }
 }
 
-/// Its depth, in black.
+/// The picture in black, with its depth.
 Picture uncoloured(Picture picture) {
   for (glm::vec4& colour : picture.colour) colour = {0.0f, 0.0f, 0.0f, colour.a};
   return picture;
 }
 
-/// How much frames of the first eye change that no motion explains: what one shows, warped to a later one by
-/// the depth that is drawn (stereo/disagreement.h), against what that shows. As StopThePop measures popping
-/// (Radl et al. 2024, section 5), but by depth and poses where they estimate the flow.
+/// Popping: changes between frames of the first eye that motion does not explain. Warps a frame to a later
+/// one by the drawn depth (stereo/disagreement.h) and compares. The method of StopThePop (Radl et al. 2024,
+/// section 5), with depths and poses instead of estimated flow.
 void put_popping(BenchDrawer& drawer, const Stretch& stretch, Row& row) {
   std::vector<Picture> pictures;
   drawer.frame().start_over();
@@ -75,7 +74,7 @@ void put_popping(BenchDrawer& drawer, const Stretch& stretch, Row& row) {
       const std::array coloured = {now, earlier};
       const stereo::Disagreement warped = stereo::disagreement(
           {stretch.frames[n + step].front(), stretch.frames[n].front()}, black, coloured);
-      if (warped.counted == 0.0) continue;  // they share nothing
+      if (warped.counted == 0.0) continue;  // no common pixels
       psnr.push_back(warped.db);
       flips.push_back(measure::flip(on_black(now), warped.right) / warped.counted);
     }
@@ -140,7 +139,7 @@ void Bench::measure_frames(const BenchSettings& settings, BenchDrawer& drawer, P
   if (effort_.popping) put_popping(drawer, what_.stretches.front(), point.row);
 }
 
-// In passes of their own, which read no picture back.
+// Times frames in separate passes, which read no picture back.
 void Bench::time_frames(BenchDrawer& drawer, Point& point) {
   std::vector<std::vector<double>> ms(point.details.size());
   std::vector<double> repeats, of_frames;

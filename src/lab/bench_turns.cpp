@@ -1,5 +1,5 @@
-// A point along turns of a head at its place: how much the colours along the same rays change, which nothing
-// should.
+// Measures a point along turns of a head at one place: the changes of colours along fixed rays. Ideally there
+// are none.
 
 #include <fmt/core.h>
 
@@ -15,13 +15,13 @@ namespace binosplat::lab {
 
 namespace {
 
-constexpr float difference_gain = 8.0f;     // of the picture to look at
-constexpr double seen_error = 5.0 / 255.0;  // of a colour of 0 to 1
-constexpr double field_degrees = 60.0;      // across and down, of the rays
+constexpr float difference_gain = 8.0f;     // brightens the picture of differences
+constexpr double seen_error = 5.0 / 255.0;  // in a colour from 0 to 1
+constexpr double field_degrees = 60.0;      // width and height of the field of rays
 constexpr double turns_degrees[] = {0.25, 1.0, 5.0, 15.0, 45.0};
-constexpr double told_degrees = 15.0;  // that the means and the picture are of
+constexpr double told_degrees = 15.0;  // means and picture are of this turn
 
-/// Of rays, evenly spread over the field in the head's picture; fewer where the CPU draws.
+/// Number of rays, evenly spread over the field in the head's picture; fewer on a CPU.
 glm::ivec2 rays_of(const gl::Context& context) {
   return context.software() ? glm::ivec2(16, 12) : glm::ivec2(48, 36);
 }
@@ -32,7 +32,7 @@ struct HeadAxis {
 };
 const std::array<HeadAxis, 3> head_axes = {{{"up", {0, 1, 0}}, {"across", {1, 0, 0}}, {"ahead", {0, 0, 1}}}};
 
-/// Points of the camera's picture, row by row; some may lie outside it.
+/// Points of the camera's picture, row by row. Some may lie outside.
 std::vector<glm::dvec2> field_of(const Camera& camera, const glm::ivec2& rays) {
   const double reach = std::tan(glm::radians(0.5 * field_degrees));
   std::vector<glm::dvec2> points;
@@ -40,7 +40,7 @@ std::vector<glm::dvec2> field_of(const Camera& camera, const glm::ivec2& rays) {
     for (int column = 0; column < rays.x; ++column) {
       const glm::dvec2 slope =
           reach * glm::dvec2((2.0 * column + 1.0) / rays.x - 1.0, (2.0 * row + 1.0) / rays.y - 1.0);
-      // On the centre of a pixel, as a picture has it.
+      // At a pixel's centre, as in a picture.
       points.push_back(
           glm::floor(glm::dvec2(camera.fx, camera.fy) * slope + glm::dvec2(camera.cx, camera.cy)));
     }
@@ -48,7 +48,7 @@ std::vector<glm::dvec2> field_of(const Camera& camera, const glm::ivec2& rays) {
   return points;
 }
 
-/// The colours of rays as a picture, a pixel a ray; black where `shown` leaves one out.
+/// The colours of rays as a picture, one pixel a ray; black if `shown` lacks the ray.
 Image rays_picture(const std::vector<glm::vec3>& colours, const std::vector<std::size_t>& shown,
                    const glm::ivec2& rays) {
   Image image(rays.x, rays.y, 3);
@@ -59,8 +59,8 @@ Image rays_picture(const std::vector<glm::vec3>& colours, const std::vector<std:
   return image;
 }
 
-/// Against the head that is not turned, of the rays that both pictures show. `difference` becomes the picture
-/// of what changed.
+/// Compares with the straight head, for rays that both pictures show. Writes their differences to
+/// `difference`.
 Row compare_turned(const Image& straight, const Image& turned, const std::vector<std::size_t>& shown,
                    Image& difference) {
   if (shown.empty()) return Row::object();
@@ -89,7 +89,7 @@ void Bench::measure_turns(const BenchSettings& settings, Point& point) {
   const Camera& camera = *what_.turned;
   const glm::ivec2 rays = rays_of(context_);
   const std::vector<glm::dvec2> field = field_of(camera, rays);
-  // Anchors of Scaffold-GS are culled by the picture, of which a ray by itself has none.
+  // A ray has no picture, by which anchors of Scaffold-GS are culled.
   const render::FrameSettings drawn{
       .order = settings.order, .projection = settings.projection, .anchor_cull = false};
   render::Frame frame(gpu_model());

@@ -24,10 +24,11 @@ Camera small(const Camera& camera) {
   return resized(camera, scaled(camera.width), scaled(camera.height));
 }
 
-// Whether the middle of a Gaussian that is not faint lies well within the picture: the pixel there shows it,
-// whatever its shape. Of most views this is so, and nothing need be drawn. `camera` in the model's axes.
+// Whether the middle of a visible Gaussian lies well within the picture. Its pixel then shows it, whatever
+// its shape. Most views pass this test without drawing. `camera` is in the model's axes.
 bool has_middle(const Model& model, const Camera& camera, double near_plane) {
-  // The middle of the nearest pixel is up to half a pixel away both ways, and the low-pass at least so wide.
+  // The nearest pixel's centre is at most half a pixel away along each axis, and the low-pass is at least as
+  // wide.
   const double not_faint = 2.0 / 255.0 * std::exp(0.25 / model.kernel_px2);
   if (model.antialiased || model.scaffold) return false;
   for (std::size_t i = 0; i < model.count(); ++i) {

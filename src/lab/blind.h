@@ -1,5 +1,5 @@
 #pragma once
-// Finds views that see nothing of a model: they show no error of anything, and would only dilute means.
+// Finds views in which nothing of a model is visible. They show no errors and would only dilute means.
 
 #include <span>
 #include <vector>
@@ -10,9 +10,9 @@
 
 namespace binosplat::lab {
 
-/// Whether the exact picture of each camera of the world shows anything of the model. A Gaussian whose middle
-/// is in view proves it; otherwise a small picture is drawn, and if that is empty one in the camera's own
-/// size. `near_plane` in world units.
+/// Whether each camera's exact picture shows anything of the model. `cameras` are in the world. Tests for a
+/// Gaussian with its middle in view, then draws a small picture, then one in the camera's size. `near_plane`
+/// is in world units.
 std::vector<bool> seeing(gl::Context& context, const Model& model, std::span<const Camera> cameras,
                          double near_plane);
 

@@ -1,6 +1,6 @@
 #pragma once
-// Pictures kept on the GPU as 8 bits show them, and how far each view of another frame is from them: of a
-// path's exact frames a word a pixel stays, and no picture is read back.
+// Keeps 8-bit pictures on the GPU, one word a pixel, and measures the error of later frames against them. For
+// the exact frames of a path, of which none is read back.
 
 #include <span>
 #include <vector>
@@ -15,20 +15,20 @@ class BytePictures {
  public:
   explicit BytePictures(gl::Context& context);
 
-  /// Bytes that the pictures of these views take.
+  /// Bytes of the pictures of these views.
   static std::int64_t bytes(std::span<const shared::View> views);
 
-  /// Keeps the pictures of the last frame drawn, which was of `views`, over black.
+  /// Keeps the pictures, over black, of the last frame, which drew `views`.
   void keep(const render::Frame& frame, std::span<const shared::View> views, gl::Buffer& kept);
 
-  /// The mean squared error of each of the views over its own pixels and channels, both as 8 bits keep them;
-  /// 0 exactly where they are equal. `kept` is of views of the same sizes.
+  /// The mean squared error of each view over its pixels and channels, between 8-bit pictures; exactly 0 if
+  /// equal. `kept` holds views of the same sizes.
   std::vector<double> errors(const render::Frame& frame, std::span<const shared::View> views,
                              const gl::Buffer& kept);
 
  private:
   gl::Dispatcher dispatcher_;
-  gl::Buffer sums_;  // uint by work group
+  gl::Buffer sums_;  // a uint for each work group
 };
 
 }  // namespace binosplat::lab

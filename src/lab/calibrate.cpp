@@ -23,7 +23,7 @@ static void fields(const auto& io, Some<Calibrator::Cost> auto& c) {
 
 namespace {
 
-// A search ends so near to its target: a drop is asked for in tenths of a dB, a quality in whole ones.
+// Precision of searches: users give drops in tenths of a dB, and qualities in whole dB.
 constexpr double drop_within_db = 0.01, quality_within_db = 0.05;
 
 double psnr_of(double squared_error) {
@@ -39,7 +39,7 @@ Picture as_picture(const Image& photo) {
 
 }  // namespace
 
-/// The picture that a view is compared with, on the GPU, and the dB of its exact picture.
+/// The picture to compare a view with, on the GPU, and the dB of its exact picture.
 struct Calibrator::Reference {
   Reference(gl::Context& context, std::span<const Picture> pictures, std::uint64_t pairs)
       : error(context, pictures), exact_pairs(pairs) {}
@@ -89,7 +89,7 @@ Calibrator::Cost Calibrator::cost(const render::FrameSettings& settings) {
 Calibrator::Cost Calibrator::cost(const Model& other, int drawings,
                                   const std::function<void(std::size_t)>& after_view) {
   render::Frame frame(context_, other);
-  // It slept while the model was made.
+  // The GPU's clock dropped while the model was made.
   if (drawings > 1) wake(context_, 500.0, [&] { frame.draw(std::span(&views_.front(), 1)); });
   return cost(frame, {}, drawings, after_view);
 }
@@ -100,7 +100,7 @@ Calibrator::Cost Calibrator::cost(render::Frame& frame, const render::FrameSetti
   const bool drop = kind_ == CalibrationTarget::Kind::drop;
   const auto count = static_cast<double>(views_.size());
   for (std::size_t v = 0; v < views_.size(); ++v) {
-    // Each view starts like a first frame: what another view measured says nothing here.
+    // Each view starts without measurements of other views.
     if (render::measures(settings.transmittance)) frame.forget();
     render::FrameReport report;
     std::vector<double> ms;
@@ -145,7 +145,7 @@ CalibrationEntry Calibrator::find(render::FrameSettings settings, double target_
   };
   measure::ToleranceSearch search;
   search.start = settings.tolerance;
-  search.narrowest = 1e-3;  // a tolerance that is a thousandth larger saves nothing
+  search.narrowest = 1e-3;  // a tolerance larger by a thousandth saves nothing
   search.within = sign < 0 ? drop_within_db : quality_within_db;
   const measure::FoundTolerance found = measure::find_tolerance(value, sign * target_db, search);
   settings.tolerance = static_cast<float>(found.tolerance);
@@ -193,7 +193,7 @@ ThresholdCalibration calibrate(gl::Context& context, const Model& model,
     settings.depth_table = c.depth_table;
     settings.order = exact.order;
     settings.projection = exact.projection;
-    // What a rule found with another source is near: each question less is a frame, or eight.
+    // A rule's tolerance is similar for another source. Each saved step of the search is a frame, or eight.
     if (!c.entries.empty() && c.entries.back().th == settings.th && c.entries.back().tolerance > 0.0)
       settings.tolerance = static_cast<float>(c.entries.back().tolerance);
     c.entries.push_back(calibrator.find(settings, wanted.target.db));

@@ -1,4 +1,4 @@
-// What changed between two runs.
+// Finds the changes between two runs.
 
 #include <fmt/core.h>
 
@@ -12,23 +12,23 @@ namespace binosplat::lab {
 
 namespace {
 
-constexpr double least_share = 0.02;      // that a time must change by
+constexpr double least_share = 0.02;      // smallest relative change of a time
 constexpr double found_by_chance = 0.01;  // of pairs of equal runs
 constexpr double least_db = 0.01, least_pairs = 1e-3;
 
-/// A point of both runs.
+/// A point that both runs measured.
 struct BothRuns {
   const Row* was;
   const Row* is;
   std::string name;
 };
 
-/// The same time of both runs, repeat by repeat.
+/// One time of both runs, for each repeat.
 struct TimePair {
   std::string name;
   double was = 0.0, is = 0.0;   // ms, the means
-  std::vector<double> changes;  // of each repeat: the logarithm of its factor
-  double least = least_share;   // that it must change by
+  std::vector<double> changes;  // logarithm of the factor, per repeat
+  double least = least_share;   // smallest relative change to report
 };
 
 std::vector<double> times_of(const Row& row, const char* name) {
@@ -42,7 +42,7 @@ std::vector<double> times_of(const Row& row, const char* name) {
   return times;
 }
 
-/// The times that two points are compared by; none where they have no such, or not as many.
+/// The times to compare of two points; empty if they have none, or different numbers of repeats.
 std::vector<TimePair> times_of(const BothRuns& both) {
   const auto both_have = [&](const char* list) {
     return both.was->contains(list) && both.is->contains(list);
@@ -50,14 +50,14 @@ std::vector<TimePair> times_of(const BothRuns& both) {
   std::vector<TimePair> pairs;
   if (number(*both.was, "frames") != number(*both.is, "frames")) return pairs;
   const char* frames = both_have("cpu_repeats_ms") ? "cpu_repeats_ms" : "repeats_ms";
-  // Where the CPU draws, what a frame waits for goes by what else the machine does.
+  // On a CPU, waiting depends on the machine's other load.
   const bool by_cpu = std::string_view(frames) == "cpu_repeats_ms";
   for (const auto& [list, what] : {std::pair{frames, ""}, {"wall_repeats_ms", ", wall"}}) {
     if (by_cpu && list != frames) continue;
     const std::vector<double> was = times_of(*both.was, list), is = times_of(*both.is, list);
     if (was.empty() || was.size() != is.size()) continue;
     TimePair& pair = pairs.emplace_back(TimePair{both.name + what, mean(was), mean(is), {}});
-    // Of a CPU that others use as well a frame takes longer even while it has it: caches are shared.
+    // On a shared CPU, computing also takes longer, because caches are shared.
     for (const Row* run : {both.was, both.is}) {
       const double waited = number(*run, "waited");
       if (by_cpu && !std::isnan(waited)) pair.least = std::max(pair.least, 0.01 * waited);
@@ -67,7 +67,7 @@ std::vector<TimePair> times_of(const BothRuns& both) {
   return pairs;
 }
 
-/// How far repeats scatter, as those of many pairs of times tell.
+/// The scatter of repeats, pooled over many pairs of times.
 struct Scatter {
   double squares = 0.0;
   int freedom = 0;

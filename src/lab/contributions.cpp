@@ -18,7 +18,7 @@ constexpr std::array skipped_shares = {0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0
 constexpr std::array known = {"alpha T", "alpha max(T)", "alpha T_upper(depth)", "alpha"};
 constexpr std::size_t depth_bins = 40;
 
-/// A Gaussian that a pixel of a view blends.
+/// A Gaussian that some pixel of a view blends.
 struct ShownGaussian {
   double depth;          // world units
   double transmittance;  // max(T)
@@ -32,8 +32,7 @@ double bound_at(const DepthTable& table, double depth) {
   return bound > 0.0f ? static_cast<double>(bound) : 1.0;
 }
 
-/// What each of `known` takes for the transmittance bounds of the Gaussians; empty for what each pixel truly
-/// sees.
+/// The transmittance bound of each Gaussian by each of `known`; empty for the true T of each pixel.
 std::array<std::vector<double>, known.size()> bounds_by(const std::vector<reference::Splat>& splats,
                                                         const std::vector<double>& largest,
                                                         const DepthTable& table) {
@@ -44,7 +43,7 @@ std::array<std::vector<double>, known.size()> bounds_by(const std::vector<refere
   return bounds;
 }
 
-/// max(T) of the Gaussians in each bin of depth, up to where 95 % of what is drawn lies nearer.
+/// max(T) of the Gaussians in each bin of depth, up to the depth within which 95 % of them lie.
 void add_by_depth(const std::vector<ShownGaussian>& shown, const DepthTable& table, std::vector<Row>& rows) {
   if (shown.empty()) return;
   std::vector<double> depths;
@@ -67,7 +66,7 @@ void add_by_depth(const std::vector<ShownGaussian>& shown, const DepthTable& tab
   }
 }
 
-/// What fragments contribute, by their distance from the Gaussian's middle.
+/// Contributions of fragments by their distance from the Gaussian's middle.
 void add_by_distance(std::vector<reference::DistanceBin> bins, std::vector<Row>& rows) {
   while (!bins.empty() && bins.back().fragments == 0) bins.pop_back();
   double all = 0.0, nearer = 0.0;

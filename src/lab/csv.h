@@ -7,8 +7,8 @@
 
 namespace binosplat::lab {
 
-/// A line of names, if there are any, then a line a row: numbers as they are, texts in quotes; nothing for
-/// what is empty or not finite.
+/// A line of column names, if any, then a line a row: plain numbers, quoted texts. Empty and non-finite cells
+/// are empty.
 std::string csv(const Table& table);
 
 }  // namespace binosplat::lab

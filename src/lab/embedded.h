@@ -1,5 +1,5 @@
 #pragma once
-// Files that are part of the program, as they were at build time (cmake/embed.cmake), by their path.
+// Files embedded into the program at build time (cmake/embed.cmake), by path.
 
 #include <map>
 #include <string>

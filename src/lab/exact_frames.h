@@ -1,6 +1,5 @@
 #pragma once
-// The exact frames of some stretches: their pair counts, and their pictures, kept on the GPU to compare other
-// frames with.
+// The exact frames of some stretches: their pair counts, and their pictures on the GPU for comparisons.
 
 #include <memory>
 #include <vector>
@@ -13,15 +12,15 @@ namespace binosplat::lab {
 
 class ExactFrames {
  public:
-  /// Draws all frames, each pose once, in the order and projection of `settings`. Pictures stay on the GPU up
-  /// to `bytes_max`; the rest is drawn again whenever it is asked for.
+  /// Draws all frames, each pose once, in the order and projection of `settings`. Keeps up to `bytes_max` of
+  /// pictures on the GPU; draws the others again on demand.
   ExactFrames(std::shared_ptr<render::GpuModel> model, const render::FrameSettings& settings,
               std::span<const Stretch> stretches, std::int64_t bytes_max);
 
   double pairs(std::size_t stretch, std::size_t n) const { return pose(stretch, n).pairs; }
 
-  /// The PSNR of each view that `drawn` drew of a stretch's frame `n`, of 8-bit pictures, in dB; infinite for
-  /// equal ones.
+  /// The PSNR of each view that `drawn` drew of a stretch's frame `n`, in dB, between 8-bit pictures;
+  /// infinite if equal.
   std::vector<double> psnr(const render::Frame& drawn, std::size_t stretch, std::size_t n);
 
  private:
@@ -35,8 +34,8 @@ class ExactFrames {
   render::FrameSettings settings_;
   render::Frame frame_;
   BytePictures bytes_;
-  gl::Buffer again_;                                // pictures that are not kept
-  std::vector<std::vector<std::size_t>> poses_of_;  // each stretch's frames
+  gl::Buffer again_;                                // for pictures that are not kept
+  std::vector<std::vector<std::size_t>> poses_of_;  // pose of each frame, by stretch
   std::vector<Pose> poses_;
 };
 

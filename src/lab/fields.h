@@ -1,6 +1,6 @@
 #pragma once
-// JSON of structs: object(key, value, ...) writes one; fields(io, it), where one is read again, too, names
-// each member once for both directions.
+// JSON of structs. object(key, value, ...) writes; fields(io, it) names each member once, to write and to
+// read.
 
 #include <cmath>
 #include <concepts>
@@ -15,7 +15,7 @@ namespace binosplat::lab {
 template <typename U, typename T>
 concept Some = std::same_as<std::remove_const_t<U>, T>;
 
-/// io(key, member, key, member, ...) sets the keys in this order; an optional that is empty is left out.
+/// io(key, member, key, member, ...) writes the keys in this order and omits empty optionals.
 struct FieldWriter {
   nlohmann::ordered_json& json;
 
@@ -31,7 +31,7 @@ struct FieldWriter {
   }
 };
 
-/// Reads what is there. Numbers that are not finite are null in files.
+/// Reads existing keys. In files, null represents a number that is not finite.
 struct FieldReader {
   const nlohmann::ordered_json& json;
 

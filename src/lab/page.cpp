@@ -51,7 +51,7 @@ void check(const Table& t) {
   }
 }
 
-// Before anything of it is JSON, which would leak what it has of a page whose conversion throws.
+// Check before anything becomes JSON: an exception during the conversion would leak memory.
 void check(const Section& s) {
   for (const auto* table : {&s.table, &s.numbers}) {
     if (*table) check(**table);
@@ -66,7 +66,7 @@ void check(const Section& s) {
   }
 }
 
-// As text of a script element, which ends at the first "</script" whatever it is quoted in.
+// JSON for a script element. Escapes "<", because "</script" ends the element even within quotes.
 std::string for_script(const ordered_json& json) {
   std::string text;
   for (const char c : json.dump(-1, ' ', false, ordered_json::error_handler_t::replace)) {

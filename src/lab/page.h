@@ -1,7 +1,6 @@
 #pragma once
-// The page that measurements leave: one HTML file that needs nothing but a browser. It carries the results
-// as JSON and draws its plots from them (src/lab/page, with the libraries of third_party), so that a number
-// on the page is the number in the JSON.
+// The page of a measurement: one HTML file that works in any browser. It contains the results as JSON and
+// plots them (src/lab/page, with libraries of third_party), so the page and the JSON have equal numbers.
 
 #include <concepts>
 #include <cstdint>
@@ -21,7 +20,7 @@ class Context;
 
 namespace binosplat::lab {
 
-/// A number, a text or nothing; a number that is not finite is shown as nothing.
+/// A number, a text or nothing. Non-finite numbers are shown as nothing.
 struct Cell {
   Cell(std::nullptr_t = nullptr) {}
   Cell(bool yes) : value(yes) {}
@@ -41,7 +40,7 @@ void to_json(nlohmann::ordered_json& json, const Cell& cell);
 
 std::vector<Cell> row(const auto&... cells) { return {Cell(cells)...}; }
 
-/// Rows of as many cells as there are columns.
+/// Each row has as many cells as there are columns.
 struct Table {
   std::vector<std::string> columns;
   std::vector<std::vector<Cell>> rows;
@@ -49,51 +48,51 @@ struct Table {
   bool operator==(const Table&) const = default;
 };
 
-/// What a chart draws of a table, by the names of its columns. A series is the rows that have the same text
-/// in `by` (without it: all rows), for each of the columns of `y`. Cells that are no numbers are left out;
-/// where they are the only `y`, the page says so.
+/// How a chart draws a table, by names of columns. For each column of `y`, a series has the rows with equal
+/// text in `by`, or all rows if `by` is empty. Cells without a number are skipped; if no `y` has numbers, the
+/// page says so.
 struct Chart {
   std::string x;
   std::vector<std::string> y;
   std::string by = {};
-  std::string label = {};               // of a point, for whoever points at it
-  std::string filled = {};              // points are filled where this column is "yes", else hollow
-  std::string title = {};               // of the axis up; otherwise the first of `y`
+  std::string label = {};               // column of a point's tooltip
+  std::string filled = {};              // column; points are filled if it is "yes", else hollow
+  std::string title = {};               // of the vertical axis; empty: the first of `y`
   std::vector<std::string> order = {};  // texts in `by` whose series come first
   bool bars = false;                    // horizontal, stacked by series, over names in `x`
-  bool zero = false;                    // the axis up begins at 0
+  bool zero = false;                    // the vertical axis starts at 0
   bool areas = false;                   // stacked by series, over numbers in `x`
-  bool line = true;                     // the points of a series are joined in their order,
-  bool steps = false;                   // by steps: a value holds until the next
+  bool line = true;                     // joins the points of a series in their order
+  bool steps = false;                   // in steps: a value holds until the next
   bool dots = true;
-  bool front = false;                 // one more line by steps through the points that are filled
-  std::string spread = {};            // how far a point may lie to the left and right: a bar
-  bool log_x = false, log_y = false;  // only values above 0 can be drawn
+  bool front = false;                 // adds a stepped line through the filled points
+  std::string spread = {};            // column of the horizontal error bar
+  bool log_x = false, log_y = false;  // needs values above 0
 };
 
-/// A small picture, drawn as large as there is room.
+/// A small picture, scaled up to the available width.
 struct Figure {
   std::string caption;
   Image image;  // RGB, grey or with alpha
 };
 
-/// A picture by whole factors smaller, so that a page can hold many: at most `widest` px wide.
+/// The picture reduced by a whole factor to at most `widest` px, so that a page can hold many.
 Image for_page(const Image& image, int widest = 640);
 
 /// The GPU and its driver, for the page's facts.
 std::string device_text(const gl::Context& context);
 
-/// One heading of the page: what it shows on this scene, in a sentence, then the chart and the table.
+/// One section of the page: a sentence about the scene's result, a chart and a table.
 struct Section {
-  std::string id;  // of the link to it and of the chart's SVG
+  std::string id;  // for links and the chart's SVG
   std::string title;
   std::string sentence;
   std::optional<Table> table = {};
   std::optional<Chart> chart = {};
-  std::optional<Table> numbers = {};  // what the chart draws, folded away; without it the chart is of `table`
-  std::string problem = {};           // why there is nothing to show
+  std::optional<Table> numbers = {};  // the chart's data, collapsed; none: the chart uses `table`
+  std::string problem = {};           // why there are no results
   std::vector<Figure> figures = {};
-  bool compared = false;  // the figures are of one size: two lie on each other, with a slider between them
+  bool compared = false;  // figures have one size and are overlaid in pairs with a slider
 };
 
 struct Page {
@@ -103,12 +102,12 @@ struct Page {
   std::vector<Section> sections;
 };
 
-/// The whole file, with everything that was measured, which it offers to save. Light and dark, readable at
-/// 400 px and printed; colours are told apart by everyone, and never alone. Throws std::logic_error for a
-/// table whose rows do not fit its columns, and for a chart of columns that are not there.
+/// The complete file, with all results, which it offers to save. Supports light and dark, 400 px width and
+/// print. Colours are safe for colour-blind readers and never the only mark. Throws std::logic_error if a
+/// row's length differs from the columns', or if a chart names an unknown column.
 std::string html(const Page& page, const nlohmann::ordered_json& data);
 
-/// Writes it whole or not at all. Throws Error where that fails.
+/// Writes the page completely or not at all. Throws Error if that fails.
 void save_page(const std::filesystem::path& path, const Page& page, const nlohmann::ordered_json& data);
 
 }  // namespace binosplat::lab

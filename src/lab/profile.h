@@ -1,5 +1,5 @@
 #pragma once
-// What a recording of frames says: which were bad and why, and what they all wait for.
+// Analyses a recording of frames: its slow frames, their causes, and the resource that bounds them all.
 
 #include <cstdint>
 #include <functional>
@@ -15,14 +15,14 @@
 
 namespace binosplat::lab {
 
-/// What was recorded, for whoever reads of it.
+/// Describes a recording for its readers.
 struct ProfileFacts {
   std::string scene, motion, drawing;  // the model; "tour walk"; "exact"
   std::string device;
   bool is_software = false;  // the CPU draws
 };
 
-/// What one more try showed: the share of a frame's time that this --quality saves.
+/// Result of an additional experiment: the share of a frame's time that this --quality saves.
 struct Saving {
   double quality_db = 0.0, share = 0.0;
 };
@@ -32,9 +32,9 @@ constexpr int worst_picture_width = 320;  // px
 struct Profile {
   ProfileFacts facts;
   render::Recording recording;
-  std::vector<std::optional<Image>> pictures;  // of the left eye in the worst frames, in their order
+  std::vector<std::optional<Image>> pictures;  // left eye of the worst frames, in their order
   std::optional<Saving> saving;
-  std::vector<CpuUse> cpu;  // where the CPU draws: what each frame took of it, all threads; else empty
+  std::vector<CpuUse> cpu;  // CPU time of each frame, all threads; only with a software renderer
 };
 
 struct Quantiles {
@@ -43,63 +43,62 @@ struct Quantiles {
 
 struct ProfileSummary {
   Quantiles wall, gpu, cpu;           // ms
-  std::vector<gl::StageTime> stages;  // of the GPU: the mean over all frames
-  std::vector<gl::StageTime> usual;   // of the GPU's stages and the CPU's work: the median
-  std::size_t missed = 0;             // frames that were not done when the next one was due
-  std::size_t gpu_bound = 0;          // frames in which the GPU takes longer than the CPU
+  std::vector<gl::StageTime> stages;  // on the GPU: means over all frames
+  std::vector<gl::StageTime> usual;   // GPU stages and CPU work: medians
+  std::size_t missed = 0;             // frames that ended after the next one was due
+  std::size_t gpu_bound = 0;          // frames whose GPU time exceeds their CPU time
   std::optional<Quantiles> mhz;
-  std::size_t slow_clock = 0;      // frames
-  std::vector<std::size_t> worst;  // up to ten frames that took longest, longest first
+  std::size_t slow_clock = 0;      // frames below 95 % of the fastest clock
+  std::vector<std::size_t> worst;  // up to ten slowest frames, slowest first
 };
 
-/// ms of a frame.
+/// Times of a frame in ms.
 double gpu_ms(const render::FrameRecord& frame);  // of all its drawings
-double cpu_ms(const render::FrameRecord& frame);  // of the thread that draws, without its waiting
+double cpu_ms(const render::FrameRecord& frame);  // of the drawing thread, without waiting
 
 bool is_missed(const render::Recording& recording, std::size_t n);
 
-/// The fastest clock of all frames, MHz; 0 where none is known.
+/// The fastest clock of all frames, MHz; 0 if unknown.
 double fastest_mhz(const render::Recording& recording);
 
-/// As render::events_of(), with the names of programs, and where the clock was low against `fastest`.
+/// As render::events_of(), with the names of programs, and with low clocks relative to `fastest`.
 std::vector<render::FrameEvent> events_of(const render::Recording& recording, std::size_t n, double fastest);
 
 /// Throws Error for a recording without frames.
 ProfileSummary summary_of(const Profile& profile);
 
-/// Why a frame took longer than others: its events, and what took longer than usual.
+/// The causes of a frame's long time: its events, and the parts that took longer than usual.
 std::string reason_of(const Profile& profile, const ProfileSummary& summary, std::size_t n);
 
-/// What bounds frames, as in "GPU (blend 61 %)".
+/// The resource that bounds the frames, as in "GPU (blend 61 %)".
 std::string bound_of(const Profile& profile, const ProfileSummary& summary);
 
-/// What to try next; empty where there is nothing.
+/// The next thing to try; empty if there is none.
 std::string advice_of(const Profile& profile, const ProfileSummary& summary);
 
-/// The lines that a terminal shows.
+/// The summary for a terminal.
 std::vector<std::string> lines_of(const Profile& profile, const ProfileSummary& summary);
 
-/// A row for each frame, or for so many from the first on: the columns of frames.csv.
+/// The columns of frames.csv: a row for each frame, or for `count` frames from `first` on.
 Table frames_table(const render::Recording& recording, std::size_t first = 0, std::size_t count = SIZE_MAX);
-/// As many of those rows as are made at once: all of a long run would fill the memory.
+/// Number of rows made at once, since all rows of a long run would fill the memory.
 constexpr std::size_t rows_at_once = 1000;
 
-/// Takes a file's text, part after part.
+/// Takes the next part of a file's text.
 using Write = std::function<void(std::string_view)>;
 
 void write_frames(const render::Recording& recording, const Write& write);
 
-/// Writes Trace Event JSON, as Perfetto and chrome://tracing read it: a track for the GPU and one for each
-/// thread.
+/// Writes Trace Event JSON for Perfetto and chrome://tracing, with a track for the GPU and for each thread.
 void write_trace(const Profile& profile, const Write& write);
 
-/// `changes` are the lines of a comparison with an older run; none: there was no such.
+/// `changes` are the lines of a comparison with an older run; empty: no comparison.
 Page profile_page(const Profile& profile, const ProfileSummary& summary,
                   const std::vector<std::string>& changes);
 
-/// What the frames come to, as a row that others are compared with (results.h): its repeats are the medians
-/// of up to ten stretches of frames, since frames beside each other share their disturbances. The details are
-/// the worst frames, with their reasons.
+/// The summary of the frames as a row for comparisons (results.h). Its repeats are the medians of up to ten
+/// stretches of frames, because neighbouring frames share disturbances. The details are the worst frames with
+/// causes.
 Point profile_point(const Profile& profile, const ProfileSummary& summary);
 
 }  // namespace binosplat::lab

@@ -1,4 +1,4 @@
-// What happened in a frame, and why it took long.
+// Finds the events of a frame and the causes of long times.
 
 #include <fmt/ranges.h>
 
@@ -17,9 +17,9 @@ using render::FrameEvent;
 using render::FrameRecord;
 using render::Recording;
 
-constexpr double slow_share = 0.95;  // of the fastest clock of a run: below it a frame is marked
+constexpr double slow_share = 0.95;  // of a run's fastest clock; slower frames are marked
 
-/// Programs that were made within a frame, by the spans of its thread: "compile blend.comp".
+/// The programs that the frame's thread compiled or loaded, from its spans.
 std::string programs_of(const Recording& recording, const FrameRecord& frame) {
   std::set<std::string> names;
   for (const Span& span : recording.spans) {
@@ -31,8 +31,7 @@ std::string programs_of(const Recording& recording, const FrameRecord& frame) {
   return fmt::format("{}", fmt::join(names, ", "));
 }
 
-/// The parts of a frame: the GPU's stages, then what the CPU does. Where the CPU draws, submitting is
-/// drawing.
+/// The times of a frame: GPU stages, then CPU work. A software renderer draws while it submits.
 std::vector<gl::StageTime> parts_of(const FrameRecord& frame, bool is_software) {
   std::vector<gl::StageTime> parts = gl::sums_of(frame.report.spans);
   const render::CpuTimes& cpu = frame.report.cpu;
@@ -52,7 +51,7 @@ Quantiles quantiles_of(const std::vector<double>& values) {
   return {quantile(values, 0.5), quantile(values, 0.9), quantile(values, 0.99), quantile(values, 1.0)};
 }
 
-/// The stages of all frames in order of appearance, with `sum` of the values that frames have.
+/// The stages of all frames in order of appearance, each with `sum` over its values.
 template <typename Parts, typename Sum>
 std::vector<gl::StageTime> over_frames(const Recording& recording, const Parts& parts, const Sum& sum) {
   std::vector<gl::StageTime> all;

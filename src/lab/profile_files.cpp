@@ -1,4 +1,4 @@
-// frames.csv and trace.json of a profile.
+// Writes frames.csv and trace.json of a profile.
 
 #include <fmt/format.h>
 
@@ -38,7 +38,7 @@ std::vector<std::string> stage_names_of(const Recording& recording) {
   return names;
 }
 
-/// ms of spans of a name that ended within a frame.
+/// ms of the spans of this name that ended within a frame.
 double ms_of_spans(const Recording& recording, const FrameRecord& frame, const std::string& name) {
   double ms = 0.0;
   auto span = std::ranges::lower_bound(recording.spans, frame.begin, {}, &Span::end);
@@ -54,8 +54,7 @@ std::string text_of(const std::vector<FrameEvent>& events) {
   return text;
 }
 
-/// Writes the list of events, each as it comes: a long run has millions. Times are in microseconds since
-/// `start`.
+/// Writes events one by one, because a long run has millions. Times are in microseconds since `start`.
 class TraceEvents {
  public:
   TraceEvents(Clock::time_point start, const Write& write) : start_(start), write_(write) {}
@@ -99,7 +98,7 @@ constexpr int gpu_track = 1, drawing_track = 2;
 
 void add_gpu(const Recording& recording, std::size_t n, TraceEvents& events) {
   const auto& spans = recording.frames[n].report.spans;
-  if (spans.empty() || spans.back().end_ns == 0) return;  // the driver tells no times
+  if (spans.empty() || spans.back().end_ns == 0) return;  // this driver has no timestamps
   const auto at = [&](std::int64_t gpu_ns) { return recording.cpu_time(gpu_ns); };
   events.slice(fmt::format("frame {}", n), gpu_track, at(spans.front().begin_ns), at(spans.back().end_ns),
                {{"gpu_ms", gpu_ms(recording.frames[n])}});
@@ -120,7 +119,7 @@ void add_cpu(const Recording& recording, std::size_t n, double fastest, TraceEve
   if (frame.mhz) events.counter("GPU clock, MHz", frame.begin, *frame.mhz);
 }
 
-/// When the first thing of a recording happened, on the CPU or on the GPU.
+/// The earliest time in a recording, on CPU or GPU.
 Clock::time_point start_of(const Recording& recording) {
   Clock::time_point start = recording.first.cpu;
   for (const Span& span : recording.spans) start = std::min(start, span.begin);

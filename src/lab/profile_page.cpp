@@ -1,4 +1,4 @@
-// report.html of a profile.
+// Builds report.html of a profile.
 
 #include <fmt/ranges.h>
 
@@ -15,7 +15,7 @@ namespace {
 
 using render::Recording;
 
-/// Some columns of frames.csv under names for readers.
+/// Columns of frames.csv, renamed for readers.
 Table some_columns(const Recording& recording,
                    const std::vector<std::pair<std::string, std::string>>& named) {
   Table some;

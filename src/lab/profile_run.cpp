@@ -12,12 +12,12 @@ namespace binosplat::lab {
 
 namespace {
 
-constexpr double busy_ms = 1000.0;           // until a GPU's clock is up
-constexpr double levels_wait_ms = 10'000.0;  // at most, for the levels of the first frame
+constexpr double busy_ms = 1000.0;           // time for a GPU to raise its clock
+constexpr double levels_wait_ms = 10'000.0;  // longest wait for the levels of the first frame
 constexpr double usual_frame_ms = 1000.0 / 90.0;
-constexpr double slow_ms = 300.0;  // a frame that is too slow to be drawn for advice alone
+constexpr double slow_ms = 300.0;  // skips the experiment for slower frames
 
-/// Sleeps as long as that is exact, then looks at the clock again and again.
+/// Sleeps until shortly before `due`, then polls the clock.
 void wait_until(Clock::time_point due) {
   constexpr std::chrono::milliseconds late_by_sleeping{1};
   std::this_thread::sleep_until(due - late_by_sleeping);
@@ -83,13 +83,13 @@ render::Recording ProfileDrawer::record(const std::function<void(std::size_t)>& 
   for (std::size_t n = 0; n < run_.frames.size(); ++n) {
     render::FrameRecord frame{.due = Clock::now(), .views = run_.frames[n]};
     if (run_.fps > 0.0) {
-      // The next time that a frame may begin at.
+      // The next multiple of the period.
       if (n > 0) ticks = std::max(ticks, std::ceil((Clock::now() - start) / period));
       frame.due = start + std::chrono::duration_cast<Clock::duration>(ticks * period);
       wait_until(frame.due);
       ticks += 1.0;
     }
-    const CpuUse before = CpuUse::now(context_);  // outside of the frame, whose time it would be
+    const CpuUse before = CpuUse::now(context_);  // before the frame, to exclude its cost
     frame.begin = Clock::now();
     frame.levels = follow_levels(frame.views, drawn_ms);
     frame.report = draw(frame.views, settings_now());
@@ -116,14 +116,14 @@ std::optional<Saving> ProfileDrawer::saving(std::size_t frame, double quality_db
   render::FrameSettings less = run_.settings;
   less.th = TH_SQUARED;
   less.quality = static_cast<float>(quality_db);
-  // At a clock that is up, or what is drawn later seems to cost less.
+  // Raise the clock first; otherwise later frames seem faster.
   if (!context_.software()) wake(context_, busy_ms, [&] { draw(views, run_.settings); });
   std::vector<double> before, after;
   if (draw(views, run_.settings).total_ms > slow_ms) return std::nullopt;
   for (int n = 0; n < (context_.software() ? 4 : 16); ++n)
     before.push_back(draw(views, run_.settings).total_ms);
   for (int n = 0; n < (context_.software() ? 4 : 16); ++n) after.push_back(draw(views, less).total_ms);
-  // The first of them looks for its tolerance; one in four measures its error, which counts.
+  // The first frame searches its tolerance. One in four measures its error, which counts.
   after.erase(after.begin());
   return Saving{quality_db, 1.0 - mean(after) / quantile(before, 0.5)};
 }

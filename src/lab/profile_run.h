@@ -1,5 +1,5 @@
 #pragma once
-// Draws the frames of a profile, at their rate.
+// Draws the frames of a profile at their rate.
 
 #include <functional>
 #include <memory>
@@ -13,35 +13,35 @@
 
 namespace binosplat::lab {
 
-/// What is drawn, and when.
+/// The frames of a profile, and their settings.
 struct ProfileRun {
-  std::vector<std::vector<shared::View>> frames;  // the views of each
+  std::vector<std::vector<shared::View>> frames;  // the views of each frame
   render::FrameSettings settings;
   std::optional<stereo::Foveation> foveation;
-  double fps = 0.0;  // frames begin so often a second; 0: as soon as the last one is drawn
+  double fps = 0.0;  // frame rate; 0: as fast as possible
   bool asks_clock = true;
 };
 
 class ProfileDrawer {
  public:
-  /// `stream`: whose model it is, if its levels follow what is seen; else null. Both must outlive this.
+  /// `stream` owns the model if its levels follow the views, else null. Both must outlive this.
   ProfileDrawer(std::shared_ptr<render::GpuModel> model, const ProfileRun& run, Stream* stream);
 
-  /// Draws the first frame again and again, until the GPU's clock is up, its programs are compiled and its
-  /// levels are there: none of that counts. Returns the ms of the last of these frames.
+  /// Draws the first frame until the GPU's clock is high, programs are compiled and levels are loaded. None
+  /// of these frames is recorded. Returns the time of the last one in ms.
   double warm_up();
 
-  /// Draws all frames as a head sees them that begins there: nothing was measured before. A frame that is
-  /// still being drawn when the next one is due lets that one, and all those due meanwhile, begin later.
+  /// Draws all frames, starting without measurements. A frame that is late delays the frames that become due
+  /// meanwhile.
   render::Recording record(const std::function<void(std::size_t done)>& progress);
 
-  /// Where the CPU draws: what each recorded frame took of it, all threads together; else empty.
+  /// CPU time of each recorded frame, all threads; empty unless the CPU draws.
   const std::vector<CpuUse>& cpu() const { return cpu_; }
 
-  /// The left eye's picture of a frame, small, as the levels are now.
+  /// A small picture of the left eye in a frame, at the current levels.
   Image picture(std::size_t frame);
 
-  /// What the frame would save at `quality_db`, if it is drawn exactly; nothing where that takes long.
+  /// The time that an exact frame would save at `quality_db`; none if measuring takes long.
   std::optional<Saving> saving(std::size_t frame, double quality_db);
 
  private:

@@ -1,4 +1,4 @@
-// What a profile says in words: for a terminal, and for the heads of its page.
+// The text of a profile, for the terminal and for its page.
 
 #include <fmt/ranges.h>
 
@@ -35,7 +35,7 @@ std::string clock_of(const Profile& profile, const ProfileSummary& summary) {
                      summary.slow_clock, profile.recording.frames.size(), summary.mhz->most);
 }
 
-/// The medians of up to ten stretches of frames; of fewer frames than five a stretch, fewer.
+/// The medians of up to ten stretches, each of at least five frames.
 std::vector<double> by_stretch(const std::vector<double>& ms) {
   constexpr std::size_t stretches = 10, stretch_least = 5;
   const std::size_t count = std::clamp<std::size_t>(ms.size() / stretch_least, 1, stretches);

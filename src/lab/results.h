@@ -1,6 +1,6 @@
 #pragma once
-// What was measured: rows of values under names. results.csv, results.json, report.html, terminals and
-// comparisons share them; docs/measuring.md says how each is found.
+// The results of measurements as rows of named values. results.csv, results.json, report.html, terminals and
+// comparisons share them; docs/measuring.md defines each column.
 
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -15,17 +15,17 @@
 
 namespace binosplat::lab {
 
-/// The PSNR in dB that stands for equal pictures, which have none: in means, charts and files.
+/// The PSNR in dB of equal pictures in means, charts and files. Their true PSNR is infinite.
 constexpr double equal_db = 100.0;
 
 double capped(double db);
-/// The PSNR of pictures together: of the mean of their squared errors; capped.
+/// The PSNR of several pictures from the mean of their squared errors; capped.
 double pooled_db(const std::vector<double>& db);
 
-/// An object of JSON: values by the names of columns. What is not known is not there.
+/// A JSON object: values by column name, without unknown ones.
 using Row = nlohmann::ordered_json;
 
-/// Sets values by name; those that are empty or not numbers are left out.
+/// Sets values by name. Omits empty optionals and non-finite numbers.
 template <typename T, typename... Rest>
 void put(Row& row, const std::string& name, const T& value, const Rest&... rest) {
   if constexpr (requires { value.has_value(); }) {
@@ -45,92 +45,89 @@ Row row_of(const auto&... names_and_values) {
   return row;
 }
 
-/// NaN where the row has no number of that name.
+/// NaN if the row has no number of that name.
 double number(const Row& row, const std::string& name);
-/// "" where it has no text of that name.
+/// "" if the row has no text of that name.
 std::string text(const Row& row, const std::string& name);
-/// The numbers that rows have under a name.
+/// The numbers of a column.
 std::vector<double> numbers(const std::vector<Row>& rows, const std::string& name);
-/// Their mean; NaN where no row has one.
+/// Mean of a column's numbers; NaN without any.
 double mean_number(const std::vector<Row>& rows, const std::string& name);
 
-/// The name of a stage's GPU time, and the stage of such a name.
+/// The column of a stage's GPU time, and its inverse.
 std::string stage_column(const std::string& stage);
 std::optional<std::string> stage_of(const std::string& column);
 
-/// What readers see over a column.
+/// The title of a column for readers.
 std::string title_of(const std::string& column);
 
-/// The columns that any of the rows has, in the order of docs/measuring.md; lists have none.
+/// The columns that occur in any row, in the order of docs/measuring.md, without lists.
 std::vector<std::string> columns_of(std::span<const Row> rows);
-/// Every column there is, but those of stages.
+/// All known columns except those of stages.
 std::vector<std::string> all_columns();
 
-/// Some columns of rows for readers, under their titles; those that no row has are left out.
+/// The wanted columns under their titles. Omits columns that no row has.
 Table table_of(std::span<const Row> rows, const std::vector<std::string>& wanted);
 
-/// A line a row, a column a name.
+/// CSV with a line per row and a column per name.
 std::string csv(std::span<const Row> rows);
 
-/// Something that was measured, or is to be: `row` has what tells it from others (the scene, what is drawn of
-/// it, the settings) and then what was measured on the whole, or a "problem"; `details` are of views, frames
-/// and the like, which "of" names.
+/// A measured or planned point. `row` has its identity (scene, case, settings), then the results of the
+/// whole, or a "problem". `details` are of views, frames and so on; "of" names their kind.
 struct Point {
   Row row = Row::object();
   std::vector<Row> details = {};
-  std::optional<Image> picture = {};  // for_page(); not in JSON
+  std::optional<Image> picture = {};  // from for_page(); not in JSON
 
   bool tried() const { return row.contains("device"); }
   bool measured() const { return tried() && !row.contains("problem"); }
-  /// What points that are compared with one another have in common: "fox, one eye, size own, views".
+  /// The values that comparable points share, as in "fox, one eye, size own, views".
   std::string chart() const;
 };
 
 struct Results {
-  std::string axes, program;  // of the plan: their name, its version
+  std::string axes, program;  // name of the axes, version of the program
   std::vector<Point> points;
 };
 
-/// What of a row says which point it is: all that is known before it is measured.
+/// The part of a row that identifies its point, known before it is measured.
 Row identity_of(const Row& row);
 
-/// Adds what a point is beside others of its chart: "pareto", true where none is quicker by more than noise
-/// and no farther from exact; and "speed", how many times as fast it is as the exact picture.
+/// Adds values relative to other points of a chart. "pareto": no other point is faster beyond noise and at
+/// least as accurate. "speed": the exact point's time over this one's.
 void put_beside_others(std::vector<Point>& points);
-/// The exact point of the same chart and order, projection and level of detail; none where it was not
-/// measured.
+/// The exact point, at the finest levels, of the same chart, order and projection; null if not measured.
 const Point* exact_of(const std::vector<Point>& points, const Point& point);
 
-/// Of several scenes: adds what each setting comes to over all of them, the geometric mean of its "speed",
-/// the mean of what it loses and removes.
+/// For several scenes, adds means of each setting over all of them: geometric of "speed", arithmetic of
+/// losses and removed pairs.
 void add_means(std::vector<Point>& points);
 
-/// All rows with their details, and back. Throws Error, naming `place`, for what is no such file.
+/// All rows with details as JSON, and the inverse. Throws Error, naming `place`, for another kind of file.
 nlohmann::ordered_json to_json(const Results& results, nlohmann::ordered_json plan);
 std::vector<Row> rows_of(const nlohmann::ordered_json& json, const std::string& place);
 
-/// results.csv, and details.csv, whose rows begin with those of their points.
+/// results.csv; and details.csv, whose rows start with their point's identity.
 std::string csv(const std::vector<Point>& points);
 std::string details_csv(const std::vector<Point>& points);
 
-/// The charts that the rows allow.
+/// The page with all charts that the rows' columns allow.
 Page results_page(const Results& results);
 
-/// What changed between two runs.
+/// The changes between two runs.
 struct RunComparison {
-  std::vector<std::string> lines;  // of what changed beyond noise, or cannot be compared; the last one counts
-  std::size_t matched = 0;         // points of both runs
-  std::size_t timed = 0;           // of these: whose times were compared
-  double slower_percent = 0.0;     // of what became slower by most, beyond noise; 0: nothing did
-  std::string slowest;             // that
+  std::vector<std::string> lines;  // changes beyond noise and failed comparisons; last: a count
+  std::size_t matched = 0;         // points in both runs
+  std::size_t timed = 0;           // matched points with comparable times
+  double slower_percent = 0.0;     // largest slowdown beyond noise; 0: none
+  std::string slowest;             // the point of that slowdown
 };
 
-/// Points are matched by what tells them from others. Each repeat of a time is set beside the same repeat of
-/// the older run: a time has changed when it differs by more than 2 %, and by more than these pairs scatter:
-/// then one pair of equal runs in a hundred finds a change (Student's t of their scatter, over all points
-/// together, or of the point's own where that is larger). Where the CPU draws, its time counts, and
-/// must differ by more than the share for which threads waited while other programs had it. PSNR has changed
-/// when it differs by 0.01 dB; pairs by 0.1 %.
+/// Matches points by identity, and compares each repeat of a time with the same repeat of the older run. A
+/// time has changed if it differs by more than 2 % and more than the repeats' scatter explains: Student's t,
+/// with one false alarm in a hundred pairs of equal runs. The scatter is that of all points together, or the
+/// point's own if larger. On a CPU, compares CPU time, which must also differ by more than the share of time
+/// that threads waited for other programs. PSNR has changed by 0.01 dB, pairs by 0.1 %.
 RunComparison compare_runs(const std::vector<Row>& before, const std::vector<Row>& now);
 
 }  // namespace binosplat::lab

@@ -1,4 +1,4 @@
-// The page of what was measured: by chart (scene, eyes, size, along what) the plots that its columns allow.
+// Builds the page of results: for each chart (scene, eyes, size, along) the plots that its columns allow.
 
 #include <fmt/ranges.h>
 
@@ -12,25 +12,25 @@ namespace binosplat::lab {
 
 namespace {
 
-constexpr double good_db = 40.0;     // an error that is hard to see
+constexpr double good_db = 40.0;     // an error that is hardly visible
 constexpr double hardly_seen = 1.0;  // % of the pixels
 constexpr const char* means_begin = "mean of ";
 
-// AdaGScale, table IV: pairs removed against FlashGS at 0.1 to 0.5 dB, K tuned on the test views, mean over
-// the paper's own scenes.
+// AdaGScale, table IV: pairs removed relative to FlashGS at drops of 0.1 to 0.5 dB, with K tuned on the test
+// views; mean over the paper's scenes.
 constexpr struct {
   double drop_db, removed;
 } paper_removed[] = {{0.1, 31.0}, {0.2, 35.8}, {0.3, 38.9}, {0.4, 41.2}, {0.5, 43.1}};
 
-/// The points of one chart, quickest first.
+/// The points of one chart, fastest first.
 struct ChartPoints {
   std::string title, id;
-  std::vector<std::string> families = {};  // in the plan's order: colours mean the same in every chart
+  std::vector<std::string> families = {};  // in the plan's order, for equal colours in all charts
   std::vector<const Point*> measured = {};
-  std::vector<const Point*> others = {};  // problems, and what is yet to be measured
+  std::vector<const Point*> others = {};  // with problems, or not measured yet
   const Point* exact = nullptr;
 
-  /// Of the points that have this column.
+  /// The rows that have this column.
   std::vector<Row> rows(const std::string& column) const {
     std::vector<Row> all;
     for (const Point* point : measured) {
@@ -41,7 +41,7 @@ struct ChartPoints {
   bool has(const std::string& column) const {
     return std::ranges::any_of(measured, [&](const Point* p) { return p->row.contains(column); });
   }
-  /// The details of a kind, each with its point's setting.
+  /// The details of a kind, each with the name of its setting.
   std::vector<Row> details(const std::string& of, const std::vector<const Point*>& points) const {
     std::vector<Row> all;
     for (const Point* point : points) {
@@ -92,7 +92,7 @@ std::string sentence_of(const ChartPoints& chart) {
          "quicker. Equal pictures count as 100 dB. Bars are half the spread of the repeats.";
 }
 
-/// A section whose chart is of `rows`, with the numbers folded away.
+/// A section with a chart of `rows`, and the numbers collapsed.
 Section plot(const ChartPoints& chart, const std::string& id, const std::string& title,
              const std::string& sentence, std::span<const Row> rows, const std::vector<std::string>& columns,
              Chart drawn) {
@@ -120,7 +120,7 @@ Section accuracy(const ChartPoints& chart) {
               {"name", "family", "pareto", "frame_ms", "noise_ms", "psnr_db"}, drawn);
 }
 
-/// Those on the front and the exact one; of tolerances that were found, the tile tests and what comes of the
+/// The points on the front and the exact one. For searched tolerances: the tile tests, and the points of the
 /// middle target.
 std::vector<const Point*> chosen(const ChartPoints& chart) {
   std::set<double> targets;
@@ -183,7 +183,7 @@ Section pictures(const ChartPoints& chart) {
   return section;
 }
 
-/// All numbers, but what the heading says.
+/// All columns except those in the heading.
 Section all_numbers(const ChartPoints& chart) {
   const std::vector<Row> rows = chart.rows("name");
   std::vector<std::string> columns;
@@ -236,7 +236,7 @@ void add_seen(const ChartPoints& chart, std::vector<Section>& sections) {
       table_of(chart.details("ring", chart.measured), {"name", "from", "to", "share", "psnr_db", "seen"});
 }
 
-/// Every frame of the settings that are asked for the middle quality, or of all.
+/// Every frame of the settings with the middle requested quality, or of all settings.
 void add_frames(const ChartPoints& chart, std::vector<Section>& sections) {
   std::set<double> asked;
   for (const Point* point : chart.measured) {
@@ -262,7 +262,7 @@ void add_frames(const ChartPoints& chart, std::vector<Section>& sections) {
         {"times", "time", "GPU time of a frame, the median of the repeats.", {"frame ms"}, "GPU time, ms"}}) {
     drawn.y = y;
     drawn.title = axis;
-    std::vector<Row> shown = rows;  // exact frames are at 100 dB, and would hide how the others differ
+    std::vector<Row> shown = rows;  // exact frames at 100 dB would compress the scale
     const std::string exact = chart.exact == nullptr ? "" : text(chart.exact->row, "name");
     if (std::string_view(id) == "quality" && some.size() > 1)
       std::erase_if(shown, [&](const Row& row) { return text(row, "name") == exact; });
@@ -301,7 +301,7 @@ void add_levels(const ChartPoints& chart, std::vector<Section>& sections) {
            Chart{.x = "Gaussians", .y = {"PSNR dB", "reported dB"}, .label = "setting"}));
 }
 
-/// How frame times grow with scenes, of the same setting.
+/// The growth of frame times with scenes, at equal settings.
 void add_growth(const std::vector<ChartPoints>& charts, std::vector<Section>& sections) {
   std::vector<Row> rows;
   for (const ChartPoints& chart : charts) {
@@ -318,7 +318,7 @@ void add_growth(const std::vector<ChartPoints>& charts, std::vector<Section>& se
                           {"scene", "name", "gaussians", "frame_ms"}, drawn));
 }
 
-/// What tolerances gain that were found for targets, as AdaGScale's tables III and IV and figure 8 have it.
+/// The gains of searched tolerances, as in AdaGScale's tables III and IV and figure 8.
 void add_targets(const ChartPoints& chart, std::vector<Section>& sections) {
   for (const char* target : {"max_drop", "min_psnr"}) {
     std::vector<Row> tuned, trained;

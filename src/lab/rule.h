@@ -1,6 +1,5 @@
 #pragma once
-// A threshold rule as studies compare them: the threshold, where its transmittance bound comes from, and its
-// tolerance.
+// A threshold rule of measurements: threshold, source of its transmittance bound, and tolerance.
 
 #include <string>
 #include <vector>
@@ -18,7 +17,7 @@ struct Rule {
   std::string name() const;  // "squared, last"
 };
 
-/// Every threshold with every bound that it takes; the exact one first. Tolerances are 0.
+/// Every threshold with every source that it supports, the exact one first. Tolerances are 0.
 std::vector<Rule> all_rules();
 
 }  // namespace binosplat::lab

@@ -15,7 +15,7 @@ namespace binosplat::lab {
 
 namespace {
 
-/// The decimal number that a float was meant to be.
+/// The shortest decimal number that rounds to this float.
 double as_meant(float number) { return std::stod(fmt::format("{}", number)); }
 
 }  // namespace

@@ -10,7 +10,7 @@ namespace binosplat::lab {
 
 namespace {
 
-/// Of value(frame), if the frame has one.
+/// The typical value(frame): medians of both kinds of frames, averaged by their counts.
 template <typename Value>
 double typical(const Reports& frames, const Value& value) {
   double sum = 0.0;

@@ -1,5 +1,5 @@
 #pragma once
-// What frames take: GPU times, and what is typical of them.
+// Frame times on the GPU, and typical values of them.
 
 #include <span>
 #include <vector>
@@ -11,42 +11,42 @@
 
 namespace binosplat::lab {
 
-/// The reports of frames that follow one another.
+/// The reports of successive frames.
 using Reports = std::vector<render::FrameReport>;
 
-/// What a frame takes.
+/// Typical times of a frame.
 struct Typical {
   double frame_ms = 0.0;
   std::vector<gl::StageTime> stages;  // ms
 };
 
-/// The medians of frames of one view, which a slow frame does not move. Those that measure for the others
-/// take longer: both kinds count by their numbers.
+/// The medians over frames of one view, which ignore single slow frames. Frames that measure an error take
+/// longer; the medians of both kinds are averaged by their counts.
 Typical typical_of(const Reports& frames);
-/// The mean; the stages are the first one's.
+/// The mean. Takes the stages of the first element.
 Typical mean_of(std::span<const Typical> all);
 
-/// What the threads of this process had of the CPU, and how long they were ready while others had it, in ms.
+/// CPU time of this process's threads, and the time that they waited while others had the CPU, in ms.
 struct CpuUse {
   double used = 0.0, waited = 0.0;
 
-  /// Since the process began, where the CPU draws; else nothing, and no time is spent on it.
+  /// Since the process started. Zero, at no cost, unless the CPU draws.
   static CpuUse now(const gl::Context& context);
   CpuUse since(const CpuUse& before) const { return {used - before.used, waited - before.waited}; }
   void operator+=(const CpuUse& other) { used += other.used, waited += other.waited; }
 };
 
-/// Puts what repeats of a time come to, their spread, and what of all frames takes longest.
+/// Stores the mean of the repeats, their noise, and the slowest frames.
 void put_times(const std::vector<double>& repeats, const std::vector<double>& all_ms, Row& row);
 
-/// Puts the time of each stage.
+/// Stores the time of each stage.
 void put_stages(const std::vector<gl::StageTime>& stages, Row& row);
 
-/// The same of the CPU, where it draws: what each repeat used and waited a frame. None: it does not draw.
+/// Stores the CPU time and waiting of each repeat, per frame. Does nothing without repeats.
 void put_cpu_times(const std::vector<CpuUse>& repeats, Row& row);
 
-/// Draws for so long, a second or a little less, after which the clock of a GPU that waited is up again. A
-/// software renderer has none.
+/// Draws for `ms` to raise the clock of a GPU that was idle; a second or less suffices. Does nothing for a
+/// software renderer.
 template <typename Draw>
 void wake(const gl::Context& context, double ms, const Draw& draw) {
   if (context.software()) return;

@@ -19,18 +19,18 @@ constexpr double wait_most_ms = 32000.0;
 Effort FrameBudget::effort() const { return efforts[step_]; }
 
 void FrameBudget::took(double ms, double period_ms) {
-  // The first of an effort may have programs compiled.
+  // The first frame of an effort may compile programs.
   if (std::exchange(fresh_, false)) return;
   late_ = ms > ms_ ? late_ + 1 : 0;
   early_ms_ = ms < ample * ms_ ? early_ms_ + period_ms : 0.0;
   since_raised_ms_ += period_ms;
   if (late_ >= 2 || ms > much_too_late * ms_) {
-    if (raised_) wait_ms_ = std::min(2.0 * wait_ms_, wait_most_ms);  // it was raised too far
+    if (raised_) wait_ms_ = std::min(2.0 * wait_ms_, wait_most_ms);  // the last raise was too much
     if (step_ < least) set(step_ + 1);
     raised_ = false;
     return;
   }
-  if (raised_ && since_raised_ms_ > wait_ms_) {  // it lasts
+  if (raised_ && since_raised_ms_ > wait_ms_) {  // the last raise holds
     raised_ = false;
     wait_ms_ = wait_least_ms;
   }

@@ -13,7 +13,7 @@ namespace {
 constexpr std::array formats = {GL_DEPTH_COMPONENT32F, GL_DEPTH_COMPONENT24, GL_DEPTH_COMPONENT16,
                                 GL_DEPTH24_STENCIL8,   GL_DEPTH32F_STENCIL8, GL_R32F};
 
-/// The texture, or a view of its layer.
+/// Returns the texture, or a texture view of its layer, which it appends to `layers_seen`.
 std::uint32_t texture_of(gl::Context& context, const MeshDepth& mesh, const Argument& argument,
                          const glm::ivec2& size, std::vector<std::unique_ptr<gl::Texture>>& layers_seen) {
   const gl::Functions& gl = context.gl();
@@ -59,7 +59,7 @@ void add_mesh_depth(gl::Context& context, const View& view, const Argument& argu
     fail("{}: coding {}: there is none of this number", argument.name(), static_cast<int>(mesh.coding));
   } else {
     check_planes(near, far, argument);
-    // 1 / z is 1 / near where d is 0, and 1 / far where d is 1, and linear between.
+    // 1 / z is linear in d: 1 / near at d = 0, and 1 / far at d = 1.
     read.offset = static_cast<float>(1.0 / near);
     read.scale = static_cast<float>(1.0 / far - 1.0 / near);
     read.nothing = near < far ? 1.0f : 0.0f;

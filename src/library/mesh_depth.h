@@ -1,5 +1,5 @@
 #pragma once
-// The caller's depth textures, as a frame reads them.
+// Checks the caller's depth textures of meshes and converts them for a frame.
 
 #include <binosplat/renderer.h>
 
@@ -12,14 +12,14 @@
 
 namespace binosplat::library {
 
-/// By view, and the layers of arrays, each as a texture.
+/// One depth per view, and a texture view of each layer of an array, which must live as long.
 struct MeshDepths {
   std::vector<render::MeshDepth> list;
   std::vector<std::unique_ptr<gl::Texture>> layers;
 };
 
-/// Appends a view's. Throws Error(bad_input) for a texture that cannot be read as MeshDepth says, or is
-/// smaller than the view, and for planes that bound nothing.
+/// Appends a view's mesh depth. Throws Error(bad_input) for a texture that is smaller than the view or not as
+/// MeshDepth requires, and for planes that bound nothing.
 void add_mesh_depth(gl::Context& context, const View& view, const Argument& argument, MeshDepths& depths);
 
 }  // namespace binosplat::library

@@ -17,7 +17,7 @@ bool is_finite(const Vector& v) {
   return true;
 }
 
-/// Whether the columns are of length 1 and at right angles, but for rounding; not where one is not finite.
+/// Whether the columns are orthonormal, up to rounding. False if one is not finite.
 bool are_directions(const glm::dmat3& axes) {
   constexpr double rounding = 1e-3;
   const glm::dmat3 products = glm::transpose(axes) * axes;
@@ -29,7 +29,7 @@ bool are_directions(const glm::dmat3& axes) {
   return true;
 }
 
-/// An enumeration's number, of which 0 to `last` have names.
+/// Throws Error(bad_input) if the value's number is not between 0 and that of `last`.
 template <typename Enum>
 void check_named(Enum value, Enum last, const char* argument) {
   const int number = static_cast<int>(value);
@@ -53,7 +53,7 @@ void check_numbers(std::span<const View> views, const Placement& placement) {
   for (std::size_t k = 0; k < views.size(); ++k) {
     const Eye& eye = views[k].eye;
     const glm::dvec3& p = eye.position;
-    // As floats, which the GPU has.
+    // The GPU computes in floats: check the rounded position, too.
     if (!is_finite(p) || !is_finite(glm::vec3(origin + placement.units_per_metre * (placement.axes * p))))
       fail("views[{}].eye.position ({}, {}, {}): expected finite metres", k, p.x, p.y, p.z);
     const glm::dvec4& q = eye.orientation;

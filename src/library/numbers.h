@@ -1,5 +1,5 @@
 #pragma once
-// Numbers of the caller's that are none, or mean nothing.
+// Checks the caller's numbers.
 
 #include <binosplat/renderer.h>
 
@@ -7,8 +7,8 @@
 
 namespace binosplat::library {
 
-/// Throws Error(bad_input) for views and a placement with which no picture can be drawn. Sizes are checked
-/// with the targets, frusta by stereo::views_from_xr and regions by render::check_region.
+/// Throws Error(bad_input) for views and a placement with which no picture can be drawn. Targets::check
+/// checks the sizes, stereo::views_from_xr the frusta, and render::check_region the regions.
 void check_numbers(std::span<const View> views, const Placement& placement);
 
 /// The same for settings; render::check_choice checks quality and tolerance.

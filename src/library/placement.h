@@ -1,5 +1,5 @@
 #pragma once
-// Where the eyes' space lies in a model's world, for models and for streams.
+// The placement of the eyes' space in a model's world, for models and for streams.
 
 #include <binosplat/eyes.h>
 
@@ -8,7 +8,7 @@
 
 namespace binosplat::library {
 
-/// SplatModel::placement() of a model.
+/// Implements SplatModel::placement().
 inline Placement placement_in(const Model& model, const glm::dvec3& origin, double units_per_metre) {
   const glm::dmat3 into_model = glm::transpose(world_from_axes(model.axes.letters));
   return {into_model * origin, into_model * Placement{}.axes, units_per_metre};

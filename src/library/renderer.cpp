@@ -16,7 +16,7 @@ namespace binosplat {
 
 namespace {
 
-/// What a call is for: none was moved from, and its context is current.
+/// Throws Error if the object was moved from, or its context is not current.
 template <typename Impl>
 Impl& usable(const std::unique_ptr<Impl>& impl) {
   if (impl == nullptr) fail("this Renderer was moved from: expected one that holds a model");
@@ -57,7 +57,7 @@ struct Renderer::Impl {
     stream->is_drawn = false;
   }
 
-  /// Logs the errors that OpenGL has recorded since the last call: the caller's.
+  /// Logs and returns the errors that OpenGL has recorded since the last call. They are the caller's.
   std::vector<std::uint32_t> callers_errors() const {
     std::vector<std::uint32_t> errors;
     for (const GLenum error : context->take_errors()) {
@@ -67,7 +67,7 @@ struct Renderer::Impl {
     return errors;
   }
 
-  /// What finish() needs of the frame that was submitted.
+  /// The data of the submitted frame that finish() needs.
   struct Submitted {
     int layout = LAYOUT_SEPARATE;
     std::optional<glm::vec3> background;
@@ -81,7 +81,7 @@ struct Renderer::Impl {
     bool has_meshes() const { return !mesh_depths.list.empty(); }
   };
 
-  std::shared_ptr<const Model> model;  // or
+  std::shared_ptr<const Model> model;  // null with a stream
   std::shared_ptr<SplatStream::Impl> stream;
   int precision;  // PRECISION_
   std::unique_ptr<gl::Context> context;
@@ -96,7 +96,7 @@ Renderer::Renderer(GetProcAddress get_proc_address, const SplatModel& model, Pre
 Renderer::Renderer(GetProcAddress get_proc_address, SplatStream& stream, Precision precision)
     : impl_(std::make_unique<Impl>(get_proc_address, stream.impl_, precision)) {}
 Renderer::~Renderer() {
-  // What has the same names in another context is not the renderer's to delete.
+  // In another context the same names may be other objects, which the renderer must not delete.
   if (impl_ == nullptr || !impl_->context->another_is_current()) return;
   log_warning(
       "a renderer ends where another OpenGL context than its own is current: its memory is not freed");
@@ -118,7 +118,7 @@ void Renderer::prepare(std::span<const View> views, const Placement& placement, 
   hand_over(views, placement, settings, true);
 }
 
-// To the frame that draws the views, or compiles what drawing them takes.
+// Draws the views, or compiles the shaders that drawing them needs.
 void Renderer::hand_over(std::span<const View> views, const Placement& placement, const Settings& settings,
                          bool prepares) {
   if (usable(impl_).submitted) fail("a frame is under way: call finish() before the next submit()");

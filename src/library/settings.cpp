@@ -14,7 +14,7 @@ static_assert(static_cast<int>(Precision::half) == PRECISION_HALF);
 static_assert(static_cast<int>(Order::distance) == ORDER_DISTANCE);
 static_assert(static_cast<int>(Projection::tangent) == PROJECTION_TANGENT);
 
-/// The library's choices in the order of the shaders' numbers.
+/// The library's choices in the order of the shaders' numbers (shared/axes.h).
 constexpr Threshold thresholds[] = {Threshold::exact, Threshold::peripheral, Threshold::squared};
 constexpr Transmittance transmittances[] = {Transmittance::all, Transmittance::by_depth,
                                             Transmittance::measured};
@@ -27,7 +27,7 @@ int number_of(auto choice, const auto& choices) {
   return static_cast<int>(std::ranges::find(choices, choice) - std::begin(choices));
 }
 
-/// In the names of this library; render::check_choice has the program's.
+/// Refuses illegal combinations, with the library's names; render::check_choice uses the program's.
 void check_choices(const Settings& s) {
   if (s.quality && s.tolerance)
     fail("settings.tolerance with settings.quality, which finds one itself: leave one of them out");

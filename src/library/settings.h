@@ -1,5 +1,5 @@
 #pragma once
-// The library's plain settings and report as the rooms below have them.
+// Converts the library's settings and report to and from those of src/render.
 
 #include <binosplat/renderer.h>
 
@@ -7,17 +7,17 @@
 
 namespace binosplat::library {
 
-/// Throws Error(bad_input) for values and settings that no frame has; render::Frame checks the rest.
+/// Throws Error(bad_input) for unknown values and illegal settings; render::Frame checks the rest.
 render::FrameSettings frame_settings(const Settings& from, std::span<const View> views,
                                      int precision = PRECISION_FULL);
 
-/// TH_ of shared/axes.h: without a threshold, a tolerance and a quality `otherwise`.
+/// Returns TH_ of shared/axes.h: `otherwise` if there is no threshold, tolerance or quality.
 int rule_of(const Settings& settings, int otherwise);
 Threshold threshold_of(int number);
 int transmittance_of(Transmittance transmittance);  // TRANSMITTANCE_
 Transmittance transmittance_of(int number);
 
-/// One of shared/axes.h. Throw Error(bad_input) for a number that names none.
+/// The number in shared/axes.h. Both throw Error(bad_input) for a number without a name.
 int precision_of(Precision precision);
 int layout_of(Layout layout);
 

@@ -1,5 +1,5 @@
 #pragma once
-// What a SplatStream and its renderer share.
+// The state that a SplatStream shares with its renderer.
 
 #include <binosplat/stream.h>
 
@@ -11,9 +11,9 @@ struct SplatStream::Impl {
   explicit Impl(std::shared_ptr<Stream> opened) : stream(std::move(opened)) {}
 
   std::shared_ptr<Stream> stream;  // not null
-  gl::Context* context = nullptr;  // of its renderer; null: there is none
+  gl::Context* context = nullptr;  // of its renderer; null without one
   int precision = 0;               // its renderer's, PRECISION_
-  bool is_drawn = false;           // by a frame that was submitted and is not finished
+  bool is_drawn = false;           // by a submitted, unfinished frame
 };
 
 }  // namespace binosplat

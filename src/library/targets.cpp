@@ -16,9 +16,9 @@ GLint attached(const gl::Functions& gl, std::uint32_t framebuffer, GLenum place,
   return value;
 }
 
-constexpr GLenum places_end = GL_COLOR_ATTACHMENT0 + 8;  // every driver has so many
+constexpr GLenum places_end = GL_COLOR_ATTACHMENT0 + 8;  // every driver has at least eight
 
-/// px of what is attached at a place; 0: it was deleted.
+/// The size in px of the object attached at `place`; 0 if it was deleted.
 glm::ivec2 size_attached(const gl::Functions& gl, std::uint32_t framebuffer, GLenum place, GLint kind) {
   const auto name =
       static_cast<GLuint>(attached(gl, framebuffer, place, GL_FRAMEBUFFER_ATTACHMENT_OBJECT_NAME));
@@ -34,7 +34,7 @@ glm::ivec2 size_attached(const gl::Functions& gl, std::uint32_t framebuffer, GLe
   return gl.GetError() == GL_NO_ERROR ? size : glm::ivec2(0);
 }
 
-/// The picture of both views in another layout than `separate`.
+/// The size in px of both eyes' picture in a layout other than `separate`.
 glm::ivec2 size_of_both(std::span<const View> views, int layout, bool has_background) {
   const glm::ivec2 left = views[0].size, right = views[1].size;
   if (left != right) {
@@ -97,7 +97,7 @@ void Targets::check_colour(const Target& target, const glm::ivec2& size, const A
   }
   const TextureLevel level = texture_level(context_, {target.texture, target.level, target.layer}, argument);
   check_within(level.size, {target.x, target.y}, size, argument);
-  // Other storage than an immutable one may have other faults than the format.
+  // Mutable storage may have faults besides its format, so it is always checked.
   if (level.immutable && drawable_.contains(level.format)) return;
   const gl::Functions& gl = context_.gl();
   if (framebuffer_ == 0) gl.CreateFramebuffers(1, &framebuffer_);
@@ -136,7 +136,7 @@ void Targets::check_framebuffer(std::uint32_t framebuffer, const Argument& argum
   }
   GLint samples = 0;
   gl.GetNamedFramebufferParameteriv(framebuffer, GL_SAMPLES, &samples);
-  gl.GetError();  // of a driver that does not tell the default framebuffer's
+  gl.GetError();  // discards the error of drivers that report no samples of the default framebuffer
   if (samples > 0) {
     fail(
         "{}: framebuffer {} has {} samples a pixel: expected one without, as those are that samples are "
@@ -145,7 +145,7 @@ void Targets::check_framebuffer(std::uint32_t framebuffer, const Argument& argum
   }
 }
 
-// Of the default framebuffer OpenGL does not tell the size.
+// Checks the sizes of all colour attachments. OpenGL does not report the default framebuffer's size.
 void Targets::check_attached(const Target& target, const glm::ivec2& size, const Argument& argument) const {
   const std::uint32_t framebuffer = target.framebuffer;
   const gl::Functions& gl = context_.gl();

@@ -1,5 +1,5 @@
 #pragma once
-// Whether the caller's textures and framebuffers take what a frame draws, found before anything is drawn.
+// Checks that a frame can be drawn into the caller's textures and framebuffers, before anything is drawn.
 
 #include <binosplat/renderer.h>
 
@@ -18,8 +18,8 @@ class Targets {
   Targets(const Targets&) = delete;
   Targets& operator=(const Targets&) = delete;
 
-  /// Throws Error(bad_input) for pictures and depths that do not go where they are to. Changes no state, and
-  /// takes a few queries by target.
+  /// Throws Error(bad_input) for a picture or a depth that does not fit its target. Changes no state of the
+  /// context, and takes a few queries per target.
   void check(std::span<const View> views, const Settings& settings);
 
  private:
@@ -31,8 +31,8 @@ class Targets {
 
   gl::Context& context_;
   GLint largest_ = 0;              // px, a side of a texture
-  std::uint32_t framebuffer_ = 0;  // made at first use, for textures of formats that are not known yet
-  std::set<GLint> drawable_ = {};  // formats that were drawn into, or could have been
+  std::uint32_t framebuffer_ = 0;  // created at first use; tests textures of other formats than `drawable_`
+  std::set<GLint> drawable_ = {};  // formats that passed the test
 };
 
 }  // namespace binosplat::library

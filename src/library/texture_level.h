@@ -1,5 +1,5 @@
 #pragma once
-// What the caller's textures are, as far as it decides whether they can be read or drawn into.
+// The properties of the caller's textures that decide whether they can be read or drawn into.
 
 #include <cstddef>
 #include <cstdint>
@@ -10,7 +10,7 @@
 
 namespace binosplat::library {
 
-/// Which of the arguments a text is about: "views[1].target".
+/// Names an argument in error messages, such as "views[1].target".
 struct Argument {
   std::size_t view = 0;
   const char* member = "";
@@ -18,7 +18,7 @@ struct Argument {
   std::string name() const;
 };
 
-/// A level of a texture, and a layer of that where the texture is an array; -1: it is none.
+/// A level of a texture. `layer` selects a layer of an array; -1: the texture is no array.
 struct Place {
   std::uint32_t texture = 0;
   int level = 0;
@@ -29,18 +29,18 @@ struct Place {
 
 struct TextureLevel {
   GLint format = 0;        // GL_TEXTURE_INTERNAL_FORMAT
-  bool immutable = false;  // its storage, as glTextureStorage2D makes it
+  bool immutable = false;  // whether glTextureStorage2D or the like made the storage
   glm::ivec2 size{0};      // px
 };
 
-/// Throws Error(bad_input) for a texture that is not there, or is neither 2D nor a 2D array, and for a level
-/// or layer that it lacks. Leaves no error in the context.
+/// Reads the properties. Throws Error(bad_input) if the texture, level or layer does not exist, and if the
+/// texture is neither 2D nor a 2D array. Leaves no OpenGL error.
 TextureLevel texture_level(const gl::Context& context, const Place& place, const Argument& argument);
 
-/// Throws Error(bad_input) for planes of depths that bound nothing.
+/// Throws Error(bad_input) unless near and far are positive and different.
 void check_planes(double near, double far, const Argument& argument);
 
-/// Throws Error(bad_input) unless a picture of `size` px at a corner lies within what there is of it.
+/// Throws Error(bad_input) unless a picture of `size` px at `corner` lies within a target of `there` px.
 void check_within(const glm::ivec2& there, const glm::ivec2& corner, const glm::ivec2& size,
                   const Argument& argument);
 

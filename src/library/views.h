@@ -1,5 +1,5 @@
 #pragma once
-// The caller's views, as a frame draws them: from the model's origin.
+// Converts the caller's views for a frame, with positions relative to the model's origin.
 
 #include <binosplat/renderer.h>
 

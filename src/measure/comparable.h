@@ -1,12 +1,12 @@
 #pragma once
-// What two pictures must have in common to be compared.
+// The conditions for comparing two pictures.
 
 #include "base/error.h"
 #include "base/image.h"
 
 namespace binosplat::measure {
 
-/// Throws Error unless both have one size and equal channels, and pixels at all.
+/// Throws Error unless both have the same size and channels, and at least one pixel.
 inline void require_comparable(const Image& a, const Image& b) {
   if (a.width != b.width || a.height != b.height) {
     fail("pictures of {} x {} and {} x {} px cannot be compared: expected equal sizes", a.width, a.height,

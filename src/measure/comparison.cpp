@@ -33,7 +33,7 @@ bool make_shown(Image& a, Image& b, const Background& background) {
   }
   for (Image* image : {&a, &b}) {
     if (image->channels == 1 && a.channels != b.channels) *image = before(behind, *image);
-    // An EXR may hold values outside 0 to 1 that a PNG of the same picture cannot.
+    // An EXR may hold values outside 0 to 1, which a PNG of the same picture lacks.
     for (float& value : image->data) value = std::isfinite(value) ? value : NAN;
     *image = clamped(*image);
   }

@@ -1,5 +1,5 @@
 #pragma once
-// By how much two pictures differ, in every number that `binosplat compare` prints.
+// The difference of two pictures, in all numbers that `binosplat compare` prints.
 
 #include "base/image.h"
 #include "measure/flip.h"
@@ -7,7 +7,7 @@
 
 namespace binosplat::measure {
 
-/// Where a value is not a number all are undefined, NaN, and `largest` has its place.
+/// If a value is not a number, all metrics are NaN, and `largest` has its place.
 struct Comparison {
   double psnr = 0.0;
   double ssim = 0.0;
@@ -15,24 +15,23 @@ struct Comparison {
   Difference largest;
 };
 
-/// Whether an image has alpha that is not 1 everywhere.
+/// Whether an image has alpha other than 1.
 bool is_see_through(const Image& image);
 
-/// RGB of any image: grey as three equal channels, and what is seen through before a background.
+/// RGB of any image: grey as three equal channels, transparent pixels over a background.
 Image before(const glm::vec3& background, const Image& image);
 
-/// Makes two pictures what a screen shows of them: values clamped to [0, 1], infinite ones not numbers, and
-/// grey as three equal channels where the other one has colour. Alpha is left out where it is 1 everywhere.
-/// Where only one has other alpha, it is shown before a background, black unless that is given; with a given
-/// background both are. Else alpha stays, and counts. Returns whether something that is seen through was put
-/// before a background.
+/// Prepares two pictures for a comparison as on a screen. Clamps values to [0, 1], turns infinite ones into
+/// NaN, and repeats grey if the other picture has colour. Drops alpha that is 1 everywhere. With a
+/// background, or if only one picture is transparent, composites over it (default black). Else keeps alpha,
+/// which then counts as a channel. Returns whether it composited transparent pixels.
 bool make_shown(Image& a, Image& b, const Background& background = {});
 
-/// PSNR against a photo of what a picture becomes by its exposure (exposed() of base/image.h), both as 8 bits
-/// keep them; in dB.
+/// PSNR in dB between a picture with its exposure (exposed() of base/image.h) and a photo, both rounded to 8
+/// bits.
 double photo_psnr(const Image& picture, const glm::mat4x3& exposure, const Image& photo);
 
-/// Compares two such pictures. Throws Error where they cannot be compared (measure/comparable.h).
+/// Compares two prepared pictures. Throws Error if they cannot be compared (measure/comparable.h).
 Comparison compare(const Image& a, const Image& b, double pixels_per_degree = flip_pixels_per_degree);
 
 }  // namespace binosplat::measure

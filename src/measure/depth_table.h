@@ -10,28 +10,28 @@
 
 namespace binosplat::measure {
 
-/// How many views a table is measured in where nothing else is asked for.
+/// Default number of views to measure a table in.
 constexpr std::size_t depth_table_views = 16;
 
 struct DepthTableSettings {
   int bins = 20;  // the paper's number
-  /// Where the bins end, world units; the paper's is 100. None: where 95 % of what the views draw lies
-  /// nearer, so that the bins fit the scene.
+  /// End of the bins, world units; the paper's is 100. None: the depth within which 95 % of the measured
+  /// Gaussians lie, so that the bins fit the scene.
   std::optional<float> far;
-  std::optional<int> order, projection;  // as render::FrameSettings has them
+  std::optional<int> order, projection;  // as in render::FrameSettings
 };
 
-/// Measures a table view by view, for programs that draw other frames meanwhile.
+/// Measures a table view by view, for programs that draw other frames in between.
 class DepthTableMeasurement {
  public:
-  /// Throws Error for settings that make no table.
+  /// Throws Error for invalid settings.
   explicit DepthTableMeasurement(const DepthTableSettings& settings);
 
   /// Draws the view exactly, and measures max(T) of each Gaussian on the GPU.
   void add(render::Frame& frame, const shared::View& view);
 
-  /// The largest max(T) of all views among the Gaussians of each bin of view depth (with PROJECTION_TANGENT
-  /// of distance); 0 for a bin that no view saw anything in, which a frame takes for 1.
+  /// The largest max(T) over all views of the Gaussians in each bin of view depth (of distance with
+  /// PROJECTION_TANGENT). 0 for an empty bin; frames then use 1.
   DepthTable table() const;
 
  private:
@@ -39,7 +39,7 @@ class DepthTableMeasurement {
   std::vector<render::MeasuredGaussian> measured_;
 };
 
-/// All at once. The frame must be of the same model. Throws Error for settings that make no table.
+/// Measures all views at once. The frame must be of the same model. Throws Error for invalid settings.
 DepthTable measure_depth_table(render::Frame& frame, std::span<const shared::View> views,
                                const DepthTableSettings& settings = {});
 

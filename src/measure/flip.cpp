@@ -16,14 +16,14 @@ namespace binosplat::measure {
 
 namespace {
 
-// The paper's constants, named as there.
-constexpr double q_c = 0.7, p_c = 0.4, p_t = 0.95;  // colour: exponent, and where which share is spent
+// The paper's constants, under its names.
+constexpr double q_c = 0.7, p_c = 0.4, p_t = 0.95;  // colour: exponent, and the knee's position and value
 constexpr double w_degrees = 0.082;                 // features: width of the detector
-constexpr double q_f = 0.5;                         // and exponent
+constexpr double q_f = 0.5;                         // features: exponent
 
-using Kernel = std::vector<double>;  // odd: its middle is at zero
+using Kernel = std::vector<double>;  // odd length; the middle is at zero
 
-/// One value a pixel, rows from the top.
+/// One value per pixel, rows from the top.
 struct Plane {
   int width = 0;
   int height = 0;
@@ -35,7 +35,7 @@ struct Plane {
 };
 using Planes = std::array<Plane, 3>;
 
-/// Fills a plane's pixels by `value(x, y)`.
+/// Sets every pixel of a plane to `value(x, y)`.
 template <typename Value>
 void fill_plane(Plane& plane, const Value& value) {
   parallel_for(plane.height, [&](int y) {
@@ -43,7 +43,7 @@ void fill_plane(Plane& plane, const Value& value) {
   });
 }
 
-/// The plane under a separable kernel; beyond its edges a picture goes on as its edge is.
+/// Applies a separable kernel. Beyond an edge, the edge's values continue.
 Plane filtered(const Plane& in, const Kernel& along_x, const Kernel& along_y) {
   Plane rows(in.width, in.height), out(in.width, in.height);
   const int rx = static_cast<int>(along_x.size() / 2), ry = static_cast<int>(along_y.size() / 2);
@@ -68,7 +68,7 @@ const glm::dmat3 xyz_of_rgb = glm::transpose(glm::dmat3(0.41239080, 0.35758434, 
                                                         0.21263901, 0.71516868, 0.07219232,  //
                                                         0.01933082, 0.11919478, 0.95053215));
 
-/// XYZ over the white's, so that white is (1, 1, 1).
+/// XYZ relative to white, so that white is (1, 1, 1).
 glm::dvec3 relative_xyz(const glm::dvec3& rgb) { return (xyz_of_rgb * rgb) / (xyz_of_rgb * glm::dvec3(1.0)); }
 
 double linear(double display) {
@@ -87,7 +87,7 @@ glm::dvec3 rgb_of_ycxcz(const glm::dvec3& v) {
   return rgb_of_xyz * (r * (xyz_of_rgb * glm::dvec3(1.0)));
 }
 
-/// CIELAB with the Hunt effect: chroma counts less where it is dark.
+/// CIELAB with the Hunt effect, which reduces chroma in dark colours.
 glm::dvec3 hunt_lab(const glm::dvec3& rgb) {
   constexpr double delta = 6.0 / 29.0;
   const auto f = [](double t) {
@@ -124,7 +124,7 @@ const std::array<Sensitivity, 3> sensitivities = {
     {{{{1.0, 0.0047}}}, {{{1.0, 0.0053}}}, {{{34.1, 0.04}, {13.5, 0.025}}}}};
 constexpr double widest_b = 0.04;
 
-/// The channel as the eye resolves it: under the sensitivity's kernel, whose weights have sum 1.
+/// Filters a channel with the eye's contrast sensitivity. The kernel's weights have sum 1.
 Plane seen(const Plane& in, const Sensitivity& sensitivity, double ppd) {
   constexpr double pi = std::numbers::pi;
   const int radius = static_cast<int>(std::ceil(3.0 * std::sqrt(widest_b / (2.0 * pi * pi)) * ppd));
@@ -141,7 +141,7 @@ Plane seen(const Plane& in, const Sensitivity& sensitivity, double ppd) {
   return out;
 }
 
-/// Both signs' weights made sums of 1 and -1.
+/// Normalises positive weights to sum 1 and negative ones to sum -1.
 void balance(Kernel& k) {
   double above = 0.0, below = 0.0;
   for (const double v : k) (v > 0.0 ? above : below) += std::abs(v);
@@ -174,7 +174,7 @@ Features features(const Plane& luminance, double ppd) {
   return {strength(first), strength(second)};
 }
 
-/// What FLIP compares of one picture.
+/// A picture after the eye's filters, as FLIP compares it.
 struct SeenByEye {
   Planes lab;  // after the eye's resolution, with the Hunt effect
   Features features;
@@ -205,7 +205,7 @@ SeenByEye see(const Image& image, double ppd) {
   return {std::move(planes), features(luminance, ppd)};
 }
 
-/// The colour difference from 0 to 1: most of the range for what is usual, the rest for the largest.
+/// The colour difference from 0 to 1. Usual differences use most of the range.
 double colour_difference(const glm::dvec3& a, const glm::dvec3& b) {
   static const double largest =
       std::pow(hyab(hunt_lab({0.0, 1.0, 0.0}), hunt_lab({0.0, 0.0, 1.0})), q_c);  // green and blue

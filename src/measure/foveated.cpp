@@ -18,15 +18,15 @@ constexpr double threshold_least = 1.0 / 64.0;  // CT0, alpha and e2 of Geisler 
 constexpr double decay = 0.106;
 constexpr double half_resolution_degrees = 2.3;
 
-// What a screen's black leaves, of its white.
+// Luminance of a screen's black, relative to its white.
 constexpr float black_level = 0.005f;
 
-// Cycles a degree: what is coarser is a shade.
+// Cycles per degree. Coarser gratings count as shading.
 constexpr double coarsest = 0.25;
 
 constexpr double ring_ends[] = {0, 5, 10, 20, 30, 40, 60, 90};
 
-// The rays of a picture and where the eye looks.
+// The rays of a picture, and the gaze.
 struct GazeRays {
   double focal, x, y;  // px
   glm::dvec3 gaze;
@@ -41,7 +41,7 @@ struct GazeRays {
   double eccentricity(const glm::dvec3& ray) const {
     return glm::degrees(std::atan2(glm::length(glm::cross(ray, gaze)), glm::dot(ray, gaze)));
   }
-  // By the solid angle that the pixel takes.
+  // From the solid angle of the pixel.
   double pixels_per_degree(const glm::dvec3& ray) const {
     return glm::radians(1.0) * focal * std::pow(glm::length(ray) / focal, 1.5);
   }
@@ -66,7 +66,7 @@ float at(const Image& image, int x, int y) {
   return image.at(std::clamp(x, 0, image.width - 1), std::clamp(y, 0, image.height - 1), 0);
 }
 
-// Half as many pixels along each axis, by the kernel 1 4 6 4 1 of Burt and Adelson.
+// Halves the resolution along each axis, with the kernel 1 4 6 4 1 of Burt and Adelson.
 Image reduced(const Image& image) {
   constexpr float kernel[] = {1.0f / 16, 4.0f / 16, 6.0f / 16, 4.0f / 16, 1.0f / 16};
   Image across((image.width + 1) / 2, image.height, 1), out(across.width, (image.height + 1) / 2, 1);
@@ -83,7 +83,7 @@ Image reduced(const Image& image) {
   return out;
 }
 
-// And back, at one pixel of the larger picture, by the same kernel.
+// The inverse at one pixel of the larger picture, with the same kernel.
 float expanded(const Image& small, int x, int y) {
   const auto weights = [](int place) {
     return place % 2 == 0 ? glm::vec3(0.125f, 0.75f, 0.125f) : glm::vec3(0.0f, 0.5f, 0.5f);
@@ -96,8 +96,8 @@ float expanded(const Image& small, int x, int y) {
   return sum;
 }
 
-// How much of a grating of a quarter of a cycle a pixel of this level comes through the levels above, and
-// then makes up its band: the kernel passes cos^4 of half the phase from pixel to pixel.
+// A grating has a quarter of a cycle per pixel of this level. Returns its share that passes the finer levels
+// and lies in this level's band. The kernel passes cos^4 of half the phase between pixels.
 double passed(int level) {
   double share = 1.0 - std::pow(std::cos(glm::radians(45.0)), 8.0);
   for (int k = 1; k <= level; ++k) share *= std::pow(std::cos(glm::radians(45.0) / std::exp2(k)), 4.0);
@@ -127,8 +127,8 @@ Image times_threshold(const Image& a, const Image& b, const Gaze& gaze) {
   const GazeRays seen(a, gaze);
   Image out(a.width, a.height, 1);
   Image of_a = luminance(a), of_b = luminance(b);
-  // Bands of an octave each, and what is left below them. Of a band's frequencies the one that it passes best
-  // from below: it is never taken for finer.
+  // Bands of an octave each, and the rest below them. Each band counts as its lowest well-passed frequency,
+  // so its threshold is never overestimated.
   const auto frequency_at = [&](const glm::dvec3& ray, double pixel) {
     return 0.25 * seen.pixels_per_degree(ray) / pixel;
   };
@@ -155,7 +155,7 @@ Image times_threshold(const Image& a, const Image& b, const Gaze& gaze) {
     parallel_for(out.height, [&](int y) {
       for (int x = 0; x < out.width; ++x) {
         const float here = at(times, (x + side / 2) / side, (y + side / 2) / side);
-        // Written so that what is not a number stays.
+        // Written so that NaN stays.
         if (!(out.at(x, y, 0) >= here)) out.at(x, y, 0) = here;
       }
     });

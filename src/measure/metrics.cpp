@@ -18,12 +18,12 @@ constexpr int window_size = 11;  // px
 constexpr int window_middle = window_size / 2;
 constexpr double window_sigma = 1.5;
 
-/// A value as a screen shows it; a value that is not a number stays so.
+/// A value as on a screen: clamped. NaN stays.
 double shown(float value) { return std::clamp(double(value), 0.0, 1.0); }
 
-/// |a - b|; infinite where either is not a number, so that no comparison passes by it.
+/// |a - b|; infinite if either is not a number, so that every limit fails.
 double absolute_error(float a, float b) {
-  if (a == b) return 0.0;  // two infinities of the same sign included
+  if (a == b) return 0.0;  // also two infinities of the same sign
   const double error = std::abs(double(a) - double(b));
   return std::isnan(error) ? std::numeric_limits<double>::infinity() : error;
 }
@@ -39,7 +39,7 @@ std::array<double, window_size> gaussian_window() {
   return window;
 }
 
-/// Weighted sums of a, b and their products over a window.
+/// Weighted sums of a, b and their products in a window.
 struct Moments {
   double a = 0, b = 0, aa = 0, bb = 0, ab = 0;
 };
@@ -51,8 +51,8 @@ double ssim_of(const Moments& m) {
          ((m.a * m.a + m.b * m.b + c1) * (variance_a + variance_b + c2));
 }
 
-/// Sum of SSIM over one row of windows, whose first rows of pixels is `y`. The window is separable: first
-/// down each column, then along the row.
+/// Sum of SSIM over a row of windows whose first row of pixels is `y`. The window is separable: first down
+/// each column, then along the row.
 double ssim_row(const Image& a, const Image& b, int y, int channel,
                 const std::array<double, window_size>& window) {
   std::vector<Moments> columns(static_cast<std::size_t>(a.width));
@@ -116,7 +116,7 @@ double ssim(const Image& a, const Image& b) {
   const int columns = a.width - window_size + 1, rows = a.height - window_size + 1;
   if (columns <= 0 || rows <= 0) return std::numeric_limits<double>::quiet_NaN();
   const std::array<double, window_size> window = gaussian_window();
-  // One sum a row, added up in order: the same number whatever the threads do.
+  // One sum per row, added in order, so that the result does not depend on threads.
   std::vector<double> sums(static_cast<std::size_t>(rows));
   parallel_for(rows, [&](int y) {
     for (int c = 0; c < a.channels; ++c) sums[static_cast<std::size_t>(y)] += ssim_row(a, b, y, c, window);

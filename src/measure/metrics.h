@@ -1,7 +1,6 @@
 #pragma once
-// How far two pictures are apart. Both have the same size and channels (else: Error); alpha, where there is
-// one, counts as a channel like the others. Pictures of 8 bits are compared by quantising both first
-// (base/image.h).
+// The difference of two pictures. Both must have the same size and channels (else: Error). Alpha, if any,
+// counts as a channel. To compare 8-bit pictures, quantise both first (base/image.h).
 
 #include <span>
 
@@ -9,22 +8,22 @@
 
 namespace binosplat::measure {
 
-/// Peak signal-to-noise ratio in dB: -10 log10 of the mean squared error over pixels and channels, of values
-/// clamped to [0, 1] and not rounded. Infinite for equal pictures; -infinity if a value is not a number.
+/// Peak signal-to-noise ratio in dB: -10 log10 of the mean squared error over pixels and channels, with
+/// values clamped to [0, 1] but not rounded. Infinite for equal pictures; -infinity if a value is not a
+/// number.
 double psnr(const Image& a, const Image& b);
 
-/// The same of several pictures over a background, such as both eyes', taken together; as many on both sides.
+/// The PSNR of several pictures together, such as both eyes', over a background. Both sides have equal
+/// numbers.
 double psnr(std::span<const Picture> a, std::span<const Picture> b, const Background& background);
 
 /// Structural similarity (Wang et al. 2004): Gaussian window of 11 x 11 px, sigma 1.5, K1 0.01, K2 0.03,
-/// range 1, of values clamped to [0, 1]; the mean over channels and the positions where the window lies
-/// within the picture. 1 for equal pictures; not a number for pictures smaller than the window, or with a
-/// value that is none.
+/// range 1, values clamped to [0, 1]. The mean over channels and all windows within the picture. 1 for equal
+/// pictures; NaN if the picture is smaller than the window or has NaN.
 double ssim(const Image& a, const Image& b);
 
-/// The largest absolute error of a channel, and where. Values are taken as they are, not clamped: use
-/// clamped() for what a screen shows. The first in row order where several are as large; infinite if a value
-/// is not a number.
+/// The largest absolute error of a channel, and its place. Values are not clamped: use clamped() for those of
+/// a screen. The first in row order of several equal errors; infinite if a value is not a number.
 struct Difference {
   double max = 0.0;
   int x = 0;
@@ -33,18 +32,17 @@ struct Difference {
 };
 Difference largest_difference(const Image& a, const Image& b);
 
-/// Share of the channels, 0 to 1, whose absolute error exceeds `limit`; values as they are.
+/// Share of the channels, 0 to 1, whose absolute error exceeds `limit`. Values are not clamped.
 double share_beyond(const Image& a, const Image& b, double limit);
 
-/// The absolute error that all but one in a thousand of the values keep below, whatever a few pixels do; the
-/// largest where fewer than that differ at all.
+/// The 99.9 % quantile of absolute errors, which a few pixels cannot change. If it is 0, the largest error.
 double common_error(const Image& a, const Image& b);
 
-/// The gain that makes a difference picture readable: the largest power of two that keeps `error` at or below
-/// 1, and 1 for equal pictures.
+/// The gain for a readable difference picture: the largest power of two that keeps `error` at or below 1. 1
+/// for equal pictures.
 double difference_gain(double error);
 
-/// Absolute error times `gain`, clamped to 1: grey or RGB. An error of alpha is shown in all three channels.
+/// Absolute error times `gain`, clamped to 1, in grey or RGB. Alpha's error appears in all three channels.
 Image difference_picture(const Image& a, const Image& b, double gain);
 
 /// Values clamped to [0, 1].

@@ -10,14 +10,14 @@ namespace binosplat::measure {
 
 namespace {
 
-/// One answer: the logarithm of a tolerance, in which PSNR falls nearly in a line, and how far the value
-/// there lies above what is aimed at.
+/// An evaluation: the logarithm of a tolerance, in which PSNR is nearly linear, and its value relative to the
+/// aim.
 struct Asked {
   double log_tolerance, above;
 };
 
-/// Between a tolerance that holds and one that does not: where a line through the two meets the aim, but not
-/// close to either end, so that the bracket shrinks whatever the values do.
+/// The next tolerance: the zero of a line through both evaluations, kept away from both, so that the bracket
+/// always shrinks.
 double between(const Asked& holds, const Asked& fails) {
   double share = holds.above / (holds.above - fails.above);
   if (!std::isfinite(share)) share = 0.5;
@@ -42,8 +42,8 @@ FoundTolerance find_tolerance(const std::function<double(double tolerance)>& val
     const double tolerance = std::clamp(std::exp(next), search.smallest, search.largest);
     const double at_tolerance = value(tolerance);
     ++found.evaluations;
-    // An end of the bracket that stays where it is for two rounds counts for half as much from then on: the
-    // line then passes beyond the aim, and the bracket closes from both sides (the Illinois rule).
+    // The Illinois rule: an end of the bracket that stays for two rounds counts half. The line then passes
+    // the aim, and the bracket closes from both sides.
     if (at_tolerance >= target) {
       if (fails && last_held) fails->above *= 0.5;
       holds = {next, at_tolerance - aim};

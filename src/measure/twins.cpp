@@ -22,7 +22,7 @@ using render::ModelBuffers;
 using render::OrderGroup;
 using render::Stage;
 
-// A cone as shaders/projection/tangent.glsl keeps it.
+// Stores a cone in the form of shaders/projection/tangent.glsl.
 void keep_cone(const reference::Splat& s, shared::Splat& out) {
   const glm::dmat2 q(s.cone->form);
   out.conic = glm::vec4(glm::dvec4(q[0][0], q[0][1], q[1][1], 1 / std::sqrt(glm::determinant(q))));
@@ -42,7 +42,7 @@ shared::Splat to_shared(const reference::Splat& s) {
   return out;
 }
 
-// What decodes the model for view v.
+// The views that decode the model for view v.
 reference::Decoding decoding_for(const FramePlan& plan, std::uint32_t v) {
   const std::uint32_t begin = v - v % plan.views_per_decoding;
   const std::uint32_t end = std::min(begin + plan.views_per_decoding, plan.asked);
@@ -59,7 +59,7 @@ reference::Settings reference_settings(const FramePlan& plan, std::uint32_t v) {
           .perspective = plan.perspective};
 }
 
-// Into a buffer of Gaussians or splats, in the precision that the shaders expect there.
+// Uploads Gaussians or splats in the precision that the shaders expect.
 template <typename T>
 void upload_in(int precision, const std::vector<T>& things, gl::Buffer& buffer) {
   if (precision == PRECISION_FULL) return buffer.upload(things);
@@ -76,7 +76,7 @@ void upload_harmonics(int precision, const std::vector<glm::vec4>& harmonics, gl
   buffer.upload(packed);
 }
 
-// Gaussians, colours and bits of one decoding of a page, as the stage decode leaves them.
+// One decoding of a page: the outputs of the stage decode.
 struct DecodedPage {
   std::vector<shared::Gaussian> gaussians;
   std::vector<glm::vec4> harmonics;
@@ -117,7 +117,7 @@ void upload_decoded(const Model& model, const FramePlan& plan, ModelBuffers& mod
   }
 }
 
-// What the reference makes of one view.
+// The reference's results for one view.
 struct ViewResult {
   std::vector<reference::Splat> splats;
   reference::TileLists lists;
@@ -146,10 +146,10 @@ ViewResult reference_view(const Model& model, const FramePlan& plan, std::uint32
   return result;
 }
 
-// What an order group draws, in index order, and where each Gaussian stands in it.
+// The Gaussians that an order group draws, in index order, and the slot of each.
 struct Slots {
   std::vector<std::uint32_t> indices;
-  std::vector<std::uint32_t> of;  // by Gaussian; only for those in `indices`
+  std::vector<std::uint32_t> of;  // slot by Gaussian; only for those in `indices`
 };
 
 Slots make_slots(const FramePlan& plan, OrderGroup group, const std::vector<ViewResult>& results) {
@@ -166,7 +166,7 @@ Slots make_slots(const FramePlan& plan, OrderGroup group, const std::vector<View
 
 using Entry = glm::uvec2;  // bits of the depth; splat and tiles (supertiles.glsl)
 
-// Entries by supertile; within it in the order in which they are blended.
+// Entries by supertile, each in blending order.
 using Supertiles = std::vector<std::vector<Entry>>;
 
 Supertiles entries_of(const FramePlan& plan, const std::vector<Slots>& slots,
@@ -195,7 +195,7 @@ Supertiles entries_of(const FramePlan& plan, const std::vector<Slots>& slots,
   return supertiles;
 }
 
-// The lists as the stage bin leaves them: the entries, and what is to be sorted.
+// Uploads the outputs of the stage bin: entries and the items to sort.
 void upload_entries(const Supertiles& supertiles, FrameBuffers& buffers) {
   std::vector<Entry> entries;
   shared::Counters counters{};
@@ -222,7 +222,7 @@ void upload_entries(const Supertiles& supertiles, FrameBuffers& buffers) {
   buffers.counters.upload(std::vector{counters});
 }
 
-// The tiles' lists as the stage sort leaves them.
+// Uploads the outputs of the stage sort: the tiles' lists.
 void upload_lists(const FramePlan& plan, const Supertiles& supertiles, FrameBuffers& buffers) {
   std::vector<glm::uvec2> ranges;
   std::vector<std::uint32_t> values;
@@ -250,7 +250,8 @@ void upload_lists(const FramePlan& plan, const Supertiles& supertiles, FrameBuff
   buffers.lists.tile_values.upload(values);
 }
 
-// What the stage project leaves. All splats are for bin_large.comp, which asks again what they touch.
+// Uploads the outputs of the stage project. Marks all splats as large, so that bin_large.comp tests their
+// tiles.
 void upload_projection(const FramePlan& plan, const std::vector<Slots>& slots,
                        const std::vector<ViewResult>& results, FrameBuffers& buffers) {
   std::vector<shared::Splat> splats(std::size_t{plan.view_count()} * buffers.slots);

@@ -1,5 +1,5 @@
 #pragma once
-// How somebody who looks at a scene has it drawn and shown.
+// The user's choices of drawing and display.
 
 #include <glm/glm.hpp>
 #include <optional>
@@ -10,37 +10,37 @@
 
 namespace binosplat::preview {
 
-/// What the user may change while looking.
+/// The choices that the user may change while looking.
 struct Choices {
-  int layout = LAYOUT_PARALLEL;  // LAYOUT_SEPARATE: the left eye alone
+  int layout = LAYOUT_PARALLEL;  // LAYOUT_SEPARATE shows only the left eye
   int show = SHOW_PICTURE;
-  double split = 0.5;  // with SHOW_SPLIT: the share of a picture's width that is shown as drawn
+  double split = 0.5;  // with SHOW_SPLIT: share of the width that shows `settings`
   render::FrameSettings settings;
-  /// What a calibration of the model says of `settings` that have neither a tolerance nor a quality.
+  /// The calibration, which applies if `settings` have neither a tolerance nor a quality.
   render::ThresholdPolicy policy;
-  bool flipped = false;  // the exact picture is shown in place of that of `settings`
+  bool flipped = false;  // shows the exact picture instead
   stereo::RigSettings rig;
   glm::vec3 background{0.0f};
-  bool seeks_screen = false;  // rig.convergence is to suit what a model's first picture shows
-  bool grid = false;          // on the ground
-  bool cameras = false;       // are drawn where they stand
-  int saved_width = 0;        // px, of pictures that are saved; 0: the window's
+  bool seeks_screen = false;  // sets rig.convergence to suit a model's first picture
+  bool grid = false;          // shows a grid on the ground
+  bool cameras = false;       // shows the cameras
+  int saved_width = 0;        // px, of saved pictures; 0: the window's
 };
 
-/// Another rule, with the tolerance at which a search would begin.
+/// Chooses a rule, with the tolerance at which a search would begin.
 void choose_threshold(render::FrameSettings& settings, int th);
 
-/// Whether pictures are exact: no threshold, and tiles that leave nothing out.
+/// Whether pictures are exact: no threshold, and a tile test that makes every visible pair.
 bool is_exact(const render::FrameSettings& settings);
 
-/// The next tile test, or the one before; of exact pictures the next exact one.
+/// Chooses the next tile test (`by` 1) or the previous one (-1). If pictures are exact, skips inexact tests.
 void next_tiles(render::FrameSettings& settings, int by);
 
-/// So many dB against the exact pictures; none: exact.
+/// Chooses a quality in dB against exact pictures; none: exact.
 void choose_quality(render::FrameSettings& settings, std::optional<float> db);
 
-/// Changes what cannot be combined to what can, in favour of the threshold that is chosen: no tolerance
-/// without one, and so on (docs/method.md 5); and of a quality rather than a tolerance.
+/// Resolves conflicts in favour of the chosen threshold, such as a tolerance without one (docs/method.md 5).
+/// A quality has precedence over a tolerance.
 void make_consistent(Choices& choices);
 
 }  // namespace binosplat::preview

@@ -47,7 +47,7 @@ GLFWwindow* open_window(const std::optional<glm::ivec2>& size, bool stereo) {
 
 namespace {
 
-// The one that the middle of the window is on, or the first.
+// The screen with the window's middle, or the primary one.
 GLFWmonitor* screen_of(const glm::ivec2& place, const glm::ivec2& size) {
   int count = 0;
   GLFWmonitor** const screens = glfwGetMonitors(&count);

@@ -1,5 +1,5 @@
 #pragma once
-// GLFW, and a window of it with the context that drawing needs.
+// GLFW, and its windows with an OpenGL context.
 
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
@@ -9,7 +9,7 @@
 
 namespace binosplat::preview {
 
-/// GLFW from its start to its end. Throws Error(no_gl) where there is no display.
+/// Initialises and terminates GLFW. Throws Error(no_gl) without a display.
 struct Glfw {
   Glfw();
   ~Glfw();
@@ -17,19 +17,19 @@ struct Glfw {
   Glfw& operator=(const Glfw&) = delete;
 };
 
-/// A window with OpenGL 4.5, or a stereo one, of a size in px; without one, of what suits the display's
-/// scale. Throws Error(no_gl) where there is none.
+/// Opens a window with OpenGL 4.5, or a stereo one, of a size in px or one that suits the display's scale.
+/// Throws Error(no_gl) if the display has none.
 GLFWwindow* open_window(const std::optional<glm::ivec2>& size, bool stereo);
 
-/// A window that fills the screen it stands on, and where it goes back to.
+/// Toggles full screen, and remembers the window's place and size.
 class FullScreen {
  public:
   void enter(GLFWwindow* window);
-  /// False if it does not fill the screen.
+  /// Returns false if the window is not in full screen.
   bool leave(GLFWwindow* window);
 
  private:
-  glm::ivec2 place_{0}, size_{0};  // of the window before
+  glm::ivec2 place_{0}, size_{0};  // of the window before full screen
 };
 
 }  // namespace binosplat::preview

@@ -26,7 +26,7 @@ std::string contents(const fs::path& file) {
   return text.str();
 }
 
-// As they are named here, which tells them from the cameras of a data set.
+// The names distinguish keys from the cameras of a data set.
 std::string name_of_key(std::size_t k) { return fmt::format("key_{:03}", k); }
 
 bool are_ours(const std::vector<Camera>& cameras) {
@@ -52,7 +52,7 @@ KeyList::KeyList(const fs::path& folder) : file_(folder / "cameras.json") {
     written_ = contents(file_);
     log_info("{}: {} key{} of a path", file_.string(), keys_.size(), keys_.size() == 1 ? "" : "s");
   } catch (const Error&) {
-    // Not keys: set() finds another name.
+    // These are no keys; set() finds another name.
   }
 }
 

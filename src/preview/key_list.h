@@ -1,6 +1,5 @@
 #pragma once
-// The keys of a path (scene/key_path.h) that are set while one looks, and the file that `render --path` takes
-// them from.
+// The keys of a path (scene/key_path.h) that the user sets, and their file, which `render --path` reads.
 
 #include <filesystem>
 #include <string>
@@ -12,20 +11,19 @@ namespace binosplat::preview {
 
 class KeyList {
  public:
-  /// Goes on with the keys that an earlier session left in cameras.json of the folder. Other cameras that lie
-  /// there, and what cannot be read, are left alone: these keys then get a file of another name.
+  /// Loads the keys that an earlier session saved as cameras.json in the folder. Never overwrites other
+  /// cameras or unreadable files: the keys then go to a file of another name.
   explicit KeyList(const std::filesystem::path& folder);
 
   const std::vector<Camera>& keys() const { return keys_; }
   const std::filesystem::path& file() const { return file_; }
 
-  // Each writes the file; without keys there is none. One that somebody else has changed since is left alone,
-  // too. Times count from the first key. Throw Error where it cannot be written; then the keys are as they
-  // were.
+  // Each writes the file, or removes it if there are no keys. A file that another program has changed is not
+  // overwritten. Times count from the first key. Throw Error if writing fails; the keys then stay as before.
 
-  /// Behind the last one, key_seconds later.
+  /// Appends a key, key_seconds after the last one.
   void add(Camera camera);
-  /// In the place and at the time of another.
+  /// Replaces a key, but keeps its time.
   void replace(std::size_t k, Camera camera);
   void remove(std::size_t k);
 
@@ -33,14 +31,14 @@ class KeyList {
   void set(std::vector<Camera> keys);
 
   std::filesystem::path file_;
-  std::string written_;  // what the file holds as far as is known; empty: there is none
+  std::string written_;  // expected contents of the file; empty: no file
   std::vector<Camera> keys_;
 };
 
-/// From one key to the next, until --seconds says otherwise.
+/// Time between keys. `render --seconds` overrides it.
 constexpr double key_seconds = 2.0;
 
-/// A file's name in a folder that no file has: NAME_001 and so on, with that ending.
+/// A path that no file has: NAME_001 and so on, with this ending.
 std::filesystem::path free_name(const std::filesystem::path& folder, const std::string& name,
                                 const std::string& ending);
 

@@ -1,5 +1,5 @@
 #pragma once
-// What keys and buttons do, for the panel and for `binosplat view --help`; window_input.cpp does it.
+// The help for keys and buttons, for the panel and `binosplat view --help`. window_input.cpp implements them.
 
 namespace binosplat::preview {
 

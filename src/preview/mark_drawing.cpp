@@ -29,7 +29,7 @@ void MarkDrawing::draw_lines(Eye& eye, const Camera& camera, double near_plane, 
   };
   fit(eye.colours, GL_RGBA8, GL_COLOR_ATTACHMENT0);
   fit(eye.depths, GL_DEPTH_COMPONENT32F, GL_DEPTH_ATTACHMENT);
-  // Some two px, of which a larger picture has more.
+  // About two px, more in large pictures.
   const double px = std::max(1.5, camera.height / 400.0);
   const std::vector<MarkVertex> corners = triangles(lines, camera, near_plane, px);
   const gl::KeptState kept(context);
@@ -63,7 +63,7 @@ render::FrameReport MarkDrawing::draw(render::Frame& frame, std::span<const shar
   std::array<render::MeshDepth, 2> depths;
   for (std::size_t k = 0; k < eyes_.size(); ++k) {
     draw_lines(eyes_[k], eyes[k], near_plane, lines);
-    // 1 / z is 1 / near_plane where the number is 0, and 0 where it is 1.
+    // A depth value of 0 gives 1 / z = 1 / near_plane; 1 gives 0.
     depths[k] = {.texture = eyes_[k].depths->id(),
                  .size = {eyes[k].width, eyes[k].height},
                  .scale = static_cast<float>(-1.0 / near_plane),

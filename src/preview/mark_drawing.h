@@ -1,5 +1,5 @@
 #pragma once
-// Draws a frame with lines among its splats, so that they hide each other.
+// Draws a frame with lines among its splats. Lines and splats occlude each other.
 
 #include <array>
 #include <cstdint>
@@ -21,9 +21,9 @@ class MarkDrawing {
   MarkDrawing(const MarkDrawing&) = delete;
   MarkDrawing& operator=(const MarkDrawing&) = delete;
 
-  /// The frame's draw() of the eyes' views with these lines in them: they are in the frame's pictures, and
-  /// their depths, too. No transmittance is measured, of what lines would hide. `views` as the frame takes
-  /// them, `eyes` the same in the world.
+  /// Draws the eyes' views with these lines, which enter the frame's colours and depths. `views` are as for
+  /// Frame::draw(); `eyes` are the same in the world. Uses no measured transmittance, because lines would
+  /// falsify it.
   render::FrameReport draw(render::Frame& frame, std::span<const shared::View> views,
                            std::span<const Camera, 2> eyes, render::FrameSettings settings,
                            std::span<const Line> lines);
@@ -33,7 +33,7 @@ class MarkDrawing {
     explicit Eye(gl::Context& context) : vertices(context, "lines among the splats") {}
     std::unique_ptr<gl::Texture> colours, depths;
     std::uint32_t framebuffer = 0;
-    gl::Buffer vertices;  // its own: an upload may overtake a draw (gl/buffer.h)
+    gl::Buffer vertices;  // one an eye: an upload may overtake a draw (gl/buffer.h)
   };
   void draw_lines(Eye& eye, const Camera& camera, double near_plane, std::span<const Line> lines);
   void put_behind(gl::Dispatcher& dispatcher, const render::Frame& frame) const;

@@ -13,11 +13,10 @@ namespace binosplat::preview {
 namespace {
 
 constexpr double eyes_above_ground = 1.6, camera_metres = 0.2, above_floor = 0.05;  // m
-/// How many lines a grid has on each side of its middle, at least and at most, a metre apart.
+/// Limits for the number of lines on each side of the grid's middle, a metre apart.
 constexpr double lines_least = 2.0, lines_most = 40.0;
 
-/// A metre, or else the round number of metres, 1, 2 or 5 times a power of ten, of which some 20 reach as far
-/// as the grid should.
+/// A metre, or the round number of metres (1, 2 or 5 times a power of ten) that gives about 20 lines.
 double spacing_for(double reach, double metre) {
   const double metres = reach / metre;
   if (metres >= lines_least && metres <= lines_most) return metre;
@@ -41,7 +40,7 @@ MarkPlaces places_of(const MarkGround& ground, std::span<const Camera> cameras, 
   const double radius = ground.radius;
   MarkPlaces places{.up = up, .reach = 3.0 * radius};
   places.spacing = spacing_for(places.reach, units_per_metre);
-  // Sizes in metres hold within what suits the model, whose units may be no such metres.
+  // Sizes are in metres, but clamped relative to the model, since its units may be wrong.
   const auto length = [&](double metres, double least, double most) {
     return std::clamp(metres * units_per_metre, least * radius, most * radius);
   };
@@ -55,7 +54,7 @@ MarkPlaces places_of(const MarkGround& ground, std::span<const Camera> cameras, 
     if (heights.empty()) heights.push_back(glm::dot(ground.middle, up));
     height = quantile(std::move(heights), 0.5) - length(eyes_above_ground, 0.2, 2.0);
   }
-  // Lines go through whole numbers of spacings from the world's origin, wherever the model's middle is.
+  // Lines pass through multiples of the spacing from the world's origin.
   places.middle = height * up;
   for (const glm::dvec3& axis : level_directions(up))
     places.middle += std::round(glm::dot(ground.middle, axis) / places.spacing) * places.spacing * axis;
@@ -82,7 +81,7 @@ std::vector<Line> camera_lines(std::span<const Camera> cameras, std::size_t here
     const Camera& camera = cameras[k];
     if (glm::distance(camera.position, head) < 1.5 * size) continue;
     const glm::vec3& colour = k == here ? camera_here_colour : camera_colour;
-    // As wide as it sees; panoramas and other wide lenses no wider than long.
+    // The field of view sets the width, which is limited for panoramas and wide lenses.
     const glm::dvec2 half =
         size *
         glm::min(0.5 * glm::dvec2(camera.width, camera.height) / glm::dvec2(camera.fx, camera.fy), 1.0);

@@ -36,7 +36,7 @@ void draw(const std::vector<Message>& messages, float width) {
   const float margin = 0.75f * ImGui::GetFontSize();
   const ImGuiStyle& style = ImGui::GetStyle();
   const float most_across = width - 2.0f * (margin + style.WindowPadding.x);
-  // Dear ImGui itself would know the size of a new text one frame later.
+  // Computes the size itself: Dear ImGui would know it one frame later.
   ImVec2 size = {0.0f, -style.ItemSpacing.y};
   for (const Message& message : messages) {
     const ImVec2 one = ImGui::CalcTextSize(message.text.c_str(), nullptr, false, most_across);
@@ -44,7 +44,7 @@ void draw(const std::vector<Message>& messages, float width) {
   }
   ImGui::SetNextWindowPos({margin, margin});
   ImGui::SetNextWindowSize({size.x + 2.0f * style.WindowPadding.x, size.y + 2.0f * style.WindowPadding.y});
-  // What lies below is clicked, not the text.
+  // Clicks pass through the text.
   ImGui::Begin(
       "messages", nullptr,
       ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoInputs | ImGuiWindowFlags_NoFocusOnAppearing);

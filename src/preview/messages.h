@@ -1,5 +1,5 @@
 #pragma once
-// What the user is told over the picture, whether or not there is a panel.
+// Messages over the picture, with or without the panel.
 
 #include <optional>
 #include <string>
@@ -9,28 +9,27 @@ namespace binosplat::preview {
 
 struct Message {
   std::string text;
-  bool trouble = false;  // something could not be done
+  bool trouble = false;  // a failure
   double until = 0.0;    // s
 };
 
-/// The last thing that was done and the last few troubles, each for as long as it takes to read. Times are s
-/// of one clock that never goes back.
+/// The last action and the last few failures, each for as long as reading takes. Times are s of a monotonic
+/// clock.
 class Messages {
  public:
-  /// Says something. What was done takes the place of what was done before; the same trouble again only
-  /// prolongs what is there.
+  /// Adds a message. An action replaces the previous action. A repeated failure only extends its time.
   void tell(const std::string& text, bool trouble, double now);
-  /// What is to be read now, the oldest first.
+  /// Current messages, the oldest first.
   const std::vector<Message>& at(double now);
-  /// How long until one goes, in s; none: there is none.
+  /// Time until a message ends, in s; none: there are no messages.
   std::optional<double> next_change(double now) const;
 
  private:
   std::vector<Message> messages_;
 };
 
-/// Draws them one below the other, at the upper left, wrapped to a width in px; between ImGui::NewFrame() and
-/// Render().
+/// Draws messages below one another at the upper left, wrapped to `width` px. Call it between
+/// ImGui::NewFrame() and Render().
 void draw(const std::vector<Message>& messages, float width);
 
 }  // namespace binosplat::preview

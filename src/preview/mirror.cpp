@@ -10,8 +10,8 @@ Mirror::Mirror() {
   glfwWindowHint(GLFW_CONTEXT_CREATION_API, GLFW_EGL_CONTEXT_API);
   window_ = open_window(glm::ivec2(960, 960), false);
   glfwMakeContextCurrent(window_);
-  glfwSetInputMode(window_, GLFW_STICKY_KEYS, GLFW_TRUE);  // frames are long beside a tap
-  glfwSwapInterval(0);                                     // the headset keeps the time
+  glfwSetInputMode(window_, GLFW_STICKY_KEYS, GLFW_TRUE);  // catches taps shorter than a frame
+  glfwSwapInterval(0);                                     // the headset sets the frame rate
   context_ = gl::Context::adopt(glfwGetProcAddress);
   log_info("drawing with {} (OpenGL {})", context_->renderer(), context_->version());
 }
@@ -48,7 +48,7 @@ void Mirror::show(const Target& picture, const glm::ivec2& size) {
   gl.Clear(GL_COLOR_BUFFER_BIT);
   gl.BlitNamedFramebuffer(framebuffer_, 0, 0, 0, size.x, size.y, corner.x, corner.y, corner.x + shown.x,
                           corner.y + shown.y, GL_COLOR_BUFFER_BIT, GL_LINEAR);
-  gl.NamedFramebufferTexture(framebuffer_, GL_COLOR_ATTACHMENT0, 0, 0);  // it is the runtime's
+  gl.NamedFramebufferTexture(framebuffer_, GL_COLOR_ATTACHMENT0, 0, 0);  // the runtime owns the texture
   drawn_ = true;
 }
 

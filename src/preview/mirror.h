@@ -1,5 +1,5 @@
 #pragma once
-// A window beside a headset: the context that draws, and what the left eye sees.
+// A window beside a headset: it owns the OpenGL context and shows the left eye.
 
 #include <glm/glm.hpp>
 #include <memory>
@@ -12,8 +12,8 @@ namespace binosplat::preview {
 
 class Mirror {
  public:
-  /// Opens the window and makes its context current: one of EGL, which OpenXR's runtimes take. Throws
-  /// Error(no_gl) as open_window() does.
+  /// Opens the window and makes its context current. The context is EGL's, which OpenXR runtimes require.
+  /// Throws Error(no_gl) as open_window() does.
   Mirror();
   ~Mirror();
   Mirror(const Mirror&) = delete;
@@ -21,23 +21,22 @@ class Mirror {
 
   gl::Context& context() { return *context_; }
 
-  /// Takes the `size` px in the lower left corner of a texture, scaled to what the window has room for.
+  /// Draws the lower left `size` px of a texture, scaled to fit the window.
   void show(const Target& picture, const glm::ivec2& size);
 
-  /// Brings it onto the screen, and takes the window's events: false once it is closed, or Escape was pressed
-  /// in it.
+  /// Swaps buffers and handles the window's events. Returns false if the window was closed or Escape pressed.
   bool step();
 
-  /// Whether F8, which records, was pressed since the last call.
+  /// Whether F8 (record) was pressed since the last call.
   bool take_record_key();
 
  private:
   Glfw glfw_;
   GLFWwindow* window_ = nullptr;
   std::unique_ptr<gl::Context> context_;
-  std::uint32_t framebuffer_ = 0;  // of what is shown
-  bool drawn_ = false;             // and not on the screen yet
-  bool is_record_down_ = false;    // when it was asked last
+  std::uint32_t framebuffer_ = 0;  // for the texture to show
+  bool drawn_ = false;             // drawn, but not swapped yet
+  bool is_record_down_ = false;    // at the last call
 };
 
 }  // namespace binosplat::preview

@@ -10,7 +10,7 @@ Navigator::Navigator(const Camera& camera, const glm::dvec3& up, double distance
     : camera_(camera), up_(glm::normalize(up)), target_(camera.position + distance * camera.rotation[2]) {}
 
 void Navigator::turn(double right, double up, const glm::dvec3& pivot) {
-  // Pitch stops a degree before the poles; where the head is beyond already it may only come back.
+  // Pitch stops a degree before the poles. A head beyond that may only turn back.
   const double pitch = std::asin(std::clamp(glm::dot(camera_.rotation[2], up_), -1.0, 1.0));
   const double most = std::max(std::abs(pitch), glm::radians(89.0));
   const double allowed = std::clamp(pitch + up, -most, most) - pitch;
@@ -19,7 +19,7 @@ void Navigator::turn(double right, double up, const glm::dvec3& pivot) {
   const glm::dvec3 from = camera_.position - pivot, ahead = target_ - pivot;
   camera_.position = pivot + turned * from;
   target_ = pivot + turned * ahead;
-  // Products of many rotations drift: the axes are made orthogonal again.
+  // Rotations accumulate rounding errors: orthogonalise the axes.
   const glm::dvec3 z = glm::normalize(turned * camera_.rotation[2]);
   const glm::dvec3 x =
       glm::normalize(turned * camera_.rotation[0] - z * glm::dot(z, turned * camera_.rotation[0]));

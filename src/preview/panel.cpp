@@ -17,7 +17,7 @@ namespace binosplat::preview {
 
 namespace {
 
-// A choice of shared/axes.h, without those that are left out.
+// A combo box of a choice of shared/axes.h, without `left_out`.
 template <std::size_t n>
 bool combo(const char* label, int& value, const Choice (&choices)[n],
            std::initializer_list<int> left_out = {}) {
@@ -35,13 +35,13 @@ bool combo(const char* label, int& value, const Choice (&choices)[n],
   return changed;
 }
 
-// A slider over a double, by factors.
+// A logarithmic slider of a double.
 bool factor_slider(const char* label, double& value, double least, double most, const char* format) {
   auto number = static_cast<float>(value);
   if (!ImGui::SliderFloat(label, &number, static_cast<float>(least), static_cast<float>(most), format,
                           ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_NoRoundToFormat))
     return false;
-  value = std::max(0.01 * least, static_cast<double>(number));  // typed numbers go beyond the ends
+  value = std::max(0.01 * least, static_cast<double>(number));  // typed numbers may exceed the slider's range
   return true;
 }
 
@@ -61,11 +61,11 @@ bool draw_rig(Choices& choices) {
     changed = true;
   }
   if (rig.convergence) changed |= factor_slider("at", *rig.convergence, 0.2, 50.0, "%.2f m");
-  if (rig.convergence != before) choices.seeks_screen = false;  // for the next model, too
+  if (rig.convergence != before) choices.seeks_screen = false;  // also for the next model
   return changed;
 }
 
-// The right end of the slider is the exact picture.
+// The right end of the slider means exact.
 bool draw_quality(render::FrameSettings& s) {
   constexpr float least = 25.0f, exact = 60.0f;
   float db = s.quality > 0.0f ? s.quality : exact;
@@ -111,7 +111,7 @@ void draw_row(const char* name, const render::FrameReport& report, const std::st
   }
 }
 
-// Pairs, GPU time and error of the picture beside those of the exact one.
+// Pairs, GPU time and error of the drawn picture, and of the exact one.
 void draw_effect(const ThresholdEffect& effect) {
   if (!ImGui::BeginTable("effect", 4)) return;
   for (const char* name : {"", "pairs", "GPU", "PSNR"}) ImGui::TableSetupColumn(name);
@@ -277,7 +277,7 @@ void draw_legend(int show, double most, float width) {
   const float bar = std::max(1.0f, std::min(20.0f * line, width - 2.0f * (margin + style.WindowPadding.x)));
   const std::string title = fmt::format("{}: {}", show_choices[show].name, show_choices[show].help);
   const std::string end = fmt::format("{} and more", most);
-  // Dear ImGui itself would know the size of another text one frame later.
+  // Computes the size itself: Dear ImGui would know it one frame later.
   const float texts = ImGui::CalcTextSize(title.c_str(), nullptr, false, bar).y;
   const ImVec2 size = {bar + 2.0f * style.WindowPadding.x,
                        texts + 2.0f * (line + style.ItemSpacing.y + style.WindowPadding.y)};
@@ -301,14 +301,13 @@ void draw_legend(int show, double most, float width) {
 }
 
 void enable_keys() {
-  // The window's keys hold, whatever widget was pressed last.
+  // The window's keys keep working after a widget was used.
   ImGui::GetIO().ConfigFlags |= ImGuiConfigFlags_NavEnableKeyboard | ImGuiConfigFlags_NavNoCaptureKeyboard;
 }
 
 namespace {
 
-// DejaVu Sans where desktops have it (Debian's place, Fedora's, Arch's), else Dear ImGui's own font of 13 px,
-// made larger.
+// DejaVu Sans at the paths of Debian, Fedora and Arch; else Dear ImGui's own font of 13 px, scaled.
 void choose_font(float scale) {
   ImFontAtlas& fonts = *ImGui::GetIO().Fonts;
   fonts.Clear();

@@ -1,5 +1,5 @@
 #pragma once
-// The preview's widgets (Dear ImGui), beside the picture.
+// The preview's panel of widgets (Dear ImGui), beside the picture.
 
 #include <functional>
 #include <optional>
@@ -9,7 +9,7 @@
 
 namespace binosplat::preview {
 
-/// What buttons ask of the window.
+/// Actions of buttons, which the window implements.
 struct Requests {
   std::function<void()> save_pose, full_screen, add_key, play, record;
   std::function<void(std::size_t key)> move_key, delete_key;
@@ -21,17 +21,17 @@ struct Panel {
   bool walking = false;
   bool playing = false;
   bool recording = false;
-  double budget_ms = 1000.0 / 60.0;  // that a frame may take: the display's
-  bool takes_keys = false;           // Tab and arrows go about in it, wherever the last click was
-  bool stereo_window = false;        // LAYOUT_QUAD_BUFFER may be chosen
+  double budget_ms = 1000.0 / 60.0;  // for a frame: the display's period
+  bool takes_keys = false;           // the panel takes Tab and arrows, wherever the last click was
+  bool stereo_window = false;        // allows LAYOUT_QUAD_BUFFER
   Requests requests;
-  std::optional<double> frames_a_second;  // as they were shown last while the head moved
+  std::optional<double> frames_a_second;  // the last rate while the head moved
 
-  /// How much of a window it takes at the right, both in px: no picture is drawn there. 0 while it is hidden.
+  /// Width of the panel at the right of a window, both in px; 0 if hidden. No picture is drawn there.
   float width(float window) const;
-  /// Between ImGui::NewFrame() and Render().
+  /// Call it between ImGui::NewFrame() and Render().
   void draw(Session& session);
-  /// The next of the layouts that may be chosen, or the one before.
+  /// Changes to the next allowed layout (`by` 1) or the previous one (-1).
   void next_layout(int& layout, int by) const;
 
  private:
@@ -42,18 +42,18 @@ struct Panel {
   void draw_times_of(Session& session);
   void draw_accuracy(Session& session);
 
-  std::string file_;  // that is typed, to be opened
+  std::string file_;  // typed path of a file to open
 };
 
-/// What the colours of a map mean (stereo/debug_view.h), at the lower right of a picture of that width in px.
+/// Draws the colour scale of a map (stereo/debug_view.h) at the lower right of a picture `width` px wide.
 void draw_legend(int show, double most, float width);
 
-/// Tab goes to the next number, to be typed; arrows go from widget to widget, and Space presses one. Once,
-/// after ImGui's context is made.
+/// Enables keys: Tab moves to the next number to type, arrows move between widgets, Space presses. Call it
+/// once, after creation of ImGui's context.
 void enable_keys();
 
-/// Fonts and widgets for a display of that scale, in a window whose framebuffer has `pixels` px for each of
-/// its own units. Between frames.
+/// Sets fonts and widgets for a display's scale. `pixels`: framebuffer px per window unit. Call it between
+/// frames.
 void set_scale(float scale, float pixels);
 
 }  // namespace binosplat::preview

@@ -21,7 +21,7 @@ namespace {
 
 constexpr std::size_t frames_kept = 240;
 
-// Where the densest part of a model lies before a camera: the median view depth of what is ahead.
+// The median view depth of the Gaussians ahead of a camera.
 double depth_ahead(const Model& model, const Camera& of_world) {
   const Camera camera = into_axes(of_world, model.axes);
   std::vector<double> depths;
@@ -40,7 +40,7 @@ double depth_ahead(const Model& model, const Camera& of_world) {
 
 int next_divisor(int divisor, double ms) {
   constexpr int most = 4;
-  // No picture is more than four times as large as the next smaller one.
+  // No picture has more than four times the pixels of the next smaller one.
   if (ms < moving_ms / 4.0) return std::max(1, divisor - 1);
   return ms > moving_ms ? std::min(most, divisor + 1) : divisor;
 }
@@ -134,7 +134,7 @@ void Session::set_up() {
   if (shows_marks()) change();
 }
 
-// Maps come by way of the CPU, as files do: slower than pictures, for as long as they are looked at.
+// Debug views pass through the CPU, so they are slower than pictures.
 void Session::make_shown(std::span<const shared::View> views) {
   shown_ = {};
   if (choices.show == SHOW_PICTURE) {
@@ -157,7 +157,7 @@ bool Session::needs_depth_table() const {
 }
 
 bool Session::measure_depth_table() {
-  // Of levels the table is that of those which stay.
+  // With levels, measure only after they have settled.
   if (!needs_depth_table() || (loaded_.stream && !loaded_.stream->settled())) return false;
   if (!depth_frame_) {
     const glm::ivec2 size = glm::max(eye_size(), glm::ivec2(1));
@@ -192,7 +192,7 @@ render::FrameSettings Session::settings(std::span<const shared::View> views) con
     return exact;
   }
   render::FrameSettings of_frame = choices.policy.settings(choices.settings, views.front(), model().axes);
-  // What is not measured yet lets all light through.
+  // Before the measurement, assume full transmittance.
   if (of_frame.transmittance == TRANSMITTANCE_DEPTH && !choices.policy.is_calibrated())
     of_frame.depth_table = depth_table_.value_or(DepthTable{1.0f, {1.0f}});
   if (loaded_.stream) of_frame.quality = static_cast<float>(loaded_.stream->quality_left(of_frame.quality));
@@ -204,7 +204,7 @@ MarkPlaces Session::mark_places() {
   return places_of(*mark_ground_, start_.cameras, choices.rig.units_per_metre);
 }
 
-// Maps tell of frames as they are without.
+// Debug views show frames without marks.
 bool Session::shows_marks() const {
   return choices.show == SHOW_PICTURE && (choices.grid || (choices.cameras && has_cameras()));
 }
@@ -284,7 +284,7 @@ bool Session::draw() {
   return true;
 }
 
-// Once: a screen that moved with the head would make heads swim.
+// Only once: a screen that moves with the head causes dizziness.
 void Session::find_screen() {
   seeks_screen_ = false;
   if (choices.rig.convergence || choices.rig.cant_degrees != 0.0) return;
@@ -322,10 +322,10 @@ void Session::present() {
   draw(0, LAYOUT_SEPARATE);
   context_.gl().DrawBuffer(GL_BACK_RIGHT);
   draw(1, LAYOUT_SEPARATE);
-  context_.gl().DrawBuffer(GL_BACK);  // both
+  context_.gl().DrawBuffer(GL_BACK);  // both buffers
 }
 
-// What is read of a picture is read of a whole one.
+// Functions that read a picture need it in full size.
 void Session::draw_at_rest() {
   rest();
   draw();
@@ -410,7 +410,7 @@ const std::optional<ThresholdEffect>& Session::threshold_effect() {
 }
 
 Image Session::picture_of(const shared::View& view) {
-  render::Frame other(frame_.model());  // the picture that is shown stays
+  render::Frame other(frame_.model());  // keeps the shown picture
   other.draw({&view, 1}, settings({&view, 1}));
   return composite(other.read_pictures().front(), choices.background);
 }

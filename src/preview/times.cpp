@@ -21,7 +21,7 @@ constexpr std::array<ImU32, 6> stage_colours = {IM_COL32(86, 156, 214, 255),  IM
 constexpr ImU32 whole_colour = IM_COL32(255, 255, 255, 160), budget_colour = IM_COL32(230, 80, 80, 255),
                 event_colour = IM_COL32(255, 170, 40, 255);
 
-/// The bars of a graph: the last of the frames, in px on the screen.
+/// Geometry of the bar graph of the last frames, in px on the screen.
 struct Graph {
   ImVec2 at;
   float width, height, bar;

@@ -1,5 +1,5 @@
 #pragma once
-// What frames took, as widgets.
+// Widgets for frame times.
 
 #include <deque>
 #include <optional>
@@ -10,11 +10,11 @@ namespace binosplat::preview {
 
 using Frames = std::deque<render::FrameRecord>;
 
-/// GPU time of the last frame, and how many were shown a second where that is known.
+/// Draws the GPU time of the last frame, and the frame rate if known.
 void draw_speed(const Frames& frames, const std::optional<double>& frames_a_second);
 
-/// Stage times of the last frames as stacked bars, under a line of the whole time and one of what a frame may
-/// take; marks at frames in which something happened, which the mouse tells; and what the last one came by.
+/// Draws stage times of the last frames as stacked bars, with lines for total time and budget. Marks frames
+/// with events, which a tooltip lists. Also lists the stages of the last frame.
 void draw_times(const Frames& frames, double budget_ms);
 
 }  // namespace binosplat::preview

@@ -20,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// After so many seconds without a move the picture is drawn in full.
+// Time without movement after which the picture is drawn in full.
 constexpr double seconds_to_rest = 0.2;
 
 fs::file_time_type newest(const fs::path& folder) {
@@ -96,7 +96,7 @@ void Window::run() {
       if (session_->moving() && glfwGetTime() - moved_at_ > seconds_to_rest) session_->rest();
       follow_levels();
       measure_depth_table();
-      if (recording_) session_->change_show();  // at rest, too
+      if (recording_) session_->change_show();  // also at rest
       if (draw()) {
         if (recording_) record(session_->frames().back());
         measure_pace();
@@ -108,7 +108,7 @@ void Window::run() {
     context_->check_alive();
   }
   if (loading_.loaded.valid() || levels_move()) {
-    // Nobody waits for a model that is not looked at, and nothing but memory was taken for it.
+    // The model would not be seen, and reading it has only taken memory: quit without waiting.
     log_info("left while {} was being read", loading_.loaded.valid() ? loading_.scene.name : scene_.name);
     std::quick_exit(0);
   }
@@ -116,8 +116,7 @@ void Window::run() {
   log_info("{} frames were drawn, {} shown", session_ ? session_->frames_drawn() : 0, shown_);
 }
 
-// At rest nothing is drawn: only input, a model that is being read, a message that goes, or shaders that are
-// watched, end the wait.
+// At rest nothing is drawn. Input, loading models, expiring messages and watched shaders end the wait.
 void Window::wait() {
   if (ui_frames_ > 0 || going() || playing_ || recording_) return glfwPollEvents();
   drawn_at_.reset();
@@ -139,7 +138,7 @@ void Window::take_loaded() {
   if (!loading_.loaded.valid() ||
       loading_.loaded.wait_for(std::chrono::seconds(0)) != std::future_status::ready)
     return;
-  if (!loading_.is_read) {  // first say so: the driver takes the model in one go
+  if (!loading_.is_read) {  // show a message first, because the upload blocks
     loading_.is_read = true;
     ui_frames_ = 1;
     return;
@@ -160,7 +159,7 @@ void Window::take_loaded() {
   ui_frames_ = 3;
 }
 
-// `is_same`: the scene that is shown, whose head and choices stay.
+// `is_same`: a reload of the current scene, which keeps head and choices.
 void Window::show_model(const Opened& scene, Loaded loaded, bool is_same) {
   Choices choices = session_ ? session_->choices : choices_;
   Start start = scene.start(loaded.shown(), choices);
@@ -170,16 +169,16 @@ void Window::show_model(const Opened& scene, Loaded loaded, bool is_same) {
     head = session_->head;
     keys = session_->keys;
     choices = session_->choices;
-    choices.seeks_screen = choices.seeks_screen && !choices.rig.convergence;  // it stays where it is
+    choices.seeks_screen = choices.seeks_screen && !choices.rig.convergence;  // a found screen stays
   }
-  session_.reset();  // its memory first
+  session_.reset();  // frees its memory first
   levels_ = {loaded.stream != nullptr, false, loaded.gaussians()};
   session_ = std::make_unique<Session>(*context_, std::move(loaded), std::move(start), choices, scene.folder);
   if (head) session_->head = *head;
   if (keys) session_->keys = *keys;
 }
 
-// While a model of a moving scene is shown, the next one is read.
+// Shows the next model of a moving scene when it is due; a thread reads it meanwhile.
 void Window::take_turn() {
   if (!turns()) return;
   const std::size_t next = (turn_.shown + 1) % (scene_.more.size() + 1);
@@ -199,10 +198,10 @@ void Window::take_turn() {
 
 bool Window::levels_move() const { return levels_.follow && !session_->stream()->settled(); }
 
-// What cannot be read leaves the levels as they are.
+// If reading fails, the current levels stay.
 void Window::follow_levels() {
   if (!levels_.follow) return;
-  // They may come to rest between two calls, in the thread that reads.
+  // Levels may settle between two calls, in the reading thread.
   const bool moved = levels_.moved || levels_move();
   try {
     session_->follow_levels();
@@ -215,7 +214,7 @@ void Window::follow_levels() {
                db ? fmt::format(", {:.1f} dB predicted", *db) : "");
     }
   } catch (const Error& error) {
-    // A GPU without room has lost a part of the model by now.
+    // If the GPU's memory was exhausted, a part of the model is lost.
     if (error.code() == ExitCode::no_gl || error.code() == ExitCode::out_of_memory) throw;
     levels_.follow = false;
     tell(error.what(), true);
@@ -231,7 +230,7 @@ void Window::measure_depth_table() {
     is_measuring_ = session_->measure_depth_table();
   } catch (const Error& error) {
     if (error.code() == ExitCode::no_gl || error.code() == ExitCode::out_of_memory) throw;
-    session_->choices.settings.transmittance = TRANSMITTANCE_ONE;  // or it would be tried again and again
+    session_->choices.settings.transmittance = TRANSMITTANCE_ONE;  // otherwise it would fail again
     session_->change();
     return tell(error.what(), true);
   }
@@ -254,7 +253,7 @@ void Window::reload_shaders() {
   tell("shaders were read again");
 }
 
-// What there is to see beside the panel at the window's size; false if nothing changed.
+// Draws the picture in the window's area beside the panel. Returns false if nothing changed.
 bool Window::draw() {
   glm::ivec2 window, size;
   glfwGetWindowSize(window_, &window.x, &window.y);
@@ -275,7 +274,7 @@ bool Window::draw() {
   return drawn;
 }
 
-// Only frames that follow one another tell how many come a second.
+// Measures the frame rate, only from frames in direct succession.
 void Window::measure_pace() {
   const double now = glfwGetTime();
   if (!drawn_at_) frame_seconds_.clear();
@@ -321,7 +320,7 @@ void Window::show() {
   if (session_) announced_ = true;
 }
 
-// Widgets are as large as the display's scale says, wherever the window is moved.
+// Scales widgets to the display's scale, which may change when the window moves.
 void Window::rescale() {
   scale_changed_ = false;
   float scale = 1.0f, ignored = 1.0f;
@@ -331,7 +330,7 @@ void Window::rescale() {
   glfwGetFramebufferSize(window_, &framebuffer.x, &framebuffer.y);
   set_scale(scale,
             static_cast<float>(std::max(1, framebuffer.x)) / static_cast<float>(std::max(1, window.x)));
-  ImGui_ImplOpenGL3_DestroyDeviceObjects();  // made anew with the next frame, the fonts' texture, too
+  ImGui_ImplOpenGL3_DestroyDeviceObjects();  // recreated with the next frame, with the fonts' texture
 }
 
 void Window::tell(const std::string& message, bool trouble) {

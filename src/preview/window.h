@@ -1,5 +1,5 @@
 #pragma once
-// The preview's window (GLFW): input, and when to draw.
+// The preview's window (GLFW).
 
 #include <filesystem>
 #include <functional>
@@ -13,38 +13,35 @@
 
 namespace binosplat::preview {
 
-/// A scene to open: read in a thread of its own, then shown.
+/// A scene to open. A thread reads it, then the window shows it.
 struct Opened {
   std::string name;
-  std::filesystem::path folder;     // for its pictures and keys
-  std::function<void()> claim;      // called before each that is written there; may be empty
-  std::filesystem::path pose_file;  // where its pose is saved; empty: nowhere
+  std::filesystem::path folder;     // for saved pictures and keys
+  std::function<void()> claim;      // called before each file is written there; may be empty
+  std::filesystem::path pose_file;  // for saved poses; empty: none
   std::function<Loaded()> load;
-  /// Sets what of the choices follows from the model, too, such as the near plane.
+  /// Sets the choices that also depend on the model, such as the near plane.
   std::function<Start(const Model& model, Choices& choices)> start;
-  /// Of a moving scene the models after that of `load`: so many a second, again and again, or as fast as they
-  /// can be read.
+  /// The further models of a moving scene, after that of `load`. The window shows `fps` of them a second in a
+  /// loop, or as many as it can read.
   std::vector<std::function<Loaded()>> more;
   double fps = 0.0;
 };
 
-/// Writes frames of a scene, that were recorded with this context, into a new folder. `draw` draws one of
-/// their views once more.
+/// Writes recorded frames of this context into a new folder. `draw` draws one of their views again.
 using SaveRecording = std::function<void(const std::filesystem::path& folder, const std::string& scene,
                                          const gl::Context& context, render::Recording recording,
                                          const std::function<Image(const shared::View& view)>& draw)>;
 
 struct WindowSettings {
-  std::optional<glm::ivec2> size;  // px; none: what suits the display
-  std::filesystem::path
-      shader_folder;  // empty: the embedded shaders; else they are read again when they change
+  std::optional<glm::ivec2> size;       // px; none: suits the display
+  std::filesystem::path shader_folder;  // empty: embedded; else reloaded on change
   SaveRecording save_recording;
 };
 
-/// Shows a scene until the window is closed; files dropped on it are opened with `open`, whose Errors are
-/// shown. With LAYOUT_QUAD_BUFFER the window is a stereo one. Throws Error(no_gl) where there is no display,
-/// none with OpenGL 4.5 or no stereo window, and when the GPU is lost; and what reading the first scene
-/// throws.
+/// Shows a scene until the window is closed. `open` opens files dropped on the window; its Errors become
+/// messages. LAYOUT_QUAD_BUFFER opens a stereo window. Throws Error(no_gl) without a display, OpenGL 4.5 or a
+/// stereo window, and if the GPU is lost. Rethrows errors of reading the first scene.
 void run(Opened scene, const Choices& choices, const WindowSettings& settings,
          const std::function<Opened(const std::string& file)>& open);
 

@@ -1,4 +1,4 @@
-// What hands do to the window; keys.h tells of it.
+// Handles the window's input; keys.h documents it.
 
 #include <imgui.h>
 
@@ -48,7 +48,7 @@ void Window::moved() {
   session_->move();
 }
 
-// Held keys go half the distance to the target a second; with Shift four times as fast.
+// Held keys move by half the distance to the target a second, four times that with Shift.
 void Window::go() {
   const double now = glfwGetTime();
   const double seconds = std::min(0.1, now - went_at_);
@@ -61,7 +61,7 @@ void Window::go() {
 }
 
 void Window::drag(const glm::dvec2& at) {
-  // Radians a pixel: a window's width is some 3 of them, on a display of any scale.
+  // Radians per pixel: about 3 for the width of a window, at any display scale.
   const glm::dvec2 by = (at - cursor_) / (400.0 * ImGui::GetFontSize() / 13.0);
   cursor_ = at;
   ui_frames_ = 3;
@@ -107,7 +107,7 @@ void Window::open_file(const std::string& file) {
   }
 }
 
-// The same model as its file is now.
+// Reloads the model's file.
 void Window::read_again() {
   if (loading_.loaded.valid()) return;
   load(scene_, true);
@@ -115,10 +115,10 @@ void Window::read_again() {
 
 namespace {
 
-// The next of a list's choices.
+// Advances to the next of `count` choices.
 void next(int& value, int count, int by) { value = (value + by + count) % count; }
 
-// What goes about in the panel, once Tab or an arrow has begun that.
+// Keys of the panel's navigation, after Tab or an arrow has started it.
 bool is_for_widgets(int key) {
   if (!ImGui::GetIO().NavVisible) return false;
   return key == GLFW_KEY_SPACE || key == GLFW_KEY_ENTER || key == GLFW_KEY_ESCAPE;
@@ -213,7 +213,7 @@ void Window::play_or_stop() {
   }
 }
 
-// By the keys' times, however many frames come of it, until hands move the head.
+// Plays the path by its keys' times until the user moves the head.
 void Window::play() {
   if (!playing_) return;
   const Camera& head = session_->head.camera();
@@ -233,10 +233,10 @@ void Window::delete_key(std::size_t k) {
   });
 }
 
-// Tells which file was written, or why not.
+// Shows which file was written, or the error.
 void Window::save(const std::function<std::string()>& write) {
   try {
-    draw();  // what has changed since the last frame, the size among it
+    draw();  // applies changes since the last frame, such as the size
     const std::string file = write();
     tell("saved " + file);
     log_info("saved {}", file);
@@ -252,7 +252,7 @@ void Window::save_in_folder(const std::function<std::string()>& write) {
   });
 }
 
-// A frame is due as often as the display shows one, and of the size that it has at rest.
+// Frames are due at the display's rate, in full size.
 void Window::record_or_stop() {
   constexpr double seconds = 10.0;
   session_->keeps_size = !recording_;

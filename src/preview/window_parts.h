@@ -1,6 +1,5 @@
 #pragma once
-// The preview's window as its own files see it: window.cpp reads, draws and shows, window_input.cpp follows
-// hands.
+// The class of the preview's window: window.cpp loads, draws and presents, window_input.cpp handles input.
 
 #include <deque>
 #include <filesystem>
@@ -26,9 +25,9 @@ class Window {
   Window(const Window&) = delete;
   Window& operator=(const Window&) = delete;
 
-  /// Has a scene read, to be shown once that is done; `again`: the one that is shown, as its file is now.
+  /// Starts reading a scene, which is shown when complete. `again`: the current scene, from its changed file.
   void load(Opened scene, bool again = false);
-  /// Until it is closed.
+  /// Runs until the window is closed.
   void run();
 
  private:
@@ -48,7 +47,7 @@ class Window {
   void rescale();
   void tell(const std::string& message, bool trouble = false);
 
-  // What hands do.
+  // Input.
   bool down(int key) const { return glfwGetKey(window_, key) == GLFW_PRESS; }
   glm::dvec3 direction() const;
   bool going() const { return direction() != glm::dvec3(0.0); }
@@ -80,53 +79,53 @@ class Window {
   std::unique_ptr<Session> session_;
   Panel panel_;
   Messages messages_;
-  Opened scene_;            // what is shown
-  bool announced_ = false;  // that its first frame takes longer
-  /// A scene that is being read, in place of the one that is shown.
+  Opened scene_;            // the current scene
+  bool announced_ = false;  // a message has announced that its first frame takes longer
+  /// A scene that a thread reads while the current one is shown.
   struct Loading {
     Opened scene;
-    bool is_same = false;  // as the one that is shown, whose file may have changed
-    bool is_read = false;  // and to be handed to the GPU
+    bool is_same = false;  // a reload of the current scene
+    bool is_read = false;  // complete, to be uploaded
     std::future<Loaded> loaded;
     double since = 0.0;
   };
   Loading loading_;
-  /// Models of a moving scene.
+  /// The models of a moving scene.
   struct Turn {
-    std::size_t shown = 0;     // 0: that of scene_.load, and so on
-    std::future<Loaded> next;  // is read meanwhile
+    std::size_t shown = 0;     // 0: that of scene_.load; then those of scene_.more
+    std::future<Loaded> next;  // a thread reads it
     double due = 0.0;
     bool is_held = false;
   };
   Turn turn_;
-  /// Levels of detail of the scene that is shown.
+  /// Levels of detail of the current scene.
   struct Levels {
-    bool follow = false;        // until they cannot be read
-    bool moved = false;         // when they were followed last
-    std::size_t gaussians = 0;  // that the log reported last
+    bool follow = false;        // false after a failed read
+    bool moved = false;         // at the last follow_levels()
+    std::size_t gaussians = 0;  // in the last log line
   };
   Levels levels_;
-  bool is_measuring_ = false;                                 // a table of transmittance by depth
-  double went_at_ = 0.0, clicked_at_ = 0.0, moved_at_ = 0.0;  // s: when hands did that
+  bool is_measuring_ = false;                                 // the table of transmittance by depth
+  double went_at_ = 0.0, clicked_at_ = 0.0, moved_at_ = 0.0;  // s: times of input
   glm::dvec2 cursor_{0.0};
-  /// The path that the head is taken along; it ends where somebody moves the head.
+  /// A path that plays until the user moves the head.
   struct Playing {
     KeyPath path;
     double since = 0.0;
-    Camera head = {};  // where that has brought it
+    Camera head = {};  // the last pose that it set
   };
   std::optional<Playing> playing_;
-  /// Frames that are recorded, until then.
+  /// A recording, with the time of its end.
   struct Recording {
     render::Recorder recorder;
     double until = 0.0;
   };
   std::optional<Recording> recording_;
-  std::optional<double> drawn_at_;    // the last frame, where the next may follow at once
-  std::deque<double> frame_seconds_;  // between the last frames that did
+  std::optional<double> drawn_at_;    // time of the last frame, if the next follows directly
+  std::deque<double> frame_seconds_;  // between successive frames
   std::filesystem::file_time_type shaders_changed_;
   bool scale_changed_ = false;
-  int ui_frames_ = 3;  // still to show: widgets take some frames to settle after an event
+  int ui_frames_ = 3;  // frames still to show: widgets need some to settle after an event
   std::size_t shown_ = 0;
 };
 

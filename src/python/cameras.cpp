@@ -1,4 +1,4 @@
-// Cameras and rigs: from files, made up for a model, or given by numbers.
+// Cameras and rigs: read from files, made from a model, or given by numbers.
 
 #include <fmt/ranges.h>
 
@@ -100,7 +100,7 @@ std::vector<Camera> cameras_at(const std::filesystem::path& path,
   return cameras;
 }
 
-/// An array that shares its numbers with nothing, and cannot be written.
+/// A read-only array with its own copy of the numbers.
 py::array constant(const std::vector<py::ssize_t>& shape, const double* values) {
   py::array_t<double> array(shape, values);
   array.attr("flags").attr("writeable") = false;

@@ -57,7 +57,7 @@ void GlThread::loop() {
     {
       const std::function<void()>& job = jobs_.front();
       lock.unlock();
-      job();  // what it throws, its future keeps
+      job();  // its future stores exceptions
       lock.lock();
     }
     jobs_.pop_front();

@@ -1,6 +1,6 @@
 #pragma once
-// A thread of its own for an OpenGL context. A context is current on one thread; Python calls from any, and
-// collects garbage on any. And a context of the caller's, current on the caller's thread, stays so.
+// A thread that owns an OpenGL context. A context is current on one thread, but Python calls and collects
+// garbage on any. A context that the caller has made current on its own thread stays so.
 
 #include <condition_variable>
 #include <deque>
@@ -17,36 +17,36 @@ namespace binosplat::python {
 
 class GlThread {
  public:
-  /// Throws Error in a process that was forked from one with such a thread, as every call does: threads and
-  /// OpenGL drivers do not survive that.
+  /// Throws Error, as every call does, in a process that was forked after such a thread started: threads and
+  /// OpenGL drivers do not survive a fork.
   GlThread();
-  /// Not in a process that was forked from this one: there is no thread to wait for, so leave it alone.
+  /// Do not destroy it in a forked process, where the thread to join does not exist.
   ~GlThread();
   GlThread(const GlThread&) = delete;
   GlThread& operator=(const GlThread&) = delete;
 
-  /// Whether this is the process that the first of these threads was started in.
+  /// Whether this process started the first of these threads.
   static bool in_its_process();
 
-  /// Has the thread call `work` after what it was given before, and returns at once. The result may be
-  /// dropped, so `work` must refer to nothing of the caller's; nor may it need Python's lock.
+  /// Queues `work` for the thread and returns at once. The caller may drop the result, so `work` must not
+  /// refer to the caller's objects. It must not need Python's lock.
   template <typename Work>
   auto start(Work work) -> std::future<decltype(work())> {
     check_process();
-    // Shared, because the caller may have the result before the thread is out of the call.
+    // Shared, because the caller may have the result before the thread leaves the call.
     const auto task = std::make_shared<std::packaged_task<decltype(work())()>>(std::move(work));
     auto result = task->get_future();
     hand_over([task, lives = std::make_shared<const Outlived>()] { (*task)(); });
     return result;
   }
 
-  /// The same, and waits: returns or throws what `work` does.
+  /// The same, but waits: returns the result of `work` or rethrows its exception.
   template <typename Work>
   auto run(Work work) -> decltype(work()) {
     return start(std::move(work)).get();
   }
 
-  /// Whether it has work that is not done.
+  /// Whether work is queued or running.
   bool is_busy();
 
  private:
@@ -56,7 +56,7 @@ class GlThread {
 
   std::mutex mutex_;
   std::condition_variable changed_;
-  std::deque<std::function<void()>> jobs_;  // the first one is under way
+  std::deque<std::function<void()>> jobs_;  // the first one is running
   bool ended_ = false;
   std::thread thread_;
 };

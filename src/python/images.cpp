@@ -1,4 +1,4 @@
-// Pictures as arrays: from files, with the exposures of photos, and how far two are apart.
+// Pictures as arrays: files, exposures of photos, and comparisons.
 
 #include <algorithm>
 #include <array>
@@ -18,7 +18,7 @@ namespace binosplat::python {
 
 namespace {
 
-/// Of an array that the package's _picture() made.
+/// Converts an array from the package's _picture().
 Image image_of(const Dense<>& array) {
   const auto side = [&](py::ssize_t axis) {
     return static_cast<int>(array.ndim() > axis ? array.shape(axis) : 1);
@@ -54,7 +54,7 @@ measure::Comparison compare_images(Image& first, Image& second, double pixels_pe
   return measure::compare(first, second, pixels_per_degree);
 }
 
-/// In the order of the package's Comparison.
+/// The members of the package's Comparison, in its order.
 py::tuple compare(const Dense<>& a, const Dense<>& b, double pixels_per_degree,
                   const std::optional<std::array<float, 3>>& background) {
   Image first = image_of(a), second = image_of(b);
@@ -64,7 +64,7 @@ py::tuple compare(const Dense<>& a, const Dense<>& b, double pixels_per_degree,
                         py::make_tuple(largest.y, largest.x, largest.channel));
 }
 
-/// The four columns of three numbers that base/image.h takes.
+/// The exposure in the form of base/image.h: four columns of three numbers.
 py::array columns_of(const Exposures& exposures, const std::string& view) {
   const glm::mat4x3 columns = exposures.of(view);
   return Dense<>({4, 3}, &columns[0].x);
@@ -83,7 +83,7 @@ py::array array_of(Image&& image) {
 }
 
 void add_images(py::module_& module) {
-  // Looks NumPy up, once: two threads whose first arrays come at the same time would wait for each other.
+  // Imports NumPy now: if two threads made their first arrays at once, they would deadlock.
   const py::array_t<float> first(0);
   module.def("load_image", &image_at, py::arg("path"));
   module.def("save_png", &write_png, py::arg("path"), py::arg("picture"), py::arg("bits"));

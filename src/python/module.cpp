@@ -14,14 +14,14 @@ namespace binosplat::python {
 
 namespace {
 
-// The package's exceptions, by ExitCode. Never freed: one may be thrown while Python ends.
+// The package's exceptions, by ExitCode. Never freed: one may be thrown during Python's shutdown.
 std::array<PyObject*, 5> error_types{};
 
 void translate(std::exception_ptr thrown) {
   try {
     if (thrown) std::rethrow_exception(std::move(thrown));
   } catch (const Error& error) {
-    // Texts quote names of files, which need not be UTF-8.
+    // Texts quote file names, which may not be UTF-8.
     const std::string_view text = error.what();
     const auto words = py::reinterpret_steal<py::object>(
         PyUnicode_DecodeUTF8(text.data(), static_cast<Py_ssize_t>(text.size()), "replace"));
@@ -34,7 +34,7 @@ void translate(std::exception_ptr thrown) {
 }  // namespace
 
 void add_errors() {
-  const auto package = py::module_::import("binosplat");  // which has come as far as its errors
+  const auto package = py::module_::import("binosplat");  // already initialised up to its exceptions
   const auto type = [&](const char* name) { return package.attr(name).cast<py::object>().release().ptr(); };
   error_types.fill(type("Error"));
   error_types[static_cast<std::size_t>(ExitCode::bad_input)] = type("InputError");

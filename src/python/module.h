@@ -1,6 +1,6 @@
 #pragma once
-// What the parts of the private module _binosplat share. binosplat/__init__.py has what users see of it, with
-// types and documentation: there arguments get their defaults, and arrays their checks.
+// Shared declarations of the private module _binosplat. binosplat/__init__.py is its public side, with types,
+// documentation, defaults of arguments and checks of arrays.
 
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
@@ -30,21 +30,21 @@ void add_renderer(py::module_& module);
 template <typename T = float>
 using Dense = py::array_t<T, py::array::c_style>;
 
-/// The picture as float32 of (height, width, channels), of one channel as (height, width). Takes its memory
-/// over.
+/// The picture as float32: (height, width, channels), or (height, width) for one channel. Takes over its
+/// memory.
 py::array array_of(Image&& image);
 
-/// Both eyes of a head, as the class Rig of the package holds them.
+/// Both eyes of a head, as the package's class Rig stores them.
 struct Rig {
-  Camera head;                                // where there are no `eyes`
-  std::optional<std::array<Camera, 2>> eyes;  // given as a pair
+  Camera head;                                // used if there are no `eyes`
+  std::optional<std::array<Camera, 2>> eyes;  // a given pair
   stereo::RigSettings settings;
 
-  /// In the frame of a model with these axes (scene/axes.h). Throws Error as stereo::make_rig does.
+  /// The eyes in the frame of a model with these axes (scene/axes.h). Throws Error as stereo::make_rig does.
   stereo::EyePair pair(const ModelAxes& axes = {}, double near_plane = near_default) const;
 };
 
-// Of and to the package's classes Camera and Rig.
+// Conversions from and to the package's classes Camera and Rig.
 bool is_a(py::handle value, const char* name);
 Camera camera_of(py::handle value);
 py::object object_of(const Camera& camera);

@@ -1,4 +1,4 @@
-// Frames as arrays.
+// Draws frames into arrays.
 
 #include <cmath>
 #include <filesystem>
@@ -55,7 +55,7 @@ void check(const Settings& settings, const Model& model, bool given) {
     fail("transmittance last: needs follow=True; it is the light that the frame before measured");
 }
 
-/// The views of a camera or of both eyes in the model's frame.
+/// The views of a camera, or of both eyes, in the model's frame.
 std::vector<shared::View> views_of(const std::variant<Camera, Rig>& view, const ModelAxes& axes,
                                    double near_plane) {
   if (const auto* camera = std::get_if<Camera>(&view))
@@ -76,13 +76,13 @@ py::dict dict_of(const render::FrameReport& report) {
                   "is_cut"_a = report.is_cut);
 }
 
-/// The number of a choice; nothing for none.
+/// The index of a choice; none without a value.
 std::optional<int> chosen(const char* name, const std::optional<std::string>& value,
                           std::span<const Choice> choices) {
   return value ? std::optional(find_choice(name, *value, choices)) : std::nullopt;
 }
 
-/// Of draw()'s keywords.
+/// Converts the keywords of draw().
 Settings settings_of(const Renderer& renderer, const std::optional<float>& quality,
                      const std::optional<float>& tolerance, const std::optional<std::string>& th,
                      const std::string& transmittance, const std::optional<std::string>& order,
@@ -115,7 +115,7 @@ Settings settings_of(const Renderer& renderer, const std::optional<float>& quali
   return all;
 }
 
-/// The three arrays of each view, and what they have in common.
+/// The three arrays of each view, and the report of the frame.
 py::tuple arrays_of(Drawn drawn) {
   py::list arrays;
   for (ViewImages& images : drawn.views) {
@@ -128,13 +128,13 @@ py::tuple arrays_of(Drawn drawn) {
 
 using SeenBy = std::variant<Camera, Rig>;
 
-// A Renderer that is held here outlives what Python does to its own while it ends.
+// Holds the Renderer here, so that it survives Python's shutdown.
 py::tuple draw(const std::shared_ptr<Renderer>& renderer, const SeenBy& view, const Settings& settings) {
   const Views views = views_of(view, renderer->model().axes, settings.near_plane);
   return arrays_of(awaited(renderer->draw(views, settings)));
 }
 
-/// The frames of draw_all(), of which the GPU draws the next one while Python has the last one.
+/// The frames of draw_all(). The GPU draws the next one while Python uses the last one.
 class Frames {
  public:
   Frames(std::shared_ptr<Renderer> renderer, const Settings& settings)
@@ -150,7 +150,7 @@ class Frames {
     awaited(renderer_->begin(path_, views(first), settings_));
   }
 
-  /// What was begun, or handed over last as the one that follows.
+  /// Returns the frame submitted before, and submits `following`.
   py::tuple next(const std::optional<SeenBy>& following) {
     const std::optional<Views> more = following ? std::optional(views(*following)) : std::nullopt;
     return arrays_of(awaited(renderer_->next(path_, more, settings_)));

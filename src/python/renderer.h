@@ -1,5 +1,5 @@
 #pragma once
-// A model on the GPU, drawn on a thread of its own.
+// A model on the GPU, which a separate thread draws.
 
 #include <atomic>
 #include <cstdint>
@@ -20,7 +20,7 @@
 
 namespace binosplat::python {
 
-/// What draw() leaves of a view.
+/// The results of draw() for a view.
 struct ViewImages {
   Image colour, transmittance, depth;
 };
@@ -46,7 +46,7 @@ inline Drawn drawn_of(render::FrameReport report, const std::vector<Picture>& pi
 
 using Views = std::vector<shared::View>;
 
-/// What a frame is drawn by; `follow`: it goes by what the one before measured.
+/// The settings of a frame. `follow`: it uses the previous frame's measurements.
 struct Settings {
   render::FrameSettings frame;
   render::ThresholdPolicy policy;
@@ -59,7 +59,7 @@ inline render::FrameSettings frame_of(const Settings& settings, const Views& vie
   return settings.policy.settings(settings.frame, views.front(), model.axes);
 }
 
-/// Frames of which the GPU draws the next one while Python has the last one.
+/// A sequence of frames. The GPU draws the next one while Python uses the last one.
 struct Path {
   Path(gl::Context& context, std::shared_ptr<render::GpuModel> model)
       : frame(std::move(model)), read_back(context) {}
@@ -82,11 +82,11 @@ class Renderer {
     device_ = fmt::format("{} ({}, OpenGL {})", context.renderer(), context.backend(), context.version());
   }
   ~Renderer() {
-    const bool is_here = GlThread::in_its_process();  // else neither has survived the fork
+    const bool is_here = GlThread::in_its_process();  // in a fork, thread and context are gone
     if (is_here && !(Unlocked::ends_by_interrupt() && thread_->is_busy())) {
       close();
     } else {
-      // What the thread may still use is left to it.
+      // Leak all that the thread may still use.
       static_cast<void>(thread_.release());
       static_cast<void>(on_gpu_.release());
       static_cast<void>(std::make_unique<std::shared_ptr<const Model>>(model_).release());
@@ -108,7 +108,7 @@ class Renderer {
     });
   }
 
-  /// A number for a path, which begin() makes; it ends with end() or close().
+  /// A new path's number. begin() creates the path; end() or close() destroys it.
   static std::uint64_t new_path() {
     static std::atomic<std::uint64_t> last = 0;
     return ++last;
@@ -122,7 +122,7 @@ class Renderer {
     });
   }
 
-  /// What was begun; where there are views to follow, the GPU draws them from now on.
+  /// Returns the frame that was submitted before. If `following` is given, the GPU starts to draw it.
   std::future<Drawn> next(std::uint64_t number, const std::optional<Views>& following,
                           const Settings& settings) {
     return thread_->start([this, number, following, settings] {
@@ -137,7 +137,7 @@ class Renderer {
     });
   }
 
-  /// Does not wait for it.
+  /// Does not wait for the thread.
   void end(std::uint64_t number) {
     thread_->start([this, number] {
       if (on_gpu_) on_gpu_->paths.erase(number);
@@ -168,7 +168,7 @@ class Renderer {
   int precision_;
   std::string device_;
   std::unique_ptr<GlThread> thread_;
-  std::unique_ptr<OnGpu> on_gpu_;  // made, used and destroyed on the thread
+  std::unique_ptr<OnGpu> on_gpu_;  // created, used and destroyed on the thread
 };
 
 }  // namespace binosplat::python

@@ -37,11 +37,11 @@ void wait_for_all() {
 Unlocked::Unlocked() : state_(PyEval_SaveThread()) { ++alive; }
 
 Unlocked::~Unlocked() {
-  // Beyond its end Python would let the thread pass.
+  // After its end, Python would let the thread continue.
   if (python_is_gone) sleep_to_the_end();
   try {
     PyEval_RestoreThread(state_);
-  } catch (...) {  // pthread_exit(), which Python calls once it has begun to end
+  } catch (...) {  // Python calls pthread_exit() during its shutdown
     sleep_to_the_end();
   }
   leave();
@@ -50,12 +50,12 @@ Unlocked::~Unlocked() {
 void Unlocked::outlive_all() {
   Py_AtExit(wait_for_all);
   namespace py = pybind11;
-  // Python keeps there what it has shown as the reason of its end.
+  // Python stores the exception that ended it in sys.last_type.
   py::module_::import("atexit").attr("register")(py::cpp_function([] {
     const py::object last = py::getattr(py::module_::import("sys"), "last_type", py::none());
     is_interrupted = last.is(py::handle(PyExc_KeyboardInterrupt));
   }));
-  // The threads of the others are not in a process that is forked.
+  // A forked process lacks the other threads.
   pthread_atfork(nullptr, nullptr, [] { alive = 0; });
 }
 

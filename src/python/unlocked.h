@@ -1,5 +1,5 @@
 #pragma once
-// Work of ours beside Python's.
+// Work without Python's lock.
 
 #include <pybind11/pybind11.h>
 
@@ -9,10 +9,10 @@
 
 namespace binosplat::python {
 
-/// While one lives, Python's other threads may run; the thread that made it calls nothing of Python's, and
-/// uses no more than it holds itself: Python frees what daemon threads were given when it ends. In the place
-/// of py::gil_scoped_release: where Python has ended meanwhile, as it does beside daemon threads, the thread
-/// sleeps until the process has, too. Python would end it by an exception that no destructor lets pass.
+/// Releases Python's lock while it exists, as py::gil_scoped_release. The thread must not call Python, and
+/// must own all that it uses: Python's shutdown frees objects of daemon threads. If Python has ended
+/// meanwhile, the thread sleeps until the process ends. Otherwise Python would end it by an exception that no
+/// destructor can pass.
 class Unlocked {
  public:
   Unlocked();
@@ -20,19 +20,19 @@ class Unlocked {
   Unlocked(const Unlocked&) = delete;
   Unlocked& operator=(const Unlocked&) = delete;
 
-  /// Once, when the module is made: from then on the process waits for what such threads do before it ends.
-  /// Drivers and libraries that have cleaned up crash those that still use them.
+  /// Call it once, when the module is created: from then on the process waits for such threads before it
+  /// ends. Otherwise drivers and libraries that have shut down crash threads that still use them.
   static void outlive_all();
 
-  /// Whether Python ends because nobody caught the KeyboardInterrupt of a Ctrl-C. Then what is under way is
-  /// not waited for: the process ends by the signal, and calls nothing that drivers have registered.
+  /// Whether Python ends because of an uncaught KeyboardInterrupt. The process then does not wait: it ends by
+  /// the signal, and skips the exit handlers of drivers.
   static bool ends_by_interrupt();
 
  private:
   PyThreadState* state_;
 };
 
-/// Work that goes on without Python: while one lives, the process does not end, as with Unlocked.
+/// Work without Python. While one exists, the process does not end, as with Unlocked.
 class Outlived {
  public:
   Outlived();
@@ -41,8 +41,8 @@ class Outlived {
   Outlived& operator=(const Outlived&) = delete;
 };
 
-/// Waits for a result while Python's other threads run. On Python's main thread a Ctrl-C ends the wait by
-/// KeyboardInterrupt; the work goes on, and its result is dropped.
+/// Waits for a result without Python's lock. On Python's main thread, Ctrl-C ends the wait by
+/// KeyboardInterrupt. The work continues, and its result is dropped.
 template <typename Result>
 Result awaited(std::future<Result> result) {
   constexpr std::chrono::milliseconds between_looks(50);

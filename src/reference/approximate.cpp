@@ -7,7 +7,7 @@ namespace binosplat::reference {
 
 namespace {
 
-/// The largest |d|^2 of the rays of the tile that holds pixel (x, y).
+/// The largest |d|^2 of the rays of the tile that contains pixel (x, y).
 double farthest_in_tile(const Cone& cone, int x, int y, int tile_size) {
   const int left = x / tile_size * tile_size, top = y / tile_size * tile_size;
   double farthest = 0.0;
@@ -35,14 +35,15 @@ bool reaches_block(const Splat& splat, int x, int y, int tile_size) {
     conic = {form[0][0], form[0][1], form[1][1]};
     rho *= farthest_in_tile(*splat.cone, x, y, tile_size);
   }
-  const glm::dvec2 first = glm::ivec2(x, y) / APPROXIMATE_BLOCK * APPROXIMATE_BLOCK;  // of the block's pixels
+  const glm::dvec2 first = glm::ivec2(x, y) / APPROXIMATE_BLOCK * APPROXIMATE_BLOCK;  // of the block
   const double det = conic.x * conic.z - conic.y * conic.y;
   const double tallest = std::sqrt(rho * conic.x / det);
   const double low = first.y - splat.mean.y, high = low + APPROXIMATE_BLOCK - 1;
   if (low > tallest || high < -tallest) return false;
-  const double apex =
-      -conic.y * std::sqrt(rho / (conic.z * det));  // where the ellipse is furthest to the right
-  const auto edge = [&](double side) {  // of the ellipse in the block's rows, to the left or right
+  // The row of the ellipse's rightmost point, relative to the mean.
+  const double apex = -conic.y * std::sqrt(rho / (conic.z * det));
+  // The ellipse's leftmost (-1) or rightmost (1) column in the block's rows, relative to the mean.
+  const auto edge = [&](double side) {
     const double at = std::clamp(side * apex, low, high);
     const double width = std::sqrt(rho / conic.x * std::max(0.0, 1.0 - at * at / (tallest * tallest)));
     return -conic.y / conic.x * at + side * width;

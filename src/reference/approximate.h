@@ -1,6 +1,6 @@
 #pragma once
-// What the squared rule leaves out beyond pairs (docs/method.md 5.2): blocks of a tile, and what lies
-// behind dark ones.
+// The approximations of the squared rule beyond pairs (docs/method.md 5.2): it skips splats in blocks of a
+// tile, and ends blocks that are dark.
 
 #include "reference/project.h"
 #include "shared/axes.h"
@@ -8,19 +8,18 @@
 
 namespace binosplat::reference {
 
-/// How a tile's list is blended.
+/// How the lists of tiles are blended.
 struct Approximation {
-  bool by_blocks = false;  // a block only with what reaches it at Th
-  double dark_transmittance =
-      0.0;  // T at most of all pixels of a block that ends before its list; 0: none does
+  bool by_blocks = false;           // skips splats in blocks where their alpha is below Th
+  double dark_transmittance = 0.0;  // a block ends once T is at most this in all its pixels; 0: never
 
   bool any() const { return by_blocks || dark_transmittance > 0.0; }
 };
 
-/// By a tile test and a rule of shared/axes.h; `tolerance` as of threshold().
+/// The approximation of a tile test and a rule of shared/axes.h; `tolerance` is as for threshold().
 Approximation approximation_of(int tiles, int th, double tolerance);
 
-/// Whether a splat is blended in the block that holds pixel (x, y), with tiles of `tile_size` px.
+/// Whether a splat is blended in the block of pixel (x, y). Tiles have `tile_size` px.
 bool reaches_block(const Splat& splat, int x, int y, int tile_size);
 
 }  // namespace binosplat::reference

@@ -10,21 +10,20 @@
 
 namespace binosplat::reference {
 
-/// Wrong on purpose, for tests that must notice. What can be planted in the data (a negated SH coefficient, a
-/// shifted mean) needs no switch.
+/// Planted faults for tests. Faults in data (a negated SH coefficient, a shifted mean) need no switch.
 struct Faults {
-  bool stop_late = false;  // the Gaussian that crosses TRANSMITTANCE_MIN is added before the pixel stops
+  bool stop_late = false;  // adds the Gaussian that crosses TRANSMITTANCE_MIN
 };
 
-/// Alphas of a blend, summed over the pixels (docs/method.md 8 has them per pixel). Evaluated counts what
-/// a GPU does: the pixels of a tile walk its list together until the last of them has ended.
+/// Alphas of a blend, summed over pixels (docs/method.md 8 gives them per pixel). `evaluated` counts a GPU's
+/// work: all pixels of a tile walk its list until the last of them ends.
 struct BlendCounts {
   std::uint64_t evaluated = 0;
   std::uint64_t visible = 0;  // blended
 };
 
-/// The picture of a view, computed in float64 and rounded to float once, at the end. `counts`, where given,
-/// is set. Faults and counts are of blends that are exact.
+/// The picture of a view, computed in float64 and rounded to float once. Sets `counts` if given. Faults and
+/// counts require an exact blend.
 Picture blend(const std::vector<Splat>& splats, const TileLists& lists, const shared::View& view,
               Faults faults = {}, BlendCounts* counts = nullptr);
 

@@ -1,5 +1,5 @@
 #pragma once
-// One pixel of the blend, docs/method.md 3 to the letter. For this room only.
+// Blends one pixel exactly as docs/method.md 3 defines it. Private to this room.
 
 #include <algorithm>
 #include <cmath>
@@ -14,40 +14,39 @@
 
 namespace binosplat::reference {
 
-/// What a pixel has gathered so far.
+/// The sums of a pixel so far.
 struct PixelSum {
   glm::dvec3 colour{0.0};                                     // C
   double z_sum = 0.0;                                         // Z
   double transmittance = 1.0;                                 // T
-  double farthest = std::numeric_limits<double>::infinity();  // nothing is seen beyond this view z
+  double farthest = std::numeric_limits<double>::infinity();  // view z beyond which splats are hidden
 };
 
 enum class Verdict { skipped, blended, stopped };
 
-/// alpha of a splat at pixel (x, y), not yet compared with tau. 0 where it is skipped without a look at the
-/// exponential: where q is negative, and where q is so large (beyond 2 ln 255 = 11.08) that even a sigma of 1
-/// leaves less than tau.
+/// The alpha of a splat at pixel (x, y), before the comparison with tau. 0 without an exponential if q is
+/// negative, or beyond 2 ln 255 = 11.08, where even a sigma of 1 gives less than tau.
 inline double alpha_at(const Splat& splat, int x, int y) {
   const double q = squared_distance(splat, {x, y});
   if (q < 0.0 || q > 11.1) return 0.0;
   return std::min(ALPHA_MAX, splat.opacity * std::exp(-0.5 * q));
 }
 
-/// View z of what pixel (x, y) sees of a splat.
+/// The view z of a splat along the ray of pixel (x, y).
 inline double depth_at(const Splat& splat, int x, int y) {
   const glm::dvec3 p(x, y, 1);
   return splat.cone ? splat.depth / std::sqrt(glm::dot(p, splat.cone->ray * p)) : splat.depth;
 }
 
-/// Blends one splat at depth z behind what there is.
+/// Blends one splat at depth z behind the previous ones.
 inline void add(PixelSum& sum, const Splat& splat, double z, double alpha) {
   sum.colour += alpha * sum.transmittance * splat.colour;
   sum.z_sum += alpha * sum.transmittance * z;
   sum.transmittance *= 1 - alpha;
 }
 
-/// Blends the list at a pixel behind what there is; whether the pixel ended. For each Gaussian, before
-/// it is added, visit(index, alpha, sum so far, verdict) is called.
+/// Blends the list at a pixel behind the previous splats. Returns whether the pixel ended. Calls visit(index,
+/// alpha, sum so far, verdict) for each Gaussian before it is added.
 template <typename Visit>
 bool blend_on(PixelSum& sum, const std::vector<Splat>& splats, std::span<const std::uint32_t> list,
               const glm::ivec2& pixel, Faults faults, const Visit& visit) {
@@ -67,7 +66,7 @@ bool blend_on(PixelSum& sum, const std::vector<Splat>& splats, std::span<const s
   return false;
 }
 
-/// The whole of it.
+/// Blends a whole list.
 template <typename Visit>
 PixelSum blend_pixel(const std::vector<Splat>& splats, std::span<const std::uint32_t> list,
                      const glm::ivec2& pixel, Faults faults, const Visit& visit) {

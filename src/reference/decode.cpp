@@ -27,13 +27,13 @@ std::vector<double> run(const Network& network, const std::vector<double>& input
   return layer(network.second, network.second_bias, hidden);
 }
 
-// What the eye adds to an anchor's feature.
+// The inputs of the networks that depend on the eye.
 struct AnchorRay {
   glm::dvec3 direction;  // from the eye to the anchor, unit length
   double distance;
 };
 
-// feature, direction, and distance where the network takes it.
+// Feature and direction, and the distance for networks that use it.
 std::vector<double> inputs_of(const Network& network, const std::vector<double>& feature,
                               const AnchorRay& ray) {
   std::vector<double> inputs = feature;
@@ -42,8 +42,8 @@ std::vector<double> inputs_of(const Network& network, const std::vector<double>&
   return inputs;
 }
 
-// The anchor's feature; with a feature bank mixed, by that ray, with itself at half and a quarter of its
-// resolution.
+// The feature of an anchor. A feature bank mixes it with itself at half and a quarter of the resolution, by
+// weights that depend on the ray.
 std::vector<double> feature_of(const Scaffold& scaffold, std::size_t n, const AnchorRay& ray) {
   const std::size_t count = scaffold.feature_count;
   const float* stored = &scaffold.feature[n * count];
@@ -81,7 +81,7 @@ Decoded decode_one(const Scaffold& scaffold, std::size_t id, double alpha, const
   return decoded;
 }
 
-// What the networks keep of one anchor.
+// The Gaussians of one anchor with positive opacity.
 std::vector<Decoded> decode_anchor(const Scaffold& scaffold, std::size_t n, const glm::dvec3& eye) {
   const glm::dvec3 towards = glm::dvec3(scaffold.position[n]) - eye;
   const double distance = glm::length(towards);

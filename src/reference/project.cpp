@@ -13,7 +13,7 @@ namespace binosplat::reference {
 
 namespace {
 
-/// M = Rot(q) diag(scale), whose M M^T is the covariance in world axes.
+/// M = Rot(q) diag(scale). M M^T is the covariance in world axes.
 glm::dmat3 scaled_axes(const Gaussian& gaussian) {
   const glm::dvec4& q = gaussian.rotation;
   const double w = q[0], x = q[1], y = q[2], z = q[3];
@@ -27,11 +27,11 @@ glm::dmat3 scaled_axes(const Gaussian& gaussian) {
 
 struct Seen {
   glm::dvec3 covariance;  // xx, xy, yy, with the low-pass
-  double det, det_free;   // with it and without
+  double det, det_free;   // with the low-pass and without
 };
 
-/// What scaled axes come to in a plane. The determinants by sums of squares: xx yy - xy^2 would lose the
-/// width of a needle a million times as long.
+/// The covariance of scaled axes in a plane. Sums of squares give the determinants: xx yy - xy^2 would lose
+/// the width of a needle a million times as long.
 Seen seen_in_plane(const glm::dmat3x2& axes, double low_pass) {
   const glm::dvec3 a = glm::row(axes, 0), b = glm::row(axes, 1), n = glm::cross(a, b);
   const double aa = glm::dot(a, a), bb = glm::dot(b, b), free = glm::dot(n, n);
@@ -43,9 +43,8 @@ glm::dmat3 axes_of(const shared::View& view) {
   return glm::transpose(glm::dmat3(glm::dvec3(view.row_x), glm::dvec3(view.row_y), glm::dvec3(view.row_z)));
 }
 
-/// J: how a small step around v moves the projected point. Far outside the picture the perspective is
-/// followed only up to the clamp, which keeps what straddles the picture's edge from growing without bound
-/// (3D-GS does the same).
+/// J: the derivative of the projected point at v. Far outside the picture, slopes are clamped, which bounds
+/// splats that straddle the picture's edge (as in 3D-GS).
 glm::dmat3x2 perspective_jacobian(const glm::dvec3& v, const shared::View& view) {
   const glm::dvec4 lens = view.lens;
   const double fx = lens[0], fy = lens[1];
@@ -55,8 +54,7 @@ glm::dmat3x2 perspective_jacobian(const glm::dvec3& v, const shared::View& view)
   return glm::dmat3x2(fx / v.z, 0.0, 0.0, fy / v.z, -fx * x / v.z, -fy * y / v.z);  // by columns
 }
 
-/// Real spherical harmonics with Condon-Shortley signs, in the order in which models store their
-/// coefficients.
+/// Real spherical harmonics with Condon-Shortley signs, in the order of models' coefficients.
 std::array<double, 16> sh_basis(const glm::dvec3& d) {
   const double x = d.x, y = d.y, z = d.z;
   const double xx = x * x, yy = y * y, zz = z * z;
@@ -95,12 +93,12 @@ glm::dvec3 colour_towards(const Model& model, std::size_t i, const glm::dvec3& d
 
 namespace {
 
-/// Pixel coordinates of where the line through the eye and v meets the picture's plane.
+/// The pixel coordinates at which the line through the eye and v intersects the picture's plane.
 glm::dvec2 picture_point(const glm::dvec3& v, const shared::View& view) {
   return {view.lens[0] * v.x / v.z + view.lens[2] - 0.5, view.lens[1] * v.y / v.z + view.lens[3] - 0.5};
 }
 
-/// Affine: J takes the Gaussian at v to the picture.
+/// Affine: J maps the Gaussian at v into the picture.
 void project_affine(const Gaussian& gaussian, const shared::View& view, const glm::dvec3& v,
                     const LowPass& low_pass, Splat& splat) {
   const Seen seen = seen_in_plane(perspective_jacobian(v, view) * axes_of(view) * scaled_axes(gaussian),
@@ -114,15 +112,15 @@ void project_affine(const Gaussian& gaussian, const shared::View& view, const gl
   if (low_pass.antialiased) splat.opacity *= std::sqrt(seen.det_free / seen.det);
 }
 
-/// Any two directions that make a right-handed frame with the unit vector n.
+/// Two directions that form a right-handed frame with the unit vector n.
 std::array<glm::dvec3, 2> across(const glm::dvec3& n) {
   const glm::dvec3 least = std::abs(n.x) < 0.6 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0);
   const glm::dvec3 first = glm::normalize(glm::cross(least, n));
   return {first, glm::cross(n, first)};
 }
 
-/// Tangent: what is seen along a unit ray d goes by where d, dropped at a right angle onto the plane that
-/// touches the unit sphere in the Gaussian's direction, comes to lie there.
+/// Tangent: drops each unit ray d perpendicularly onto the plane that touches the unit sphere in the
+/// Gaussian's direction. The point in this plane determines q.
 void project_tangent(const Gaussian& gaussian, const shared::View& view, const glm::dvec3& v,
                      const LowPass& low_pass, Splat& splat) {
   const glm::dvec4 lens = view.lens;

@@ -12,12 +12,12 @@ namespace binosplat::reference {
 
 namespace {
 
-// Scores are counted by their logarithm, 70 bins an octave (1 %) down to 2^-40.
+// Scores are binned by their logarithm: 70 bins an octave (1 %), down to 2^-40.
 constexpr int bins_an_octave = 70, octaves = 40, bins = bins_an_octave * octaves;
 using Histogram = std::array<std::uint64_t, bins>;
 
 int bin_of(double score) {
-  // What should be one score may differ by rounding: it must not lie at an edge, as powers of two would.
+  // Equal scores may differ by rounding, so common values such as powers of two must not lie at a bin's edge.
   const double octave = std::log2(std::max(score, 1e-300)) + octaves - 0.25 / bins_an_octave;
   return std::clamp(static_cast<int>(octave * bins_an_octave), 0, bins - 1);
 }
@@ -25,12 +25,11 @@ int bin_of(double score) {
 struct Fragment {
   std::uint32_t gaussian;
   double alpha;
-  double score;  // alpha times the transmittance that is taken for it
+  double score;  // alpha times the assumed transmittance
   int bin;       // of the score
 };
 
-/// A view's splats by tile, and the transmittance that each Gaussian is taken to meet; empty: what it does
-/// meet.
+/// A view's splats by tile, and the assumed transmittance of each Gaussian; empty: the true one.
 struct Listed {
   const std::vector<Splat>& splats;
   const TileLists& lists;
@@ -66,7 +65,7 @@ void for_each_pixel(const Listed& listed, std::size_t begin, std::size_t end, co
   }
 }
 
-// Of distances: below 1 px, then two an octave.
+// Distance bins: below 1 px, then two an octave.
 constexpr std::size_t distance_bins = 23;
 
 std::size_t distance_bin(double px) {
@@ -91,7 +90,7 @@ std::vector<DistanceBin> contributions_by_distance(const std::vector<Splat>& spl
     sums[b].from = b == 0 ? 0.0 : std::exp2(octave - 0.5);
     sums[b].to = std::exp2(octave);
   }
-  constexpr double unit = 0x1p-28;  // multiples of it add up to the same sum in any order
+  constexpr double unit = 0x1p-28;  // sums of its multiples do not depend on order
   std::mutex adding;
   parallel_chunks(lists.begin.size() - 1, 1, [&](std::size_t begin, std::size_t end) {
     std::vector<DistanceBin> found(distance_bins);
@@ -117,7 +116,7 @@ std::vector<Skipped> skip_lowest(const std::vector<Splat>& splats, const TileLis
                                  std::span<const double> shares) {
   const Listed listed{splats, lists, view, bounds};
   const std::size_t tiles = lists.begin.size() - 1;
-  std::array<std::uint64_t, bins + 1> below{};  // fragments in the bins below
+  std::array<std::uint64_t, bins + 1> below{};  // fragments in lower bins
   std::mutex adding;
   parallel_chunks(tiles, 1, [&](std::size_t begin, std::size_t end) {
     Histogram counts{};

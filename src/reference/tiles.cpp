@@ -11,7 +11,7 @@ namespace binosplat::reference {
 
 namespace {
 
-/// Columns x0 up to x1 - 1 and rows y0 up to y1 - 1 of tiles; empty where x1 <= x0 or y1 <= y0.
+/// Columns x0 to x1 - 1 and rows y0 to y1 - 1 of tiles; empty if x1 <= x0 or y1 <= y0.
 struct TileRange {
   int x0, y0, x1, y1;
 };
@@ -20,12 +20,11 @@ int tiles_along(shared::uint pixels, int tile_size) {
   return (static_cast<int>(pixels) + tile_size - 1) / tile_size;
 }
 
-/// A tile number that may lie anywhere, as C's cast to int truncates it (towards 0), clamped to 0..count.
+/// A tile number truncated towards 0, as by C's cast to int, and clamped to 0..count.
 int clamped_tile(double tile, int count) { return static_cast<int>(std::clamp(tile, 0.0, double(count))); }
 
-/// The tiles of the 3-sigma square of 3D-GS, its roundings included: the smaller eigenvalue's part of the
-/// radius has a floor, the radius is a whole number of pixels, and a mean left of or above the picture
-/// truncates towards 0.
+/// The tiles of 3D-GS's 3-sigma square, with its roundings. The smaller eigenvalue has a floor, and the
+/// radius is a whole number of pixels. A mean left of or above the picture truncates towards 0.
 TileRange aabb_tiles(const Splat& splat, int tile_size, int tiles_x, int tiles_y) {
   const double half_trace = 0.5 * (splat.covariance.x + splat.covariance.z);
   const double lambda1 = half_trace + std::sqrt(std::max(0.1, half_trace * half_trace - splat.det));
@@ -36,11 +35,11 @@ TileRange aabb_tiles(const Splat& splat, int tile_size, int tiles_x, int tiles_y
           clamped_tile(high.y, tiles_y)};
 }
 
-/// rho: alpha is at least Th where q is at most this. Negative where sigma is below Th.
+/// rho: alpha is at least Th where q is at most rho. Negative if sigma is below Th.
 double reach(const Splat& splat) { return 2.0 * std::log(splat.opacity / splat.threshold); }
 
-/// A box of three standard deviations along the axes of the ellipse: unit vector of the longer axis, half
-/// lengths along it and across it (GSCore; the eigenvalues as they are, without the floor of 3D-GS).
+/// A box of three standard deviations along the ellipse's axes: unit vector of the longer axis, and half
+/// lengths along and across it (GSCore; eigenvalues without the floor of 3D-GS).
 struct OrientedBox {
   glm::dvec2 axis;
   double along, across;
@@ -51,7 +50,7 @@ OrientedBox oriented_box(const Splat& splat) {
   const double half_difference = 0.5 * (c.x - c.z);
   const double spread = std::hypot(half_difference, c.y);
   const double lambda1 = 0.5 * (c.x + c.z) + spread, lambda2 = splat.det / lambda1;
-  // The angle of the longer axis is half that of (half_difference, xy); a circle may have any.
+  // The angle of the longer axis is half that of (half_difference, xy); arbitrary for a circle.
   const double angle = 0.5 * std::atan2(c.y, half_difference);
   return {{std::cos(angle), std::sin(angle)}, 3.0 * std::sqrt(lambda1), 3.0 * std::sqrt(lambda2)};
 }
@@ -62,16 +61,16 @@ glm::dvec2 oriented_half_extents(const Splat& splat) {
   return glm::abs(box.axis) * box.along + glm::abs(glm::dvec2(box.axis.y, box.axis.x)) * box.across;
 }
 
-/// Half the width and height of the ellipse q = rho. They go by C2, the blend by Q, and det's rounding parts
-/// the two: the box is larger by that much.
+/// Half the width and height of the ellipse q = rho. They use C2, but the blend uses Q, and the two differ by
+/// the rounding of det: the box has a margin for it.
 glm::dvec2 snug_half_extents(const Splat& splat) {
   const glm::dvec3& c = splat.covariance;
   const double rho = reach(splat) * (1.0 + 1e-14 * c.x * c.z / splat.det) + 1e-14;
   return {std::sqrt(rho * c.x), std::sqrt(rho * c.z)};
 }
 
-/// The tiles with a pixel centre of the picture in the upright box of these half extents around the mean. A
-/// box between two neighbouring columns or rows of centres has none: no alpha there reaches Th.
+/// The tiles with a pixel centre in the upright box of these half extents around the mean. A box between
+/// neighbouring columns or rows of centres has none: no alpha in it reaches Th.
 TileRange tiles_with_centres(const glm::dvec2& mean, const glm::dvec2& half, int tile_size,
                              const shared::View& view) {
   const glm::dvec2 first = glm::max(glm::ceil(mean - half), 0.0);
@@ -81,9 +80,9 @@ TileRange tiles_with_centres(const glm::dvec2& mean, const glm::dvec2& half, int
   return {low.x, low.y, high.x + 1, high.y + 1};
 }
 
-/// Whether the oriented box meets a rectangle of pixel centres, given relative to the mean, by separating
-/// axes: the two of the picture, where the box reaches as far as its half extents, and the two of the box,
-/// where the rectangle reaches as far as its sides projected.
+/// Whether the oriented box intersects a rectangle of pixel centres, given relative to the mean. Tests
+/// separating axes: the two of the picture, with the box's half extents, and the two of the box, with the
+/// rectangle's projected sides.
 bool oriented_box_meets(const Splat& splat, const glm::dvec2& low, const glm::dvec2& high) {
   const glm::dvec2 upright = oriented_half_extents(splat);
   if (low.x > upright.x || high.x < -upright.x || low.y > upright.y || high.y < -upright.y) return false;
@@ -95,9 +94,9 @@ bool oriented_box_meets(const Splat& splat, const glm::dvec2& low, const glm::dv
   return !apart(box.axis, box.along) && !apart({-box.axis.y, box.axis.x}, box.across);
 }
 
-/// Whether the smallest q over a rectangle of pixel centres, given relative to the mean, is at most rho.
-/// Where the mean lies outside, the smallest q lies on a side that faces the mean: left or right, above or
-/// below, or either.
+/// Whether the smallest q over a rectangle of pixel centres, given relative to the mean, is at most rho. If
+/// the mean lies outside, the smallest q lies on a side that faces the mean: left or right, above or below,
+/// or either.
 bool ellipse_meets(const Splat& splat, const glm::dvec2& low, const glm::dvec2& high) {
   const glm::dvec3& c = splat.conic;
   const double rho = reach(splat);
@@ -105,7 +104,7 @@ bool ellipse_meets(const Splat& splat, const glm::dvec2& low, const glm::dvec2& 
       glm::clamp(glm::dvec2(0.0), low, high);  // 0 in an axis whose side does not face the mean
   const auto within_reach = [&](double dx, double dy) {
     const double xx = c.x * dx * dx, xy = 2 * c.y * dx * dy, yy = c.z * dy * dy;
-    // Rounding must not leave out a tile in which the blend, rounding otherwise, finds an alpha of Th.
+    // The margin prevents that rounding drops a tile in which the blend, with other rounding, reaches Th.
     const double margin = 1e-14 * (xx + std::abs(xy) + yy + 1.0);
     return xx + xy + yy - margin <= rho;
   };
@@ -113,14 +112,14 @@ bool ellipse_meets(const Splat& splat, const glm::dvec2& low, const glm::dvec2& 
          within_reach(std::clamp(-c.y * nearest.y / c.x, low.x, high.x), nearest.y);
 }
 
-/// The level at which aabb and obb cut: three standard deviations.
+/// The level of aabb and obb: three standard deviations.
 constexpr double three_sigma = 9.0;
 
 double level_of(const Splat& splat, int tiles) {
   return tiles == TILES_AABB || tiles == TILES_OBB ? three_sigma : reach(splat);
 }
 
-/// A splat whose ellipse at `level` is what a cone that is not wide cuts out of the picture at that level.
+/// A splat whose ellipse at `level` is the section of a narrow cone with the picture.
 Splat section_of(const Splat& splat, double level) {
   const glm::dmat3 g = splat.cone->form - level * splat.cone->ray;  // below 0 inside
   const glm::dmat2 inverse = glm::inverse(glm::dmat2(g));
@@ -133,13 +132,13 @@ Splat section_of(const Splat& splat, double level) {
   section.det = glm::determinant(inverse) * scale * scale;
   section.conic = glm::dvec3(c[1][1], -c[0][1], c[0][0]) / section.det;
   section.cone.reset();
-  // The other half of the double cone lies behind the eye.
+  // Exclude the other half of the double cone, which is behind the eye.
   section.drawn = scale > 0.0 && glm::dot(splat.cone->facing, glm::dvec3(section.mean, 1)) > 0.0;
   return section;
 }
 
-/// Whether the smallest q between two points of the picture is at most `level`. q is a ratio of two
-/// quadratic polynomials there; where its derivative is zero, a third one is.
+/// Whether the smallest q on a segment of the picture is at most `level`. q is a ratio of quadratic
+/// polynomials on it; the zeros of its derivative are those of a third one.
 bool cone_meets(const Splat& splat, const glm::dvec2& from, const glm::dvec2& to, double level) {
   const glm::dvec3 a(from, 1), b(to - from, 0);
   const glm::dmat3 &form = splat.cone->form, &ray = splat.cone->ray;
@@ -149,13 +148,13 @@ bool cone_meets(const Splat& splat, const glm::dvec2& from, const glm::dvec2& to
   const double root = std::sqrt(std::max(0.0, k1 * k1 - 4 * k2 * k0));
   const double half = -0.5 * (k1 + std::copysign(root, k1));
   for (const double u : {0.0, 1.0, half / k2, k0 / half}) {
-    // Rounding must not leave out a tile in which the blend, rounding otherwise, finds an alpha of Th.
+    // The margin prevents that rounding drops a tile in which the blend, with other rounding, reaches Th.
     if (u >= 0.0 && u <= 1.0 && squared_distance(splat, from + u * (to - from)) <= level + 1e-8) return true;
   }
   return false;
 }
 
-/// Whether the smallest q over a rectangle of pixel centres is at most `level`: it lies in the mean or on a
+/// Whether the smallest q over a rectangle of pixel centres is at most `level`. It lies at the mean or on a
 /// side.
 bool cone_meets_rectangle(const Splat& splat, const glm::dvec2& low, const glm::dvec2& high, double level) {
   if (!splat.cone->is_behind && glm::all(glm::lessThanEqual(low, splat.mean)) &&
@@ -166,12 +165,11 @@ bool cone_meets_rectangle(const Splat& splat, const glm::dvec2& low, const glm::
          cone_meets(splat, high, left, level) || cone_meets(splat, left, low, level);
 }
 
-/// The columns of pixels between which a wide splat is seen at all in rows from `low` to `high`, pixel
-/// coordinates: a little too far apart, as docs/method.md 4 has it. The first is above the second where it is
-/// not seen.
+/// The range of columns in which a wide splat is visible in rows from `low` to `high`, in pixel coordinates,
+/// slightly too large (docs/method.md 4). The first exceeds the second if it is invisible.
 glm::dvec2 wide_across(const Splat& splat, double low, double high, const shared::View& view) {
   const Cone& cone = *splat.cone;
-  // q |d|^2 is the sum of two squares of what is linear in the pixel; no x is in the second.
+  // q |d|^2 is the sum of two squares of linear functions of the pixel; the second does not depend on x.
   const glm::dvec3 first = cone.form[0] / std::sqrt(cone.form[0][0]);
   const double down = std::sqrt(std::max(0.0, cone.form[1][1] - first.y * first.y));
   const double level = 2.0 * std::log(splat.opacity / ALPHA_MIN);
@@ -199,7 +197,7 @@ glm::dvec2 wide_across(const Splat& splat, double low, double high, const shared
   return cone.facing.x == 0.0 && ahead <= 0.0 ? glm::dvec2(1.0, 0.0) : seen;
 }
 
-/// The tiles that shape_meets() is worth asking about.
+/// The candidate tiles for shape_meets().
 TileRange candidate_tiles(const Splat& splat, int tiles, int tile_size, const shared::View& view) {
   if (splat.cone && splat.drawn && tiles != TILES_ALL) {
     if (tiles != TILES_AABB && !(splat.opacity >= splat.threshold)) return {0, 0, 0, 0};
@@ -225,7 +223,7 @@ TileRange candidate_tiles(const Splat& splat, int tiles, int tile_size, const sh
   fail("tile test {}: expected one of shared/axes.h", tiles);
 }
 
-/// Whether the shape of `tiles` meets tile (tx, ty), one of the candidates.
+/// Whether the shape of `tiles` intersects tile (tx, ty), one of the candidates.
 bool shape_meets(const Splat& splat, int tiles, int tile_size, int tx, int ty, const shared::View& view) {
   const glm::dvec2 first(tx * tile_size, ty * tile_size);
   const glm::dvec2 last = glm::min(first + double(tile_size), glm::dvec2(view.width, view.height)) - 1.0;
@@ -243,7 +241,7 @@ bool shape_meets(const Splat& splat, int tiles, int tile_size, int tx, int ty, c
   return true;  // the candidates of the others are the splat's tiles
 }
 
-/// Calls visit(tile number) for every tile that the splat touches.
+/// Calls visit(tile number) for every tile of the splat.
 template <typename Visit>
 void for_each_tile(const Splat& splat, int tiles, int tile_size, const shared::View& view,
                    const Visit& visit) {
@@ -306,7 +304,7 @@ TileLists make_lists(const std::vector<Splat>& splats, const std::vector<std::ui
   lists.tiles_x = static_cast<std::uint32_t>(tiles_along(view.width, tile_size));
   lists.tiles_y = static_cast<std::uint32_t>(tiles_along(view.height, tile_size));
 
-  // Count what each tile holds, sum the counts to where each list begins, then fill the lists in depth order.
+  // Counts each tile's entries, sums the counts to each list's begin, then fills the lists in depth order.
   lists.begin.assign(std::size_t{lists.tiles_x} * lists.tiles_y + 1, 0);
   for (const std::uint32_t i : order) {
     for_each_tile(splats[i], tiles, tile_size, view, [&](std::size_t tile) { ++lists.begin[tile + 1]; });

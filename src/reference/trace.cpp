@@ -12,7 +12,7 @@ namespace binosplat::reference {
 
 namespace {
 
-/// What the blend met on its way through a pixel.
+/// An entry that a pixel visited.
 struct Met {
   std::uint32_t gaussian;
   double alpha;
@@ -24,8 +24,7 @@ double largest_channel(const glm::dvec3& colour) {
   return std::max({std::abs(colour.r), std::abs(colour.g), std::abs(colour.b)});
 }
 
-/// Keeps the candidate if it is the better explanation: within the band the larger change, else the closer
-/// one.
+/// Keeps the better explanation: within the band the larger change, else the closer decision.
 void consider(NearDecision& best, double distance, const glm::dvec3& change, std::uint32_t gaussian,
               double band) {
   const NearDecision candidate{distance, largest_channel(change), gaussian};
@@ -34,8 +33,8 @@ void consider(NearDecision& best, double distance, const glm::dvec3& change, std
   if (better) best = candidate;
 }
 
-/// The change if Gaussian `met` fell on the other side of tau: alpha T (c - C_behind), C_behind being the
-/// colour of all behind it as if the transmittance were 1 there (docs/method.md 5).
+/// The change if Gaussian `met` fell on the other side of tau: alpha T (c - C_behind). C_behind is the colour
+/// of all splats behind it, at full transmittance (docs/method.md 5).
 glm::dvec3 change_by_alpha(const Met& met, const glm::dvec3& colour, const glm::dvec3& final_colour) {
   const double t = met.before.transmittance;
   const glm::dvec3 own = met.alpha * t * colour;
@@ -44,8 +43,8 @@ glm::dvec3 change_by_alpha(const Met& met, const glm::dvec3& colour, const glm::
                                          : own - met.alpha * (rest - own) / (1 - met.alpha);
 }
 
-/// The change if two blended neighbours changed places. If the farther one stopped the pixel, the nearer one
-/// will in its place.
+/// The change if two blended neighbours swapped. If the farther one stopped the pixel, the nearer one then
+/// does.
 glm::dvec3 change_by_swap(const Met& nearer, const glm::dvec3& nearer_colour, const Met& farther,
                           const glm::dvec3& farther_colour) {
   const double t = nearer.before.transmittance;
@@ -54,8 +53,8 @@ glm::dvec3 change_by_swap(const Met& nearer, const glm::dvec3& nearer_colour, co
   return t * nearer.alpha * farther.alpha * (nearer_colour - farther_colour);
 }
 
-/// What stopped the pixel may have a near neighbour behind it, the first that the pixel would see there: in
-/// front, it would be blended before the pixel stops.
+/// The splat that stopped the pixel may have a near neighbour behind it. If that came first, it would be
+/// blended before the pixel stops. Considers the first visible one.
 void consider_behind(NearDecision& best, const std::vector<Splat>& splats,
                      std::span<const std::uint32_t> list, const Met& last, int x, int y) {
   const double limit = splats[last.gaussian].depth;

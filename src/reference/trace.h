@@ -1,7 +1,6 @@
 #pragma once
-// Why a pixel differs: the decisions of the blend that rounding could turn, and how much each would change.
-// Two blends of equal meaning and different precision differ visibly only where one of these went the other
-// way.
+// Explains why a pixel differs: finds the decisions of the blend that rounding could change, and their
+// effects. Two correct blends of different precision differ visibly only where such a decision differs.
 
 #include <cstdint>
 #include <limits>
@@ -13,25 +12,25 @@
 
 namespace binosplat::reference {
 
-/// A yes or no of the blend that rounding could turn, and what that would do to the pixel.
+/// A decision of the blend that rounding could change, and its effect on the pixel.
 struct NearDecision {
   double distance = std::numeric_limits<double>::infinity();  // relative; infinity: no such decision
-  double change = 0.0;         // of the colour channel that changes most if it went the other way, over black
-  std::uint32_t gaussian = 0;  // whose decision it is; of two neighbours the farther one
+  double change = 0.0;         // largest change of a colour channel, over black
+  std::uint32_t gaussian = 0;  // the one concerned; of two neighbours the farther one
 };
 
-/// How close one pixel came to another colour. Of each kind the decision that would change the colour most
-/// among those closer than a band that fp32 may cross; the closest one where none is so close.
+/// The closest decisions of a pixel. For each kind: the one with the largest change among those within the
+/// band that fp32 may cross, or else the closest one.
 struct PixelTrace {
   NearDecision alpha;         // an alpha against tau
   NearDecision stop;          // T (1 - alpha) against TRANSMITTANCE_MIN
-  NearDecision depth;         // the gap between two neighbours that the pixel sees, relative to their depth
-  std::uint64_t walked = 0;   // entries of the list up to where the pixel ended
-  std::uint64_t visible = 0;  // of those, blended
+  NearDecision depth;         // relative gap of depth between two visible neighbours
+  std::uint64_t walked = 0;   // entries of the list until the pixel ended
+  std::uint64_t visible = 0;  // blended entries
 
-  /// What the likeliest of them may change: the largest change among those within their bands; 0 if none is.
+  /// The largest change among the decisions within their bands; 0 if there are none.
   double largest_change() const;
-  /// One line for people: which decision is the likeliest reason for a difference, and how large it may be.
+  /// One line: the likeliest cause of a difference, and its largest effect.
   std::string explain() const;
 };
 
@@ -40,7 +39,7 @@ constexpr double alpha_band = 1e-3;
 constexpr double stop_band = 1e-3;
 constexpr double depth_band = 1e-6;
 
-/// Follows pixel (x, y) through the list of its tile (TileLists::at_pixel).
+/// Traces pixel (x, y) through the list of its tile (TileLists::at_pixel).
 PixelTrace trace(const std::vector<Splat>& splats, std::span<const std::uint32_t> list, int x, int y);
 
 }  // namespace binosplat::reference

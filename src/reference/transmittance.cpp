@@ -9,9 +9,9 @@ namespace binosplat::reference {
 
 namespace {
 
-/// Measures pixel by pixel, a tile for its own pairs; the pairs of a Gaussian are brought together
-/// afterwards, so that threads do not matter. `measure(of_pair, alpha, transmittance)` changes what the pair
-/// has so far, `join(of_gaussian, of_pair)` what the Gaussian has, from `start` on.
+/// Measures each pair within its tile, and then joins the pairs of each Gaussian, so that threads do not
+/// matter. `measure(of_pair, alpha, transmittance)` updates a pair's value. `join(of_gaussian, of_pair)`
+/// updates a Gaussian's value, from `start` on.
 template <typename Measure, typename Join>
 std::vector<double> measure_pairs(const std::vector<Splat>& splats, const TileLists& lists,
                                   const shared::View& view, double start, const Measure& measure,

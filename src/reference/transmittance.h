@@ -1,5 +1,5 @@
 #pragma once
-// How much of each Gaussian a view shows: what Th may use in the next frame (docs/method.md 5).
+// Measures each Gaussian's visibility in a view, which Th may use in the next frame (docs/method.md 5).
 
 #include <vector>
 
@@ -8,25 +8,25 @@
 
 namespace binosplat::reference {
 
-/// What is said of a Gaussian in no tile's list: outside the view or left out by Th.
+/// Value of a Gaussian in no tile's list: outside the view, or dropped by Th.
 constexpr double not_seen = -1.0;
 
-/// For each Gaussian the largest T in front of it over the pixels that blend it, max(T). 0 where no pixel
-/// blends it, because each had ended before it or because its alpha is below tau in all; not_seen where no
-/// tile has it. The same bits with any number of threads.
+/// For each Gaussian, max(T): the largest T in front of it over the pixels that blend it. 0 if no pixel
+/// blends it, because all ended earlier or its alpha is below tau; not_seen if no tile lists it. The result
+/// does not depend on the number of threads.
 std::vector<double> measure_transmittance(const std::vector<Splat>& splats, const TileLists& lists,
                                           const shared::View& view);
 
-/// For each Gaussian its blending weight alpha * T, summed over the pixels that blend it; 0 where none does.
+/// For each Gaussian, the blending weight alpha * T, summed over the pixels that blend it.
 std::vector<double> measure_weights(const std::vector<Splat>& splats, const TileLists& lists,
                                     const shared::View& view);
 
-/// For each Gaussian alpha T^2, likewise, while T is VISIBILITY_LEAST at least: how much an error of it would
-/// be seen.
+/// For each Gaussian, alpha T^2, summed over the pixels that blend it at a T of at least VISIBILITY_LEAST:
+/// the visibility of its errors.
 std::vector<double> measure_seen(const std::vector<Splat>& splats, const TileLists& lists,
                                  const shared::View& view);
 
-/// A measurement as set_thresholds() takes it: at least `floor`, and 1 where the Gaussian was not seen.
+/// Converts a measurement for set_thresholds(): at least `floor`, and 1 for Gaussians that were not seen.
 std::vector<double> floored(std::vector<double> measured, double floor);
 
 }  // namespace binosplat::reference

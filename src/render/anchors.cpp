@@ -16,12 +16,12 @@ std::vector<const Network*> networks_of(const Scaffold& scaffold) {
   return networks;
 }
 
-// Inputs of a network before direction and distance.
+// Features among a network's inputs; view direction and distance come on top.
 std::size_t features_in(const Scaffold& scaffold, std::size_t network) {
   return network < 3 ? scaffold.feature_count : 0;
 }
 
-// The most hidden units that one network has, in fours.
+// The largest number of hidden units of a network, rounded up to a multiple of four.
 std::size_t padded_hidden(const Scaffold& scaffold) {
   std::size_t most = 0;
   for (const Network* network : networks_of(scaffold)) most = std::max(most, network->hidden);
@@ -38,12 +38,12 @@ std::vector<shared::Anchor> pack_anchors(const Scaffold& s, std::size_t first, s
   return packed;
 }
 
-// Resolutions at which features are used: all of it; with a feature bank a quarter, half, all of it.
+// Strides of the features' resolutions: full; with a feature bank a quarter, half, full.
 std::vector<std::size_t> strides_of(const Scaffold& scaffold) {
   return scaffold.bank ? std::vector<std::size_t>{4, 2, 1} : std::vector<std::size_t>{1};
 }
 
-// What the feature of anchor n adds to one hidden unit, in float64: it is rounded once.
+// The contribution of anchor n's feature to one hidden unit. Summed in float64, so that it is rounded once.
 double from_feature(const Scaffold& scaffold, std::size_t n, std::size_t stride, const Network& network,
                     std::size_t unit) {
   const std::size_t features = scaffold.feature_count;
@@ -74,21 +74,21 @@ std::vector<glm::vec4> pack_view_free(const Scaffold& scaffold, std::size_t firs
   return packed;
 }
 
-// The bias of a first layer, with what the appearance adds to colours.
+// The bias of a first layer, including the appearance's contribution to colours.
 std::vector<double> constant_part(const Scaffold& scaffold, const Network& network) {
   std::vector<double> bias(network.first_bias.begin(), network.first_bias.end());
   if (&network != &scaffold.colour) return bias;
   const std::size_t size = scaffold.appearance_size;
   const float* row = scaffold.appearances.data() + scaffold.appearance * size;
   for (std::size_t unit = 0; unit < network.hidden; ++unit) {
-    // Its weights are the last of the unit's.
+    // The appearance's weights are the last of each unit.
     const float* weights = network.first.data() + (unit + 1) * network.inputs - size;
     for (std::size_t i = 0; i < size; ++i) bias[unit] += double{weights[i]} * row[i];
   }
   return bias;
 }
 
-// The weights as networks.glsl lays them out.
+// The weights in the layout of networks.glsl.
 std::vector<glm::vec4> pack_networks(const Scaffold& scaffold) {
   const std::size_t hidden = padded_hidden(scaffold);
   const std::vector<const Network*> networks = networks_of(scaffold);

@@ -1,5 +1,5 @@
 #pragma once
-// A Scaffold-GS model on the GPU (scene/scaffold.h): what the stage decode reads.
+// The buffers of a Scaffold-GS model (scene/scaffold.h) that the stage `decode` reads.
 
 #include <cstdint>
 
@@ -27,12 +27,12 @@ struct NetworkBuffers {
   void upload(const Scaffold& scaffold);
 
   gl::Buffer weights;        // vec4, see networks.glsl
-  std::int64_t bytes = 0;    // that the weights take
-  std::uint32_t hidden = 0;  // units of each network as the shader counts them: in fours
-  bool bank = false;         // there is a feature bank
+  std::int64_t bytes = 0;    // of the weights
+  std::uint32_t hidden = 0;  // units of each network, rounded up to a multiple of four as in the shader
+  bool bank = false;         // whether the model has a feature bank
 };
 
-/// Bytes that the anchors and networks take on the GPU.
+/// Bytes of the anchors and networks on the GPU.
 std::int64_t anchor_bytes(const Scaffold& scaffold);
 
 }  // namespace binosplat::render

@@ -74,7 +74,7 @@ void FrameBuffers::upload(const FramePlan& plan, bool uses_measured) {
   for (std::size_t v = 0; v < plan.meshes.depths.size(); ++v)
     meshes.push_back(on_gpu(plan.meshes.depths[v], plan.meshes.whole_sizes[v]));
   if (!meshes.empty()) pictures.mesh_sources.upload(meshes);
-  region_rows.reserve(sizeof(glm::uvec2));  // programs that never read it need it bound
+  region_rows.reserve(sizeof(glm::uvec2));  // bound even in programs that never read it
   if (plan.draws_regions()) region_rows.upload(plan.region_rows);
   const bool by_depth = plan.settings.transmittance == TRANSMITTANCE_DEPTH;
   std::vector<float> tables = plan.settings.depth_table.bounds;
@@ -126,7 +126,7 @@ void FrameBuffers::reserve(const FramePlan& plan, std::span<const std::shared_pt
   projected.coverages.reserve(splats * 4);
   projected.large.reserve(splats * 4);
   lists.first_large = static_cast<std::uint32_t>(capacity.pairs);
-  // Where lists are parted, there is room for each entry a second time.
+  // Splitting long lists needs a second place for each entry.
   const std::int64_t behind =
       capacity.rounds > 0 ? std::max(capacity.large_pairs, capacity.pairs) : capacity.large_pairs;
   lists.entries.reserve((capacity.pairs + behind) * 8);

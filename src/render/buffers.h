@@ -1,5 +1,5 @@
 #pragma once
-// Everything that the stages of a frame read and write on the GPU.
+// The buffers that the stages of a frame read and write on the GPU.
 
 #include <cstdint>
 #include <memory>
@@ -35,88 +35,88 @@ struct FrameBuffers {
   explicit FrameBuffers(gl::Context& context);
   gl::Context& context() const { return context_; }
 
-  /// What the CPU knows of a frame: its parameters, its views and its table of depths.
+  /// Uploads the frame's parameters, views and table by depth.
   void upload(const FramePlan& plan, bool uses_measured);
 
-  /// Makes room for a frame of this plan, as `capacity` says. To be called before upload().
+  /// Allocates `capacity` for a frame of this plan. Call it before upload().
   void reserve(const FramePlan& plan, std::span<const std::shared_ptr<ModelBuffers>> models,
                const Capacity& capacity);
 
-  /// To be called once a frame is complete: `next_bounds` become the next frame's `bounds`, if this one
-  /// measured.
+  /// Call it once a frame is complete. If the frame measured, swaps `next_bounds` with `bounds` for the next
+  /// one.
   void keep_last(bool measured_now);
 
   /// The Gaussians that the last frame drew in its view `v`, in index order.
   std::vector<DrawnGaussian> read_drawn(const FramePlan& plan, std::uint32_t v) const;
 
-  /// The views by which the models are projected.
+  /// The views that project the models.
   const gl::Buffer& views_of_instances(const FramePlan& plan) const {
     return plan.instances.empty() ? views : instance_views;
   }
 
-  std::uint32_t slots = 0;  // room for the Gaussians that one order group draws
+  std::uint32_t slots = 0;  // room: Gaussians of one order group
 
   gl::Buffer parameters;      // FrameParameters
-  gl::Buffer views;           // View, the probe last
-  gl::Buffer instance_views;  // View by (instance, view), where the plan has instances
-  gl::Buffer region_rows;     // uvec2 by row of tiles of a view, where a view is not drawn whole
+  gl::Buffer views;           // View, the probe's last
+  gl::Buffer instance_views;  // View by (instance, view); used if the plan has instances
+  gl::Buffer region_rows;     // uvec2 by row of tiles of a view; used if a view has a region
   gl::Buffer counters;        // Counters
 
-  /// The upper bounds of transmittance that thresholds go by: T_upper from a table, or by (view, Gaussian) as
-  /// measured for the next frame, written while the last frame's is read. Empty where nothing is measured.
+  /// The upper bounds of transmittance: a table by depth, or measured values by (view, Gaussian). A frame
+  /// reads `bounds` and writes `next_bounds`. Empty if no frame measures.
   struct Transmittance {
     gl::Buffer depth_tables;                          // float by bin: the settings', then instances'
     std::unique_ptr<gl::Buffer> bounds, next_bounds;  // float
-    gl::Buffer measured;                              // uint by splat, bits of the largest float
+    gl::Buffer measured;                              // uint by splat: the bits of the largest T as a float
   } transmittance;
 
-  // For Scaffold-GS, by page of the model, uint (decoding, anchor): bit k: Gaussian k is there.
+  // For Scaffold-GS, by page of the model: uint (decoding, anchor); bit k is set if Gaussian k exists.
   std::vector<std::unique_ptr<gl::Buffer>> kept;
 
   std::vector<std::unique_ptr<DrawnBuffers>> drawn;  // by order group
 
-  /// What is found of all Gaussians of the model, for one order group after another.
+  /// The result of the cull over all Gaussians of the model; each order group overwrites it.
   struct Culled {
     gl::Buffer depth_keys;    // uint by Gaussian
     gl::Buffer block_counts;  // uint, Gaussians drawn by block of COMPACT_BLOCK
   } culled;
 
-  /// What `project` makes of the Gaussians that are drawn, for all views.
+  /// The results of `project` for the drawn Gaussians of all views.
   struct Projected {
-    gl::Buffer depths;     // uint by (order group, slot): bits of what they are sorted by
-    gl::Buffer splats;     // Splat, or Halves by (view, slot)
+    gl::Buffer depths;     // uint by (order group, slot): the bits of the sort key
+    gl::Buffer splats;     // Splat or Halves, by (view, slot)
     gl::Buffer coverages;  // uint by (view, slot): supertiles.glsl
-    gl::Buffer large;      // uint, splats in many supertiles
+    gl::Buffer large;      // uint: splats in many supertiles
   } projected;
 
-  /// Which splats are in each tile's list.
+  /// The lists of supertiles and tiles.
   struct Lists {
-    std::uint32_t first_large = 0;  // entry of large splats: how many others there is room for
+    std::uint32_t first_large = 0;  // the first entry of large splats: the room for all others
     gl::Buffer entries;  // uvec2 (depth, entry) by supertile; then (supertile, entry) of large splats
     gl::Buffer supertile_counts;  // uint; 0 between frames
-    gl::Buffer supertile_ends;    // uint, where the next entry of each goes
-    std::uint32_t item_room = 0;  // of each kind
+    gl::Buffer supertile_ends;    // uint: the place of each list's next entry
+    std::uint32_t item_room = 0;  // room for items of each kind
     gl::Buffer items;             // uvec4 by kind: sort_items.glsl
     gl::Buffer slab_tiles;        // uint by slab and tile of its list: sort_split.comp
 
-    // The blend reads these.
+    // The lists that the blend reads:
     gl::Buffer tile_ranges;  // begin and end by tile; with --tiles all by the first tile of a view
     gl::Buffer tile_values;  // splats
     gl::Buffer long_lists;   // tiles with more than LONG_LIST pairs
   } lists;
 
-  /// What the blend makes of the lists.
+  /// The results of the blend.
   struct Pictures {
-    gl::Buffer canvases;      // Canvas by view, where pictures go into images, and not into the next two
+    gl::Buffer canvases;      // Canvas by view, for pictures that go to canvases instead of the next two
     gl::Buffer colours;       // vec4 by pixel: C, T
     gl::Buffer z_sums;        // float by pixel
     gl::Buffer mesh_sources;  // MeshSource by view
-    // Filled by blend_debug_view().
+    // blend_debug_view() writes these two.
     gl::Buffer debug_values;         // float by pixel
-    gl::Buffer debug_transmittance;  // uint by splat, bits of the largest T
+    gl::Buffer debug_transmittance;  // uint by splat: the bits of the largest T
   } pictures;
 
-  gl::Sampler nearest;  // by which the caller's textures are read
+  gl::Sampler nearest;  // reads the caller's textures
   LookBack look_back;
 
  private:

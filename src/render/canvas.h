@@ -1,5 +1,5 @@
 #pragma once
-// Images of the caller's that a frame's pictures are written into as they are shown.
+// The caller's images, into which a frame writes its final pictures.
 
 #include <glm/glm.hpp>
 
@@ -8,26 +8,26 @@
 
 namespace binosplat::render {
 
-/// Where the picture of a view goes: a level and layer of a texture that a compute shader can write as this
-/// format. Rows are OpenGL's: (x, y) is the picture's lower left corner.
+/// The destination of a view's picture: a level and layer of a texture that a compute shader can write in
+/// `format`. Rows are OpenGL's: (x, y) is the picture's lower left corner.
 struct Canvas {
   std::uint32_t texture = 0;
   GLenum format = GL_RGBA8;
   int level = 0;
   int layer = 0;
   int x = 0, y = 0;          // px
-  bool keeps_alpha = false;  // without a background, colours premultiplied; else over settings.background
-  bool linear = false;       // its numbers mean light, not what a screen takes
+  bool keeps_alpha = false;  // true: premultiplied colours with alpha; false: over settings.background
+  bool linear = false;       // the image stores linear light instead of display values
 };
 
-/// Values above 0 of such an image's colours; 0: they are floats.
+/// The largest integer of the image's colour channels; 0 for floats.
 constexpr std::uint32_t steps_of(GLenum format) {
   if (format == GL_RGBA8) return 255;
   if (format == GL_RGB10_A2) return 1023;
   return format == GL_RGBA16 ? 65535 : 0;
 }
 
-/// The canvas as shaders have it.
+/// The shaders' struct of the canvas.
 constexpr shared::Canvas on_gpu(const Canvas& canvas) {
   return {.left = static_cast<std::uint32_t>(canvas.x),
           .bottom = static_cast<std::uint32_t>(canvas.y),

@@ -27,7 +27,7 @@ void check(const CallersTextures& textures, std::size_t views, const FrameSettin
   if (workings.stand_in) fail("depths of meshes with a stand-in: it knows nothing of them");
 }
 
-// Another attempt at a frame: the last one is the frame, all took their time.
+// Adds an earlier attempt's times to the last one, which is the frame.
 void add(FrameReport attempt, FrameReport& report) {
   attempt.attempts += report.attempts;
   attempt.redrawn += report.redrawn;
@@ -96,7 +96,7 @@ void Frame::take(std::span<const shared::View> views, const FrameSettings& setti
 void Frame::prepare(std::span<const shared::View> views, const FrameSettings& settings,
                     const Workings& workings, const CallersTextures& textures) {
   take(views, settings, workings, textures);
-  // Frames of a quality that sample their error draw a probe, and not on canvases.
+  // With a quality, frames that sample their error have a probe, and no canvases.
   const bool searches = settings.quality > 0.0f;
   for (const bool samples : {false, true}) {
     if (samples && !searches) continue;
@@ -178,7 +178,7 @@ void Frame::begin(PlanRequest request) {
   check(workings, settings);
   if (workings.stand_in && !is_plain()) fail("a stand-in: only for one model in its own world");
   if (!model_buffers_.empty() && model_buffers_.front()->precision != settings.precision) {
-    model_buffers_.clear();  // first, since both together may not fit
+    model_buffers_.clear();  // first, because both precisions may not fit together
     history_.forget_measured();
   }
   bool is_other = std::exchange(is_placed_anew_, false);
@@ -207,7 +207,7 @@ CallersTextures Frame::submitted_textures(bool with_canvases) const {
   return all;
 }
 
-// An attempt whose probe tells the tolerance of the next one, or that this one is the frame.
+// Starts an attempt with a probe. Its result is the next tolerance, or the end of the search.
 void Frame::start_search() {
   submitted_.searches = true;
   const Probe probe = tolerance_control_.next_probe(submitted_.views, submitted_.settings);
@@ -233,7 +233,7 @@ FrameReport Frame::finish_attempt() {
     record();
   }
   if (counters_.truncated_lists != 0) {
-    forget();  // what this frame left behind is not to be gone by
+    forget();  // the results of this frame are invalid
     refuse_truncated(dispatcher_.context(), counters_);
   }
   if (submitted_.last == Stage::probe) {
@@ -285,7 +285,7 @@ void Frame::record() {
   dispatcher_.end_frame();
 }
 
-// The stages in order, without a read-back between them.
+// Records the stages in order, without a read-back between them.
 void Frame::record_stages() {
   const Workings& workings = submitted_.workings;
   const auto run = [&](Stage stage, const auto& dispatches) {

@@ -14,7 +14,7 @@ namespace binosplat::render {
 
 namespace {
 
-// Equal to the bit in all that decides what Gaussians are sorted by.
+// Whether all values that decide the sort keys are bit-equal.
 bool same_order(const shared::View& a, const shared::View& b, int order) {
   const auto equal = [](const glm::vec4& x, const glm::vec4& y, int size) {
     return std::memcmp(&x, &y, static_cast<std::size_t>(size)) == 0;
@@ -31,7 +31,7 @@ void check_table(const DepthTable& table) {
     fail("transmittance depth: its table needs a far end above 0 and values from 0 to 1");
 }
 
-// What settings need beside each other.
+// Throws Error if a setting lacks another one that it needs.
 void check_needs(const FrameSettings& s, std::size_t views, std::span<const InstancePlace> instances) {
   if (s.decode != DECODE_EYES && views % 2 != 0)
     fail("decode {}: only for both eyes together", decode_choices[s.decode].name);
@@ -60,7 +60,7 @@ bool draws_some(const FrameSettings& settings) {
   return !std::all_of(settings.regions.begin(), settings.regions.end(), std::mem_fn(&ViewRegion::is_whole));
 }
 
-// Appends a view, or a probe of it, in the last order group if that sees the same depths.
+// Appends a view, or its probe. It joins the last order group if the depths are equal.
 void add_view(FramePlan& plan, shared::View view, const ViewRegion& region,
               const std::optional<Probe>& probe = {}) {
   const Probe tiles = probe.value_or(Probe{});
@@ -105,8 +105,8 @@ void add_view(FramePlan& plan, shared::View view, const ViewRegion& region,
   plan.views.push_back(view);
 }
 
-// How many columns of supertiles the second eye sees what is at this depth before the first, if both look the
-// same way; between 0 and those of a row, round the edge.
+// The second eye's offset in columns of supertiles, for objects at this depth and parallel views. Wraps
+// around: from 0 to the columns of a row.
 std::uint32_t disparity(const shared::View& first, const shared::View& second, int tile, double depth) {
   if (!(depth > 0.0)) return 0;
   const auto across = static_cast<int>((first.tiles_x + SUPERTILE_SIDE - 1) / SUPERTILE_SIDE);
@@ -122,7 +122,7 @@ std::uint32_t disparity(const shared::View& first, const shared::View& second, i
 
 void share_lists(FramePlan& plan, std::int64_t slots, double middle_depth) {
   constexpr std::int64_t splats_max = std::int64_t{1} << (32 - 2 * SUPERTILE_SIDE * SUPERTILE_SIDE);
-  const std::int64_t firsts_end = (plan.view_count() - 1) | 1;  // of those whose splats lists number
+  const std::int64_t firsts_end = (plan.view_count() - 1) | 1;  // views whose splats the lists store
   plan.list_views =
       plan.asked >= 2 && slots * firsts_end <= splats_max && plan.settings.tiles != TILES_ALL ? 2 : 1;
   for (std::size_t v = 0; v + 1 < plan.view_count(); v += 2) {
@@ -147,7 +147,7 @@ int FramePlan::depth() const {
   return !canvases.empty() && depth_rows == 2 ? DEPTH_MEDIAN_OF_TWO_ROWS : DEPTH_MEDIAN;
 }
 
-// Lists are sorted by z, or by the distance from a point that each eye is so far from.
+// Lists are sorted by z, or by the distance from a point at this distance from each eye.
 float FramePlan::depth_slack() const {
   if (perspective.order == ORDER_DEPTH && perspective.projection == PROJECTION_AFFINE) return 0.0f;
   if (perspective.order != ORDER_DISTANCE || perspective.projection != PROJECTION_TANGENT)

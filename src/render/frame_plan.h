@@ -1,5 +1,6 @@
 #pragma once
-// What a frame is made of before anything is drawn: its views with tiles and offsets, and what they share.
+// The plan of a frame: its views with tiles and offsets, and the resources that they share. It is complete
+// before anything is drawn.
 
 #include <algorithm>
 #include <cstddef>
@@ -17,14 +18,14 @@
 
 namespace binosplat::render {
 
-/// Views that see equal depths and are projected together: [begin, end) of the frame's views.
+/// Views of equal depths that are projected together: [begin, end) of the frame's views.
 struct OrderGroup {
   std::uint32_t begin = 0;
   std::uint32_t end = 0;
 };
 
-/// Tiles of one of a frame's views that are drawn exactly, too, to see what the frame's tolerance costs: one
-/// of every `step` x `step`, from the one in this column and row on.
+/// The error sample: tiles of one view that are also drawn exactly, to measure the error of the frame's
+/// tolerance. One of every `step` x `step` tiles, starting at `column` and `row`.
 struct Probe {
   std::uint32_t view = 0;
   std::uint32_t step = 1;
@@ -32,25 +33,25 @@ struct Probe {
   std::uint32_t row = 0;
 };
 
-/// What a probe showed.
+/// The result of a probe.
 struct Probed {
-  double squared_error = 0.0;  // mean over its pixels and channels, 8 bits
-  double unevenness = 0.0;     // variance of its tiles' errors, in squares of their mean
+  double squared_error = 0.0;  // mean over its pixels and channels, in squared steps of 8 bits
+  double unevenness = 0.0;     // variance of its tiles' errors over their squared mean
 };
 
-/// Meshes of the caller's among the splats.
+/// The caller's meshes among the splats.
 struct Meshes {
-  std::vector<MeshDepth> depths;        // by view that is asked for; empty: there are none
-  std::vector<glm::uvec2> whole_sizes;  // px, by view: of the picture that a window is a part of
+  std::vector<MeshDepth> depths;        // by requested view; empty without meshes
+  std::vector<glm::uvec2> whole_sizes;  // px, by view: the size of the whole picture that a window belongs to
 };
 
-/// Gaussians of a model, and how many it has room for.
+/// The Gaussians of a model, and the number that it has room for.
 struct ModelSize {
   std::size_t gaussians = 0, room = 0;
 };
 inline ModelSize size_of(const Model& model) { return {model.count(), std::max(model.count(), model.room)}; }
 
-/// One of a frame's models. It is drawn by `instances` of the frame's, from `first_instance` on.
+/// One of a frame's models. The frame's instances [first_instance, first_instance + instances) draw it.
 struct PlannedModel {
   int degree = 0;  // of its SH
   double kernel_px2 = KERNEL_PX2;
@@ -60,77 +61,75 @@ struct PlannedModel {
 };
 PlannedModel planned(const Model& model, const ModelSize& size);
 
-/// What a frame derives from its settings, its views and its model before anything is drawn. It is made once,
-/// by make_plan(); what frames remember of one another is history.h's.
+/// make_plan() derives it once from settings, views and model. history.h keeps the state that frames share.
 struct FramePlan {
   FrameSettings settings;
-  float tolerance = 0.0f;            // K or kappa: the settings', or one that was found for a quality
-  bool between_pixels = false;       // likewise
-  bool visibility_as_depth = false;  // likewise
+  float tolerance = 0.0f;            // K or kappa: the settings', or the one found for a quality
+  bool between_pixels = false;       // Workings::between_pixels
+  bool visibility_as_depth = false;  // Workings::visibility_as_depth
   Perspective perspective;
   std::vector<PlannedModel> models;
   std::vector<InstancePlace> instances;  // by model; empty: one model, once, in its own world
   std::uint32_t gaussian_count = 0;      // of all instances
-  std::uint32_t gaussian_room = 0;       // as many, or more where a model grows
-  std::vector<shared::View> views;       // those asked for, then the probe's
+  std::uint32_t gaussian_room = 0;       // at least gaussian_count; larger if a model may grow
+  std::vector<shared::View> views;       // the requested views, then the probe's
   std::uint32_t asked = 0;
   std::optional<Probe> probe;
   std::vector<OrderGroup> groups;
   std::vector<glm::uvec2>
-      region_rows;  // by row of tiles of all views (tiles/regions.glsl), where any view is not drawn whole
-  std::vector<Canvas> canvases;  // where pictures go; empty: into the frame's own buffer
-  int depth_rows = 1;            // with canvases: depths are wanted in every row, or every second one
+      region_rows;  // by row of tiles of all views (tiles/regions.glsl), if any view has a region
+  std::vector<Canvas> canvases;  // destinations of the pictures; empty: the frame's own buffer
+  int depth_rows = 1;            // with canvases: 1 stores depths of every row, 2 of every second one
   Meshes meshes;
   std::uint32_t supertile_count = 0;  // over all views
-  int list_views = 1;                 // views that share lists, by share_lists()
+  int list_views = 1;                 // views that share lists, set by share_lists()
   std::int64_t pixel_count = 0;       // over all views
   // For Scaffold-GS; K is 0 for other models.
   std::uint32_t offset_count = 0;        // K
-  std::uint32_t views_per_decoding = 1;  // views that share what the networks made
+  std::uint32_t views_per_decoding = 1;  // views that share decoded Gaussians
   std::int64_t anchor_bytes = 0;
 
   bool draws_regions() const { return !region_rows.empty(); }
-  /// DEPTH_ of shared/limits.h, what the blend tells of a pixel's depth.
+  /// DEPTH_ of shared/limits.h: the depth that the blend computes.
   int depth() const;
-  /// Whether `z_sums` are depths: where pictures are final.
+  /// Whether `z_sums` holds final depths instead of sums.
   bool tells_depths() const { return !canvases.empty() || !meshes.depths.empty(); }
-  /// How much nearer splats may be than those before them in a list, world units; infinite: any.
+  /// How much nearer a splat may be than its predecessors in a list, in world units; infinite: no limit.
   float depth_slack() const;
-  /// Whether splats are blended by blocks, which end once they are dark (docs/method.md 5.2).
+  /// Whether splats are blended by blocks, which end once their pixels are opaque (docs/method.md 5.2).
   bool is_approximate() const { return settings.th == TH_SQUARED && settings.tiles == TILES_ELLIPSE; }
   std::uint32_t view_count() const { return static_cast<std::uint32_t>(views.size()); }
-  /// Tiles of all supertiles: a few more than the pictures have.
+  /// The tiles of all supertiles: slightly more than those of the pictures.
   std::uint32_t tile_count() const { return supertile_count * SUPERTILE_SIDE * SUPERTILE_SIDE; }
   std::uint32_t supertiles_of(std::uint32_t view) const {
     return (view + 1 < view_count() ? views[view + 1].supertile_offset : supertile_count) -
            views[view].supertile_offset;
   }
-  /// How often each anchor is decoded. A probe shares the Gaussians of its view.
+  /// How many times each anchor is decoded. A probe shares the Gaussians of its view.
   std::uint32_t decoding_count() const { return (asked + views_per_decoding - 1) / views_per_decoding; }
   std::uint32_t decoding_of_probe() const { return probe ? probe->view / views_per_decoding : 0; }
 };
 
-/// What the settings ask for, and otherwise what the model was trained with.
+/// The settings' order and projection, or else those of the model's training.
 Perspective perspective_of(const FrameSettings& settings, const Model& model);
 
-/// What is asked of a plan besides settings.
+/// Inputs of a plan besides settings.
 struct PlanRequest {
   std::vector<PlannedModel> models;      // empty: the model that make_plan() is given
   std::vector<InstancePlace> instances;  // as FramePlan's
   std::optional<Probe> probe;
-  std::optional<float> tolerance;  // in the place of the settings'
+  std::optional<float> tolerance;  // replaces the settings'
   CallersTextures textures;
 };
 
-/// Lets both eyes, views 2k and 2k + 1, share lists (supertiles.glsl), if all of these see equal depths
-/// through equal lenses in grids of equal size, and entries have enough bits for `slots` Gaussians. The
-/// second eye's grid is moved by the disparity at `middle_depth`, world units; unless it is above 0, not at
-/// all.
+/// Lets both eyes, views 2k and 2k + 1, share lists (supertiles.glsl). All pairs must have equal depths,
+/// equal lenses and grids of equal size, and entries must have enough bits for `slots` Gaussians. Shifts the
+/// second eye's grid by the disparity at `middle_depth`, in world units; 0 or less: no shift.
 void share_lists(FramePlan& plan, std::int64_t slots, double middle_depth);
 
-/// Makes the plan for a model of this size, whatever model.count() says: the model in memory may have changed
-/// since it was uploaded. Throws Error(bad_input) for no views, more than MAX_VIEWS, an empty or huge
-/// picture, and settings that contradict each other or the views.
+/// Makes the plan for `size` instead of model.count(): the model in memory may have changed since its upload.
+/// Throws Error(bad_input) for no views, more than MAX_VIEWS, an empty or huge picture, and settings that
+/// contradict each other or the views.
 FramePlan make_plan(std::span<const shared::View> views, const FrameSettings& settings, const Model& model,
                     const ModelSize& size, const Workings& workings, const PlanRequest& request = {});
 inline FramePlan make_plan(std::span<const shared::View> views, const FrameSettings& settings,

@@ -1,4 +1,4 @@
-// What can be read of the last frame.
+// Reads back the results of the last frame.
 
 #include <algorithm>
 #include <span>

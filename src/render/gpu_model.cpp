@@ -21,8 +21,8 @@ shared::Gaussian gaussian_of(const Model& model, std::size_t i) {
 
 using Range = ModelChunks::Range;
 
-// How one kind of a Gaussian's numbers lies on the GPU: pack(first, places, room) puts those of the Gaussians
-// first + place of the model into room for `words` of each, and zeros where it has fewer.
+// The layout of one kind of a Gaussian's numbers on the GPU. pack(first, places, room) writes those of the
+// Gaussians first + place of the model, `words` for each. Unused words become zero.
 struct Packing {
   std::size_t words;
   std::function<void(std::size_t first, std::span<const std::uint32_t> places, std::span<std::uint32_t> room)>
@@ -66,7 +66,7 @@ Packing packing_of_harmonics(const Model& model, int precision) {
   });
 }
 
-// All of a page's Gaussians into a buffer of the page; in pieces: memory that is touched once takes long.
+// Uploads all of a page's Gaussians in pieces, because memory is slow at first touch.
 void upload_page(const Packing& packing, const ModelBuffers::Page& page, gl::Buffer& buffer) {
   constexpr std::size_t piece = 1 << 16;
   std::vector<std::uint32_t> packed(std::min<std::size_t>(piece, page.count) * packing.words);
@@ -83,7 +83,7 @@ void upload_page(const Packing& packing, const ModelBuffers::Page& page, gl::Buf
   }
 }
 
-// Gaussians of the page that lie in the ranges.
+// Appends the Gaussians of the page that lie in the ranges.
 void add_places(const ModelBuffers::Page& page, std::span<const Range> ranges,
                 std::vector<std::uint32_t>& places) {
   for (const Range& range : ranges) {
@@ -122,8 +122,8 @@ void ModelBuffers::upload(gl::Context& context, const Model& model) {
     upload_pages(context, *model.scaffold, page_step(context, model));
     return;
   }
-  // What shaders write into these buffers (Scatter) must be there before: uploads overtook it on an H200
-  // (driver 580) that had much else to do, in spite of a barrier, and a model kept parts of what it had been.
+  // Shader writes into these buffers (Scatter) must be complete. On a busy H200 (driver 580) uploads overtook
+  // them in spite of a barrier, and a model kept parts of its old state.
   context.gl().Finish();
   set_pages(context, model);
   for (Page& page : pages) {
@@ -147,7 +147,7 @@ void ModelBuffers::upload(gl::Context& context, const Model& model, const ModelC
     add_places(page, changes.filled, places);
     const std::size_t filled = places.size();
     add_places(page, changes.emptied, places);
-    // Of those that are emptied zeros: what they were is long out of reach of a cache.
+    // Emptied places become zero.
     const auto upload = [&](Scatter& scatter, const Packing& packing, gl::Buffer& buffer, std::size_t count) {
       const auto fill = [&](std::span<const std::uint32_t> some, std::span<std::uint32_t> room) {
         const auto first = static_cast<std::size_t>(some.data() - places.data());
@@ -167,8 +167,8 @@ std::int64_t ModelBuffers::room_in(const Page& page, const Model& model) const {
   return static_cast<std::int64_t>(std::min(page_step_, room));
 }
 
-// Zeros from a Gaussian of the page on: an opacity of 0. By uploads: those that follow in the same place must
-// not overtake them.
+// Writes zeros (opacity 0) from a Gaussian of the page on. Uses uploads, because later uploads to the same
+// place must not overtake this one.
 void ModelBuffers::hide(const Page& page, std::int64_t first) const {
   constexpr std::int64_t piece = std::int64_t{1} << 22;  // bytes
   const std::int64_t begin = first * gaussian_bytes(precision), end = page.gaussians->bytes();
@@ -228,7 +228,7 @@ std::shared_ptr<ModelBuffers> GpuModel::in(int precision) {
   if (const auto found = wanted.lock()) {
     latest_ = found;
   } else {
-    latest_.reset();  // first, since both together may not fit
+    latest_.reset();  // first, because both precisions may not fit together
     size_ = size_of(model_);
     latest_ = std::make_shared<ModelBuffers>(context_, model_, precision, page_gaussians_);
     wanted = latest_;
@@ -242,7 +242,7 @@ void GpuModel::upload_all(const Upload& upload) {
   const auto other_is_held = [&] {
     return !all_.at(static_cast<std::size_t>(1 - latest_->precision)).expired();
   };
-  if (latest_.use_count() == 1 && other_is_held()) latest_.reset();  // nobody draws it any more
+  if (latest_.use_count() == 1 && other_is_held()) latest_.reset();  // no frame draws it any more
   for (const auto& each : all_) {
     if (const auto held = each.lock()) upload(*held);
   }

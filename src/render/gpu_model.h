@@ -15,29 +15,30 @@
 
 namespace binosplat::render {
 
-/// The model in one precision, in pages of Gaussians whose buffers a shader can reach. A page of a
-/// Scaffold-GS model holds whole anchors, and each frame makes its Gaussians and their colours (as harmonics
-/// of degree 0) anew, once for each decoding: (decoding, id).
+/// The model in one precision, in pages small enough for a shader to address each buffer. A page of a
+/// Scaffold-GS model holds whole anchors. Each frame decodes their Gaussians and colours (as harmonics of
+/// degree 0) again, once per decoding: (decoding, id).
 struct ModelBuffers {
   struct Page {
-    std::uint32_t first = 0;  // Gaussian of the model
+    std::uint32_t first = 0;  // index of its first Gaussian in the model
     std::uint32_t count = 0;
     std::unique_ptr<gl::Buffer> gaussians;  // Gaussian, or Halves
     std::unique_ptr<gl::Buffer> harmonics;  // packed vec4s, or as many halves (sh.glsl)
     std::unique_ptr<AnchorBuffers> anchors;
   };
 
-  /// Uploads the model. A page has at most `page_gaussians`; 0: as many as a shader reaches in one buffer.
+  /// Uploads the model. A page has at most `page_gaussians`; 0: as many as a shader can address in one
+  /// buffer.
   ModelBuffers(gl::Context& context, const Model& model, int precision, std::uint32_t page_gaussians);
 
-  /// Uploads another model in the place of this one, into the same buffers where they are large enough.
+  /// Replaces the model by another one. Reuses buffers that are large enough.
   void upload(gl::Context& context, const Model& model);
 
-  /// Uploads what has changed of the model, which may have grown but not shrunk; places that were never
-  /// filled have an opacity of 0. Not for Scaffold-GS.
+  /// Uploads the changes of the model, which may have grown but not shrunk. Gaussians of places that were
+  /// never filled have opacity 0. Not for Scaffold-GS.
   void upload(gl::Context& context, const Model& model, const ModelChunks::Changes& changes);
 
-  /// Makes room for what a frame of this plan decodes.
+  /// Allocates room for the Gaussians that a frame of this plan decodes.
   void reserve(const FramePlan& plan);
 
   const int precision;  // PRECISION_ of shared/axes.h
@@ -53,7 +54,7 @@ struct ModelBuffers {
 
   std::uint32_t page_gaussians_;
   std::size_t page_step_ = 0;            // Gaussians
-  Scatter to_gaussians_, to_harmonics_;  // two, since each waits until the GPU has read its last upload
+  Scatter to_gaussians_, to_harmonics_;  // two: each waits until the GPU has read its last upload
 };
 
 class GpuModel {
@@ -66,24 +67,24 @@ class GpuModel {
 
   gl::Context& context() const { return context_; }
   const Model& model() const { return model_; }
-  /// The model's size when it was uploaded last: frames draw that, whatever became of the model since.
+  /// The model's size at its last upload. Frames use it, because the model may have changed since.
   const ModelSize& size() const { return size_; }
 
-  /// The model in that precision, which is uploaded where no frame holds it. It stays on the GPU as long as a
-  /// frame holds it; the precision asked for last stays besides, until a reload while frames hold the other
-  /// one only. Throws as the constructor does.
+  /// Returns the model in that precision, and uploads it if no frame holds it. It stays on the GPU as long as
+  /// a frame holds it. The last requested precision also stays, until a reload while frames hold only the
+  /// other one. Throws as the constructor does.
   std::shared_ptr<ModelBuffers> in(int precision);
 
-  /// Uploads the model again, which has changed since: it is the same scene at other levels of detail.
-  /// Buffers are used again where they are large enough. Frames see by `uploads` that what they measured is
-  /// of another model. Throws as the constructor does.
+  /// Uploads the model again after a change: the same scene at other levels of detail. Reuses buffers that
+  /// are large enough. Frames compare `uploads` to detect that their measurements belong to another state.
+  /// Throws as the constructor does.
   void reload();
-  /// The same, but uploads these places only (ModelBuffers::upload).
+  /// Uploads only these places (ModelBuffers::upload).
   void reload(const ModelChunks::Changes& changes);
   int uploads() const { return uploads_; }
 
  private:
-  /// Calls upload() for each precision that is held, and drops the other.
+  /// Calls upload() for each precision that is in use, and drops the other.
   template <typename Upload>
   void upload_all(const Upload& upload);
 

@@ -12,13 +12,13 @@ namespace binosplat::render {
 namespace {
 
 constexpr float most = 65504.0f;
-constexpr float least = 0x1p-14f;  // that keeps all its bits
+constexpr float least = 0x1p-14f;  // the smallest number with all its bits in fp16
 
 std::uint32_t pair(float a, float b) {
   return glm::packHalf2x16(glm::vec2(std::clamp(a, -most, most), std::clamp(b, -most, most)));
 }
 
-// A unit quaternion without its largest number, in 20 bits each and two that say which.
+// A unit quaternion without its largest component: 20 bits for each of the others, and two for the index.
 std::array<std::uint32_t, 2> pack_rotation(const glm::vec4& q) {
   int largest = 0;
   for (int k = 1; k < 4; ++k) largest = std::abs(q[k]) > std::abs(q[largest]) ? k : largest;

@@ -1,6 +1,6 @@
 #pragma once
-// --precision half on the CPU's side: Gaussians and splats in 32 bytes as halves.glsl unpacks them, SH
-// coefficients in fp16. Numbers beyond fp16 become its largest.
+// Packs for `--precision half` on the CPU: Gaussians and splats in 32 bytes, SH coefficients in fp16;
+// halves.glsl unpacks them. Numbers beyond fp16 become its largest.
 
 #include <array>
 #include <cstdint>
@@ -13,18 +13,20 @@ namespace binosplat::render {
 
 using Halves = std::array<std::uint32_t, 8>;
 
-/// Position and largest scale in fp32; the scales as shares of it and opacity in fp16, rotation in 62 bits.
+/// Position and largest scale are in fp32. Opacity and the scales, as shares of the largest, are in fp16. The
+/// rotation has 62 bits.
 Halves pack(const shared::Gaussian& gaussian);
 
-/// Mean, depth and rho in fp32; the lower Cholesky factor L of the conic, opacity and colour in fp16, L.yx as
-/// the sum of two.
+/// Mean, depth and rho are in fp32. The lower Cholesky factor L of the conic, opacity and colour are in fp16,
+/// with L.yx as the sum of two.
 Halves pack(const shared::Splat& splat);
 
-/// Two to a word, the first in the low half; `packed` has room for all of them and zeros beyond.
+/// Packs two numbers per word, the first in the low half. `packed` has room for all of them; the rest becomes
+/// zero.
 void pack(std::span<const float> numbers, std::span<std::uint32_t> packed);
 
-/// Bytes of one thing in a PRECISION_ of shared/axes.h; of one Gaussian's harmonics with the padding that
-/// vec4s need.
+/// Bytes of one object in a PRECISION_ of shared/axes.h. harmonic_bytes() counts one Gaussian's harmonics,
+/// with the padding of vec4s.
 constexpr std::int64_t gaussian_bytes(int precision) {
   return precision == PRECISION_HALF ? sizeof(Halves) : sizeof(shared::Gaussian);
 }

@@ -11,7 +11,7 @@ namespace {
 constexpr double turn_max_degrees = 15.0;
 constexpr double move_max_of_depth = 0.1;
 constexpr int probe_every = 4;  // frames
-// Of the way to a cut: a picture that has changed by more is probed, and measured, again.
+// Shares of the way to a camera cut, from which the next frame has a probe, or measures.
 constexpr double probe_share = 1.0 / 15.0;
 constexpr double measure_share = 1.0 / 3.0;
 
@@ -38,7 +38,7 @@ bool is_near(const shared::View& a, const shared::View& b, double middle_depth, 
          std::abs(b.eye.w / a.eye.w - 1.0) <= share * move_max_of_depth;
 }
 
-// The rows of tiles of the views that were asked for: where nothing was drawn, nothing was measured.
+// The rows of tiles of the requested views. Other rows are a camera cut: undrawn tiles measure nothing.
 std::span<const glm::uvec2> rows_asked(const FramePlan& plan) {
   const bool has_probe = plan.draws_regions() && plan.view_count() > plan.asked;
   return std::span(plan.region_rows)
@@ -47,7 +47,7 @@ std::span<const glm::uvec2> rows_asked(const FramePlan& plan) {
 
 }  // namespace
 
-// The mean of floats' bits is nearly one of logarithms.
+// Averages the bits of floats, which are nearly linear in the logarithm.
 double middle_depth(const shared::Counters& counters) {
   if (counters.visible == 0) return 0.0;
   const double sum = (counters.depths_high * 0x1p32 + counters.depths_low) * COMPACT_BLOCK;

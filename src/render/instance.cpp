@@ -7,7 +7,7 @@ shared::View view_of_instance(const shared::View& view, const InstancePlace& pla
   const glm::dvec3 anchor = into_model * (glm::dvec3(view.anchor) - place.translation) / place.scale;
   shared::View seen = view;
   seen.anchor = glm::vec4(glm::vec3(anchor), view.anchor.w);
-  // The anchor's rounding goes into what is taken relative to it, so that a model that moves does not jitter.
+  // The translation and the eye absorb the anchor's rounding; otherwise a moving model would jitter.
   const glm::dvec3 rounded = anchor - glm::dvec3(seen.anchor);
   for (glm::vec4 shared::View::*row : {&shared::View::row_x, &shared::View::row_y, &shared::View::row_z}) {
     const glm::dvec3 axis = place.scale * (into_model * glm::dvec3(view.*row));

@@ -1,5 +1,5 @@
 #pragma once
-// Models at their places in the world of a frame.
+// Instances: models at their places in the world of a frame.
 
 #include <glm/glm.hpp>
 #include <memory>
@@ -12,7 +12,7 @@ namespace binosplat::render {
 
 class GpuModel;
 
-/// Where a model lies in the frame's world, and how it is drawn there.
+/// The place of a model in the frame's world.
 struct InstancePlace {
   /// p = scale * rotation * p_model + translation, world units.
   glm::dmat3 rotation{1.0};
@@ -21,7 +21,7 @@ struct InstancePlace {
   float opacity = 1.0f;    // from 0 to 1, times each Gaussian's
   DepthTable depth_table;  // with TRANSMITTANCE_DEPTH, in units of the model; empty: the settings'
 
-  /// Whether the model is drawn as if it were alone in its own world.
+  /// Whether the frame's world is the model's own.
   bool is_plain() const {
     return rotation == glm::dmat3(1.0) && translation == glm::dvec3(0.0) && scale == 1.0 && opacity == 1.0f &&
            depth_table.bounds.empty();
@@ -33,8 +33,9 @@ struct Instance {
   InstancePlace place;
 };
 
-/// The view as the model sees it: it maps the model's points to where `view` maps them in the world. Views of
-/// equal depths stay so. Its table of depths is the caller's to set.
+/// Returns the view in the model's own world: it maps a point of the model to the pixel and depth to which
+/// `view` maps the point's place in the frame's world. Views of equal depths keep equal depths. The caller
+/// sets its table by depth.
 shared::View view_of_instance(const shared::View& view, const InstancePlace& place);
 
 }  // namespace binosplat::render

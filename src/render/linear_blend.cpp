@@ -44,7 +44,7 @@ std::vector<glm::vec4> LinearBlend::read_picture() {
       static_cast<std::size_t>(frame_.plan().pixel_count));
 }
 
-// Four of each slot.
+// Returns four sums per slot.
 template <typename Record>
 std::vector<std::int64_t> LinearBlend::sums(const Record& record) {
   sums_.reserve_zeros(std::int64_t{slots()} * 4 * 8);

@@ -1,7 +1,7 @@
 #pragma once
-// A picture is linear in the colours of its splats: C = W c, where W has alpha * T of each pixel and splat
-// (docs/method.md 3). Here are W and its transpose, which tell what each Gaussian is worth and which colours
-// fit a picture best.
+// A picture is linear in the colours of its splats: C = W c. W has alpha * T of each pixel and splat
+// (docs/method.md 3). This class applies W and its transpose. `trim` and `refit` use them to measure each
+// Gaussian's contribution, and to fit colours to pictures.
 
 #include <span>
 #include <vector>
@@ -10,42 +10,42 @@
 
 namespace binosplat::render {
 
-/// W of one view at a time, exact and in full precision.
+/// Applies W of one view at a time, exact and in full precision.
 class LinearBlend {
  public:
   /// Context and model must outlive it, and the context must be current in every call. Throws as GpuModel
   /// does.
   LinearBlend(gl::Context& context, const Model& model)
       : LinearBlend(std::make_shared<GpuModel>(context, model)) {}
-  /// The same for a model that others draw, too.
+  /// The same for a shared model.
   explicit LinearBlend(std::shared_ptr<GpuModel> model);
 
-  /// W becomes that of a view, and the picture undefined. Uses the settings that exact_of() keeps. Throws as
-  /// Frame::draw() does.
+  /// Sets W to that of a view; the picture becomes undefined. Uses the settings that exact_of() keeps. Throws
+  /// as Frame::draw() does.
   void set_view(const shared::View& view, const FrameSettings& settings = {}, const Workings& workings = {});
 
-  /// The Gaussians that the view draws, in index order: W has a column for each.
+  /// The Gaussians that the view draws, in index order; each has a column in W.
   const std::vector<DrawnGaussian>& drawn() const { return drawn_; }
 
-  /// The picture becomes W c. `colours` has one for each of drawn(), of either sign. Throws
-  /// Error(out_of_memory) for lists of splats that are too long for the driver, as does transposed().
+  /// Sets the picture to W c. `colours` has one per element of drawn(), of either sign. Throws
+  /// Error(out_of_memory) if lists of splats are too long for the driver, as does transposed().
   void set_colours(std::span<const glm::vec3> colours);
 
-  /// Another picture in its place: a vec4 for each of the view's pixels, rows from the top.
+  /// Replaces the picture: one vec4 per pixel of the view, rows from the top.
   void set_picture(std::span<const glm::vec4> pixels) {
     frame_.buffers().pictures.colours.upload_part(pixels, 0);
   }
 
-  /// vec4 by pixel: after set_colours() with the transmittance left in a.
+  /// vec4 by pixel. After set_colours(), a is the transmittance left.
   std::vector<glm::vec4> read_picture();
 
-  /// W^T of the picture, by channel, for each of drawn(): whole multiples of `largest` / TRANSPOSED_SCALE,
-  /// each pixel's to the nearest, the same bits always. No channel may be larger than `largest`.
+  /// W^T times the picture, by channel, for each of drawn(). Each pixel adds a multiple of `largest` /
+  /// TRANSPOSED_SCALE, so the result is the same bits every time. No channel may exceed `largest`.
   std::vector<glm::dvec4> transposed(float largest);
 
-  /// The change of the picture without each of drawn() alone, in the model's colours or those that were set
-  /// last: squared, summed over pixels and channels, each pixel's to the nearest 1 / CHANGE_SCALE and no more
-  /// than CHANGE_MOST.
+  /// For each of drawn(): the squared change of the picture if it alone is removed, summed over pixels and
+  /// channels. Uses the model's colours, or those set last. Each pixel adds a multiple of 1 / CHANGE_SCALE,
+  /// and at most CHANGE_MOST.
   std::vector<double> changes();
 
  private:

@@ -1,5 +1,5 @@
 #pragma once
-// What work groups leave for those after them in the one dispatch in which they count
+// The words through which work groups pass their counts to later groups of the same dispatch
 // (look_back.glsl).
 
 #include <cstdint>
@@ -13,7 +13,7 @@ class LookBack {
  public:
   explicit LookBack(gl::Context& context) : words_(context, "counts that are looked back at") {}
 
-  /// Makes room for `groups` groups; no dispatch may be under way that uses it.
+  /// Makes room for `groups` groups. No dispatch that uses the buffer may be under way.
   void reserve(std::int64_t groups) {
     const std::int64_t bytes = (4 + 2 * groups) * 4;
     if (words_.bytes() >= bytes) return;
@@ -23,7 +23,7 @@ class LookBack {
 
   const gl::Buffer& words() const { return words_; }
 
-  /// The uniform look_back_half of the next dispatch, which must have a group at least.
+  /// Returns the uniform look_back_half of the next dispatch, which must have at least one group.
   std::uint32_t next_half() { return std::exchange(half_, 1 - half_); }
 
  private:

@@ -11,17 +11,17 @@ namespace binosplat::render {
 
 std::uint32_t starting_slots(std::uint32_t gaussians) {
   constexpr std::uint32_t slots_start = 1u << 20;
-  // Their splats are what a shader reaches of one buffer on some GPUs, of two eyes; windows show fewer.
+  // Some GPUs address no more splats of two eyes in one buffer; a window shows fewer Gaussians.
   constexpr std::uint32_t slots_start_most = 1u << 24;
   return std::max(std::min(gaussians / 2, slots_start_most), std::min(gaussians, slots_start));
 }
 
 namespace {
 
-// A first frame has room for some entries a Gaussian, as most models need, and for some tiles each.
+// The room of a first frame: some entries and tiles per Gaussian, enough for most models.
 Capacity starting_room(const FramePlan& plan) {
   constexpr std::int64_t pairs_per_splat = 8;
-  // A model that grows is one that somebody moves through: making more room takes 100 ms.
+  // Growing models are shown while somebody moves, and growing their buffers takes 100 ms.
   const int most_bits = plan.gaussian_room > plan.gaussian_count ? 24 : 23;
   const std::int64_t pairs =
       std::clamp(starting_slots(plan.gaussian_room) * std::int64_t{plan.view_count()} * pairs_per_splat,
@@ -56,7 +56,7 @@ MemoryNeeds memory_needs(const FramePlan& plan) {
 
 void Capacity::start(const FramePlan& plan, const Workings& asked) {
   Capacity first = starting_room(plan);
-  // What stands in for stages needs all the room that it takes at once.
+  // A stand-in needs all of its room at once.
   if (asked.stand_in) first.slots = plan.gaussian_room;
   slots = asked.slots > 0 ? asked.slots : std::max(slots, first.slots);
   if (asked.pairs > 0) {

@@ -1,5 +1,5 @@
 #pragma once
-// The memory that a frame takes: what it starts with, how it grows, and what that comes to beforehand.
+// The memory of a frame: its first size, its growth, and its total before allocation.
 
 #include <cstdint>
 
@@ -8,29 +8,29 @@
 
 namespace binosplat::render {
 
-/// How many Gaussians a first frame has room to draw: all of a small model, a part of a large one, which is
-/// hardly ever all in view. A frame that needs more grows its buffers.
+/// Slots of a first frame: all Gaussians of a small model, a part of a large one, which is rarely all in
+/// view. A frame that needs more grows its buffers.
 std::uint32_t starting_slots(std::uint32_t gaussians);
 
-/// The bytes that the model takes on the GPU, and those that a first frame takes besides.
+/// The bytes of the model on the GPU, and the further bytes of a first frame.
 struct MemoryNeeds {
   std::int64_t model = 0;
   std::int64_t frame = 0;
 };
 MemoryNeeds memory_needs(const FramePlan& plan);
 
-/// What the buffers of frames that follow one another have room for.
+/// The sizes of the buffers of successive frames.
 struct Capacity {
-  std::int64_t slots = 0;        // Gaussians that an order group draws
+  std::int64_t slots = 0;        // Gaussians of an order group
   std::int64_t pairs = 0;        // Gaussian-supertile pairs: entries
-  std::int64_t large_pairs = 0;  // those of Gaussians in many supertiles
+  std::int64_t large_pairs = 0;  // the part of Gaussians in many supertiles
   std::int64_t tile_pairs = 0;   // Gaussian-tile pairs
-  std::int64_t rounds = 0;       // that part lists which are too long to be sorted at once
+  std::int64_t rounds = 0;       // rounds that split lists too long to sort at once
 
-  /// At least what a frame of this plan starts with, or exactly what `asked` names.
+  /// Starts with at least the sizes for a frame of this plan, or exactly those that `asked` names.
   void start(const FramePlan& plan, const Workings& asked);
 
-  /// What overflowed gets room for what it wanted, and some more; says so in the log. Throws
+  /// Enlarges the overflowed buffers to the size they needed and a margin, and logs it. Throws
   /// Error(out_of_memory) for more pairs than can be counted.
   void grow(const FramePlan& plan, const shared::Counters& counters);
 };

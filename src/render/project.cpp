@@ -8,12 +8,12 @@ namespace binosplat::render {
 
 namespace {
 
-// A page of a model, which a dispatch draws for all instances of the model.
+// A page of a model. One dispatch projects it for all instances of the model.
 struct DrawnPage {
   const PlannedModel& model;
   const ModelBuffers::Page& page;
   std::uint32_t first;     // of the frame's Gaussians
-  const gl::Buffer& kept;  // anything for models that are not decoded: no shader reads it
+  const gl::Buffer& kept;  // only shaders that decode read it; other models bind any buffer
 };
 
 std::vector<DrawnPage> pages_of(const FramePlan& plan, DrawnModels models, const FrameBuffers& buffers) {
@@ -29,16 +29,16 @@ std::vector<DrawnPage> pages_of(const FramePlan& plan, DrawnModels models, const
   return pages;
 }
 
-constexpr std::uint32_t fills_a_gpu = 1u << 20;  // Gaussians: some times what an H200 has in work
+constexpr std::uint32_t fills_a_gpu = 1u << 20;  // Gaussians: several times an H200's invocations in flight
 
-// Depths of what the group draws; nothing is kept of the splats yet, so that what is out of view costs no
-// memory.
+// Computes the depths of the Gaussians that the group draws. It stores no splats yet, so Gaussians out of
+// view cost no memory.
 void cull(gl::Dispatcher& dispatcher, const FramePlan& plan, OrderGroup views, PairVariant variant,
           std::span<const DrawnPage> pages, FrameBuffers& buffers) {
-  // A probe is asked with its view, unless it is alone in its group.
+  // A probe has the Gaussians of its view, unless it is alone in its group.
   const std::uint32_t end = views.begin < plan.asked ? std::min(views.end, plan.asked) : views.end;
-  // An invocation for each eye takes the time of one where a model does not fill the GPU. Elsewhere one
-  // invocation asks both where one eye's answer makes the other's unnecessary.
+  // If a model does not fill the GPU, an invocation per eye takes no longer. In larger models one invocation
+  // tests both eyes, and one eye may decide for both.
   const bool asks_both = !variant.measures && plan.gaussian_count >= fills_a_gpu;
   variant.eyes = end - views.begin > 1 && !asks_both ? 2 : 1;
   for (const DrawnPage& drawn : pages) {

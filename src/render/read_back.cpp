@@ -14,7 +14,7 @@ ReadBack::Pictures::Pictures(ReadBack& of) : of_(of) {
   }
 }
 
-// The buffers go back, whichever thread this is: only the context's may destroy them.
+// Returns the buffers from any thread: only the context's thread may destroy them.
 ReadBack::Pictures::~Pictures() {
   const std::lock_guard lock(of_.mutex_);
   of_.free_.push_back(std::move(copy_));

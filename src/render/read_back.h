@@ -1,5 +1,5 @@
 #pragma once
-// Pictures on their way from the GPU, which draws the next ones meanwhile.
+// Copies pictures from the GPU, while it draws the next ones.
 
 #include <cstdint>
 #include <memory>
@@ -13,7 +13,7 @@
 
 namespace binosplat::render {
 
-/// Copies pictures into memory that the CPU reads, and uses that again once they are taken.
+/// Copies pictures into memory that the CPU can read, and reuses it once they are taken.
 class ReadBack {
   struct Copy {
     explicit Copy(gl::Context& context)
@@ -38,9 +38,9 @@ class ReadBack {
     Pictures(const Pictures&) = delete;
     Pictures& operator=(const Pictures&) = delete;
 
-    /// Waits until the GPU has copied them. On the context's thread, before take().
+    /// Waits until the GPU has copied them. Call it on the context's thread, before take().
     void wait() { copy_->done.wait(); }
-    /// The pictures as Frame::read_pictures() has them. On any thread.
+    /// Same as Frame::read_pictures(). On any thread.
     std::vector<Picture> take() const;
 
    private:
@@ -50,11 +50,11 @@ class ReadBack {
     std::unique_ptr<Copy> copy_;
     std::vector<shared::View> views_;
     bool has_depth_ = false;
-    std::vector<Picture> stood_in_;  // for the blend: they never were on the GPU
+    std::vector<Picture> stood_in_;  // of a stand-in for the blend, which never were on the GPU
   };
 
-  /// Asks for the pictures of a frame that is drawn, on the context's thread. It may draw the next ones at
-  /// once.
+  /// Starts to copy the pictures of a drawn frame, on the context's thread. The Frame may draw the next one
+  /// at once.
   std::unique_ptr<Pictures> start(const Frame& frame);
 
  private:

@@ -6,7 +6,7 @@ namespace binosplat::render {
 
 namespace {
 
-// The GPU's clock is read between two readings of the CPU's, which lie close together once in three times.
+// Reads the GPU's clock between two readings of the CPU's, and keeps the closest of three tries.
 SameTime same_time(const gl::Context& context) {
   SameTime best;
   Clock::duration least = Clock::duration::max();

@@ -1,5 +1,5 @@
 #pragma once
-// Frames that follow one another, recorded for a profile.
+// Records successive frames for a profile.
 
 #include <memory>
 #include <string>
@@ -17,30 +17,30 @@ struct SameTime {
   std::int64_t gpu_ns = 0;
 };
 
-/// What was recorded.
+/// A finished recording.
 struct Recording {
   std::vector<FrameRecord> frames;
   std::vector<Span> spans;    // of the CPU's threads
-  SameTime first, last;       // before and after all of it
-  double fps = 0.0;           // frames were due so often a second; 0: as soon as the last one was drawn
-  std::string no_clock = {};  // why frames have no `mhz`; empty: they have
+  SameTime first, last;       // at the begin and the end
+  double fps = 0.0;           // scheduled frames per second; 0: each begins when the last one is done
+  std::string no_clock = {};  // why frames lack `mhz`; empty: they have it
 
-  /// The ms that a frame may take; 0: nothing says so.
+  /// The ms of a frame's period; 0 without a schedule.
   double budget_ms() const { return fps > 0.0 ? 1000.0 / fps : 0.0; }
-  /// When the CPU's clock showed what the GPU's did.
+  /// Converts the GPU's time to the CPU's clock.
   Clock::time_point cpu_time(std::int64_t gpu_ns) const;
 };
 
 class Recorder {
  public:
-  /// Begins. The context must outlive it, and be current in every call. The clock is asked for how fast it
-  /// runs, if there is one.
+  /// Starts the recording. The context must outlive it, and be current in every call. Reads the GPU's clock
+  /// rate from `clock`, unless that is null.
   Recorder(const gl::Context& context, double fps, std::shared_ptr<const gl::GpuClock> clock);
 
   void add(FrameRecord frame);
   const std::vector<FrameRecord>& frames() const { return recording_.frames; }
 
-  /// Ends, and hands it out.
+  /// Ends the recording and returns it.
   Recording finish();
 
  private:

@@ -1,5 +1,5 @@
 #pragma once
-// What is particular to each threshold rule.
+// The properties of each threshold rule.
 
 #include <iterator>
 
@@ -7,15 +7,15 @@
 
 namespace binosplat::render {
 
-/// A rule of th_choices (shared/axes.h), which has the unit of its tolerance; shaders/threshold/NAME.glsl
-/// computes its Th, reference/threshold.cpp the same in float64.
+/// A rule of th_choices (shared/axes.h), where the unit of its tolerance is. shaders/threshold/NAME.glsl
+/// computes its Th, and reference/threshold.cpp the same in float64.
 struct ThresholdRule {
-  bool exact = false;       // leaves out only what leaves no mark: it has no tolerance
-  bool uses_bound = false;  // T_upper matters to it
-  /// Where a search for a tolerance begins: gave 40 dB or a little more on every shared scene at a focal
-  /// length of 700 px (docs/method.md 8).
+  bool exact = false;       // drops only invisible pairs, and has no tolerance
+  bool uses_bound = false;  // uses T_upper
+  /// The first tolerance of a search: gave 40 dB or slightly more on every shared scene at a focal length of
+  /// 700 px (docs/method.md 8).
   double careful_tolerance = 0.0;
-  double slope = 0.0;  // a frame's mean squared error grows about as tolerance^slope
+  double slope = 0.0;  // the mean squared error grows about as tolerance^slope
 };
 
 /// By TH_ of shared/axes.h.
@@ -28,12 +28,12 @@ static_assert(std::size(threshold_rules) == std::size(th_choices));
 
 constexpr bool is_exact(int th) { return threshold_rules[th].exact; }
 
-/// Whether a tile test makes every pair that can be seen.
+/// Whether a tile test makes every visible pair.
 constexpr bool has_every_pair(int tiles) {
   return tiles == TILES_ELLIPSE || tiles == TILES_SNUG || tiles == TILES_ALL;
 }
 
-/// Whether a rule can use a transmittance bound from there.
+/// Whether a rule can use the bounds of a TRANSMITTANCE_.
 constexpr bool takes(int th, int transmittance) {
   return transmittance == TRANSMITTANCE_ONE || threshold_rules[th].uses_bound;
 }

@@ -1,5 +1,5 @@
 #pragma once
-// Uploads to places here and there of a buffer.
+// Uploads records to scattered places of a buffer.
 
 #include <cstddef>
 #include <cstdint>
@@ -12,18 +12,18 @@
 
 namespace binosplat::render {
 
-/// Records go to the GPU side by side, from where a shader moves each to its place: an upload to each place
-/// takes a driver 10 us, whatever its size.
+/// Uploads the records side by side; a shader then moves each to its place. A separate upload per place takes
+/// a driver 10 us, whatever its size.
 class Scatter {
  public:
-  /// The most records that lie on the GPU at once, side by side; fewer where the buffer has fewer. Larger
-  /// uploads go in turns, each of which waits for the one before.
+  /// The most records in one upload; fewer if the buffer has fewer. A larger upload is split, and each part
+  /// waits for the one before.
   static constexpr std::size_t records_at_once = 1 << 18;
 
   explicit Scatter(gl::Context& context);
 
-  /// Fills records of `words` of 4 bytes of the buffer, which fill(places, room) makes, some at a time: all
-  /// words of each, since what lies in the room is of no meaning.
+  /// Writes records of `words` words of 4 bytes into the buffer. fill(places, room) makes some at a time. It
+  /// must write all words of each record: `room` is uninitialised.
   void upload(
       const gl::Buffer& buffer, std::span<const std::uint32_t> places, std::size_t words,
       const std::function<void(std::span<const std::uint32_t> places, std::span<std::uint32_t> room)>& fill);
@@ -32,7 +32,7 @@ class Scatter {
   gl::Dispatcher dispatcher_;
   gl::Buffer places_;   // uint by record
   gl::Buffer records_;  // uint by record and word
-  gl::Fence read_;      // by the GPU
+  gl::Fence read_;      // signals that the GPU has read both
 };
 
 }  // namespace binosplat::render

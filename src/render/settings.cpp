@@ -6,7 +6,7 @@
 
 namespace binosplat::render {
 
-// Written so that values that are not finite fail, too.
+// Each condition also fails for values that are not finite.
 void check(const FrameSettings& s, std::string_view prefix) {
   if (!(s.tolerance >= 0.0f) || !std::isfinite(s.tolerance))
     fail("{}tolerance {}: expected zero or more", prefix, s.tolerance);

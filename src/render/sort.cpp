@@ -9,7 +9,7 @@ namespace binosplat::render {
 
 namespace {
 
-// As many groups as there are lists of a kind.
+// Dispatches one group per list of a kind.
 gl::DispatchSize lists_of(std::uint32_t kind, const FrameBuffers& buffers) {
   return gl::DispatchSize::indirect(
       buffers.counters,
@@ -24,7 +24,7 @@ void sort(gl::Dispatcher& dispatcher, const FramePlan& plan, const Capacity& cap
   gl::Context& context = dispatcher.context();
   const auto rounds = static_cast<std::uint32_t>(capacity.rounds);
   const auto tile_pairs = static_cast<std::uint32_t>(capacity.tile_pairs);
-  // Made with the others, since a frame that needs it is to be drawn at once.
+  // Compiled with the others, because a frame that needs it must not wait.
   const gl::Program& split =
       context.program("sort_split.comp", std::array{subgroups_number(context), list_views_number(plan)});
   for (std::uint32_t round = 0; round < rounds; ++round) {
@@ -44,7 +44,7 @@ void sort(gl::Dispatcher& dispatcher, const FramePlan& plan, const Capacity& cap
                     {"capacity", tile_pairs}});
   }
   const auto sort_kind = [&](std::uint32_t kind) {
-    // A software renderer pays for each invocation at each barrier, and seconds to compile a program.
+    // A software renderer pays for each invocation at each barrier, and compiles each program for seconds.
     const bool software = context.software();
     const std::uint32_t each = software ? 4 * SORT_EACH : SORT_EACH;
     const std::uint32_t most = 32 * SORT_EACH << std::min(kind, SORT_CLASSES - 1);  // entries of a list
@@ -67,9 +67,9 @@ void sort(gl::Dispatcher& dispatcher, const FramePlan& plan, const Capacity& cap
                       {"rounds", rounds},
                       {"capacity", tile_pairs}});
   };
-  for (std::uint32_t kind = SORT_CLASSES; kind-- > 0;) sort_kind(kind);  // what takes longest first
+  for (std::uint32_t kind = SORT_CLASSES; kind-- > 0;) sort_kind(kind);  // the slowest first
   dispatcher.wait_for_writes();
-  sort_kind(SORT_CROWDED_KIND);  // which those have left aside
+  sort_kind(SORT_CROWDED_KIND);  // lists that the other kinds have skipped
   dispatcher.wait_for_writes();
 }
 

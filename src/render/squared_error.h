@@ -1,6 +1,6 @@
 #pragma once
-// How far drawn pixels are from wanted ones: compared on the GPU, so that a search reads sums back, not
-// pictures.
+// The squared error between drawn and wanted pictures. The GPU compares them, so that a search reads back
+// sums instead of pictures.
 
 #include <cstdint>
 #include <glm/glm.hpp>
@@ -14,27 +14,27 @@ namespace binosplat::render {
 
 class SquaredError {
  public:
-  /// `wanted` is what should be drawn, in the order of a frame's views. `levels`: 0 compares values as they
-  /// are, 255 as 8 bits would keep them. `exposure` changes what is drawn before it is compared (exposed() of
+  /// `wanted` has the pictures in the order of a frame's views. `levels`: 0 compares the values themselves,
+  /// 255 their 8-bit roundings. `exposure` transforms the drawn colours before the comparison (exposed() of
   /// base/image.h).
   SquaredError(gl::Context& context, std::span<const Picture> wanted, std::uint32_t levels = 0,
                const glm::mat4x3& exposure = glm::mat4x3(1.0f));
 
-  /// Wants nothing yet: add() says what should be drawn.
+  /// Starts without wanted pictures; add() appends them.
   explicit SquaredError(gl::Context& context);
 
-  /// Adds to what should be drawn the pixels that a frame has just drawn; they stay on the GPU.
+  /// Appends the pixels that a frame has just drawn to the wanted ones; they stay on the GPU.
   void add(const gl::Buffer& colours, std::uint32_t pixels);
-  /// The same for a window: its first pixel is number `first` of all, its rows are `pitch` pixels apart.
+  /// The same for a window: its first pixel has the index `first`, and its rows are `pitch` pixels apart.
   void add_window(const gl::Buffer& colours, glm::uvec2 size, std::uint32_t first, std::uint32_t pitch);
-  /// Nothing should be drawn any more, until more is added.
+  /// Removes all wanted pixels.
   void clear() { pixels_ = 0; }
 
-  /// The mean over pixels and channels of all pictures together, over black and clamped to [0, 1]. `colours`
-  /// as render::Frame has them.
+  /// The mean squared error over pixels and channels of all pictures, over black and clamped to [0, 1].
+  /// `colours` has the layout of Frame::colours().
   double mean(const gl::Buffer& colours);
 
-  /// The same in dB; infinite for equal pictures.
+  /// The PSNR in dB; infinite for equal pictures.
   double psnr(const gl::Buffer& colours);
 
  private:

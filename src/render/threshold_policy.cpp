@@ -12,7 +12,7 @@ namespace binosplat::render {
 
 namespace {
 
-constexpr double tolerance_power = 1.25;  // of the focal length
+constexpr double tolerance_power = 1.25;  // exponent of the focal length
 
 const CalibrationEntry* entry_for(const ThresholdCalibration& calibration, const FrameSettings& asked) {
   for (const CalibrationEntry& entry : calibration.entries)

@@ -9,42 +9,45 @@ namespace binosplat::render {
 
 namespace {
 
-// What a view's probe weighs after each further one of that view.
+// Each further probe of a view multiplies the weight of the earlier ones by this.
 constexpr double fading = 0.7;
-// Of what a new probe weighs, the most that all before it do: the whole of a view was seen long ago, too.
+// The largest weight of all earlier probes over the new one's, because even a probe of the whole view ages.
 constexpr double carried_max = 1.25;
-// dB that frames aim at above what is asked for: the promise is of the worse view, and of single frames.
+// dB above the requested quality at which frames aim, because it is promised for the worst view and single
+// frames.
 constexpr double margin = 0.3;
-// dB below what is asked for at which a frame is drawn again; and after a cut, about what is aimed at.
+// dB below the requested quality at which a frame is drawn again; and the range about the aim after a cut.
 constexpr double miss = 0.75;
 constexpr double fresh_below = 0.3, fresh_above = 0.6;
-// The same for one probe by itself.
+// The same for a single probe.
 constexpr double miss_of_one = 1.75;
-// Of what was expected: a probe that errs more shows another scene, not another part of it.
+// A probe's error over the expected one. Beyond this the scene has changed, and not only the sampled part of
+// it.
 constexpr double surprise = 2.7;
-// One standard deviation of what a probe tells, as a share: it has as many tiles as that takes, and at least
-// one of so many.
+// The relative standard deviation of a probe's result. A probe has as many tiles as this requires, and at
+// least one tile in `share_max`.
 constexpr double deviation = 0.12;
 constexpr double share_max = 64.0;
 constexpr double small_most = 1024.0;  // tiles
-// Attempts at a frame: the last is exact; those before it may be better than need be.
+// Attempts at a frame. The last is exact; only earlier ones reject a quality that is too good.
 constexpr int attempts_max = 8;
-// Of the tolerance: the most it changes by from one frame to the next and between attempts.
+// The largest factor of the tolerance from one frame to the next, and between attempts.
 constexpr double step_up = 1.2, step_down = 2.0, step_searching = 30.0;
 constexpr double slope_min = 1.0, slope_max = 24.0, slope_up_min = 3.0;
 constexpr double tolerance_min = 1e-9, tolerance_max = 1e9;
 
-// dB: a quality that changes by no more is followed from frame to frame, as what is left of one that levels
-// of detail share is; another one is searched for. Tightened by more than the second it needs a probe.
+// dB: a requested quality that changes by at most `followed` is tracked from frame to frame, as when levels
+// of detail use a part of the error. A larger change starts a search. A rise by more than `unnoticed` needs a
+// probe.
 constexpr double followed = 3.5, unnoticed = 0.25;
 
-// In smaller pictures than the careful tolerance is for Gaussians are smaller, too, and fox asked for 0.027
-// (squared, last) at 160 px: less than in proportion.
+// Smaller pictures have smaller Gaussians. fox needed 0.027 (squared, last) at 160 px: less than in
+// proportion.
 double careful_tolerance_at_40_db(const FrameSettings& s, double focal) {
   return threshold_rules[s.th].careful_tolerance * std::pow(std::min(1.0, focal / 700.0), 1.75);
 }
 
-// Whether a probe has all tiles of a view, whatever they show.
+// Whether each probe has all tiles of a view.
 bool is_small(const shared::View& view, const FrameSettings& settings) {
   const double side = settings.tile_size, all = std::ceil(view.width / side) * std::ceil(view.height / side);
   return all < std::min(4.0 * settings.probe_tiles, small_most);
@@ -95,12 +98,12 @@ Probe ToleranceControl::next_probe(std::span<const shared::View> views, const Fr
   is_small_ = is_small(view, settings);
   const auto side = static_cast<std::uint32_t>(settings.tile_size);
   const std::uint32_t across = (view.width + side - 1) / side, down = (view.height + side - 1) / side;
-  // After a cut all of it; then more, the more tiles differ.
+  // All tiles after a cut; later the number grows with their variance.
   const double all = static_cast<double>(across) * down;
   const double wanted = std::max(
       {static_cast<double>(settings.probe_tiles), all / share_max, unevenness_ / (deviation * deviation)});
   while (!fresh_ && (probe_.step + 1.0) * (probe_.step + 1.0) * wanted <= all) ++probe_.step;
-  // A golden step, so that the places of a few probes are spread evenly.
+  // The golden ratio spreads the offsets of a few probes evenly.
   const std::uint32_t places = probe_.step * probe_.step;
   std::uint32_t stride = std::max(1u, static_cast<std::uint32_t>(std::lround(0.618 * places)));
   while (std::gcd(stride, places) != 1) ++stride;
@@ -126,7 +129,7 @@ float ToleranceControl::next_tolerance() {
   return static_cast<float>(tolerance_);
 }
 
-// From one frame to the next.
+// The tolerance from one frame to the next.
 double ToleranceControl::followed_tolerance(double target) const {
   const double error = worst();
   if (error <= 0.0) return tolerance_ * step_up;
@@ -134,12 +137,12 @@ double ToleranceControl::followed_tolerance(double target) const {
   return tolerance_ * std::clamp(std::pow(target / error, 1.0 / slope), 1.0 / step_down, step_up);
 }
 
-// Between attempts at a frame.
+// The tolerance of the next attempt at a frame.
 double ToleranceControl::searched_tolerance(double target) const {
   const Bracket& b = bracket_;
   if (b.held > 0.0 && b.missed > 0.0) {
     if (attempts_ > attempts_max - 2) return b.held;
-    double share = 0.5;  // of the way from the one to the other, by their logarithms
+    double share = 0.5;  // position between the two, in logarithms
     if (b.held_error > 0.0) share = std::log(target / b.held_error) / std::log(b.missed_error / b.held_error);
     return b.held * std::pow(b.missed / b.held, std::clamp(share, 0.1, 0.9));
   }
@@ -154,14 +157,13 @@ void ToleranceControl::take(const Probed& probed) {
   const double expected = error_now(view);
   const double error = probed.squared_error;
   const bool whole = probe_.step == 1;
-  // Of a view that was not seen yet nothing is expected. That some tiles show little is no promise of the
-  // others.
+  // A new view has no expected error. Some tiles with a small error promise nothing about the others.
   if (view.weight > 0.0 && !fresh_ &&
       (error > surprise * expected || (whole && surprise * error < expected))) {
     for (Estimate& any : views_) any.weight = any.measured ? any.weight : 0.0;
   }
   unevenness_ = std::max(probed.unevenness, fading * unevenness_);
-  // These may be the sky: a larger probe is to tell.
+  // These tiles may be sky: the next probe is larger.
   const bool doubtful = view.weight > 0.0 && !fresh_ && !whole && surprise * error < expected;
   if (doubtful) unevenness_ = std::max(unevenness_, 16.0 * deviation * deviation * probe_tiles_);
   const bool follows = view.weight > 0.0 && expected > 0.0;
@@ -169,7 +171,8 @@ void ToleranceControl::take(const Probed& probed) {
   if (!doubtful) view.weight = std::min(view.weight, carried_max * probe_tiles_);
   const double together = view.weight + probe_tiles_;
   view.error = view.weight > 0.0 ? (view.weight * expected + probe_tiles_ * error) / together : error;
-  // What changes in one view changes in the others, mostly; what another tolerance changes, always.
+  // Half of a change, in dB, applies to the other views. Between attempts the tolerance causes it, so all of
+  // it does.
   if (follows && view.error > 0.0) {
     const double trend = std::pow(view.error / expected, attempts_ > 1 ? 1.0 : 0.5);
     for (Estimate& any : views_) {
@@ -184,7 +187,7 @@ void ToleranceControl::take(const Probed& probed) {
   view.measured = whole;
 }
 
-// What two attempts at a frame say of the error's law about here.
+// Estimates the local exponent of the error from two attempts at a frame.
 void ToleranceControl::learn(double target) {
   Bracket& b = bracket_;
   const double error = worst(), before_tolerance = b.held > 0.0 ? b.held : b.missed,
@@ -206,7 +209,7 @@ void ToleranceControl::measured(const Probed& probed, bool settled) {
   if (!exact_) {
     take(probed);
     if (fresh_) {
-      // What is too good costs time only: not all attempts are for that.
+      // A quality that is too good only costs time: the last attempts accept it.
       const double above = quality() - settings_.quality - margin;
       const bool too_good = above > fresh_above && found_ == 0 && attempts_ <= attempts_max - 3;
       holds_ = settled && above >= -fresh_below && !too_good;
@@ -218,12 +221,12 @@ void ToleranceControl::measured(const Probed& probed, bool settled) {
     }
   }
   const bool goes_on = holds_ && (cut_ || is_small_) && !exact_ && ++found_ < views_.size();
-  if (goes_on) {  // others may err more at this tolerance
+  if (goes_on) {  // other views may have a larger error at this tolerance
     holds_ = false;
     attempts_ = 0;
     bracket_ = {};
   }
-  // Further attempts see the whole of this view: two views have no law of error together.
+  // Further attempts probe the whole of this view: two views do not share an exponent.
   fresh_ = !holds_ && (!goes_on || cut_);
   if (holds_) {
     cut_ = false;

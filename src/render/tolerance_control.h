@@ -1,5 +1,5 @@
 #pragma once
-// --quality: finds from frame to frame, without calibration, which tolerance keeps frames at a wanted error.
+// Controls the tolerance for `--quality` from frame to frame, without a calibration.
 
 #include <cstdint>
 #include <span>
@@ -10,55 +10,55 @@
 
 namespace binosplat::render {
 
-/// Chooses the tolerance of each frame by what probes of it and of frames before showed. A probe has tiles
-/// evenly spread over a view; probes take views, and the tiles of each, in turn. The control aims at the
-/// quality asked for in the view that errs most; single frames may miss it by some tenths of a dB. A rule's
-/// mean squared error grows as a power of its tolerance (docs/method.md 8: kappa^1.3, K^2 on trained scenes;
-/// kappa^10 where thousands of like Gaussians go at once), which each search after a camera cut finds anew;
-/// so the tolerance falls at once and rises carefully. The quality asked for may change a little from frame
-/// to frame; the tolerance follows it likewise.
+/// Chooses the tolerance of each frame from the results of its own and earlier probes. A probe has tiles
+/// evenly spread over a view; probes cycle through the views, and through the tiles of each. The control aims
+/// at the requested quality in the worst view; single frames may miss it by some tenths of a dB.
 ///
-/// A frame that does not hold is to be drawn again: after a camera cut, until every view was seen to hold, or
-/// where a probe shows much more error than was expected; and where a view has so few tiles that a
-/// probe has all of them, until all views were measured. Each attempt is
+/// A rule's mean squared error grows as a power of its tolerance (docs/method.md 8: kappa^1.3, K^2 on trained
+/// scenes; kappa^10 if thousands of similar Gaussians vanish at once). Each search after a camera cut
+/// estimates the exponent anew. So the tolerance falls at once and rises carefully. It also follows small
+/// changes of the requested quality.
+///
+/// A frame that does not hold must be drawn again. After a camera cut this lasts until every view holds.
+/// Later it happens if a probe shows much more error than expected. If a view is so small that a probe has
+/// all its tiles, it lasts until all views were measured. Each attempt is
 ///   next_probe(), next_tolerance(), the drawing, measured(), and again unless holds().
 class ToleranceControl {
  public:
-  /// Forgets what was measured, which is of other views. The tolerance stays, as a first guess.
+  /// Forgets the measurements, because the views changed. The tolerance stays as a first guess.
   void forget();
 
-  /// Whether enough is known of a frame of these settings to draw it at tolerance(), without a probe. Never
-  /// of views that a probe has all of: single Gaussians may change their error by some dB a frame.
+  /// Whether a frame of these settings can be drawn at tolerance() without a probe. False for views whose
+  /// probe has all tiles: single Gaussians may change their error by some dB a frame.
   bool knows(std::span<const shared::View> views, const FrameSettings& settings) const;
   float tolerance() const { return static_cast<float>(tolerance_); }
 
-  /// The tiles that the next attempt draws exactly, too: after a cut all of a view's.
+  /// The tiles that the next attempt also draws exactly: after a cut all of a view's.
   Probe next_probe(std::span<const shared::View> views, const FrameSettings& settings);
 
   /// The tolerance for the next attempt.
   float next_tolerance();
 
-  /// Takes what the attempt's probe showed. `settled`: the frame used measured transmittance, if later ones
-  /// will.
+  /// Stores the result of the attempt's probe. `settled` is false if later frames will use measured
+  /// transmittance, but this one did not.
   void measured(const Probed& probed, bool settled);
 
-  /// Whether the last attempt is the frame.
+  /// Whether the last attempt is final.
   bool holds() const { return holds_; }
 
-  /// PSNR in dB of the view that errs most, at the tolerance last given, as far as is known; infinite for no
-  /// error.
+  /// The estimated PSNR in dB of the worst view at the last tolerance; infinite for no error.
   double quality() const;
-  /// Whether the last attempt measured that on all that it drew. Else it is an estimate.
+  /// Whether the last attempt measured all of its pixels; otherwise quality() is an estimate.
   bool is_measured() const;
 
  private:
   struct Estimate {
-    double error = 0.0;      // mean squared error of the view's tiles that were seen
-    double weight = 0.0;     // how many tiles; those seen longer ago count less
-    double tolerance = 0.0;  // to which `error` belongs
-    bool measured = false;   // on all of the view as it is in this frame
+    double error = 0.0;      // mean squared error of the view's probed tiles
+    double weight = 0.0;     // number of tiles; older ones count less
+    double tolerance = 0.0;  // the tolerance of `error`
+    bool measured = false;   // on the whole view in this frame
   };
-  // The largest tolerance that attempts at one frame showed to hold, the smallest shown to miss, and their
+  // The largest tolerance at which attempts at one frame held, the smallest at which they missed, and their
   // errors.
   struct Bracket {
     double held = 0.0, held_error = 0.0;
@@ -69,25 +69,25 @@ class ToleranceControl {
   double followed_tolerance(double target) const;
   void take(const Probed& probed);
   void learn(double target);
-  double error_now(const Estimate& view) const;  // at the tolerance last given
+  double error_now(const Estimate& view) const;  // at the last tolerance
   double worst() const;                          // the largest error of the estimates
   double target() const;
 
-  FrameSettings settings_;  // the last frame's
-  double slope_ = 1.0;      // squared error grows about as tolerance^slope_ here
-  double tolerance_ = 0.0;  // the last attempt's that was not exact
+  FrameSettings settings_;  // of the last frame
+  double slope_ = 1.0;      // the squared error grows about as tolerance^slope_ here
+  double tolerance_ = 0.0;  // of the last attempt that was not exact
   bool is_small_ = false;   // a probe has all tiles of a view
-  bool cut_ = true;         // no frame was kept since the cut
-  bool fresh_ = true;       // after a cut or a miss: the next probe has all of a view
+  bool cut_ = true;         // no frame was completed since the cut
+  bool fresh_ = true;       // after a cut or a miss: the next probe has all tiles of a view
   std::size_t found_ = 0;   // views that hold in the frame after a cut
   bool holds_ = true;
   bool exact_ = false;  // whether this attempt is exact
-  int attempts_ = 0;    // at this frame, to find this view's tolerance
+  int attempts_ = 0;    // at this frame, for this view's tolerance
   Bracket bracket_;
-  std::uint32_t next_ = 0;    // number of the next probe in their order, one a frame
-  Probe probe_;               // this attempt's
-  double probe_tiles_ = 0.0;  // how many tiles it has
-  double unevenness_ = 0.0;   // Probed::unevenness, as the last probes show it
+  std::uint32_t next_ = 0;    // index of the next probe, one per frame
+  Probe probe_;               // of this attempt
+  double probe_tiles_ = 0.0;  // its number of tiles
+  double unevenness_ = 0.0;   // Probed::unevenness over the last probes
   std::vector<Estimate> views_;
 };
 

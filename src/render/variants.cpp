@@ -6,20 +6,20 @@ namespace binosplat::render {
 
 namespace {
 
-constexpr std::uint64_t flag = 2;  // values of a number that is 0 or 1
+constexpr std::uint64_t flag = 2;  // number of values of a flag
 
 gl::Number number(const char* name, int value, std::uint64_t count, const char* word = nullptr) {
   return {name, static_cast<std::uint64_t>(value), count, word};
 }
 
-// Pixels that an invocation draws, one below the other, and splats whose alphas it finds at once.
+// The height of an invocation's column of pixels, and the number of splats whose alphas it computes at once.
 struct BlendColumns {
   int height, ahead;
 };
 
-// Found by trying (README.md). In the approximate blend blend_blocks.comp has blocks of so many rows
-// (docs/method.md 5.2); in the exact one longer columns anywhere else would cost llvmpipe more of the 65,535
-// rounds that it grants all loops. What blend.comp has at once divides BLEND_UNROLL.
+// Found by measurement (README.md). In the approximate blend, blend_blocks.comp has blocks of `height` rows
+// (docs/method.md 5.2). In the exact one, longer columns would cost llvmpipe more of the 65,535 rounds that
+// it allows for all loops. blend.comp needs an `ahead` that divides BLEND_UNROLL.
 BlendColumns columns_of(const BlendVariant& v) {
   if (v.debug_view) return {1, 1};
   if (v.program == BlendProgram::software) return {v.long_lists && v.approximate ? 4 : 8, 2};
@@ -83,8 +83,8 @@ std::array<gl::Number, 18> PairVariant::numbers() const {
 }
 
 bool BlendVariant::is_legal() const {
-  // Who measures or shows a number of each pixel has the tile's splats before all its pixels, but for
-  // visibility, for which frames wait. Other sizes of tiles are for comparing.
+  // Only the general program measures or shows values: there all pixels of a tile walk through its splats
+  // together. Visibility has all programs, because frames wait for it. Other tile sizes are for comparisons.
   const bool is_plain = draws() ? measure == MEASURE_NONE : measure == MEASURE_VISIBILITY;
   const bool is_default_tile = tile_size == TILE_SIZE_DEFAULT;
   if (program != BlendProgram::general && (!is_plain || !is_default_tile)) return false;
@@ -94,7 +94,7 @@ bool BlendVariant::is_legal() const {
                        (program == BlendProgram::general && measure > MEASURE_TRANSMITTANCE);
   if (plain && (is_slow || !is_default_tile)) return false;
   if (measure > MEASURE_TRANSMITTANCE && (debug_view || approximate)) return false;
-  // What a splat's error would count for is measured in exact pictures of the default tiles alone.
+  // Visibility is measured only in exact pictures with tiles of the default size.
   if (depth == DEPTH_VISIBILITY &&
       (canvases || mesh_depth || approximate || half || measure != MEASURE_NONE || !is_default_tile))
     return false;

@@ -1,5 +1,5 @@
 #pragma once
-// The variants that the shaders of a frame are compiled in, and which of them there are.
+// The variants of the frame's shaders, and which of them are legal.
 
 #include <array>
 #include <cstdint>
@@ -16,10 +16,10 @@ namespace binosplat::render {
 /// The define of a PROJECTION_ of shared/axes.h.
 gl::Number projection_number(int projection);
 
-/// The define WITH_SUBGROUPS, for programs that use subgroups of 32 where there are some.
+/// The define WITH_SUBGROUPS, for programs that use subgroups of 32 if the GPU has them.
 gl::Number subgroups_number(const gl::Context& context);
 
-/// The variant of the programs that decide which pairs there are: project_cull.comp, project.comp,
+/// The variant of the programs that decide which pairs exist: project_cull.comp, project.comp,
 /// bin_large.comp.
 struct PairVariant {
   /// Of the plan's first model.
@@ -31,9 +31,9 @@ struct PairVariant {
   std::uint32_t offset_count;
   int order, projection;
   bool between_pixels;
-  float kernel_px2 = 0.0f;  // 0: that of shared/limits.h
-  // Set for some of these programs only:
-  bool measures = false;  // for later frames
+  float kernel_px2 = 0.0f;  // 0: the default of shared/limits.h
+  // Only some of these programs use the following:
+  bool measures = false;  // transmittance for later frames
   int eyes = 1;           // invocations along y of project_cull.comp
   int sh_degree = 0;
   bool subgroups = false;
@@ -45,34 +45,34 @@ struct PairVariant {
 /// The define LIST_VIEWS of the programs that make lists (supertiles.glsl).
 gl::Number list_views_number(const FramePlan& plan);
 
-/// The programs of the blend, which draw the same bits: for any GPU, for software renderers, and for
-/// subgroups of 32 invocations.
+/// The programs of the blend: for any GPU, for software renderers, and for subgroups of 32 invocations. All
+/// draw the same bits.
 enum class BlendProgram { general, software, subgroups };
 
 struct BlendVariant {
   BlendProgram program = BlendProgram::general;
   int tile_size = TILE_SIZE_DEFAULT;
-  bool plain = false;       // whole views, no probe: as most frames are
+  bool plain = false;       // whole views without a probe, as in most frames
   bool long_lists = false;  // LISTS of lists.glsl
   bool half = false;
   int measure = MEASURE_NONE;  // MEASURE_ of shared/limits.h
-  bool debug_view = false;     // a number of each pixel in the place of its picture
+  bool debug_view = false;     // writes a value per pixel instead of the picture
   int depth = DEPTH_NONE;      // DEPTH_ of shared/limits.h
   bool approximate = false;
-  bool canvases = false;  // pictures go into images of the caller's
+  bool canvases = false;  // pictures go to the caller's images
   int projection = PROJECTION_AFFINE;
-  bool broad = false;         // tiles are that wide splats may lie ahead of and behind
-  bool mesh_depth = false;    // some splats lie behind meshes of the caller's
-  bool large_splats = false;  // that touch many tiles: invocations draw more pixels
+  bool broad = false;         // a tile may show splats that lie behind some of its rays
+  bool mesh_depth = false;    // meshes of the caller may hide splats
+  bool large_splats = false;  // splats touch many tiles: each invocation draws more pixels
 
   bool draws() const { return measure <= MEASURE_TRANSMITTANCE && !debug_view; }
-  /// Which combinations frames may ask for.
+  /// Whether frames may request this combination.
   bool is_legal() const;
   std::string_view shader() const;
   std::array<gl::Number, 14> numbers() const;
 };
 
-/// All variants that are legal.
+/// All legal variants.
 std::vector<BlendVariant> blend_variants();
 
 }  // namespace binosplat::render

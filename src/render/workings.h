@@ -1,6 +1,6 @@
 #pragma once
-// How a frame is drawn, for tests, the search for a fault and other passes over the same lists. No right
-// picture depends on it.
+// How to draw a frame in tests, when locating a fault, and in other passes over the same lists. A correct
+// picture never depends on it.
 
 #include <cstdint>
 #include <functional>
@@ -20,32 +20,32 @@ struct FrameBuffers;
 struct FramePlan;
 struct ModelBuffers;
 
-/// Stands in for the stages up to `until`: fill() puts into the buffers what they would leave there; with
-/// Stage::blend it returns the pictures themselves. measure/twins.h has the float64 reference's.
+/// Replaces the stages up to `until`: fill() writes their results into the buffers. For Stage::blend it
+/// returns the pictures instead. measure/twins.h has that of the float64 reference.
 struct StandIn {
   Stage until;
   std::function<std::vector<Picture>(const Model&, const FramePlan&, ModelBuffers&, FrameBuffers&)> fill;
 };
 
 struct Workings {
-  /// Room to start with, in Gaussians in view and in pairs; 0: the frame chooses. A frame that needs more
-  /// grows its buffers and is drawn again.
+  /// Initial room in Gaussians in view and in pairs; 0: the frame chooses. A frame that needs more grows its
+  /// buffers and is drawn again.
   std::int64_t slots = 0;
   std::int64_t pairs = 0;
   std::optional<StandIn> stand_in;
-  /// The lists also hold splats that are seen only between the centres of pixels, for ray_blend.h. For
+  /// The lists also hold splats that are visible only between pixel centres, for ray_blend.h. Requires
   /// TILES_ELLIPSE.
   bool between_pixels = false;
-  /// z_sums() has no depths, but how much is seen in each pixel: the sum of alpha T^2, without a unit.
+  /// z_sums() has the visibility of each pixel instead of depths: the sum of alpha T^2, without a unit.
   bool visibility_as_depth = false;
-  /// Called after the last stage, to record a further one that makes something of the pictures on the GPU
-  /// before the frame waits for them. Called again where the frame is drawn again.
+  /// Appends a stage, such as compositing. Called after the last stage, before the frame waits for the GPU;
+  /// called again if the frame is drawn again.
   std::function<void(gl::Dispatcher&)> then;
   const char* then_called = "then";  // that stage's name
 };
 
-/// Throws Error for values that no frame has, and for a stand-in where a frame would use what earlier ones
-/// measured. `prefix` as in settings.h.
+/// Throws Error for illegal values, and for a stand-in in a frame that would use earlier measurements.
+/// `prefix` as in settings.h.
 void check(const Workings& workings, const FrameSettings& settings, std::string_view prefix = "");
 
 }  // namespace binosplat::render

@@ -8,13 +8,13 @@ namespace binosplat::xr {
 
 namespace {
 
-// Where a kind of controller has what the actions need, below its hand; empty: nowhere.
+// The inputs of a kind of controller, relative to its hand; empty: it lacks the input.
 struct Controller {
   const char* profile;
   const char* stick;
   const char* grab;
-  const char* left_menu;  // where only one hand has it,
-  const char* menu;       // and where both have
+  const char* left_menu;  // if only the left hand has it
+  const char* menu;       // if both hands have it
 };
 constexpr Controller controllers[] = {
     {"khr/simple_controller", "", "/input/select/click", "", "/input/menu/click"},
@@ -69,7 +69,7 @@ void Hands::suggest_bindings() {
                                                     static_cast<std::uint32_t>(bindings.size()),
                                                     bindings.data()};
     const XrResult result = XR_CALL(SuggestInteractionProfileBindings, instance.handle.get(), &info);
-    // Others may still do.
+    // Other profiles may still work.
     if (XR_FAILED(result))
       log_warning("{} does not know {} ({})", instance.runtime, profile, name_of(result));
   };

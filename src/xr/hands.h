@@ -1,23 +1,23 @@
 #pragma once
-// Controllers and eyes as OpenXR's actions have them. Without any, all is at rest.
+// Controllers and eye tracking through OpenXR's actions. Without devices, the input is at rest.
 
 #include "xr/session.h"
 #include "xr/walk.h"
 
 namespace binosplat::xr {
 
-/// What the user does at a moment.
+/// The user's input at a moment.
 struct Input {
   std::array<Hand, 2> hands;
-  bool resets = false;          // the menu button was pushed
-  std::optional<XrPosef> gaze;  // in the session's space; none where no eye tracker tells
+  bool resets = false;          // the menu button was pressed
+  std::optional<XrPosef> gaze;  // in the session's space; none: no eye tracking
 };
 
 class Hands {
  public:
   explicit Hands(const Session& session);
 
-  /// Where hands and gaze will be at that time, and what hands do now.
+  /// Predicts hands and gaze for time `display`, and reads the current actions.
   Input read(XrTime display);
 
  private:
@@ -29,7 +29,7 @@ class Hands {
   std::array<XrPath, 2> paths_;  // the hands' paths
   Owned<XrActionSet> set_;
   Owned<XrAction> pose_, stick_, grab_, menu_;
-  Owned<XrAction> gaze_;  // null where the runtime has no eye tracking, and so is its space
+  Owned<XrAction> gaze_;  // null, as its space, without eye tracking
   std::array<Owned<XrSpace>, 2> spaces_;
   Owned<XrSpace> gaze_space_;
 };

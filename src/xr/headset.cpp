@@ -16,14 +16,14 @@ namespace {
 
 using std::chrono::milliseconds;
 
-constexpr double own_share = 0.8;  // of a frame's time: the runtime draws, too
-constexpr int sessions_most = 10;  // one after the other, where they are lost
+constexpr double own_share = 0.8;  // of a frame's time; the runtime also draws
+constexpr int sessions_most = 10;  // lost without any frame, in a row
 constexpr milliseconds between_sessions{500}, wait_most{10000};
-constexpr milliseconds between_polls{10};  // while no frames are wanted
+constexpr milliseconds between_polls{10};  // while no frames are requested
 
 double ms_of(XrDuration ns) { return 1e-6 * static_cast<double>(ns); }
 
-// Between both eyes, which may be canted.
+// The pose between both eyes, which may be canted.
 Eye head_of(const std::vector<XrView>& views) {
   const Eye left = eye_of(views[0].pose), right = eye_of(views[1].pose);
   const double same_way = glm::sign(glm::dot(left.orientation, right.orientation));
@@ -35,7 +35,7 @@ class Viewer {
   Viewer(const Instance& instance, Renderer& renderer, const HeadsetSettings& settings, const Beside& beside)
       : instance_(instance), renderer_(renderer), settings_(settings), beside_(beside) {}
 
-  /// False where the session was lost.
+  /// Runs a session to its end. Returns false if it was lost.
   bool run_session() try {
     Session session(instance_);
     Hands hands(session);
@@ -65,7 +65,7 @@ class Viewer {
   }
 
  private:
-  /// A frame of the runtime's.
+  /// Draws a frame that the runtime requests.
   void draw(Session& session, Hands& hands, Projection& projection) {
     const XrFrameState wanted = session.begin_frame();
     const XrTime display = wanted.predictedDisplayTime;
@@ -78,7 +78,7 @@ class Viewer {
     }
     if (views.empty()) {
       last_.reset();
-      last_shown_ = display;  // which was not missed: nothing was to be drawn
+      last_shown_ = display;  // not missed: nothing was requested
       return session.end_frame(display);
     }
     if (session.take_masks_changed()) projection.take_masks();
@@ -92,7 +92,7 @@ class Viewer {
     drawing.depth = DepthKind::median;
     if (instance_.has_insets()) drawing.foveation.reset();
     if (drawing.foveation && input.gaze) drawing.foveation->gaze = gaze_of(*input.gaze, views);
-    // Hands that enlarge the world do not push the near plane away.
+    // A larger world in the hands must not move the near plane away.
     const Placement& placement = walk_->placement();
     drawing.near_plane *= std::min(1.0, placement.units_per_metre / settings_.start.units_per_metre);
     frame.views = projection.begin(views, placement, effort.scale, drawing);
@@ -111,7 +111,7 @@ class Viewer {
     tell_drawn(std::move(frame), display);
   }
 
-  /// Tells of a frame that the runtime has, and of the times at which it shows frames.
+  /// Reports a frame that was passed to the runtime, and its display time.
   void tell_drawn(Drawn frame, XrTime display) {
     frame.end = Clock::now();
     if (first_shown_ == 0) first_shown_ = last_shown_ = display;
@@ -122,7 +122,7 @@ class Viewer {
     beside_.drawn(std::move(frame));
   }
 
-  /// To where hands take the head.
+  /// Moves the placement by the hands' input.
   void walk(const Session& session, const Input& input, const Eye& head, XrTime display) {
     if (!walk_)
       walk_.emplace(start_of(settings_.start, session.on_floor(), session.on_stage() ? &head : nullptr));
@@ -135,10 +135,10 @@ class Viewer {
   Renderer& renderer_;
   const HeadsetSettings& settings_;
   const Beside& beside_;
-  std::optional<Walk> walk_;  // goes on where a session is lost
+  std::optional<Walk> walk_;  // continues after a lost session
   std::optional<FrameBudget> budget_;
-  std::optional<XrTime> last_;               // when the last frame was seen
-  XrTime first_shown_ = 0, last_shown_ = 0;  // when frames were shown that were drawn; 0: none was
+  std::optional<XrTime> last_;               // display time of the last step
+  XrTime first_shown_ = 0, last_shown_ = 0;  // display times of drawn frames; 0: none yet
   std::vector<double> times_;                // ms
   bool tracked_ = true, leaving_ = false;
 };

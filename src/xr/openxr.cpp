@@ -17,13 +17,13 @@ constexpr const char* what_to_do =
     "(~/.config/openxr/1/active_runtime.json, or the variable XR_RUNTIME_JSON)";
 
 constexpr std::array needed_extensions = {"XR_KHR_opengl_enable", "XR_MNDX_egl_enable"};
-// Enabled where the runtime has them. Floors came to OpenXR as an extension, later than Debian 12's headers.
+// Enabled if the runtime has them. The headers of Debian 12 do not define the floor extension.
 constexpr std::array optional_extensions = {
     XR_KHR_COMPOSITION_LAYER_DEPTH_EXTENSION_NAME, XR_KHR_VISIBILITY_MASK_EXTENSION_NAME,
     XR_VARJO_QUAD_VIEWS_EXTENSION_NAME, XR_EXT_EYE_GAZE_INTERACTION_EXTENSION_NAME, "XR_EXT_local_floor"};
 
 void* open_loader() {
-  setenv("XR_LOADER_DEBUG", "none", 0);  // what it would say is said here, in one line
+  setenv("XR_LOADER_DEBUG", "none", 0);  // errors below replace its messages
   void* const library = dlopen("libopenxr_loader.so.1", RTLD_NOW | RTLD_LOCAL);
   if (library == nullptr) {
     refuse(

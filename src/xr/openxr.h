@@ -1,11 +1,11 @@
 #pragma once
-// OpenXR's functions, and the runtime that has them. The loader is opened when one is called: nothing links
-// to it, and without it all else works.
+// OpenXR's functions and runtime. The first call opens the loader: no program links to it, so all other
+// features work without it.
 
 #define XR_NO_PROTOTYPES
 #define XR_USE_GRAPHICS_API_OPENGL
 #define XR_USE_PLATFORM_EGL
-#define EGL_NO_X11  // whose macros have names of ours
+#define EGL_NO_X11  // its macros collide with our names
 #include <EGL/egl.h>
 #include <openxr/openxr.h>
 #include <openxr/openxr_platform.h>
@@ -21,33 +21,33 @@
 
 namespace binosplat::xr {
 
-/// A function of the loader's. Throws Error(no_gl) without a loader.
+/// A function of the loader. Throws Error(no_gl) without a loader.
 PFN_xrVoidFunction find(const char* name);
 
-/// OpenXR's xrNAME: its result, unchecked.
+/// Calls OpenXR's xrNAME and returns its unchecked result.
 #define XR_CALL(name, ...) reinterpret_cast<PFN_xr##name>(find("xr" #name))(__VA_ARGS__)
 /// The same, checked.
 #define XR(name, ...) check(XR_CALL(name, __VA_ARGS__), "xr" #name)
 
-/// "XR_ERROR_RUNTIME_FAILURE"
+/// The name of a result, as in "XR_ERROR_RUNTIME_FAILURE".
 std::string name_of(XrResult result);
 
-/// The session or the whole instance is lost, and all that belongs to it.
+/// Thrown if the runtime lost the session, or the whole instance.
 struct Lost {
   bool instance = false;
 };
 
-/// Returns the result of `call`. Throws Error(no_gl) that names both for a failure, and Lost where the
-/// runtime is gone.
+/// Returns the result of `call`. Throws Error(no_gl) with both for a failure, and Lost if session or instance
+/// is lost.
 XrResult check(XrResult result, const char* call);
 
-/// Throws Error(no_gl): the runtime or the headset is at fault.
+/// Throws Error(no_gl) for a fault of the runtime or the headset.
 template <typename... Args>
 [[noreturn]] void refuse(fmt::format_string<Args...> format, Args&&... args) {
   throw Error(ExitCode::no_gl, fmt::format(format, std::forward<Args>(args)...));
 }
 
-/// A list of OpenXR's, which `enumerate` tells by its count first, and then by its elements.
+/// Reads a list of OpenXR: `enumerate` first returns the count, then fills the elements.
 template <typename T, typename Enumerate>
 std::vector<T> all_of(const T& empty, const Enumerate& enumerate) {
   std::uint32_t count = 0;
@@ -58,7 +58,7 @@ std::vector<T> all_of(const T& empty, const Enumerate& enumerate) {
   return all;
 }
 
-/// An object of OpenXR's, which ends with it.
+/// Destroys an OpenXR object.
 struct Destroy {
   const char* call = nullptr;
 
@@ -70,7 +70,8 @@ struct Destroy {
 template <typename Handle>
 using Owned = std::unique_ptr<std::remove_pointer_t<Handle>, Destroy>;
 
-/// What xrCREATE makes: XR_OWNED(Space, CreateReferenceSpace, session, &info) is an Owned<XrSpace>.
+/// Creates an object with xrCREATE: XR_OWNED(Space, CreateReferenceSpace, session, &info) is an
+/// Owned<XrSpace>.
 #define XR_OWNED(Kind, create, ...)                    \
   [&] {                                                \
     Xr##Kind made = XR_NULL_HANDLE;                    \
@@ -80,16 +81,16 @@ using Owned = std::unique_ptr<std::remove_pointer_t<Handle>, Destroy>;
 
 /// A runtime and its headset.
 struct Instance {
-  /// Connects to the runtime and finds the headset. Throws Error(no_gl), in one line, for no loader, no
-  /// runtime, a runtime that takes no OpenGL or no EGL, and no headset.
+  /// Connects to the runtime and finds the headset. Throws Error(no_gl), with one line, without loader,
+  /// runtime or headset, and if the runtime does not support OpenGL through EGL.
   Instance();
 
   bool has(std::string_view extension) const { return std::ranges::count(extensions, extension) > 0; }
-  /// Whether there are four views, both eyes' wide ones and then both insets, in place of two.
+  /// Whether there are four views instead of two: both wide ones, then both insets.
   bool has_insets() const { return views != XR_VIEW_CONFIGURATION_TYPE_PRIMARY_STEREO; }
-  XrResult find_headset();  // whether one is there now
+  XrResult find_headset();  // updates `system`; succeeds if a headset is connected
   XrPath path(const std::string& text) const;
-  /// A function of an extension that it has.
+  /// A function of an enabled extension.
   template <typename Function>
   Function function(const char* name) const {
     PFN_xrVoidFunction found = nullptr;
@@ -97,10 +98,10 @@ struct Instance {
     return reinterpret_cast<Function>(found);
   }
 
-  std::vector<const char*> extensions;  // that are enabled
+  std::vector<const char*> extensions;  // enabled ones
   Owned<XrInstance> handle;
   XrSystemId system = XR_NULL_SYSTEM_ID;
-  std::string runtime, headset;  // "Monado 21.0.0", and the headset's name
+  std::string runtime, headset;  // "Monado 21.0.0"; the headset's name
   XrViewConfigurationType views = XR_VIEW_CONFIGURATION_TYPE_PRIMARY_STEREO;
 
  private:

@@ -14,22 +14,23 @@ namespace binosplat::xr {
 
 namespace {
 
-// Beyond it all is equally far, m.
+// Distance of the far plane of depths, m.
 constexpr double far_metres = 1000.0;
 
-// Depths have so many times fewer pixels along each side: a runtime moves pictures by them, for which no edge
-// need be sharp, and GPUs of servers fill depths slowly (an H200 two whole ones in 2.3 ms).
+// Depths have fewer pixels by this factor along each side. Runtimes reproject pictures with them, for which
+// sharp edges are unnecessary. Server GPUs fill depths slowly (an H200 takes 2.3 ms for two at full size).
 constexpr int depth_step = 8;
 
 constexpr std::array<std::int64_t, 3> depth_formats = {GL_DEPTH_COMPONENT32F, GL_DEPTH_COMPONENT24,
                                                        GL_DEPTH_COMPONENT16};
 
-// Where a view of the runtime's is drawn: an eye's views side by side, so that they are projected together.
+// Index of a view when drawn: the views of an eye are adjacent, so that they are projected together.
 std::size_t place_of(std::size_t view, std::size_t views) {
   return views == 4 ? (view % 2) * 2 + view / 2 : view;
 }
 
-// A picture on the plane at a distance of 1 ahead: its upper left corner, and the way to its lower right one.
+// A picture in the plane at a distance of 1 ahead: its upper left corner, and the vector to its lower right
+// one.
 struct Frustum {
   explicit Frustum(const Fov& fov)
       : corner(std::tan(fov.left), std::tan(fov.up)),
@@ -38,8 +39,8 @@ struct Frustum {
   glm::dvec2 corner, across;
 };
 
-// What an inset covers of the wide view it lies in is not drawn there, but for a margin that runtimes may mix
-// both in. Both look the same way from the same place.
+// Excludes the inset's area from the wide view, except for a margin in which runtimes may mix both. Only if
+// both have the same pose.
 void add_inset(View& wide, const View& inset) {
   const Frustum of_wide(wide.eye.fov), of_inset(inset.eye.fov);
   const double share = wide.size.x / of_wide.across.x / (inset.size.x / of_inset.across.x);
@@ -85,7 +86,7 @@ std::vector<glm::uvec2> visible_columns(const Mask& mask, const Fov& fov, const 
   constexpr double tile = ViewRegion::tile, infinite = std::numeric_limits<double>::infinity();
   const Frustum picture(fov);
   const glm::ivec2 tiles = (size + ViewRegion::tile - 1) / ViewRegion::tile;
-  // By row the least and the largest x of the triangles' edges between two heights.
+  // For each row, the least and largest x of the triangles' edges between its heights.
   std::vector<glm::dvec2> spans(static_cast<std::size_t>(tiles.y), {infinite, -infinite});
   const auto corner = [&](std::size_t k) {
     const XrVector2f& v = mask.vertices[mask.indices[k]];
@@ -169,8 +170,8 @@ Projection::Projection(const Session& session, double scale, bool composed)
     };
     const glm::ivec2 size(side(view.recommendedImageRectWidth, view.maxImageRectWidth),
                           side(view.recommendedImageRectHeight, view.maxImageRectHeight));
-    // Written in place by compute shaders, of sRGB by a view of it; where that is not to be had, through a
-    // copy.
+    // Compute shaders write in place, through a view of the sRGB texture. If the runtime forbids that,
+    // through a copy.
     OfView of{Swapchain(session, GL_SRGB8_ALPHA8, size,
                         XR_SWAPCHAIN_USAGE_COLOR_ATTACHMENT_BIT | XR_SWAPCHAIN_USAGE_SAMPLED_BIT,
                         XR_SWAPCHAIN_USAGE_UNORDERED_ACCESS_BIT | XR_SWAPCHAIN_USAGE_MUTABLE_FORMAT_BIT)};
@@ -202,7 +203,7 @@ void Projection::take_masks() {
     mask.vertices = vertices.data();
     mask.indices = indices.data();
     if (!indices.empty()) ask();
-    // A mask that makes no sense hides nothing.
+    // An invalid mask hides nothing.
     const auto is_none = [&](std::uint32_t index) { return index >= of_views_[k].mask.vertices.size(); };
     if (indices.size() % 3 != 0 || std::any_of(indices.begin(), indices.end(), is_none)) indices.clear();
   }

@@ -1,6 +1,6 @@
 #pragma once
-// What a headset shows: the runtime's textures that a frame's pictures and depths are drawn into, with
-// exactly the poses and angles that they were drawn from.
+// The projection layer of a session: the runtime's textures for colours and depths, submitted with exactly
+// the poses and angles that were drawn.
 
 #include <binosplat/renderer.h>
 
@@ -8,10 +8,10 @@
 
 namespace binosplat::xr {
 
-/// A ring of the runtime's textures, of which one is drawn into at a time.
+/// A ring of the runtime's textures. One at a time is acquired and drawn.
 struct Swapchain {
-  /// 2D textures of one sample, of a format that the runtime offers, for `usage` and, where it lets them, for
-  /// `more`. Throws Error(no_gl) where it makes none.
+  /// 2D textures with one sample, in a format that the runtime offers, for `usage`, and for `more` if the
+  /// runtime allows it. Throws Error(no_gl) if it creates none.
   Swapchain(const Session& session, std::int64_t format, const glm::ivec2& wanted,
             XrSwapchainUsageFlags usage, XrSwapchainUsageFlags more = 0);
 
@@ -21,45 +21,45 @@ struct Swapchain {
 
   Owned<XrSwapchain> handle;
   glm::ivec2 size;       // px
-  bool has_more = true;  // uses
+  bool has_more = true;  // the runtime allowed `more`
   std::vector<std::uint32_t> textures;
 };
 
-/// What a lens shows of a view (XR_KHR_visibility_mask): triangles at a distance of 1 ahead, x right and y
-/// up, that hold all that can be seen. Empty: all of the view.
+/// The visible part of a view (XR_KHR_visibility_mask): triangles at a distance of 1 ahead, x right and y up.
+/// Empty: all of the view.
 struct Mask {
   std::vector<XrVector2f> vertices;
-  std::vector<std::uint32_t> indices;  // three a triangle
+  std::vector<std::uint32_t> indices;  // three per triangle
 };
 
-/// For each row of tiles of a picture the columns that a lens shows, as ViewRegion has them, with a margin of
-/// a pixel. Empty: all.
+/// For each row of tiles of a picture, the columns visible through the lens, in the form of ViewRegion, with
+/// a margin of a pixel. Empty: all.
 std::vector<glm::uvec2> visible_columns(const Mask& mask, const Fov& fov, const glm::ivec2& size);
 
 class Projection {
  public:
-  /// Makes textures of the recommended sizes times the scale, at most the largest that the runtime allows.
-  /// `composed`: of pictures with insets of their own, which have neither depths nor regions.
+  /// Creates textures of the recommended sizes times `scale`, limited by the runtime's maximum. `composed`:
+  /// for foveated pictures, which have neither depths nor regions.
   Projection(const Session& session, double scale, bool composed);
 
-  /// Takes textures from the runtime for the located views, and returns what is to be drawn of them: pictures
-  /// of `scale` times the sides of the textures. An eye's views lie side by side. Of four, the wide ones have
-  /// holes where the insets are, which are exact unless the settings have a quality.
+  /// Acquires textures for the located views, and returns the views to draw: pictures of `scale` times the
+  /// textures' sides. The views of an eye are adjacent. Of four views, the wide ones have holes for the
+  /// insets. Insets are exact unless the settings have a quality.
   std::vector<View> begin(std::span<const XrView> located, const Placement& placement, double scale,
                           const Settings& settings);
 
-  /// Gives the textures back, drawn, and ends the session's frame with them.
+  /// Releases the drawn textures, and ends the session's frame with them.
   void end(XrTime display, std::span<const XrView> located, std::span<const View> drawn,
            const Placement& placement) const;
 
-  /// Asks the runtime what its lenses show.
+  /// Reads the visibility masks from the runtime.
   void take_masks();
 
-  /// The sizes, "GL_SRGB8_ALPHA8", and whether depths go with it: for people.
+  /// Describes sizes, format and depths for the log.
   std::string description() const;
 
  private:
-  /// What belongs to a view of the runtime's.
+  /// The textures and mask of a view.
   struct OfView {
     Swapchain colours;
     std::optional<Swapchain> depths = {};
@@ -70,10 +70,10 @@ class Projection {
   std::vector<OfView> of_views_;
 };
 
-/// The eye as the library takes it.
+/// Converts a pose to the library's eye.
 Eye eye_of(const XrPosef& pose, const XrFovf& fov = {});
 
-/// Where each eye looks, as Foveation::gaze has it, a little within its picture.
+/// The gaze of each eye, for Foveation::gaze, clamped to slightly within its picture.
 std::vector<glm::dvec2> gaze_of(const XrPosef& gaze, std::span<const XrView> located);
 
 }  // namespace binosplat::xr

@@ -10,19 +10,19 @@ namespace binosplat::xr {
 
 namespace {
 
-// Of XR_EXT_local_floor, which Debian 12's headers do not know yet.
+// From XR_EXT_local_floor, which the headers of Debian 12 lack.
 constexpr auto local_floor = static_cast<XrReferenceSpaceType>(1000426000);
 
 constexpr const char* state_names[] = {"UNKNOWN", "IDLE",     "READY",        "SYNCHRONIZED", "VISIBLE",
                                        "FOCUSED", "STOPPING", "LOSS_PENDING", "EXITING"};
 
-// A function of EGL's, which whoever made the context has opened; null if nobody has.
+// A function of EGL, if the creator of the context has opened libEGL; else null.
 template <typename Function>
 Function opened(const char* name) {
   void* const library = dlopen("libEGL.so.1", RTLD_NOW | RTLD_LOCAL | RTLD_NOLOAD);
   if (library == nullptr) return nullptr;
   const auto function = reinterpret_cast<Function>(dlsym(library, name));
-  dlclose(library);  // whoever opened it keeps it
+  dlclose(library);  // the opener keeps it loaded
   return function;
 }
 #define OPENED(name) opened<decltype(&(name))>(#name)
@@ -34,7 +34,7 @@ XrGraphicsBindingEGLMNDX binding_of_current_context() {
   if (binding.context == EGL_NO_CONTEXT) refuse("OpenXR takes contexts of EGL only, and none is current");
   binding.getProcAddress = opened<PFNEGLGETPROCADDRESSPROC>("eglGetProcAddress");
   binding.display = OPENED(eglGetCurrentDisplay)();
-  EGLint id = 0, count = 0;  // of the config: 0 for a context that was made without one
+  EGLint id = 0, count = 0;  // config of the context; 0: created without
   OPENED(eglQueryContext)(binding.display, binding.context, EGL_CONFIG_ID, &id);
   const EGLint wanted[] = {EGL_CONFIG_ID, id, EGL_NONE};
   if (id != 0) OPENED(eglChooseConfig)(binding.display, wanted, &binding.config, 1, &count);
@@ -46,7 +46,7 @@ XrGraphicsBindingEGLMNDX binding_of_current_context() {
 GetProcAddress get_proc_address() { return binding_of_current_context().getProcAddress; }
 
 Session::Session(const Instance& instance) : instance_(instance) {
-  // A session needs this call before it, whatever it says: newer contexts are what drivers give anyway.
+  // OpenXR requires this call before a session. Its result is unused: drivers provide newer contexts anyway.
   const auto ask =
       instance.function<PFN_xrGetOpenGLGraphicsRequirementsKHR>("xrGetOpenGLGraphicsRequirementsKHR");
   XrGraphicsRequirementsOpenGLKHR range{XR_TYPE_GRAPHICS_REQUIREMENTS_OPENGL_KHR};

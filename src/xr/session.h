@@ -1,5 +1,5 @@
 #pragma once
-// An OpenXR session: its states, the space that heads are located in, and frames.
+// An OpenXR session: its states, its reference space, and its frames.
 
 #include <binosplat/renderer.h>
 
@@ -9,41 +9,40 @@ namespace binosplat::xr {
 
 constexpr XrPosef no_move = {{0.0f, 0.0f, 0.0f, 1.0f}, {0.0f, 0.0f, 0.0f}};
 
-/// How the functions of the OpenGL context that is current are found. Throws Error(no_gl) where it is not one
-/// of EGL.
+/// The loader of functions for the current OpenGL context. Throws Error(no_gl) if that is not one of EGL.
 GetProcAddress get_proc_address();
 
 class Session {
  public:
-  /// Begins a session with the OpenGL context that is current, which must stay so. Throws Error(no_gl) for a
-  /// runtime that does not take it.
+  /// Begins a session with the current OpenGL context, which must stay current. Throws Error(no_gl) if the
+  /// runtime refuses it.
   explicit Session(const Instance& instance);
 
   const Instance& instance() const { return instance_; }
   XrSession handle() const { return session_.get(); }
-  /// x right, y up, z backward, metres. Its origin lies on the floor, or where the head was.
+  /// x right, y up, z backward, metres. The origin is on the floor, or at the head's first position.
   XrSpace space() const { return space_.get(); }
   bool on_floor() const { return space_type_ != XR_REFERENCE_SPACE_TYPE_LOCAL; }
-  /// Whether the space is the room's, whose middle is not where a head is at first.
+  /// Whether the space is the room's. The head does not start at its origin.
   bool on_stage() const { return space_type_ == XR_REFERENCE_SPACE_TYPE_STAGE; }
 
-  /// Takes the events that have come, and begins and ends the session as they ask. False once it is over.
-  /// Throws Lost.
+  /// Handles pending events, and begins and ends the session accordingly. Returns false after its end. Throws
+  /// Lost.
   bool poll();
-  /// Whether frames are to be waited for.
+  /// Whether the runtime expects frames.
   bool running() const { return running_; }
-  /// Whether the visibility masks were changed since the last call.
+  /// Whether visibility masks have changed since the last call.
   bool take_masks_changed() { return std::exchange(masks_changed_, false); }
-  /// The user wants to leave: the runtime ends the session in its own time.
+  /// Requests the end of the session, which the runtime carries out later.
   void request_exit();
 
-  /// Waits until the next frame is to be drawn: when it will be seen, and whether anybody looks.
+  /// Waits for the next frame. Returns its display time, and whether it must be drawn.
   XrFrameState begin_frame() const;
-  /// Where the eyes will be; nothing while the head is not tracked.
+  /// The predicted views; empty while the head is not tracked.
   std::vector<XrView> locate(XrTime display) const;
-  /// Where another space's origin will be; nothing while that is not known.
+  /// The predicted pose of another space's origin; none if unknown.
   std::optional<XrPosef> locate(XrSpace other, XrTime display) const;
-  /// Shows a layer, or nothing.
+  /// Submits a layer, or an empty frame.
   void end_frame(XrTime display, const XrCompositionLayerProjection* layer = nullptr) const;
 
  private:
@@ -52,7 +51,7 @@ class Session {
 
   const Instance& instance_;
   Owned<XrSession> session_;
-  XrReferenceSpaceType space_type_ = XR_REFERENCE_SPACE_TYPE_LOCAL;  // which every runtime has
+  XrReferenceSpaceType space_type_ = XR_REFERENCE_SPACE_TYPE_LOCAL;  // which every runtime offers
   Owned<XrSpace> space_;
   bool running_ = false, over_ = false, masks_changed_ = false;
 };

@@ -8,18 +8,18 @@ namespace binosplat::xr {
 
 namespace {
 
-constexpr double eyes_above_floor = 1.6;  // m, of somebody who stands
+constexpr double eyes_above_floor = 1.6;  // m, of a standing viewer
 constexpr double metres_a_second = 1.5;
 constexpr double degrees_a_push = 30.0;
-constexpr double pushed = 0.7, let_go = 0.4;  // of a stick
-constexpr double slack = 0.15;                // sticks at rest are hardly ever at 0
-constexpr double scale_most = 100.0;          // either way, of what the model began with
+constexpr double pushed = 0.7, let_go = 0.4;  // stick positions, with hysteresis
+constexpr double slack = 0.15;                // dead zone of sticks at rest
+constexpr double scale_most = 100.0;          // limit of scaling, up and down, relative to the start
 
 double beyond_slack(double push) {
   return std::copysign(std::max(0.0, std::abs(push) - slack) / (1.0 - slack), push);
 }
 
-// Where a head looks, level; forwards where it looks straight up or down.
+// The head's heading, level; forward if it looks straight up or down.
 glm::dvec3 heading_of(const Eye& head) {
   const glm::dvec4 q = glm::normalize(head.orientation);
   const glm::dvec3 ahead = glm::dquat(q.w, q.x, q.y, q.z) * glm::dvec3(0.0, 0.0, -1.0);
@@ -34,7 +34,7 @@ Placement upright_at(const glm::dvec3& position, const glm::dmat3& rotation, con
   const glm::dvec3 above = glm::normalize(up);
   const auto level = [&](const glm::dvec3& v) { return v - glm::dot(v, above) * above; };
   glm::dvec3 forward = level(rotation[2]);
-  // Straight up or down: where its upper edge points.
+  // Straight up or down: use the direction of the upper edge.
   if (glm::length(forward) < 1e-3) forward = -level(rotation[1]);
   forward = glm::normalize(forward);
   return {position, {glm::cross(forward, above), above, -forward}, units_per_metre};
@@ -68,7 +68,7 @@ void Walk::shift(const glm::dvec3& metres) {
   placement_.origin += placement_.units_per_metre * (placement_.axes * metres);
 }
 
-// What a hand held stays in it.
+// Moves the world with the hands that hold it.
 void Walk::grab(const std::array<Hand, 2>& hands) {
   const auto holds = [&](std::size_t k) {
     return hands[k].grabs && last_[k].grabs && hands[k].position && last_[k].position;

@@ -1,6 +1,6 @@
 #pragma once
-// How hands move a head through a model: where the space that heads are located in lies in the model's world.
-// Pure maths; the space is OpenXR's, x right, y up, z backward, metres.
+// Moves a head through a model by hands: updates the placement of OpenXR's space in the model's world. Pure
+// maths; the space has x right, y up, z backward, in metres.
 
 #include <binosplat/eyes.h>
 
@@ -9,21 +9,21 @@
 
 namespace binosplat::xr {
 
-/// What a hand does at a moment.
+/// A hand's input at a moment.
 struct Hand {
-  std::optional<glm::dvec3> position;  // m, in the space; none: not there
+  std::optional<glm::dvec3> position;  // m, in the space; none: not tracked
   glm::dvec2 stick{0.0};               // right and forward, each from -1 to 1
   bool grabs = false;
 };
 
-/// A space whose origin lies at a camera, upright and with the camera's heading. `rotation` is that of the
-/// camera: its axes right, down and forward in the world, as columns. `up` in the world, of any length.
+/// A space with its origin at a camera, upright, with the camera's heading. The columns of `rotation` are the
+/// camera's axes right, down and forward in the world. `up` is in the world, of any length.
 Placement upright_at(const glm::dvec3& position, const glm::dmat3& rotation, const glm::dvec3& up,
                      double units_per_metre);
 
-/// Where OpenXR's space lies at first, for a viewer who stands, with eyes where upright_at() says: 1.6 m
-/// lower where its origin lies on the floor. Where its origin is not where a head is at first, as in the
-/// middle of a room, this head is there, and looks that way.
+/// The first placement of OpenXR's space, for a standing viewer with eyes at upright_at(). If its origin is
+/// on the floor, the origin is placed 1.6 m lower. In some spaces heads do not start at the origin, as in the
+/// middle of a room. Then pass `head`: the space is placed so that it is there and has that heading.
 Placement start_of(Placement eyes, bool on_floor, const Eye* head = nullptr);
 
 class Walk {
@@ -33,9 +33,10 @@ class Walk {
   const Placement& placement() const { return placement_; }
   void reset() { placement_ = start_; }
 
-  /// Moves by what hands did in the last `seconds`. The left stick walks, level and towards where the head
-  /// looks; the right one turns by 30 degrees a push, and pushed forward or back raises or lowers. A hand
-  /// that grabs holds the world where it is; two turn it about the vertical and scale it, too.
+  /// Moves by the input of the last `seconds`. The left stick walks on the level, relative to the head's
+  /// heading. The right one turns by 30 degrees a push, and raises or lowers the head if pushed forward or
+  /// back. A hand that grabs holds the world in place; two hands also turn it about the vertical and scale
+  /// it.
   void step(const Eye& head, const std::array<Hand, 2>& hands, double seconds);
 
  private:
@@ -46,7 +47,7 @@ class Walk {
 
   Placement start_, placement_;
   std::array<Hand, 2> last_;
-  bool turned_ = false;  // whether this push of the stick has turned already
+  bool turned_ = false;  // this push of the stick has already turned
 };
 
 }  // namespace binosplat::xr

@@ -30,8 +30,7 @@ constexpr double seconds_by_key = 10.0;
 
 volatile std::sig_atomic_t signalled = 0;
 
-// The first signal is told, so that the runtime's session can be ended in order; the next one ends the
-// program.
+// The first signal ends the runtime's session in order; the next one ends the program.
 void tell_first_signal() {
   struct sigaction once = {};
   once.sa_handler = [](int) {
@@ -61,7 +60,7 @@ Settings drawing_of(const RenderOptions& o, const preview::Choices& choices, con
   return settings;
 }
 
-/// A frame as recordings keep it.
+/// Converts a drawn frame to the form of recordings.
 render::FrameRecord record_of(xr::Drawn drawn, std::size_t gaussians, std::size_t uploaded) {
   Report& from = drawn.report;
   render::FrameRecord record{.due = drawn.begin, .begin = drawn.begin, .end = drawn.end};
@@ -91,7 +90,7 @@ render::FrameRecord record_of(xr::Drawn drawn, std::size_t gaussians, std::size_
   return record;
 }
 
-/// Frames of a headset that are recorded when somebody asks, and written once that is over.
+/// Records a headset's frames on request, and writes them afterwards.
 class HeadsetRecording {
  public:
   HeadsetRecording(const gl::Context& context, const preview::Opened& scene, const std::string& headset)
@@ -108,7 +107,7 @@ class HeadsetRecording {
       if (ms_since(since_) > 1000.0 * seconds_) save();
       return;
     }
-    // What this frame did was not written down from its beginning on.
+    // Recording starts with the next frame, because this one began without it.
     recorder_.emplace(context_, period_ms > 0.0 ? 1000.0 / period_ms : 0.0,
                       std::make_shared<gl::GpuClock>(context_));
     since_ = Clock::now();
@@ -116,7 +115,7 @@ class HeadsetRecording {
   }
 
  private:
-  // A recording that cannot be written ends no session.
+  // A failed write must not end the session.
   void save() {
     seconds_ = 0.0;
     if (!recorder_) return;
@@ -139,7 +138,7 @@ class HeadsetRecording {
   const gl::Context& context_;
   const preview::Opened& scene_;
   std::string headset_;
-  double seconds_ = 0.0;  // that are asked for; 0: nothing is
+  double seconds_ = 0.0;  // requested duration; 0: none
   std::optional<render::Recorder> recorder_;
   Clock::time_point since_ = {};
 };
@@ -150,7 +149,7 @@ void view_in_headset(const RenderOptions& o, const preview::Opened& scene, previ
   std::error_code ignored;
   if (!is_built_in(scene.name) && !std::filesystem::exists(scene.name, ignored))
     fail_to_read(scene.name, ENOENT);
-  xr::Instance instance;  // a headset that is not there is said before a model is read
+  xr::Instance instance;  // reports a missing headset before a model is read
   log_info("{} on {}", instance.headset, instance.runtime);
   if (o.foveate && instance.has_insets())
     log_warning("--foveate: {} has insets of its own, and takes these", instance.headset);
@@ -214,7 +213,7 @@ void view_in_headset(const RenderOptions& o, const preview::Opened& scene, previ
     stream.emplace(levels);
     beside.levels = [&](std::span<const View> views, const Placement& placement, Settings& drawing,
                         double period_ms, double drawn_ms) {
-      Settings asked = drawing;  // levels do not go by a budget
+      Settings asked = drawing;  // a frame budget does not change the levels' quality
       asked.quality = settings.drawing.quality;
       stream->begin_frame(views, placement, asked, time_for_levels(period_ms, drawn_ms));
       if (asked.quality) drawing.quality = static_cast<float>(levels->quality_left(*asked.quality));

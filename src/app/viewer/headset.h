@@ -1,13 +1,13 @@
 #pragma once
-// `binosplat view --xr`: a scene of the preview's in a headset.
+// `binosplat view --xr`: the preview's scene in a headset.
 
 #include "app/render_options.h"
 #include "preview/window.h"
 
 namespace binosplat::app {
 
-/// Until its user ends it, or the window beside it is closed. Throws Error(no_gl), in one line, without
-/// OpenXR's loader, runtime or headset, and as xr::run() does.
+/// Draws until the user ends the session or closes the mirror window. Throws Error(no_gl) without OpenXR's
+/// loader, runtime or headset, and as xr::run() does.
 void view_in_headset(const RenderOptions& options, const preview::Opened& scene, preview::Choices choices);
 
 }  // namespace binosplat::app

@@ -1,5 +1,5 @@
-// binosplat-view: the preview as a program of its own, so that the other one needs no window system's
-// libraries. `binosplat view` starts it.
+// binosplat-view: the preview as a separate program, so that binosplat needs no window system's libraries.
+// `binosplat view` starts it.
 
 #include <fmt/ranges.h>
 #include <CLI/CLI.hpp>
@@ -53,7 +53,7 @@ preview::Choices choices_of(const RenderOptions& o) {
   choices.layout = o.output.layout.value_or(LAYOUT_PARALLEL);
   choices.settings = settings_of(o.drawing);
   choices.settings.background = choices.background = o.output.backdrop();
-  choices.rig = rig_settings(o.rig, {});  // until the model tells
+  choices.rig = rig_settings(o.rig, {});  // until the model is loaded
   choices.show = o.output.show;
   choices.seeks_screen = !o.rig.convergence;
   return choices;
@@ -66,7 +66,7 @@ preview::Loaded load(const SceneOptions& scene, const std::vector<Camera>& camer
   return load_scene(scene, {}, cameras);
 }
 
-// Cameras that come as pairs of eyes are taken one by one.
+// Opens a scene. Each camera of a pair is a single view here.
 preview::Opened open(const RenderOptions& o) {
   const SceneOptions& scene = o.scene;
   const auto saved = find_saved(scene);
@@ -108,7 +108,7 @@ preview::Opened open(const RenderOptions& o) {
   return opened;
 }
 
-/// The same of a folder with the models of a moving scene, which is called after the folder.
+/// The same for a folder with the models of a moving scene, named after the folder.
 preview::Opened open_sequence(RenderOptions o, const std::vector<fs::path>& files) {
   const std::string folder = std::exchange(o.scene.name, files[0].string());
   preview::Opened opened = open(o);
@@ -136,7 +136,7 @@ void view(const RenderOptions& o) {
                    {scene, "in the window", "as chosen there", lab::device_text(context), context.software()},
                    std::move(recording), draw);
   };
-  // What is saved of another model lies apart.
+  // Outputs of another model go to a folder of its own.
   const auto open_other = [&o](const std::string& file) {
     RenderOptions other;
     other.scene.name = file;

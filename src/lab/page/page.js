@@ -1,10 +1,10 @@
 "use strict";
-// Draws the page from the description embedded in it (src/lab/page.h): sections with tables, charts of their columns,
-// and pictures. Series are told apart by colour, symbol and dash together.
+// Draws the page from its embedded description (src/lab/page.h): sections with tables, charts of their
+// columns, and pictures. Colour, symbol and dash together distinguish the series.
 
 const symbols = ["circle", "diamond", "square", "triangle", "plus", "star", "times", "wye"];
 const dashes = ["none", "7 3", "2 3", "9 3 2 3", "4 2", "12 3", "1 4", "6 2 1 2 1 2"];
-// From the ninth on colours come again, with other symbols and dashes.
+// From the ninth series on, colours repeat with other symbols and dashes.
 const seriesStyle = (i) => ({
   colour: `var(--series-${(i % 8) + 1})`, symbol: symbols[(i + 3 * Math.floor(i / 8)) % 8],
   dash: dashes[(i + Math.floor(i / 8)) % 8]
@@ -22,7 +22,7 @@ function element(name, attributes = {}, ...children) {
 
 const isNumber = (value) => typeof value === "number" && Number.isFinite(value);
 
-// Five significant digits are enough to read; the exact value is in data-value and in the JSON.
+// Five significant digits are enough to read. data-value and the JSON have the exact value.
 function shown(value) {
   if (value === null || value === undefined) return "–";
   if (!isNumber(value)) return String(value);
@@ -48,8 +48,8 @@ function table(columns, rows) {
 
 const problem = (text) => element("p", { class: "problem", role: "alert" }, text);
 
-// The series of a section's chart, from the rows of its table. Without `chart.by`, or where all rows have one text
-// there, a series of several columns is called as its column.
+// The series of a section's chart, from the rows of its table. Without `chart.by`, or with one value in it,
+// series of several columns have the columns' names.
 function seriesOf(section) {
   const chart = section.chart, { columns, rows } = section.numbers ?? section.table;
   const at = (row, name) => name ? row[columns.indexOf(name)] : undefined;
@@ -136,7 +136,7 @@ function draw(chart, chosen, width) {
     style: { background: "none", color: "var(--ink)", fontSize: "12px", fontFamily: "inherit" } });
 }
 
-// A copy that stands by itself, in the light colours.
+// A standalone copy in the light colours.
 function saveSvg(svg, name) {
   const copy = svg.cloneNode(true);
   copy.setAttribute("xmlns", "http://www.w3.org/2000/svg");
@@ -205,8 +205,8 @@ const image = ({ caption, width, height, png }) =>
 const picture = (figure) =>
   element("figure", { class: "picture" }, image(figure), element("figcaption", {}, figure.caption));
 
-// Two pictures on each other: of the one what lies left of the slider, of the other the rest. Of small ones
-// below, the one that is chosen takes the right side.
+// Two overlaid pictures: one left of the slider, the other right of it. A click on a small picture below
+// shows it on the right.
 function comparison(figures) {
   const sides = [image(figures[0]), image(figures[figures.length - 1])];
   sides[1].className = "over";

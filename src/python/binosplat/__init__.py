@@ -1,4 +1,4 @@
-"""3D Gaussian Splatting models as pictures for one eye or both, drawn by OpenGL compute shaders.
+"""Draws 3D Gaussian Splatting models for one eye or both with OpenGL compute shaders.
 
 A picture in four lines:
 
@@ -7,8 +7,8 @@ A picture in four lines:
 >>> picture = binosplat.Renderer(model).draw(binosplat.frame(model, 1280, 720), near=model.near)
 >>> binosplat.save_png("garden.png", picture.colour)
 
-Files, arrays, pictures and settings that cannot be used, and numbers that make no camera or rig, raise InputError, a
-ValueError; OpenGLError and OutOfMemory are the other two kinds of Error. Arguments of a wrong type raise TypeError.
+Unusable files, arrays, pictures, settings, cameras and rigs raise InputError, a ValueError. The other two kinds of
+Error are OpenGLError and OutOfMemory. Arguments of a wrong type raise TypeError.
 """
 
 from __future__ import annotations
@@ -36,11 +36,11 @@ def __dir__() -> list[str]:
 
 
 class Error(Exception):
-    """What binosplat itself says is wrong."""
+    """Base class of all errors of binosplat."""
 
 
 class InputError(Error, ValueError):
-    """A file, an array or a setting that cannot be used."""
+    """An unusable file, array or setting."""
 
 
 class OpenGLError(Error, RuntimeError):
@@ -48,10 +48,10 @@ class OpenGLError(Error, RuntimeError):
 
 
 class OutOfMemory(Error, MemoryError):
-    """No room on the GPU, or for a picture or an array."""
+    """Not enough memory on the GPU, or for a picture or an array."""
 
 
-_binosplat: Any = import_module("._binosplat", __name__)  # the private part in C++, which raises the errors above
+_binosplat: Any = import_module("._binosplat", __name__)  # the private part in C++; raises the errors above
 __version__: str = _binosplat.__version__
 
 _Path = str | os.PathLike[str]
@@ -65,7 +65,7 @@ _Drawn = TypeVar("_Drawn", covariant=True)
 
 
 class _View(Generic[_Drawn]):
-    """What can be drawn; for type checkers it says what draw() returns of it."""
+    """Anything that can be drawn. Its parameter is the type that draw() returns, for type checkers."""
 
 
 def _expect(value: Any, kind: Any, name: str) -> None:
@@ -80,7 +80,7 @@ def _refuse_masked(given: Any, name: str) -> None:
 
 
 def _dense(array: NDArray[Any], kind: type) -> NDArray[Any]:
-    """The array in one piece of memory, which is refused before it is asked for where there is not so much."""
+    """The array in contiguous memory. Raises OutOfMemory before it allocates more than the machine has."""
     if array.size * (np.dtype(kind).itemsize + 4) > _binosplat.memory_bytes():
         raise OutOfMemory(f"an array of shape {array.shape} takes more memory than there is")
     try:
@@ -91,7 +91,7 @@ def _dense(array: NDArray[Any], kind: type) -> NDArray[Any]:
 
 
 def _array(given: Any, name: str) -> NDArray[Any]:
-    """The array of floats that something is, gives, or lends by DLPack; a tensor that is being trained is detached."""
+    """Converts to an array of floats, through ``__array__`` or DLPack. Detaches a tensor with gradients."""
     _refuse_masked(given, name)
     values = given.detach() if hasattr(given, "detach") else given
     lends = hasattr(values, "__dlpack__") and not hasattr(values, "__array__")
@@ -102,7 +102,7 @@ def _array(given: Any, name: str) -> NDArray[Any]:
 
 
 def _rows(given: Any, name: str, shape: tuple[int | None, ...], kind: type = np.float32) -> NDArray[Any]:
-    """The values in one piece, of a shape in which None is any size."""
+    """The values in contiguous memory. Checks their shape, in which None is any size."""
     array = _array(given, name)
     if len(shape) != array.ndim or any(size not in (None, n) for size, n in zip(shape, array.shape)):
         sizes = ", ".join("N" if size is None else str(size) for size in shape)
@@ -114,8 +114,8 @@ def _rows(given: Any, name: str, shape: tuple[int | None, ...], kind: type = np.
 class Model:
     """A model in memory.
 
-    Read one by load_model(), or make one of arrays: NumPy's, those of torch on the CPU, whatever has
-    ``__array__`` or ``__dlpack__``. The arguments have the names and the order of gsplat's ``rasterization``.
+    Read one with load_model(), or create one from arrays: NumPy's, torch's on the CPU, or any object with
+    ``__array__`` or ``__dlpack__``. Names and order of the arguments are those of gsplat's ``rasterization``.
 
     Parameters
     ----------
@@ -124,39 +124,40 @@ class Model:
     quats : (N, 4) floats
         Quaternions w, x, y, z of any length but 0.
     scales : (N, 3) floats
-        Standard deviations, world units: exp() of what trainers store.
+        Standard deviations, world units: exp() of the values that trainers store.
     opacities : (N,) floats
-        0 to 1: the sigmoid of what trainers store.
+        0 to 1: the sigmoid of the values that trainers store.
     sh : (N, K, 3) floats
         Spherical harmonics, K = 1, 4, 9 or 16 coefficients; the colour at degree 0 is 0.5 + 0.2820948 sh[:, 0].
     name
-        What messages call it.
+        Its name in messages.
     axes
-        Where its x, y and z point: R or L, U or D, F or B. The default is that of COLMAP's world.
+        The directions of its x, y and z: R or L, U or D, F or B. The default is COLMAP's world.
     antialiased
         Whether it was trained with gsplat's ``rasterize_mode="antialiased"`` or Mip-Splatting.
 
     Raises
     ------
     InputError
-        For other shapes, and for a row that is no Gaussian, which it names.
+        For other shapes, and for an invalid row, which the text names.
     TypeError
-        For arrays of other numbers than floats.
+        For arrays that are not of floats.
 
     Attributes
     ----------
     format
-        Of its file, in words.
+        The file's format, in words.
     count
-        Gaussians; anchors of Scaffold-GS.
+        Number of Gaussians; for Scaffold-GS, of anchors.
     degree
         Of the spherical harmonics, 0 to 3.
     left_out
-        Gaussians of the file that are not finite.
+        Number of the file's Gaussians that were dropped: values not finite or out of range, scales above 1e13, or
+        no rotation.
     antialiased_by
-        What says so: a comment of its file, a file of the training's run; empty: nothing does.
+        The source of ``antialiased``: a comment of its file, or a file of the training run; empty: none.
     order, projection
-        What it was trained to be sorted by, and what a ray sees of a Gaussian; draw() takes others, too.
+        The sorting and projection of its training; draw() also takes others.
     """
 
     name: str
@@ -190,12 +191,12 @@ class Model:
 
     @property
     def near(self) -> float:
-        """The near plane, in world units, that suits cameras made up for it: 0.2, less where it is tiny."""
+        """A near plane, in world units, for cameras of frame(): 0.2, or less for tiny models."""
         return self._model.near
 
     @property
     def means(self) -> NDArray[np.float32] | NDArray[np.float64]:
-        """As the argument of this name, of any model. A copy, as the other four; far away from zero of float64."""
+        """A copy, as the other four arrays, in the form of the arguments. float64 if the model is far from zero."""
         return self._copy("means")
 
     @property
@@ -226,25 +227,25 @@ class Model:
 
 def load_model(path: _Path, *, lod: int | None = None, appearance: int | None = None, axes: str | None = None,
                antialiased: bool | None = None) -> Model:
-    """Reads a model of any format that ``binosplat render`` takes.
+    """Reads a model of any format that ``binosplat render`` supports.
 
     Parameters
     ----------
     path
-        A file or its folder. What it is, its content decides.
+        A file or its folder. The content determines the format.
     lod
         Level of detail of a streamed SOG, 0 the finest.
     appearance
-        Of Scaffold-GS.
+        Index of an appearance of Scaffold-GS.
     axes
-        Where the model's axes point, if the file is wrong about it.
+        Directions of the model's axes, instead of the file's.
     antialiased
-        Whether it was trained with anti-aliasing, if the file is wrong about it.
+        Whether it was trained with anti-aliasing, instead of the file's value.
 
     Raises
     ------
     InputError
-        For what is no model; the text says what it looks like instead.
+        If it is not a model; the text names its apparent format.
     """
     model = Model.__new__(Model)
     model._take(_binosplat.load_model(path, lod, appearance, axes, antialiased))
@@ -252,20 +253,20 @@ def load_model(path: _Path, *, lod: int | None = None, appearance: int | None = 
 
 
 class Calibration:
-    """A file of ``binosplat calibrate``, which says how much of a model frames may leave out.
+    """A file of ``binosplat calibrate``: a model's tolerances, and its transmittance by depth.
 
-    ``renderer.draw(camera, th="adagscale", calibration=calibration)`` draws by AdaGScale as the programs do.
+    ``renderer.draw(camera, th="adagscale", calibration=calibration)`` draws with AdaGScale, as the programs do.
 
     Parameters
     ----------
     path
     model
-        The one that was calibrated.
+        The calibrated model.
 
     Raises
     ------
     InputError
-        For what is no such file, and for another model.
+        For another kind of file, and for another model.
     """
 
     def __init__(self, path: _Path, model: Model) -> None:
@@ -275,7 +276,7 @@ class Calibration:
 
 @dataclass(frozen=True)
 class Report:
-    """What drawing a frame took.
+    """Times, counts and errors of a frame.
 
     Attributes
     ----------
@@ -284,27 +285,27 @@ class Report:
     gpu_ms
         Their sum.
     submit_ms
-        CPU time of handing the frame to the driver.
+        CPU time of submitting the frame to the driver, ms.
     gpu_bytes
-        In buffers, the model's included.
+        Bytes of all buffers, including the model's.
     visible
-        Gaussians drawn, summed over depth orders (one for parallel eyes).
+        Number of drawn Gaussians, summed over depth orders (one for parallel eyes).
     pairs
-        Gaussian-tile pairs over all views.
+        Number of Gaussian-tile pairs in all views.
     tolerance
-        That the frame was drawn with; 0 is exact.
+        The tolerance of the frame; 0 is exact.
     quality
-        With a quality: dB that it came to.
+        With a requested quality: the reported dB.
     quality_is_estimate
-        It was not measured on all of this frame.
+        Whether ``quality`` was estimated, not measured over the whole frame.
     attempts
-        Times that it was drawn until the quality held.
+        Number of drawings until the quality was reached.
     redrawn
-        Times that it was drawn again, since a buffer was too small.
+        Number of repeated drawings because a buffer was too small.
     used_measured
-        It used the transmittance that the frame before measured.
+        Whether it used the transmittance that the previous frame measured.
     is_cut
-        With a quality or transmittance 'last': it could go by no earlier frame.
+        With a quality or transmittance 'last': whether it used no earlier measurement.
     """
 
     stages: dict[str, float]
@@ -324,19 +325,19 @@ class Report:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Picture:
-    """What draw() makes of a view; rows from the top.
+    """The result of draw() for a view; rows from the top.
 
     Attributes
     ----------
     colour
-        (height, width, 3): display-referred RGB over the background, white 1; what Gaussians overshoot is not
-        clamped.
+        (height, width, 3): display-referred RGB over the background, white 1. Values above 1 are not clamped.
     transmittance
-        (height, width): the share of the background's light that is left, 1 - alpha.
+        (height, width): the share of light that passes all splats, 1 - alpha.
     depth
-        (height, width): along the view's axis, world units, by draw(depth=); inf where alpha is at most 0.5.
+        (height, width): depth along the view's axis, world units, as draw(depth=) defines it; inf where alpha is at
+        most 0.5.
     report
-        What drawing the frame took.
+        The report of the frame.
     """
 
     colour: _Floats
@@ -347,12 +348,12 @@ class Picture:
 
 @dataclass(frozen=True, init=False, eq=False, repr=False)
 class Camera(_View[Picture]):
-    """A pinhole camera of the world: x right, y down, z forward, as COLMAP leaves it.
+    """A pinhole camera in the world: x right, y down, z forward, as in COLMAP.
 
     Parameters
     ----------
     width, height
-        Of the picture, px.
+        Size of the picture, px.
     fx, fy
         Focal lengths, px; fy is fx by default.
     cx, cy
@@ -362,12 +363,12 @@ class Camera(_View[Picture]):
     rotation : (3, 3) floats
         Camera to world: its columns are the camera's axes x right, y down, z forward in the world.
     name
-        What messages call it.
+        Its name in messages.
 
     Attributes
     ----------
     time
-        s, of a path; None elsewhere.
+        Time in a path, s; None elsewhere.
     """
 
     name: str
@@ -387,7 +388,7 @@ class Camera(_View[Picture]):
         vars(self).update(vars(_binosplat.camera(width, height, fx, fy, cx, cy, position, rotation, name)))
 
     def resized(self, width: int, height: int) -> Camera:
-        """The camera at another size in px, as ``--size`` does: the vertical field of view is kept."""
+        """The camera at another size in px, with the same vertical field of view, as ``--size``."""
         return _binosplat.resized(self, width, height)
 
     def __repr__(self) -> str:
@@ -397,7 +398,7 @@ class Camera(_View[Picture]):
 
 def look_at(eye: ArrayLike, at: ArrayLike, width: int, height: int, *, up: ArrayLike = (0, -1, 0),
             fov: float = 60) -> Camera:
-    """A camera at a point that looks at another.
+    """A camera at ``eye`` that looks at ``at``.
 
     Parameters
     ----------
@@ -406,7 +407,7 @@ def look_at(eye: ArrayLike, at: ArrayLike, width: int, height: int, *, up: Array
     width, height
         px.
     up : (3,) floats
-        What is up in the picture.
+        The upward direction in the picture.
     fov
         Vertical field of view, degrees.
     """
@@ -414,13 +415,13 @@ def look_at(eye: ArrayLike, at: ArrayLike, width: int, height: int, *, up: Array
 
 
 def frame(model: Model, width: int, height: int, *, up: ArrayLike = (0, -1, 0), fov: float = 60) -> Camera:
-    """A camera that shows all of a model from outside, as look_at() makes it; draw with ``near=model.near``."""
+    """A camera outside a model that shows all of it. Draw with ``near=model.near``."""
     _expect(model, Model, "a Model")
     return _binosplat.frame(model._model, width, height, up, fov)
 
 
 class Cameras:
-    """The cameras of a file, in its order: by number, or by name.
+    """The cameras of a file, in its order, indexed by number or name.
 
     Attributes
     ----------
@@ -436,7 +437,7 @@ class Cameras:
         return len(self._cameras)
 
     def __getitem__(self, which: int | str) -> Camera:
-        """The camera of a number, or the first of a name. Raises InputError for a name, with some that there are."""
+        """The camera of a number, or the first of a name. Raises InputError for an unknown name."""
         if not isinstance(which, str):
             return self._cameras[which]
         for camera in self._cameras:
@@ -460,8 +461,8 @@ def load_cameras(path: _Path, model: _Path | None = None) -> Cameras:
     path
         The file or its folder.
     model
-        A model that nerfstudio trained with them: they are moved into the world of its training, which
-        dataparser_transforms.json beside it tells.
+        A model that nerfstudio trained with them. Moves the cameras into its world, which
+        dataparser_transforms.json beside it defines.
     """
     if path is None:
         raise InputError("load_cameras: the path is None, as find_cameras() says where it finds none")
@@ -469,17 +470,17 @@ def load_cameras(path: _Path, model: _Path | None = None) -> Cameras:
 
 
 def find_cameras(model: _Path) -> Path | None:
-    """The file or folder with the cameras of a model, beside the model's path; None without."""
+    """The file or folder with a model's cameras, beside the model's path; None if there is none."""
     return _binosplat.find_cameras(model)
 
 
 def find_photos(cameras: _Path) -> Path | None:
-    """The folder of the photos that cameras were found from, beside the cameras' path; or None."""
+    """The folder of the photos of these cameras, beside the cameras' path; None if there is none."""
     return _binosplat.find_photos(cameras)
 
 
 def find_photo(folder: _Path, view: Camera | str) -> Path | None:
-    """A view's photo in a folder, by the camera or its name, with or without a picture's ending; or None."""
+    """A view's photo in a folder, by camera or name (with or without a picture's ending); None if there is none."""
     return _binosplat.find_photo(folder, view)
 
 
@@ -489,25 +490,25 @@ class Rig(_View[tuple[Picture, Picture]]):
     Parameters
     ----------
     head
-        In the middle between the eyes.
+        The camera between the eyes.
     ipd
         Distance of the eyes, metres.
     units_per_metre
-        World units that make a metre.
+        World units per metre.
     convergence
-        Distance without disparity, metres; infinite by default.
+        Distance of zero disparity, metres; infinite by default.
     cant
-        Degrees by which each eye is turned outwards.
+        Outward turn of each eye, degrees.
     """
 
     def __init__(self, head: Camera, *, ipd: float = 0.063, units_per_metre: float = 1.0,
                  convergence: float | None = None, cant: float = 0.0) -> None:
         self._parts: tuple[Any, ...] = (head, None, ipd, units_per_metre, convergence, cant)
-        self.eyes  # which raises for values that make no rig
+        self.eyes  # raises InputError for invalid values
 
     @staticmethod
     def of_eyes(left: Camera, right: Camera) -> Rig:
-        """The rig of two cameras that are given as a pair."""
+        """The rig of two given cameras."""
         rig = Rig(left)
         rig._parts = (left, (left, right), *rig._parts[2:])
         return rig
@@ -529,12 +530,12 @@ class Renderer:
     device
         Number of the EGL device.
     precision
-        'full', or 'half' for half the memory at 60 dB and more.
+        'full', or 'half', which halves the memory at a PSNR of 60 dB or more.
 
     Attributes
     ----------
     device
-        What it draws with, in words.
+        Renderer, backend and OpenGL version, in words.
     """
 
     def __init__(self, model: Model, *, backend: Literal["auto", "device", "surfaceless", "osmesa"] = "auto",
@@ -551,45 +552,45 @@ class Renderer:
              calibration: Calibration | None = None) -> _Drawn:
         """Draws a view. Without settings the picture is exact.
 
-        May be called from any thread; pictures of one Renderer are drawn one after the other. Ctrl-C ends the wait.
+        Any thread may call it; a Renderer draws one picture at a time. Ctrl-C ends the wait.
 
         Parameters
         ----------
         view : Camera or Rig
         quality
-            dB of PSNR that the picture should have against the exact one.
+            Requested PSNR of the picture against the exact one, dB.
         tolerance
-            In place of quality: what leaving a Gaussian out of a tile may cost, in the unit of th.
+            Instead of quality: the accepted loss of a dropped pair, in the unit of th.
         th
-            The rule that leaves Gaussians out: 'squared' (where quality, tolerance or calibration is given),
-            'peripheral', 'adagscale', which is that with transmittance 'depth', or 'tau', which is exact.
+            The threshold rule: 'squared' (default with quality, tolerance or calibration), 'peripheral', 'adagscale'
+            ('peripheral' with transmittance 'depth'), or 'tau', which is exact.
         transmittance
-            The light that a Gaussian is taken to get: 'one'; 'last', which the frame before measured, and which needs
-            follow; or 'depth', the most that reaches its depth by the calibration's table.
+            The upper bound of transmittance: 'one'; 'last', measured by the previous frame, which needs follow; or
+            'depth', from the calibration's table by depth.
         order
-            What Gaussians are sorted by, 'depth' or 'distance'; as the model was trained by default.
+            Sorts Gaussians by 'depth' or 'distance'; by default as the model was trained.
         projection
-            'affine' or 'tangent'; as the model was trained by default.
+            'affine' or 'tangent'; by default as the model was trained.
         tiles
-            Which tiles get a Gaussian: 'ellipse', 'snug' or 'all', which are exact, 'aabb' or 'obb'.
+            The tile test: 'ellipse', 'snug' or 'all', which are exact, or 'aabb' or 'obb'.
         decode
-            Of Scaffold-GS: 'eyes' or, with a Rig, 'cyclopean'.
+            For Scaffold-GS: 'eyes' or, with a Rig, 'cyclopean'.
         background : (3,) floats
             RGB behind the scene, 0 to 1.
         near
-            Nothing nearer is drawn, world units.
+            Near plane, world units.
         depth
-            'mean' of what is seen, or 'median', by which half of it is.
+            'mean', weighted by visibility, or 'median', at which T falls below a half.
         follow
-            This is the next frame of a path, and uses what the one before measured. Else the picture depends on
-            nothing drawn before.
+            Draws the next frame of a path, which uses the previous frame's measurements. Otherwise the picture does
+            not depend on earlier ones.
         calibration
-            Of this model, which gives the table by depth and, where neither quality nor tolerance is given, the
-            tolerance. What is far from the calibrated cameras is drawn exactly.
+            The model's calibration. Gives the table by depth, and the tolerance if neither quality nor tolerance is
+            given. Views far from the calibrated cameras are drawn exactly.
 
         Returns
         -------
-        Picture, or of a Rig a tuple of two, left and right
+        Picture; for a Rig a tuple of two, left and right
         """
         _expect(view, _View, "a Camera or a Rig")
         settings = self._settings(quality, tolerance, th, transmittance, order, projection, tiles, decode, background,
@@ -602,18 +603,18 @@ class Renderer:
                  decode: Literal["eyes", "cyclopean"] = "eyes", background: ArrayLike = (0, 0, 0), near: float = 0.2,
                  depth: Literal["mean", "median"] = "mean", follow: bool = False,
                  calibration: Calibration | None = None) -> Iterator[_Drawn]:
-        """Draws one view after another, each while Python has the picture of the one before.
+        """Draws views in sequence: the GPU draws the next one while Python uses the last picture.
 
         Parameters
         ----------
         views : iterable of Camera or Rig
-            Each is taken when its turn comes, and what is wrong with it raised then.
+            Each view is read, and its errors are raised, when it is due.
         quality, tolerance, th, transmittance, order, projection, tiles, decode, background, near, depth, follow, calibration
-            As of draw(), and the same for all; with follow they are the frames of a path.
+            As for draw(), the same for all views. With follow, the views are the frames of a path.
 
         Returns
         -------
-        iterator of what draw() returns
+        iterator of the results of draw()
         """
         settings = self._settings(quality, tolerance, th, transmittance, order, projection, tiles, decode, background,
                                   near, depth, follow, calibration)
@@ -632,7 +633,7 @@ class Renderer:
         return self._renderer.settings(quality, tolerance, rule, transmittance, *others_but_last, policy)
 
     def close(self) -> None:
-        """Gives the GPU's memory back; it is also given back with the last reference, and by `with`."""
+        """Frees the GPU's memory, as do `with` and the deletion of the last reference."""
         self._renderer.close()
 
     def __enter__(self) -> Renderer:
@@ -643,7 +644,7 @@ class Renderer:
 
 
 def _pictures(arrays: list[tuple[_Floats, _Floats, _Floats]], report: dict[str, Any]) -> Any:
-    """A view's picture, or those of both eyes."""
+    """The picture of a view, or a tuple of those of both eyes."""
     of_frame = Report(**report)
     pictures = tuple(Picture(*of_view, of_frame) for of_view in arrays)
     return pictures if len(pictures) == 2 else pictures[0]
@@ -664,18 +665,18 @@ def _pictures_of_path(path: Any, views: Iterator[Any]) -> Iterator[Any]:
 
 @dataclass(frozen=True)
 class Comparison:
-    """By how much two pictures differ.
+    """The difference of two pictures.
 
     Attributes
     ----------
     psnr
-        dB; inf for equal pictures, nan where one holds a NaN or an infinity.
+        dB; inf for equal pictures, nan if one has a NaN or an infinity.
     ssim
-        At most 1, that of equal pictures; nan for pictures below 11 x 11 px or with such a value.
+        At most 1, for equal pictures; nan for pictures below 11 x 11 px or with such a value.
     flip
-        Mean of FLIP's map, 0 to 1; nan likewise.
+        Mean of FLIP's map, 0 to 1; nan for pictures with such a value.
     largest_error
-        Of a channel, absolute, of white 1.
+        The largest absolute error of a channel, with white 1.
     at
         Row, column and channel of the largest error, or of the first NaN or infinity.
     """
@@ -687,12 +688,12 @@ class Comparison:
     at: tuple[int, int, int]
 
 
-_whites = {"<f4": 1, "<f8": 1, "|u1": 255, "<u2": 65535}  # by NumPy's names of types
+_whites = {"<f4": 1, "<f8": 1, "|u1": 255, "<u2": 65535}  # by NumPy's type names
 
 
 def _picture(given: Any, name: str) -> _Floats:
-    """The picture that an array is, with white 1. Floats that count to 255 are refused: those that are twice as bright
-    as white in the mean, or whole numbers only."""
+    """Converts an array to a picture with white 1. Refuses floats that seem to have white 255: those with a mean
+    above 2, and integers above 1."""
     _refuse_masked(given, name)
     array = np.asarray(given)
     if array.dtype.str not in _whites:
@@ -728,12 +729,12 @@ def load_image(path: _Path) -> _Floats:
 
 
 def save_png(path: _Path, picture: ArrayLike, bits: Literal[8, 16] = 8) -> None:
-    """Writes a PNG; it is there whole or not at all.
+    """Writes a PNG, completely or not at all.
 
     Parameters
     ----------
     path
-        Ends in .png.
+        Must end in .png.
     picture
         (height, width) or (height, width, 1, 3 or 4): float with white 1, uint8 or uint16.
     bits
@@ -747,30 +748,30 @@ def save_png(path: _Path, picture: ArrayLike, bits: Literal[8, 16] = 8) -> None:
 
 
 def quantised(picture: ArrayLike) -> _Floats:
-    """The picture as 8 bits keep it: round(255 clip(v, 0, 1)) / 255."""
+    """The picture rounded to 8 bits: round(255 clip(v, 0, 1)) / 255."""
     return _binosplat.quantised(_picture(picture, "picture"))
 
 
 def compare(a: ArrayLike, b: ArrayLike, ppd: float = 67, background: ArrayLike | None = None) -> Comparison:
-    """What ``binosplat compare`` says of two pictures of one size.
+    """Compares two pictures of one size, as ``binosplat compare``.
 
-    Values are clamped to 0 to 1 and not rounded (see quantised); grey counts as colour beside colour.
+    Values are clamped to 0 to 1 but not rounded (see quantised). Beside colour, grey is repeated in three channels.
 
     Parameters
     ----------
     a, b
         (height, width) or (height, width, 1, 3 or 4): float with white 1, uint8 or uint16.
     ppd
-        Pixels per degree that the viewer has, 1 to 1000, for FLIP.
+        The viewer's pixels per degree, 1 to 1000, for FLIP.
     background : (3,) floats
-        RGB before which pictures with alpha are compared. By default alpha counts where both have some that is
-        not 1, and is before black where one has.
+        RGB behind pictures with alpha. By default, if both have alpha other than 1, it counts as a channel; if only
+        one has, it is composited over black.
     """
     return Comparison(*_binosplat.compare(_picture(a, "a"), _picture(b, "b"), ppd, background))
 
 
 class Exposures:
-    """What a training made of each picture before it saw the photo.
+    """The exposures by which a training changed pictures before it compared them with photos.
 
     Attributes
     ----------
@@ -786,31 +787,31 @@ class Exposures:
         return self._exposures.count
 
     def of(self, view: str) -> _Floats:
-        """Three rows of four numbers, for exposed(); those that change nothing for a view without one."""
+        """Three rows of four numbers, for exposed(); the identity for a view without an exposure."""
         columns = self._exposures.of(view)
         return np.column_stack([columns[:3], columns[3]])
 
 
 def load_exposures(path: _Path) -> Exposures:
-    """Reads the exposure.json of INRIA's training (train_test_exp): by the names of views, with or without a picture's
-    ending. Raises InputError for what is none."""
+    """Reads the exposure.json of INRIA's training (train_test_exp), indexed by names of views, with or without a
+    picture's ending. Raises InputError for another kind of file."""
     return Exposures(path)
 
 
 def find_exposures(model: _Path) -> Path | None:
-    """The exposure.json of a model's training, beside the model's path; None without."""
+    """The exposure.json of a model's training, beside the model's path; None if there is none."""
     return _binosplat.find_exposures(model)
 
 
 def exposed(picture: ArrayLike, exposure: ArrayLike) -> _Floats:
-    """A picture as a training made it before it was compared with the photo.
+    """Applies an exposure to a picture, as training does before it compares it with a photo.
 
     Parameters
     ----------
     picture
         (height, width, 3): float with white 1, uint8 or uint16.
     exposure : (3, 4) floats
-        As in exposure.json: a colour is a row before the first three columns, and the last column is added.
+        As in exposure.json: the result is red, green and blue times rows 0, 1 and 2, plus the last column.
 
     Returns
     -------
