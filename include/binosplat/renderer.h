@@ -13,6 +13,7 @@
 //
 // examples/embed.cpp, examples/mesh.cpp and examples/openxr.cpp are complete programs.
 
+#include <cstdint>
 #include <filesystem>
 #include <glm/glm.hpp>
 #include <memory>
@@ -67,7 +68,36 @@ struct View {
   ViewRegion region = {};
 };
 
-/// A model on the GPU, with the programs and buffers that draw it.
+/// A model that a Renderer holds.
+enum class ModelId : std::uint32_t {};
+
+/// A model at its place in a world. Any number of instances may draw one model.
+///
+/// The world has x right, y down and z forward, as COLMAP's, and its own units. A point p of the model lies
+/// at translation + scale * rotation * p. The renderer first brings a model of other axes into x right, y
+/// down and z forward, so that every model stands upright.
+struct Instance {
+  ModelId model = {};
+  glm::dmat3 rotation{1.0};     // columns of length 1 at right angles
+  glm::dvec3 translation{0.0};  // world units
+  double scale = 1.0;           // world units to one of the model's, above 0
+  float opacity = 1.0f;         // from 0 to 1, a factor of each Gaussian's
+  bool is_shown = true;
+  /// With Transmittance::by_depth: the model's own table, in its units, as its Calibration has it. Empty:
+  /// that of the settings, in world units.
+  DepthTable depth_table = {};
+};
+
+/// What a frame draws, and from where: instances, and the place of the eyes' space in their world. All
+/// instances are sorted by the middles of their Gaussians and blended together, as those of one model are.
+/// They cast no shadows on each other. The first instance's model sets the order and the projection, unless
+/// the settings do.
+struct World {
+  Placement placement = {};
+  std::span<const Instance> instances = {};
+};
+
+/// Models on the GPU, with the programs and buffers that draw them.
 ///
 /// Threads: call every function, and the destructor, on the thread where the caller's context is current.
 /// Elsewhere calls throw Error(no_gl). If another context is current, the destructor frees nothing and warns
@@ -88,6 +118,8 @@ class Renderer {
   Renderer(GetProcAddress get_proc_address, const SplatModel& model, Precision precision = Precision::full);
   /// Draws the levels that a stream has read (binosplat/stream.h). A stream has one renderer at a time.
   Renderer(GetProcAddress get_proc_address, SplatStream& stream, Precision precision = Precision::full);
+  /// Holds no model yet, and draws those that add() uploads, as a World places them.
+  explicit Renderer(GetProcAddress get_proc_address, Precision precision = Precision::full);
   ~Renderer();
   Renderer(Renderer&&) noexcept;
   Renderer& operator=(Renderer&&) noexcept;
@@ -113,11 +145,29 @@ class Renderer {
   /// context is not current.
   void submit(std::span<const View> views, const Placement& placement, const Settings& settings = {});
 
+  /// Uploads a model, or the levels that a stream has read, for the instances of a World. Once for each
+  /// model, between frames or while one is under way. Throws as the constructors do.
+  ModelId add(const SplatModel& model);
+  ModelId add(SplatStream& stream);
+  /// Frees a model. Throws Error(bad_input) while a frame is under way, and for a model that is not held.
+  void remove(ModelId model);
+
+  /// Draws a World as submit() draws a single model. Instances may move, and come and go, from frame to
+  /// frame: no Gaussian is uploaded for that. Measurements of earlier frames hold as long as no instance
+  /// moves, turns or grows past the limits above, as the views see it. A Scaffold-GS model is drawn alone,
+  /// and not moved. bad_input also for a model that is not held, and numbers out of range.
+  void submit(std::span<const View> views, const World& world, const Settings& settings = {});
+
+  /// The place of the eyes' space in the world of an instance's model, whose axes are those of its file:
+  /// for Calibration::settings() and SplatStream::begin_frame().
+  Placement in_model(const Placement& placement, const Instance& instance) const;
+
   /// Compiles every shader that frames of these settings and targets may need, so that no submit() has to.
   /// Call it while the user waits anyway. It also allocates the frames' memory, and writes nothing into
   /// targets. The next frame uses no earlier measurements. For a stream it also compiles the shaders of
   /// begin_frame(). Throws as submit() does.
   void prepare(std::span<const View> views, const Placement& placement, const Settings& settings = {});
+  void prepare(std::span<const View> views, const World& world, const Settings& settings = {});
 
   /// Whether the GPU has blended the submitted frame. finish() then returns at once, unless it must draw the
   /// frame again. True if no frame is under way.
@@ -135,11 +185,12 @@ class Renderer {
     submit(views, placement, settings);
     return finish();
   }
+  Report draw(std::span<const View> views, const World& world, const Settings& settings = {}) {
+    submit(views, world, settings);
+    return finish();
+  }
 
  private:
-  void hand_over(std::span<const View> views, const Placement& placement, const Settings& settings,
-                 bool prepares);
-
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };

@@ -35,7 +35,7 @@ Settings Calibration::settings(std::span<const View> views, const Placement& pla
   if (asked.projection) frame.projection = static_cast<int>(*asked.projection);
   if (!asked.tolerance && !asked.quality) impl_->policy.check(frame);
   impl_->policy.check_perspective(frame, *impl_->model);
-  const auto head = library::views_of(views, placement, *impl_->model, asked);
+  const auto head = library::views_of(views, placement, impl_->model->axes.origin, asked);
   frame = impl_->policy.settings(std::move(frame), head.views.front(), impl_->model->axes);
   Settings found = asked;
   found.transmittance = library::transmittance_of(frame.transmittance);

@@ -66,6 +66,16 @@ void check_numbers(std::span<const View> views, const Placement& placement) {
   }
 }
 
+void check_numbers(const Instance& instance, const std::string& name) {
+  if (!are_directions(instance.rotation))
+    fail("{}.rotation: expected three columns of length 1 at right angles to each other", name);
+  if (!is_finite(glm::vec3(instance.translation))) fail("{}.translation: expected finite world units", name);
+  if (!(instance.scale > 0.0) || !std::isfinite(static_cast<float>(instance.scale)))
+    fail("{}.scale {}: expected a number above zero", name, instance.scale);
+  if (!(instance.opacity >= 0.0f && instance.opacity <= 1.0f))
+    fail("{}.opacity {}: expected 0 to 1", name, instance.opacity);
+}
+
 void check_numbers(const Settings& settings) {
   const glm::vec3 behind = settings.background.value_or(glm::vec3(0.0f));
   if (!glm::all(glm::greaterThanEqual(behind, glm::vec3(0.0f))) ||

@@ -1,5 +1,8 @@
 #include <binosplat/renderer.h>
 
+#include <algorithm>
+#include <map>
+
 #include "base/error.h"
 #include "base/log.h"
 #include "gl/state.h"
@@ -9,6 +12,7 @@
 #include "library/stream.h"
 #include "library/targets.h"
 #include "library/views.h"
+#include "scene/axes.h"
 #include "stereo/foveate.h"
 #include "stereo/present.h"
 
@@ -26,36 +30,105 @@ Impl& usable(const std::unique_ptr<Impl>& impl) {
 
 }  // namespace
 
+/// A model or a stream that a renderer holds.
+struct HeldModel {
+  std::shared_ptr<const Model> model;  // null with a stream
+  std::shared_ptr<SplatStream::Impl> stream;
+  std::shared_ptr<render::GpuModel> on_gpu;
+};
+
+/// What a frame draws.
+struct Scene {
+  std::vector<render::Instance> instances;
+  std::vector<SplatStream::Impl*> streams;  // of the instances
+  glm::dvec3 origin{0.0};                   // world units: the frame's positions are relative to it
+};
+
 struct Renderer::Impl {
-  Impl(GetProcAddress get_proc_address, std::shared_ptr<const Model> drawn, Precision kept_in)
-      : model(std::move(drawn)), precision(library::precision_of(kept_in)) {
-    if (model == nullptr) fail("model: it was moved from: expected a SplatModel that holds one");
+  Impl(GetProcAddress get_proc_address, Precision kept_in) : precision(library::precision_of(kept_in)) {
     context = gl::Context::adopt(get_proc_address);
-    const gl::KeptState kept(*context);
-    draw_with(std::make_shared<render::GpuModel>(*context, *model, precision));
   }
-  Impl(GetProcAddress get_proc_address, std::shared_ptr<SplatStream::Impl> drawn, Precision kept_in)
-      : stream(std::move(drawn)), precision(library::precision_of(kept_in)) {
+  ~Impl() {
+    frame.reset();
+    while (!held.empty()) drop(held.begin()->first);
+  }
+
+  ModelId add(std::shared_ptr<const Model> model) {
+    if (model == nullptr) fail("model: it was moved from: expected a SplatModel that holds one");
+    const gl::KeptState kept(*context);
+    auto on_gpu = std::make_shared<render::GpuModel>(*context, *model, precision);
+    return hold({.model = std::move(model), .on_gpu = std::move(on_gpu)});
+  }
+  ModelId add(std::shared_ptr<SplatStream::Impl> stream) {
     if (stream == nullptr) fail("stream: it was moved from: expected a SplatStream that holds one");
     if (stream->context != nullptr) fail("a stream has one renderer at a time: destroy the other one first");
-    context = gl::Context::adopt(get_proc_address);
     const gl::KeptState kept(*context);
-    draw_with(stream->stream->gpu_model(*context, precision));
+    auto on_gpu = stream->stream->gpu_model(*context, precision);
     stream->context = context.get();
     stream->precision = precision;
+    return hold({.stream = std::move(stream), .on_gpu = std::move(on_gpu)});
   }
+  ModelId hold(HeldModel model) {
+    const ModelId id{next_id++};
+    held.emplace(id, std::move(model));
+    return id;
+  }
+  void drop(ModelId id) {
+    HeldModel model = std::move(held.extract(id).mapped());
+    model.on_gpu.reset();
+    if (!model.stream || model.stream->context != context.get()) return;
+    model.stream->stream->release_gpu_model();
+    model.stream->context = nullptr;
+    model.stream->is_drawn = false;
+  }
+  /// Makes the frame, of a model that a Frame needs in any case.
   void draw_with(std::shared_ptr<render::GpuModel> drawn) {
     frame = std::make_unique<stereo::FoveatedFrame>(std::move(drawn));
     presenter = std::make_unique<stereo::Presenter>(*context);
     checked = std::make_unique<library::Targets>(*context);
   }
-  ~Impl() {
-    if (!stream || stream->context != context.get()) return;
-    frame.reset();
-    stream->stream->release_gpu_model();
-    stream->context = nullptr;
-    stream->is_drawn = false;
+
+  const HeldModel& model_of(ModelId id, const std::string& name) const {
+    const auto found = held.find(id);
+    if (found == held.end())
+      fail("{}: this renderer holds no such model: expected one that add() returned", name);
+    return found->second;
   }
+
+  /// The single model that the renderer was made with, in its own world.
+  Scene own_scene() const {
+    if (held.empty() || held.begin()->first != ModelId{})
+      fail("this renderer was made without a model: draw a World of instances");
+    const HeldModel& own = held.begin()->second;
+    Scene scene{.instances = {{.model = own.on_gpu, .place = {}}}, .origin = own.on_gpu->model().axes.origin};
+    if (own.stream) scene.streams.push_back(own.stream.get());
+    return scene;
+  }
+
+  Scene scene_of(const World& world) const {
+    Scene scene;
+    for (std::size_t k = 0; k < world.instances.size(); ++k) {
+      const Instance& instance = world.instances[k];
+      const std::string name = fmt::format("instances[{}]", k);
+      const HeldModel& model = model_of(instance.model, name + ".model");
+      library::check_numbers(instance, name);
+      if (!instance.is_shown || instance.opacity == 0.0f) continue;
+      const ModelAxes& axes = model.on_gpu->model().axes;
+      render::InstancePlace place{.rotation = instance.rotation * world_from_axes(axes.letters),
+                                  .scale = instance.scale,
+                                  .opacity = instance.opacity,
+                                  .depth_table = instance.depth_table};
+      place.translation = instance.translation + place.scale * (place.rotation * axes.origin);
+      if (scene.origin == glm::dvec3(0.0) && axes.origin != glm::dvec3(0.0)) scene.origin = place.translation;
+      scene.instances.push_back({model.on_gpu, std::move(place)});
+      if (model.stream) scene.streams.push_back(model.stream.get());
+    }
+    for (render::Instance& instance : scene.instances) instance.place.translation -= scene.origin;
+    return scene;
+  }
+
+  void hand_over(std::span<const View> views, const Placement& placement, Scene scene,
+                 const Settings& settings, bool prepares);
 
   /// Logs and returns the errors that OpenGL has recorded since the last call. They are the caller's.
   std::vector<std::uint32_t> callers_errors() const {
@@ -76,15 +149,17 @@ struct Renderer::Impl {
     library::MeshDepths mesh_depths;
     stereo::Canvases canvases;
     bool is_foveated = false;
+    std::vector<SplatStream::Impl*> streams;
     std::vector<std::uint32_t> callers_errors;
 
     bool has_meshes() const { return !mesh_depths.list.empty(); }
   };
 
-  std::shared_ptr<const Model> model;  // null with a stream
-  std::shared_ptr<SplatStream::Impl> stream;
   int precision;  // PRECISION_
   std::unique_ptr<gl::Context> context;
+  const Model no_model;  // of renderers that are made without one
+  std::map<ModelId, HeldModel> held;
+  std::uint32_t next_id = 0;
   std::optional<Submitted> submitted;
   std::unique_ptr<stereo::FoveatedFrame> frame;
   std::unique_ptr<stereo::Presenter> presenter;
@@ -92,9 +167,19 @@ struct Renderer::Impl {
 };
 
 Renderer::Renderer(GetProcAddress get_proc_address, const SplatModel& model, Precision precision)
-    : impl_(std::make_unique<Impl>(get_proc_address, model.model_, precision)) {}
+    : impl_(std::make_unique<Impl>(get_proc_address, precision)) {
+  impl_->draw_with(impl_->held.at(impl_->add(model.model_)).on_gpu);
+}
 Renderer::Renderer(GetProcAddress get_proc_address, SplatStream& stream, Precision precision)
-    : impl_(std::make_unique<Impl>(get_proc_address, stream.impl_, precision)) {}
+    : impl_(std::make_unique<Impl>(get_proc_address, precision)) {
+  impl_->draw_with(impl_->held.at(impl_->add(stream.impl_)).on_gpu);
+}
+Renderer::Renderer(GetProcAddress get_proc_address, Precision precision)
+    : impl_(std::make_unique<Impl>(get_proc_address, precision)) {
+  const gl::KeptState kept(*impl_->context);
+  impl_->next_id = 1;  // the first is the model that a renderer is made with
+  impl_->draw_with(std::make_shared<render::GpuModel>(*impl_->context, impl_->no_model, impl_->precision));
+}
 Renderer::~Renderer() {
   // In another context the same names may be other objects, which the renderer must not delete.
   if (impl_ == nullptr || !impl_->context->another_is_current()) return;
@@ -110,26 +195,57 @@ Renderer& Renderer::operator=(Renderer&& other) noexcept {
   return *this;
 }
 
+ModelId Renderer::add(const SplatModel& model) { return usable(impl_).add(model.model_); }
+ModelId Renderer::add(SplatStream& stream) { return usable(impl_).add(stream.impl_); }
+
+void Renderer::remove(ModelId model) {
+  Impl& impl = usable(impl_);
+  if (impl.submitted) fail("a frame is under way: call finish() before remove()");
+  impl.model_of(model, "model");
+  const gl::KeptState kept(*impl.context);
+  impl.frame->frame().place({});
+  impl.drop(model);
+}
+
+Placement Renderer::in_model(const Placement& placement, const Instance& instance) const {
+  const Impl& impl = usable(impl_);
+  const ModelAxes& axes = impl.model_of(instance.model, "instance.model").on_gpu->model().axes;
+  library::check_numbers(instance, "instance");
+  const glm::dmat3 into_model = glm::transpose(instance.rotation * world_from_axes(axes.letters));
+  return {.origin = into_model * (placement.origin - instance.translation) / instance.scale,
+          .axes = into_model * placement.axes,
+          .units_per_metre = placement.units_per_metre / instance.scale};
+}
+
 void Renderer::submit(std::span<const View> views, const Placement& placement, const Settings& settings) {
-  hand_over(views, placement, settings, false);
+  Impl& impl = usable(impl_);
+  impl.hand_over(views, placement, impl.own_scene(), settings, false);
 }
-
+void Renderer::submit(std::span<const View> views, const World& world, const Settings& settings) {
+  Impl& impl = usable(impl_);
+  impl.hand_over(views, world.placement, impl.scene_of(world), settings, false);
+}
 void Renderer::prepare(std::span<const View> views, const Placement& placement, const Settings& settings) {
-  hand_over(views, placement, settings, true);
+  Impl& impl = usable(impl_);
+  impl.hand_over(views, placement, impl.own_scene(), settings, true);
+}
+void Renderer::prepare(std::span<const View> views, const World& world, const Settings& settings) {
+  Impl& impl = usable(impl_);
+  impl.hand_over(views, world.placement, impl.scene_of(world), settings, true);
 }
 
-// Draws the views, or compiles the shaders that drawing them needs.
-void Renderer::hand_over(std::span<const View> views, const Placement& placement, const Settings& settings,
-                         bool prepares) {
-  if (usable(impl_).submitted) fail("a frame is under way: call finish() before the next submit()");
-  Impl::Submitted to{.layout = library::layout_of(settings.layout), .background = settings.background};
-  to.callers_errors = impl_->callers_errors();
+// To the frame that draws the views, or compiles what drawing them takes.
+void Renderer::Impl::hand_over(std::span<const View> views, const Placement& placement, Scene scene,
+                               const Settings& settings, bool prepares) {
+  if (submitted) fail("a frame is under way: call finish() before the next submit()");
+  Submitted to{.layout = library::layout_of(settings.layout), .background = settings.background};
+  to.callers_errors = callers_errors();
   library::check_numbers(views, placement);
   for (std::size_t k = 0; k < views.size(); ++k) {
     const View& view = views[k];
     to.targets.push_back(view.target);
     if (view.depth) to.depths.push_back(*view.depth);
-    if (view.mesh_depth) library::add_mesh_depth(*impl_->context, view, {k, "mesh_depth"}, to.mesh_depths);
+    if (view.mesh_depth) library::add_mesh_depth(*context, view, {k, "mesh_depth"}, to.mesh_depths);
   }
   if (to.layout != LAYOUT_SEPARATE) {
     if (views.size() != 2)
@@ -147,9 +263,10 @@ void Renderer::hand_over(std::span<const View> views, const Placement& placement
     fail("mesh depths with a {}: splats are blended over the colours that are in each view's target",
          settings.background ? "background" : "layout other than separate");
   }
-  impl_->checked->check(views, settings);
-  const render::FrameSettings over = library::frame_settings(settings, views, impl_->precision);
-  if (settings.cyclopean && !(impl_->model && impl_->model->scaffold))
+  checked->check(views, settings);
+  const render::FrameSettings over = library::frame_settings(settings, views, precision);
+  const auto is_decoded = [](const render::Instance& one) { return one.model->model().scaffold != nullptr; };
+  if (settings.cyclopean && std::ranges::none_of(scene.instances, is_decoded))
     fail("settings.cyclopean has no effect on this model, which is no Scaffold-GS model: leave it out");
   to.is_foveated = settings.foveation.has_value();
   const std::size_t gazes = to.is_foveated ? settings.foveation->gaze.size() : 0;
@@ -157,34 +274,34 @@ void Renderer::hand_over(std::span<const View> views, const Placement& placement
     fail("settings.foveation.gaze: {} for {} views: expected none, one or one a view", gazes, views.size());
   if (to.is_foveated && !to.depths.empty())
     fail("foveation with depth targets: composed pictures have no depths");
-  const auto head = library::views_of(views, placement, impl_->frame->frame().model()->model(), settings);
+  const auto head = library::views_of(views, placement, scene.origin, settings);
 
-  const gl::KeptState kept(*impl_->context);
+  const gl::KeptState kept(*context);
   std::optional<gl::KeptTextures> textures;
-  if (to.has_meshes()) textures.emplace(*impl_->context);
+  if (to.has_meshes()) textures.emplace(*context);
   if (to.layout == LAYOUT_SEPARATE)
-    to.canvases = impl_->presenter->canvases(to.targets, to.background, to.has_meshes());
-  const render::CallersTextures of_caller{
-      .canvases = to.canvases.list,
-      .depth_rows = stereo::depth_rows(*impl_->context, head.views, to.depths),
-      .mesh_depths = to.mesh_depths.list};
-  stereo::FoveatedFrame& frame = *impl_->frame;
+    to.canvases = presenter->canvases(to.targets, to.background, to.has_meshes());
+  const render::CallersTextures of_caller{.canvases = to.canvases.list,
+                                          .depth_rows = stereo::depth_rows(*context, head.views, to.depths),
+                                          .mesh_depths = to.mesh_depths.list};
+  frame->frame().place(std::move(scene.instances));
   if (prepares) {
     if (to.is_foveated) {
-      frame.prepare(head.views, *settings.foveation, over, of_caller);
+      frame->prepare(head.views, *settings.foveation, over, of_caller);
     } else {
-      frame.frame().prepare(head.views, over, {}, of_caller);
+      frame->frame().prepare(head.views, over, {}, of_caller);
     }
-    if (impl_->stream) impl_->stream->stream->prepare(head.views, over);
-    return impl_->presenter->prepare(frame.frame(), !to.depths.empty());
+    for (SplatStream::Impl* stream : scene.streams) stream->stream->prepare(head.views, over);
+    return presenter->prepare(frame->frame(), !to.depths.empty());
   }
   if (to.is_foveated) {
-    frame.submit(head.views, *settings.foveation, over, {}, of_caller);
+    frame->submit(head.views, *settings.foveation, over, {}, of_caller);
   } else {
-    frame.frame().submit(head.views, over, {}, of_caller);
+    frame->frame().submit(head.views, over, {}, of_caller);
   }
-  impl_->submitted = std::move(to);
-  if (impl_->stream) impl_->stream->is_drawn = true;
+  for (SplatStream::Impl* stream : scene.streams) stream->is_drawn = true;
+  to.streams = std::move(scene.streams);
+  submitted = std::move(to);
 }
 
 bool Renderer::is_done() { return !usable(impl_).submitted || impl_->frame->frame().is_done(); }
@@ -193,7 +310,7 @@ Report Renderer::finish() {
   if (!usable(impl_).submitted) fail("no frame is under way: call submit() before finish()");
   const Impl::Submitted frame = std::move(*impl_->submitted);
   impl_->submitted.reset();
-  if (impl_->stream) impl_->stream->is_drawn = false;
+  for (SplatStream::Impl* stream : frame.streams) stream->is_drawn = false;
   const gl::KeptState kept(*impl_->context);
   std::optional<gl::KeptTextures> textures;
   if (frame.has_meshes()) textures.emplace(*impl_->context);

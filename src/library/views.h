@@ -9,9 +9,9 @@
 namespace binosplat::library {
 
 /// Throws as stereo::views_from_xr() does.
-inline stereo::HeadViews views_of(std::span<const View> views, Placement placement, const Model& model,
+inline stereo::HeadViews views_of(std::span<const View> views, Placement placement, const glm::dvec3& origin,
                                   const Settings& settings) {
-  placement.origin -= model.axes.origin;
+  placement.origin -= origin;
   std::vector<Eye> eyes;
   std::vector<glm::ivec2> sizes;
   for (const View& view : views) {

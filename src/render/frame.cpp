@@ -1,7 +1,6 @@
 #include "render/frame.h"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 #include "base/error.h"
@@ -53,10 +52,6 @@ Frame::Frame(std::shared_ptr<GpuModel> model)
 
 void Frame::place(std::vector<Instance> instances) {
   for (const auto& [model, place] : instances) {
-    if (!(place.scale > 0.0) || !std::isfinite(place.scale))
-      fail("an instance's scale of {}: expected a number above 0", place.scale);
-    if (!(place.opacity >= 0.0f && place.opacity <= 1.0f))
-      fail("an instance's opacity of {}: expected 0 to 1", place.opacity);
     if (model->model().scaffold && (instances.size() > 1 || !place.is_plain())) {
       fail(
           "a Scaffold-GS model is drawn alone, where it was trained: its networks make Gaussians for an eye "

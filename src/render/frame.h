@@ -72,8 +72,8 @@ class Frame {
       : Frame(std::make_shared<GpuModel>(context, model, precision)) {}
 
   /// Sets the models that the next frames draw, and their places. Initially it is the Frame's own model, once
-  /// and in its own world. All instances are sorted and blended together. Throws Error for a scale or an
-  /// opacity out of range, and for a Scaffold-GS model that is not alone in its own world.
+  /// and in its own world. All instances are sorted and blended together. Throws Error for a
+  /// Scaffold-GS model that is not alone in its own world.
   void place(std::vector<Instance> instances);
 
   /// Draws all views at once and waits for the GPU: submit() and finish(). Neighbouring views with equal

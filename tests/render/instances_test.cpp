@@ -1,0 +1,272 @@
+// Several models, each at its place in one frame: against the model that the CPU makes of them.
+
+#include <glm/gtc/quaternion.hpp>
+#include <numbers>
+
+#include "formats/model_file.h"
+#include "render/faulty_shaders.h"
+#include "render/support.h"
+#include "scene/framing.h"
+#include "scene/transform.h"
+#include "stereo/rig.h"
+#include "support/errors.h"
+#include "support/scenes.h"
+
+namespace binosplat {
+namespace {
+
+using render::FrameSettings;
+using render::Instance;
+using render::InstancePlace;
+using test::same_bits;
+
+const Model nothing;
+
+std::shared_ptr<render::GpuModel> upload(const Model& model) {
+  return std::make_shared<render::GpuModel>(test::gl_context(), model);
+}
+
+std::vector<shared::View> eyes_of(const Camera& head) {
+  const auto views = stereo::make_rig(head, {.ipd = 0.1}).views;
+  return {views.begin(), views.end()};
+}
+
+InstancePlace some_place() {
+  const glm::dquat turn = glm::angleAxis(0.7, glm::normalize(glm::dvec3(0.3, 1.0, -0.2)));
+  return {.rotation = glm::mat3_cast(turn), .translation = {-2.1, 0.4, 2.9}, .scale = 0.6};
+}
+
+/// The model as the instance has it, in the frame's world.
+Model moved(Model model, const InstancePlace& place) {
+  glm::dmat4 map(place.scale * place.rotation);
+  map[3] = glm::dvec4(place.translation, 1.0);
+  std::vector<glm::dvec3> places;
+  EXPECT_TRUE(transform(model, map, places));
+  for (std::size_t i = 0; i < model.count(); ++i) {
+    model.position[i] = glm::vec3(places[i]);
+    model.opacity[i] *= place.opacity;
+  }
+  return model;
+}
+
+Model joined(Model a, const Model& b) {
+  const std::size_t first = a.count();
+  a.resize(first + b.count());
+  const std::size_t floats = 3 * static_cast<std::size_t>(sh_count(a.degree));
+  std::ranges::copy(b.position, a.position.begin() + static_cast<std::ptrdiff_t>(first));
+  std::ranges::copy(b.rotation, a.rotation.begin() + static_cast<std::ptrdiff_t>(first));
+  std::ranges::copy(b.scale, a.scale.begin() + static_cast<std::ptrdiff_t>(first));
+  std::ranges::copy(b.opacity, a.opacity.begin() + static_cast<std::ptrdiff_t>(first));
+  std::ranges::copy(b.sh, a.sh.begin() + static_cast<std::ptrdiff_t>(first * floats));
+  return a;
+}
+
+Model part_of(const Model& model, std::size_t begin, std::size_t end) {
+  std::vector<std::uint8_t> kept(model.count(), 0);
+  std::fill(kept.begin() + static_cast<std::ptrdiff_t>(begin),
+            kept.begin() + static_cast<std::ptrdiff_t>(end), 1);
+  Model part = model;
+  keep_only(part, kept);
+  return part;
+}
+
+struct Mode {
+  const char* name;
+  FrameSettings settings;
+};
+
+/// How frames are drawn, without a measured transmittance.
+std::vector<Mode> modes() {
+  const DepthTable table{.far = 8.0f, .bounds = {1.0f, 0.9f, 0.7f, 0.5f, 0.3f, 0.2f, 0.1f, 0.05f}};
+  return {
+      {"exact", {}},
+      {"distance", {.order = ORDER_DISTANCE}},
+      {"tangent", {.projection = PROJECTION_TANGENT}},
+      {"both", {.order = ORDER_DISTANCE, .projection = PROJECTION_TANGENT}},
+      {"squared", {.th = TH_SQUARED, .tolerance = 1e-3f}},
+      {"by depth",
+       {.th = TH_PERIPHERAL, .transmittance = TRANSMITTANCE_DEPTH, .depth_table = table, .tolerance = 0.05f}},
+      {"half", {.precision = PRECISION_HALF}}};
+}
+
+struct Instances : testing::Test {
+  const Model model = test::random_model(71, 4000, 3);
+  const std::vector<shared::View> views = eyes_of(test::front_camera(96, 80, 70));
+
+  std::vector<Picture> draw(const std::vector<Instance>& instances,
+                            const FrameSettings& settings = {}) const {
+    render::Frame frame(upload(nothing));
+    frame.place(instances);
+    frame.draw(views, settings);
+    return frame.read_pictures();
+  }
+};
+
+TEST_F(Instances, HalvesOfAModelInItsWorldAreTheModel) {
+  const Model first = part_of(model, 0, 1500), second = part_of(model, 1500, model.count());
+  for (const Mode& mode : modes()) {
+    const auto halves = draw({{upload(first), {}}, {upload(second), {}}}, mode.settings);
+    const auto whole = test::draw(model, views, mode.settings);
+    for (std::size_t eye = 0; eye < 2; ++eye) EXPECT_TRUE(same_bits(halves[eye], whole[eye])) << mode.name;
+    EXPECT_FALSE(same_bits(draw({{upload(first), {}}}, mode.settings)[0], whole[0])) << "planted: one half";
+  }
+}
+
+TEST_F(Instances, AnInstanceIsTheModelMoved) {
+  const InstancePlace place = some_place();
+  const Model there = moved(model, place);
+  const auto shown = upload(model);
+  for (const Mode& mode : modes()) {
+    FrameSettings own = mode.settings;
+    const auto instance = draw({{shown, place}}, own), expected = test::draw(there, views, own);
+    for (std::size_t eye = 0; eye < 2; ++eye)
+      EXPECT_GT(test::psnr(instance[eye], expected[eye]), 60.0) << mode.name << " " << eye;
+    EXPECT_LT(test::psnr(expected[0], expected[1]), 40.0) << "planted: the other eye";
+  }
+}
+
+// Each fault alone, in a shader or in a view.
+TEST_F(Instances, PlantedFaultsAreCaught) {
+  const InstancePlace place = some_place();
+  const Model there = moved(model, place);
+  const auto expected = test::draw(there, views);
+  // The low-pass is in px of the picture. Where the instance's scale is left out of what it is added to:
+  const auto faulty = [&](const test::ShaderFault& fault, const FrameSettings& settings) {
+    const auto exact = test::draw(there, views, settings);
+    const test::FaultyShaders planted({fault});
+    EXPECT_LT(test::psnr(draw({{upload(model), place}}, settings)[0], exact[0]), 45.0) << fault.fault;
+  };
+  faulty({"projection.glsl", "precise vec3 jx = gain.x * (view.row_x.xyz",
+          "precise vec3 jx = gain.x / view.eye.w * (view.row_x.xyz"},
+         {});
+  faulty({"projection/tangent.glsl", "precise float distance = view.eye.w * sqrt",
+          "precise float distance = sqrt"},
+         {.order = ORDER_DISTANCE, .projection = PROJECTION_TANGENT});
+  // Harmonics that are not turned.
+  Model unturned = there;
+  unturned.sh = model.sh;
+  EXPECT_LT(test::psnr(test::draw(unturned, views)[0], expected[0]), 45.0);
+}
+
+TEST_F(Instances, AreSortedTogether) {
+  InstancePlace place = some_place();
+  place.opacity = 0.5f;
+  Model other = test::random_model(72, 3000, 3);
+  const auto several = draw({{upload(model), {}}, {upload(other), place}, {upload(model), some_place()}});
+  const auto expected =
+      test::draw(joined(joined(model, moved(other, place)), moved(model, some_place())), views);
+  for (std::size_t eye = 0; eye < 2; ++eye) EXPECT_GT(test::psnr(several[eye], expected[eye]), 60.0);
+  place.opacity = 1.0f;
+  const auto opaque = draw({{upload(model), {}}, {upload(other), place}, {upload(model), some_place()}});
+  EXPECT_LT(test::psnr(opaque[0], expected[0]), 40.0) << "planted: its opacity";
+}
+
+// Another degree, low-pass and anti-aliasing: each model has programs of its own.
+TEST_F(Instances, KeepTheirOwnTraining) {
+  Model other = test::random_model(73, 3000, 1);
+  other.kernel_px2 = 0.1;
+  other.antialiased = true;
+  InstancePlace behind{.translation = {0, 0, 40}}, far = behind;
+  far.translation.z = 60;
+  // Neither hides the other, so that each must be what it is alone.
+  FrameSettings settings;
+  const auto together = draw({{upload(model), {}}, {upload(other), behind}}, settings);
+  std::vector<Picture> front = test::draw(model, views), back = test::draw(moved(other, behind), views);
+  for (std::size_t eye = 0; eye < 2; ++eye) {
+    Picture& over = front[eye];
+    for (std::size_t k = 0; k < over.colour.size(); ++k) {
+      over.colour[k] = {glm::vec3(over.colour[k]) + over.colour[k].w * glm::vec3(back[eye].colour[k]),
+                        over.colour[k].w * back[eye].colour[k].w};
+    }
+    EXPECT_GT(test::psnr(together[eye], over), 60.0);
+  }
+}
+
+TEST_F(Instances, HaveTheirOwnTablesByDepth) {
+  const InstancePlace bare = some_place();
+  InstancePlace place = bare;
+  place.depth_table = {.far = 9.0f, .bounds = {1.0f, 0.6f, 0.2f, 0.05f, 0.01f}};
+  DepthTable in_world = place.depth_table;
+  in_world.far *= static_cast<float>(place.scale);
+  FrameSettings settings{.th = TH_PERIPHERAL, .transmittance = TRANSMITTANCE_DEPTH, .tolerance = 0.2f};
+  const auto own = draw({{upload(model), place}}, settings);
+  settings.depth_table = in_world;
+  EXPECT_GT(test::psnr(own[0], test::draw(moved(model, bare), views, settings)[0]), 60.0);
+  settings.depth_table.far = place.depth_table.far;
+  EXPECT_LT(test::psnr(own[0], test::draw(moved(model, bare), views, settings)[0]), 60.0)
+      << "planted: its scale";
+  settings.depth_table.bounds = {1.5f};
+  EXPECT_TRUE(test::fails_saying([&] { draw({{upload(model), bare}}, settings); }, {"table"}));
+}
+
+TEST_F(Instances, AHundredTakeTheMemoryOfOneModel) {
+  gl::Context& context = test::gl_context();
+  const auto shown = upload(model);
+  const auto before = context.allocated_bytes();
+  std::vector<Instance> crowd;
+  Model merged;
+  merged.degree = model.degree;
+  for (int k = 0; k < 100; ++k) {
+    InstancePlace place = some_place();
+    place.scale = 0.15;
+    place.translation = {0.5 * (k % 10 - 5), 0.5 * (k / 10 - 5), 4.0};
+    crowd.push_back({shown, place});
+    merged = joined(std::move(merged), moved(model, place));
+  }
+  const auto pictures = draw(crowd);
+  EXPECT_EQ(context.allocated_bytes(), before);
+  EXPECT_GT(test::psnr(pictures[0], test::draw(merged, views)[0]), 60.0);
+}
+
+TEST_F(Instances, MayMoveAndComeAndGo) {
+  const auto shown = upload(model);
+  render::Frame frame(upload(nothing));
+  const FrameSettings measured{.th = TH_SQUARED, .transmittance = TRANSMITTANCE_LAST, .tolerance = 1e-3f};
+  InstancePlace place = some_place();
+  const auto draw_next = [&](std::vector<Instance> instances) {
+    frame.place(std::move(instances));
+    return frame.draw(views, measured);
+  };
+  EXPECT_FALSE(draw_next({{shown, place}}).used_measured);
+  place.translation.x += 0.01;
+  EXPECT_TRUE(draw_next({{shown, place}}).used_measured);
+  place.translation.x += 5.0;
+  EXPECT_FALSE(draw_next({{shown, place}}).used_measured);
+  EXPECT_TRUE(draw_next({{shown, place}}).used_measured);
+  EXPECT_FALSE(draw_next({{shown, place}, {shown, {}}}).used_measured) << "another one";
+  EXPECT_EQ(draw_next({}).visible, 0u);
+  for (const glm::vec4& pixel : frame.read_pictures()[0].colour) EXPECT_EQ(pixel, glm::vec4(0, 0, 0, 1));
+  EXPECT_GT(draw_next({{shown, {}}}).visible, 0u);
+}
+
+// A quality is found for all of them, as if they were one model.
+TEST_F(Instances, KeepAQuality) {
+  const auto shown = upload(model);
+  render::Frame frame(upload(nothing));
+  InstancePlace place = some_place();
+  const FrameSettings with_quality{.th = TH_SQUARED, .quality = 40.0f};
+  for (int k = 0; k < 4; ++k) {
+    place.translation.x += 0.02;
+    const std::vector<Instance> instances = {{shown, {}}, {shown, place}};
+    frame.place(instances);
+    EXPECT_GT(frame.draw(views, with_quality).quality, 38.0);
+    EXPECT_GT(test::psnr(frame.read_pictures()[0], draw(instances)[0]), 38.0);
+  }
+}
+
+TEST(InstancesOfScenes, HalvesOfFoxAreFox) {
+  REQUIRE_SCENE("fox", folder);
+  const Model fox = load_model(folder);
+  const Camera camera = look_at({0, 0, -3}, {0, 0, 0}, {0, -1, 0}, 60, 160, 120);
+  const auto views = eyes_of(camera);
+  const std::size_t half = fox.count() / 2;
+  const Model first = part_of(fox, 0, half), second = part_of(fox, half, fox.count());
+  render::Frame frame(upload(nothing));
+  frame.place({{upload(first), {}}, {upload(second), {}}});
+  EXPECT_GT(frame.draw(views).visible, 1000u);
+  const auto whole = test::draw(fox, views);
+  for (std::size_t eye = 0; eye < 2; ++eye) EXPECT_TRUE(same_bits(frame.read_pictures()[eye], whole[eye]));
+}
+
+}  // namespace
+}  // namespace binosplat
