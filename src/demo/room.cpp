@@ -213,8 +213,8 @@ Demo demo_room() {
   add_outside(stage, light.to_sun);
   add_things(stage);
   Demo demo{bake(stage, light, 3, demo_room_name), room_cameras()};
-  // Gaussians inside boxes are invisible by construction. But a wall's Gaussians would show through things in
-  // front of it if their centres have the smaller depth.
+  // Removes Gaussians inside boxes, which nobody should see. A wall's Gaussians would show through things
+  // close in front of it if their centres have the smaller depth.
   std::vector<std::uint8_t> kept;
   for (std::size_t i = 0; i < demo.model.count(); ++i)
     kept.push_back(demo.model.opacity[i] > 0.0f && !stage.solids.hide(demo.model.position[i]));

@@ -44,10 +44,10 @@ bool lacks_lenses(const std::filesystem::path& path);
 /// Returns a camera as an object of cameras.json, with its principal point and its time (0 if it has none).
 nlohmann::ordered_json camera_json(const Camera& camera);
 
-/// Returns the cameras of a model, a file or its folder. A ply with a camera (formats/ply_camera.h) is its
-/// own source. Otherwise it is cameras.json, transforms.json or a COLMAP reconstruction in the model's
-/// folder. For INRIA's MODEL/point_cloud/iteration_N/NAME.ply and MODEL/point_cloud/NAME.ply it is that in
-/// MODEL.
+/// Returns the path of the cameras of a model, a file or its folder. A ply with a camera
+/// (formats/ply_camera.h) is that path itself. Otherwise it is cameras.json, transforms.json or a COLMAP
+/// reconstruction in the model's folder. For INRIA's MODEL/point_cloud/iteration_N/NAME.ply and
+/// MODEL/point_cloud/NAME.ply the folder is MODEL, if the model's has none.
 std::optional<std::filesystem::path> find_cameras(const std::filesystem::path& model);
 
 /// Returns the folder of the photos of these cameras: `images` or `photos` beside their file, or beside the

@@ -14,9 +14,10 @@
 
 namespace binosplat {
 
-/// Parses the directions of a frame's x, y and z. `letters` has R or L (right, left), U or D (up, down) and F
-/// or B (forward, back), as in "RUB" (OpenGL, spz) and "LUF" (glTF). Returns the signed permutation whose
-/// columns are x, y and z in the world. The frame may mirror. Throws Error for other letters.
+/// Parses the directions of a frame's x, y and z, in this order. `letters` has one of each pair: R or L
+/// (right, left), U or D (up, down), F or B (forward, back), as in "RUB" (OpenGL, spz) and "LUF" (glTF).
+/// Returns the signed permutation whose columns are x, y and z in the world. The frame may mirror. Throws
+/// Error for other letters.
 glm::dmat3 world_from_axes(std::string_view letters);
 
 /// Convert a point between a model's frame (relative to its origin) and the world.

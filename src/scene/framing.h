@@ -24,7 +24,7 @@ constexpr double default_fov_degrees = 60.0;
 struct Capture {
   glm::dvec3 up = default_up;  // mean up of the cameras, corrected so that their right axes are level
   /// The point nearest to all camera axes, with the cameras' median distance and median elevation. Nothing if
-  /// the median camera does not look at that point.
+  /// the axes are parallel, or if the median camera does not look at that point.
   struct Around {
     glm::dvec3 middle;
     double distance = 0.0;
@@ -39,8 +39,8 @@ std::optional<Capture> capture_of(std::span<const Camera> cameras, const std::op
 
 /// The same for a model without cameras, from its ground. If the ground has a floor, the camera stands on it,
 /// `eyes` world units above it (less in a tiny model). It stays within the core, on the side with the
-/// clearest view of the core. If every such view is obstructed, it stands in an open space. Throws Error if
-/// the model is empty.
+/// clearest view of the core. If every such view is obstructed, it stands in an open space, if there is one.
+/// Throws Error if the model is empty.
 Capture capture_of(const CoredModel& cored, const Ground& ground, double eyes);
 
 /// Finds a place to stand in a model of rooms or streets, which has no single subject. Returns a circle

@@ -19,7 +19,7 @@ glm::dvec3 sh_sum(std::span<const float> sh, const std::array<double, 16>& basis
 /// Each degree is mixed only within itself.
 class HarmonicsTurn {
  public:
-  /// `turn` is orthogonal. Signed permutations of the axes only change signs and order, exactly.
+  /// `turn` is orthogonal. Flips of axes only change signs, exactly.
   explicit HarmonicsTurn(const glm::dmat3& turn);
 
   /// Rotates one Gaussian's coefficients (coefficient-major, RGB together) in place.

@@ -19,7 +19,7 @@ bool times_rise(std::span<const Camera> cameras);
 bool are_keys(std::span<const Camera> cameras);
 
 /// A path through keys in their order. Positions, orientations and lenses are cubics with continuous velocity
-/// that reach each key at its time. Velocity is zero at the first and the last key.
+/// that reach each key at its time. Before the first and after the last key the camera rests there.
 class KeyPath {
  public:
   /// Without `seconds` the path uses the keys' own times, which must rise, relative to the first. With

@@ -53,7 +53,7 @@ struct Model {
   std::vector<glm::vec4> rotation;  // unit quaternions (w, x, y, z)
   std::vector<float> opacity;       // in [0, 1] (not logits)
   std::vector<float> sh;            // (count, sh_count(degree), 3): coefficient-major, RGB together
-  std::size_t left_out = 0;         // Gaussians of the source dropped as not finite or with a zero quaternion
+  std::size_t left_out = 0;         // Gaussians of the source that were dropped as invalid (place())
   double kernel_px2 = KERNEL_PX2;   // variance of the low-pass used in training, px^2
   bool antialiased = false;     // trained with opacity compensated for the low-pass (Mip-Splatting, Yu 2024)
   std::string antialiased_by;   // source of `antialiased`; empty: the default

@@ -69,7 +69,7 @@ struct ChunkVisibility {
   double distance = 0.0;
 };
 
-/// The result of a visibility pass, perhaps of an earlier frame; empty before the first.
+/// The result of a visibility pass, perhaps of an earlier frame; empty without one.
 struct VisibleChunks {
   std::vector<std::vector<ChunkVisibility>> by_view;
   std::vector<std::size_t> drawn;  // by chunk, the level in the pass, as its index in LodChunk::levels

@@ -19,7 +19,7 @@ namespace binosplat {
 
 namespace {
 
-/// A rest below this part of the allowed Gaussians is not worth a search for a step that fits.
+/// A rest below 1 / `little` of the allowed Gaussians is not worth a search for a step that fits.
 constexpr std::size_t little = 1024;
 
 /// The implementation of choose_within().

@@ -72,7 +72,7 @@ struct LodFiles::Reading {
   const std::function<bool()>& goes_on;
 
   std::size_t level(std::size_t chunk) const { return choice.levels[chunk]; }
-  /// Otherwise the order does not depend on earlier reads.
+  /// With `goes_on` the order depends on the cached files; without, it is always the same.
   bool is_in_a_hurry() const { return goes_on != nullptr; }
   bool ends() const { return goes_on && !goes_on(); }
 };
