@@ -11,7 +11,7 @@
 namespace binosplat {
 
 /// 256 numbers in ascending order. Up to 256 different values are kept exactly. Of more values, 64 entries
-/// lie evenly between the ends, so that each value is within 1 / 126 of the range of an entry. The others
+/// lie evenly between the ends, so that each value is at most 1 / 126 of the range from an entry. The others
 /// minimise the squared error (Lloyd 1982). Sorts the values, which must not be empty.
 class Codebook {
  public:

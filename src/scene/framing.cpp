@@ -60,8 +60,8 @@ struct Ring {
   }
 };
 
-/// Returns how much obstructs the view from `eye` to the core, in sr: the sum of solid angle times opacity of
-/// the Gaussians in the nearer half of the distance.
+/// Returns the obstruction of the view from `eye` to the core, in sr. It is the sum of solid angle times
+/// opacity of the Gaussians in the nearer half of the distance.
 double obstruction(const Model& model, const Ring& ring, const glm::dvec3& eye) {
   const glm::dvec3 forward = (ring.core.middle - eye) / ring.distance;
   const std::size_t stride = model.count() / framing_sample + 1;

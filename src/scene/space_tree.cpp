@@ -10,7 +10,8 @@ namespace binosplat {
 
 namespace {
 
-/// From this depth on nodes are split at the median, which bounds the depth of the tree. Files nest as deep.
+/// From this depth on nodes are split at the median, which bounds the depth of the tree. lod-meta.json nests
+/// as deep.
 constexpr int deepest_middle = 64;
 
 /// Moves the positions in the first half of the longest side to the front, and returns their number.

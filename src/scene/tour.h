@@ -39,13 +39,13 @@ struct TourSettings {
 };
 
 /// Returns the cameras of a head that visits all `cameras`, one a frame, with `time`. The tour begins with
-/// the first camera. It orders the others so that reversing no section makes it shorter, independent of their
-/// order in the list and of the motion. The head follows a path (scene/key_path.h) through keys: the cameras
-/// themselves, and others on a smooth path through them. It moves between keys as fast as the motion allows,
-/// and exceeds that by at most one per cent. Cameras within 1 cm and 1 degree of another are skipped. All
-/// frames have the first camera's lens and size. Speeds, frames a second, units and seconds must be above 0.
-/// Throws Error for fewer than two cameras, cameras of one pose, tours of 1e9 s or more, and more than a
-/// million frames.
+/// the first camera. It orders the others so that no reversal of a section would shorten it. Their order in
+/// the list and the motion have no effect on that order. The head follows a path (scene/key_path.h) through
+/// keys: the cameras themselves, and others on a smooth path through them. It moves between keys as fast as
+/// the motion allows, and exceeds that by at most one per cent. Cameras within 1 cm and 1 degree of another
+/// are skipped. All frames have the first camera's lens and size. Speeds, frames a second, units and seconds
+/// must be above 0. Throws Error for fewer than two cameras, cameras of one pose, tours of 1e9 s or more, and
+/// more than a million frames.
 std::vector<Camera> tour(std::span<const Camera> cameras, const TourSettings& settings);
 
 }  // namespace binosplat

@@ -60,8 +60,7 @@ class SeenFrom {
   }
 
  private:
-  /// Interpolates a list by directions and widths: the mean over directions, linear between the logarithms of
-  /// widths.
+  /// Interpolates a list by directions and widths: the mean over directions, log-log between widths.
   double of(const std::vector<double>& list) const {
     double sum = 0.0;
     for (glm::length_t axis = 0; axis < 3; ++axis) {

@@ -164,7 +164,8 @@ void LodFiles::read(std::span<const std::size_t> from, const LevelChoice& choice
   if (!reading.ends()) read_some(reading, growing, take);
 }
 
-// A slow file delays no other file. Without `goes_on` it only delays the files after it.
+// A slow file does not delay decoding of others. Without `goes_on` it only delays passing on the files after
+// it.
 void LodFiles::read_some(const Reading& reading, const TakenOfAll& taken, const Take& take) const {
   std::vector<std::size_t> files;
   for (std::size_t i = 0; i < taken.size(); ++i)

@@ -23,7 +23,8 @@ class Stream : public StreamedModel {
   /// Visibility::measure(). Returns whether the model has changed. Rethrows an error of the worker, which
   /// then stops reading.
   bool begin_frame(std::span<const shared::View> views, const render::FrameSettings& settings, double ms);
-  /// Compiles the shaders of begin_frame() for such views, by drawing once. The model does not change.
+  /// Compiles the shaders of begin_frame() for such views, by drawing what it draws. The model does not
+  /// change.
   void prepare(std::span<const shared::View> views, const render::FrameSettings& settings);
   /// Returns whether the model has the levels for the views of the last begin_frame(), and no measurement is
   /// due.
