@@ -9,8 +9,8 @@ namespace binosplat::compact {
 
 namespace {
 
-// How strongly coefficients stay where they are, in shares of the weight of all views: what one view sees of
-// a degree it must not decide alone.
+// Damping of coefficients, relative to the weight of all views, so that a single view does not decide a
+// degree alone.
 constexpr double inertia = 0.01;
 
 constexpr std::size_t at(std::size_t row, std::size_t column) { return row * (row + 1) / 2 + column; }
@@ -36,7 +36,7 @@ ColourFit::Coefficients ColourFit::fitted(int degree, const Coefficients& now) c
     std::copy_n(now.begin(), count, x.begin());
     return x;
   }
-  // Cholesky's factor of gram + held, and the two systems of it.
+  // Cholesky factorisation of gram + held, and its two triangular solves.
   std::array<double, count_max*(count_max + 1) / 2> l{};
   for (std::size_t row = 0; row < count; ++row) {
     x[row] = glm::dvec3(seen_[row]) + held * now[row];

@@ -1,32 +1,33 @@
 #pragma once
-// Fits harmonics of a lower degree to the colours that a Gaussian has towards the views that show it.
+// Fits harmonics of a lower degree to the colours of a Gaussian towards the views that show it.
 
 #include <array>
 #include <glm/glm.hpp>
 
 namespace binosplat::compact {
 
-/// The colours of one Gaussian towards some views, as sums from which harmonics of degrees 0 to 2 are fitted:
-/// weighted least squares.
+/// The colours of one Gaussian towards some views, as sums for a weighted least-squares fit of harmonics of
+/// degrees 0 to 2.
 class ColourFit {
  public:
-  using Coefficients = std::array<glm::dvec3, 9>;  // those beyond the degree asked for are 0
+  using Coefficients = std::array<glm::dvec3, 9>;  // those beyond the fitted degree are 0
 
-  /// A colour that harmonics of `basis` (sh_basis) make, less 0.5, and how much of the picture it is, px.
+  /// Adds a colour, minus 0.5, towards a view. `basis` is sh_basis() in its direction, `weight` its area in
+  /// the picture, px.
   void add(const std::array<double, 16>& basis, const glm::dvec3& colour, double weight);
 
-  /// The least-squares coefficients of a degree. Those that no view determines stay near `now`, the present
-  /// ones.
+  /// Returns the least-squares coefficients of a degree. Coefficients that no view determines stay near
+  /// `now`.
   Coefficients fitted(int degree, const Coefficients& now) const;
 
-  /// How much the colours then change, px * squared colour, in the mean of the channels.
+  /// Returns how much the colours then change: px * squared colour, mean over the channels.
   double change(int degree, const Coefficients& now) const;
 
  private:
   static constexpr std::size_t count_max = 9;
-  std::array<float, count_max*(count_max + 1) / 2> gram_{};  // of the basis, lower triangle by rows
-  std::array<glm::vec3, count_max> seen_{};                  // the basis by the colours
-  float square_ = 0.0f;                                      // of the colours
+  std::array<float, count_max*(count_max + 1) / 2> gram_{};  // normal matrix, lower triangle by rows
+  std::array<glm::vec3, count_max> seen_{};                  // sums of basis times colour
+  float square_ = 0.0f;                                      // sum of squared colours
 };
 
 }  // namespace binosplat::compact

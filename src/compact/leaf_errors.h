@@ -1,5 +1,5 @@
 #pragma once
-// The JSON of the errors of leaves, as errors_N.json and together_N.json keep them.
+// JSON of the errors of chunks, as in errors_N.json and together_N.json.
 
 #include <nlohmann/json.hpp>
 #include <string>
@@ -9,7 +9,7 @@
 
 namespace binosplat {
 
-/// Numbers times a factor, to three digits: six directions do not determine more.
+/// Converts numbers times a factor to JSON with three digits: six directions do not determine more.
 nlohmann::ordered_json json_of(double number, double factor = 1.0);
 template <typename Item>
 nlohmann::ordered_json json_of(const std::vector<Item>& list, double factor = 1.0) {
@@ -18,18 +18,18 @@ nlohmann::ordered_json json_of(const std::vector<Item>& list, double factor = 1.
   return json;
 }
 
-/// Of a piece's leaves.
+/// The JSON of a piece's chunks.
 nlohmann::ordered_json json_of(const std::vector<LeafErrors>& leaves);
-/// The same again, of so many leaves. Throws Error that names the file where that is not what it has.
+/// Parses it, for `leaves` chunks with `levels` levels. Throws Error naming the file if it has other numbers.
 std::vector<LeafErrors> leaf_errors(const std::string& name, const std::string& text, std::size_t leaves,
                                     std::size_t levels);
 
-/// Of a scene's pictures.
+/// The JSON of a scene's pictures.
 nlohmann::ordered_json json_of(const std::vector<LossTogether>& pictures);
-/// By how much more each loses than predicted, but those that are predicted to lose nothing, or were not
-/// drawn.
+/// Returns measured over predicted error for each picture, except those that were not drawn or have a
+/// predicted error of 0.
 std::vector<double> loss_shares(const std::string& name, const std::string& text);
-/// Whether there are pictures, all of them drawn.
+/// Returns whether there are pictures, and all of them were drawn.
 bool all_drawn(const std::string& name, const std::string& text);
 
 }  // namespace binosplat

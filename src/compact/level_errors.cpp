@@ -15,18 +15,18 @@ namespace binosplat::compact {
 
 namespace {
 
-constexpr int widths = 2;      // of pixels,
-constexpr double wider = 8.0;  // each so many times the one before
-// The narrowest pixel, of the distance between Gaussians as it would be if they lay on a square as wide as
-// the box's diagonal; they lie denser.
+constexpr int widths = 2;      // of pixels
+constexpr double wider = 8.0;  // ratio of successive widths
+// The narrowest pixel, relative to the spacing of Gaussians on a square as wide as the box's diagonal; true
+// spacings are smaller.
 constexpr double narrowest = 0.625;
-// Between parts, px: what the low-pass and Gaussians at the edge reach.
+// Between chunks, px: the reach of the low-pass and of Gaussians at the edge.
 constexpr int margin = 8;
 constexpr int side_most = 1280;  // px of a picture
-// How far away the eye is, in sides of a picture: nothing is seen at more than 5 degrees from the axis.
+// Distance of the eye, in sides of a picture: nothing is over 5 degrees from the axis.
 constexpr double away = 8.0;
 
-/// Around spheres of two standard deviations.
+/// Returns the box around spheres of two standard deviations.
 Box box_of(const Model& model) {
   Box box;
   for (std::size_t i = 0; i < model.count(); ++i) {
@@ -37,12 +37,12 @@ Box box_of(const Model& model) {
   return box;
 }
 
-/// A part that is judged.
+/// A chunk to measure.
 struct Part {
   std::span<const Model> levels;
   Box box;
   LeafErrors* errors;
-  int square;  // px, of its narrowest picture
+  int square;  // px, side of its narrowest picture
 };
 
 /// Squares of a picture, row by row.
@@ -50,14 +50,14 @@ struct Grid {
   std::uint32_t count, side, across;  // squares, px, squares in a row
   std::uint32_t width() const { return across * side; }
   std::uint32_t height() const { return (count + across - 1) / across * side; }
-  /// Of the first pixel.
+  /// Returns its first pixel.
   glm::uvec2 corner(std::size_t i) const {
     const auto k = static_cast<std::uint32_t>(i);
     return side * glm::uvec2(k % across, k / across);
   }
 };
 
-/// Draws models one after the other, in the same buffers: making new ones takes as long as drawing.
+/// Draws models one after the other in the same buffers: allocating buffers takes as long as drawing.
 class LevelDrawer {
  public:
   explicit LevelDrawer(gl::Context& context)
@@ -67,10 +67,11 @@ class LevelDrawer {
         behind_(context, "colours behind parts"),
         sums_(context, "errors of parts") {}
 
-  /// What is drawn next, whose memory is used again.
+  /// The next model to draw; its memory is reused.
   Model& model() { return model_; }
 
-  /// How much of each square shows the finest level, px, with which draw() compares until the next.
+  /// Draws the finest level, with which draw() compares from now on. Returns its visible area in each square,
+  /// px.
   std::vector<float> draw_finest(const shared::View& view, const Grid& grid) {
     draw(view, true);
     finest_.reserve(frame_->colours().bytes());
@@ -78,7 +79,7 @@ class LevelDrawer {
     return sums_of(grid, true);
   }
 
-  /// What each square differs by from the finest level, over what looks much like its mean colour.
+  /// Returns each square's difference from the finest level, over about its mean colour.
   std::vector<float> draw(const shared::View& view, const Grid& grid) {
     draw(view, false);
     return sums_of(grid, false);
@@ -123,7 +124,7 @@ class LevelDrawer {
   gl::Buffer sums_;    // float by square
 };
 
-/// Parts beside one another, each in a square of its own, seen along `direction`.
+/// Chunks side by side, each in its own square, seen along `direction`.
 class Sheet {
  public:
   Sheet(std::span<const Part> parts, std::size_t width, const glm::dvec3& direction)
@@ -153,7 +154,7 @@ class Sheet {
   }
 
  private:
-  /// One level of all parts, in their places.
+  /// Places one level of all chunks.
   void fill(Model& all, std::size_t level) const {
     if (all.count() == 0) all = without_gaussians(parts_.front().levels[level]);
     std::vector<std::size_t> first{0};
@@ -162,7 +163,7 @@ class Sheet {
     parallel_for(parts_.size(), [&](std::size_t i) {
       const Part& part = parts_[i];
       copy(part.levels[level], 0, part.levels[level].count(), all, first[i]);
-      // As far away as the focal length has pixels a world unit is one of them.
+      // At a distance of as many world units as the focal length has pixels, a pixel is one world unit.
       const glm::dvec2 centre =
           glm::dvec2(grid_.corner(i)) + 0.5 * grid_.side - glm::dvec2(camera_.cx, camera_.cy);
       const glm::dvec3 at(centre, camera_.fx);
@@ -182,11 +183,11 @@ class Sheet {
   Camera camera_;
 };
 
-/// Levels that are drawn in the narrowest pixels, too. Others lose as much of each area there as in wider
-/// ones, or less.
+/// Levels that are also drawn in the narrowest pixels. Coarser ones lose there at most as much of each area
+/// as in wider pixels.
 constexpr std::size_t fine_levels = 3;
 
-/// In wide pixels both sides look much alike: only those directions are drawn that come first.
+/// In wide pixels both sides look much alike, so only the first of two opposite directions is drawn.
 bool is_drawn(std::size_t direction, std::size_t width) { return width == 0 || direction % 2 == 0; }
 
 void fill_in(LeafErrors& leaf) {
@@ -239,7 +240,7 @@ std::vector<LeafErrors> level_errors(gl::Context& context, std::span<const std::
     parts.push_back({leaves[i], box, &errors[i], static_cast<int>(across) + 2 * margin});
   }
   LevelDrawer drawer(context);
-  // The squares of a sheet are all as large as its largest.
+  // All squares of a sheet have the size of its largest.
   std::stable_sort(parts.begin(), parts.end(),
                    [](const Part& a, const Part& b) { return a.square > b.square; });
   for (std::size_t first = 0, count = 0; first < parts.size(); first += count) {

@@ -1,5 +1,5 @@
 #pragma once
-// Measures the error of levels of detail (LOD): the difference between their pictures and the finest level's.
+// Measures the error of levels of detail (LOD): the difference of their pictures from the finest level's.
 
 #include <span>
 #include <vector>
@@ -10,11 +10,11 @@
 
 namespace binosplat::compact {
 
-/// Draws every level of each leaf by itself, before a background of about its mean colour, from far away and
-/// from six directions, in pixels of two widths, and compares it with the leaf's finest level. A picture
-/// holds many leaves side by side. `leaves` have their levels from the finest on, none without Gaussians. To
-/// draw less, opposite directions share one measurement in the wide pixels, and levels beyond the second are
-/// drawn in the wide pixels alone, whose error per area is taken for the narrow ones, too.
+/// Draws every level of each chunk (`leaves`) alone, from far away and from six directions, in pixels of two
+/// widths. The background has about the chunk's mean colour. Compares it with the chunk's finest level. A
+/// picture holds many chunks side by side. Each chunk has its levels from the finest on, none without
+/// Gaussians. To save drawing, opposite directions share one measurement in wide pixels. Levels from 3 on are
+/// drawn in wide pixels only; narrow pixels get their error per visible area.
 std::vector<LeafErrors> level_errors(gl::Context& context, std::span<const std::vector<Model>> leaves);
 
 }  // namespace binosplat::compact

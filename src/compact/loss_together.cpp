@@ -20,17 +20,17 @@ namespace binosplat::compact {
 namespace {
 
 constexpr double asked_db = 40.0;
-constexpr int passes = 3;  // of visibility and choice, after which a choice hardly changes any more
-// Pictures: a headset's field in few pixels, so that each shows many parts.
+constexpr int passes = 3;  // of visibility and choice: later choices hardly change
+// Pictures: a headset's field of view in few pixels, so that each shows many chunks.
 constexpr int side = 512;     // px
 constexpr double fov = 95.0;  // degrees
 // Candidate eyes are checked in small pictures of the coarsest levels.
 constexpr int candidate_side = 128, candidates_for_one = 24, candidates_at_once = 8;
-constexpr double shows_least = 0.35;  // of a picture, that is not empty,
-constexpr double as_far_least = 0.4;  // on the whole, of how far away what it looks at is
-constexpr double hidden = 0.01;       // px of a part that is shown; of hundreds of thousands
+constexpr double shows_least = 0.35;  // share of a picture that is not empty
+constexpr double as_far_least = 0.4;  // mean distance of its content over the target's
+constexpr double hidden = 0.01;       // px of a visible chunk, of hundreds of thousands
 
-/// As lod-meta.json will tell it.
+/// Returns the chunk as lod-meta.json will describe it.
 LodChunk part_of(std::span<const Model> levels, const LeafErrors& errors) {
   LodChunk part;
   const Box box = reach_of(levels.front());
@@ -55,7 +55,7 @@ shared::View from(const glm::dvec3& eye, const glm::dvec3& at, int px) {
   return make_view(look_at(eye, at, up, fov, px, px));
 }
 
-/// Whether there is room for what draws a picture: without, others have to do.
+/// Calls `draw` and returns whether memory sufficed; if not, other pictures must do.
 bool can_draw(const std::function<void()>& draw) {
   try {
     draw();
@@ -66,7 +66,7 @@ bool can_draw(const std::function<void()>& draw) {
   return true;
 }
 
-/// The leaves as one model, at any levels.
+/// The chunks as one model, at any levels.
 class Leaves {
  public:
   Leaves(gl::Context& context, std::span<const std::vector<Model>> leaves, std::span<const LeafErrors> errors)
@@ -88,15 +88,15 @@ class Leaves {
     if (gpu_model_) gpu_model_->reload(changes);
   }
 
-  /// When memory did not suffice, and nobody knows what is on the GPU.
+  /// Resets the model after memory was short, when the GPU's contents are unknown.
   void start_again() {
     put(coarsest());
     layout_.take_changes();
     gpu_model_->reload();
   }
 
-  /// Views from among them, as long as the levels are the coarsest; sets `room` to whether there was room to
-  /// look for them.
+  /// Finds views from among the chunks; they must be at their coarsest levels. Sets `room` to whether memory
+  /// sufficed.
   std::vector<shared::View> find_views(int pictures, bool& room) {
     std::vector<shared::View> views;
     room = true;
@@ -123,7 +123,7 @@ class Leaves {
   void draw(const shared::View& view) { frame_->draw({&view, 1}); }
   const gl::Buffer& colours() const { return frame_->colours(); }
 
-  /// Brings them to the levels that the view needs, and says what it is predicted to lose.
+  /// Sets the chunks' levels for a view, and returns the predicted loss.
   double settle(const shared::View& view) {
     bring_to(coarsest());
     LevelChoice choice;
@@ -140,7 +140,7 @@ class Leaves {
     return choice.error();
   }
 
-  /// Brings what the view that was settled shows to the finest levels.
+  /// Sets the chunks that the settled view shows to their finest levels.
   void refine() {
     std::vector<std::size_t> levels = levels_;
     for (std::size_t i = 0; i < levels.size(); ++i)
@@ -161,7 +161,7 @@ class Leaves {
     glm::dvec3 eye, at;
   };
 
-  /// Those whose views have much to show, and nothing close before what they look at.
+  /// Returns the candidates whose views are well filled, with nothing close in front of their target.
   std::vector<Candidate> those_that_show(std::span<const Candidate> candidates, bool& room) {
     std::vector<shared::View> views;
     for (const Candidate& one : candidates) views.push_back(from(one.eye, one.at, candidate_side));
@@ -190,7 +190,7 @@ class Leaves {
   std::vector<LodChunk> parts_;
   ModelChunks layout_;
   std::vector<std::size_t> levels_;
-  std::vector<double> shows_;  // of each, the view that was settled, px
+  std::vector<double> shows_;  // visible area of each chunk in the settled view, px
   Model model_;
   std::shared_ptr<render::GpuModel> gpu_model_;
   std::optional<render::Frame> frame_;

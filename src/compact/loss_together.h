@@ -1,6 +1,6 @@
 #pragma once
-// Measures the error of levels of detail in pictures of many leaves, beside the error that each leaf's own
-// predicts.
+// Measures the error of levels of detail in pictures of many chunks, to compare it with the prediction by
+// each chunk's own errors.
 
 #include <span>
 #include <vector>
@@ -11,11 +11,11 @@
 
 namespace binosplat::compact {
 
-/// Draws `pictures` pictures of the leaves, from eyes among them, at levels that `errors` (of level_errors)
-/// predict to come to 40 dB, and compares each with the picture of the finest levels of what it shows. Leaves
-/// that overlap lose more than predicted, walls that are seen at an angle less. An eye lies between two
-/// Gaussians and sees one of them. Returns fewer pictures where such eyes are not found; one for which memory
-/// did not suffice has `drawn` false. Deterministic.
+/// Draws `pictures` pictures of the chunks (`leaves`), from eyes among them. Each uses the levels for which
+/// `errors` (of level_errors) predict 40 dB, and is compared with the finest levels of its visible chunks.
+/// Overlapping chunks lose more than predicted, walls at a slant less. An eye lies between two Gaussians and
+/// looks at one of them. Returns fewer pictures if no such eyes are found. A picture for which memory was
+/// short has `drawn` false. Deterministic.
 std::vector<LossTogether> loss_together(gl::Context& context, std::span<const std::vector<Model>> leaves,
                                         std::span<const LeafErrors> errors, int pictures);
 

@@ -16,12 +16,12 @@ namespace binosplat::compact {
 
 namespace {
 
-constexpr std::size_t chunk = 4096;  // numbers, or Gaussians, that a thread takes at a time
-constexpr int patience = 3;          // rounds without a better one
+constexpr std::size_t chunk = 4096;  // numbers or Gaussians of a thread at a time
+constexpr int patience = 3;          // rounds without improvement
 
 using Vector = std::vector<float>;
 
-/// In chunks of one size, so that it does not depend on the threads.
+/// The dot product, in chunks of one size, so that it does not depend on the threads.
 double dot(const Vector& a, const Vector& b) {
   std::vector<double> parts((a.size() + chunk - 1) / chunk);
   parallel_for(parts.size(), [&](std::size_t part) {
@@ -33,14 +33,14 @@ double dot(const Vector& a, const Vector& b) {
   return sum;
 }
 
-/// a + factor * b.
+/// Adds factor * b to a.
 void add_scaled(Vector& a, double factor, const Vector& b) {
   const auto f = static_cast<float>(factor);
   parallel_for(
       a.size(), [&](std::size_t k) { a[k] += f * b[k]; }, chunk);
 }
 
-/// The gradient by what each coefficient weighs, in all channels, times (1 + damping).
+/// Returns the gradient over each coefficient's weight times (1 + damping), in all channels.
 Vector preconditioned(const Vector& gradient, const Vector& weight, double damping) {
   Vector z(gradient.size());
   parallel_for(
@@ -98,15 +98,16 @@ class Refit {
   }
 
  private:
-  /// Where a coefficient of channel 0 lies.
+  /// Returns the index of a coefficient's channel 0.
   std::size_t at(std::size_t gaussian, std::size_t k) const { return 3 * (gaussian * coefficients_ + k); }
 
   glm::dvec3 sum_of(const Vector& sh, std::size_t gaussian, const std::array<double, 16>& basis) const {
     return sh_sum(std::span(sh).subspan(at(gaussian, 0), 3 * coefficients_), basis);
   }
 
-  /// Calls body(n, Gaussian, basis towards it, its colour before that is cut off at 0, 1 by channel where it
-  /// is not) for each that the view draws, as of the last linearise().
+  /// Calls body(n, Gaussian, basis, colour, counts) for each Gaussian that the view draws, as of the last
+  /// linearise(). `basis` is in its direction, `colour` is unclamped, and `counts` is 1 for unclamped
+  /// channels and 0 for clamped ones.
   template <typename Body>
   void for_drawn(const Camera& camera, const Body& body) const {
     const auto& drawn = blend_.drawn();
@@ -119,7 +120,7 @@ class Refit {
     parallel_for(drawn.size(), one, chunk);
   }
 
-  /// Calls body(camera of the world, the same in the model's axes) for every target, whose W is then in
+  /// Calls body(camera of the world, the same in the model's axes) for every target, with the target's W in
   /// blend_.
   template <typename Body>
   void for_targets(const Body& body) {
@@ -147,7 +148,7 @@ class Refit {
     return pixels;
   }
 
-  /// From the coefficients of now: the gradient, and what each coefficient weighs.
+  /// Computes the gradient and each coefficient's weight at the present coefficients.
   void linearise() {
     candidate_at_start_ = candidate_.sh;
     gradient_.assign(candidate_.sh.size(), 0.0f);
@@ -178,7 +179,7 @@ class Refit {
     slope_ = 0.0;
   }
 
-  /// Whether a coefficient, of all channels, is 0 and is to stay so.
+  /// Returns whether a coefficient is 0 in all channels and must stay so.
   bool stays(std::size_t gaussian, std::size_t k) const {
     const float* c = &candidate_at_start_[at(gaussian, k)];
     return settings_.keep_zeros && k > 0 && c[0] == 0.0f && c[1] == 0.0f && c[2] == 0.0f;
@@ -193,7 +194,7 @@ class Refit {
     }
   }
 
-  /// A round of conjugate gradients. False where nothing is left to gain.
+  /// Makes a round of conjugate gradients. Returns false if nothing is left to gain.
   bool step() {
     const Vector z = preconditioned(gradient_, weight_, settings_.damping);
     const double slope = dot(gradient_, z);
@@ -210,7 +211,7 @@ class Refit {
     return true;
   }
 
-  /// (A^T A + damping) times the direction.
+  /// Returns (A^T A + damping) times the direction.
   Vector curvature() {
     Vector curved(direction_.size());
     const auto damping = static_cast<float>(settings_.damping);
@@ -226,7 +227,7 @@ class Refit {
                 [&](std::size_t n, std::size_t i, const auto& basis, const glm::dvec3&,
                     const glm::dvec3& counts) { colours[n] = counts * sum_of(direction_, i, basis); });
       blend_.set_colours(colours);
-      // No pixel is further from 0 than the colours, since weights add up to 1 at most; nor T from 1.
+      // No pixel exceeds the colours, since weights add up to at most 1, nor does T exceed 1.
       const std::vector<glm::dvec4> sums = blend_.transposed(std::max(1.0f, largest_of(colours)));
       for_drawn(camera,
                 [&](std::size_t n, std::size_t i, const auto& basis, const glm::dvec3&,
@@ -244,7 +245,7 @@ class Refit {
   gl::Context& context_;
   std::unique_ptr<render::Frame> wanted_;  // draws the original
   Model candidate_;
-  Vector candidate_at_start_;  // where it was linearised
+  Vector candidate_at_start_;  // at the last linearisation
   Vector gradient_;            // downhill
   Vector direction_;
   double slope_ = 0.0;

@@ -1,7 +1,7 @@
 #pragma once
-// Colours that fit pictures best. With order, projection, shapes and opacities fixed, a picture is linear in
-// the harmonics of its Gaussians, but for colours below 0, which are 0: least squares, by conjugate gradients
-// (Hestenes and Stiefel 1952) on the normal equations, linearised anew every few rounds.
+// Fits colours to pictures. With order, projection, shapes and opacities fixed, a picture is linear in the
+// harmonics of its Gaussians, except that colours below 0 are clamped. So this is least squares, by conjugate
+// gradients (Hestenes and Stiefel 1952) on the normal equations, linearised again every few rounds.
 
 #include <functional>
 #include <optional>
@@ -14,12 +14,12 @@
 
 namespace binosplat::compact {
 
-/// The photo of a camera, RGB in its size; or none.
+/// Returns the photo of a camera, RGB at its size, if there is one.
 using PhotoOf = std::function<std::optional<Image>(const Camera&)>;
 
-/// The pictures that a model should draw.
+/// The pictures to fit.
 struct RefitTargets {
-  const Model& original;        // where there is no photo: its exact pictures, in its own perspective
+  const Model& original;        // without a photo: its exact pictures, in its own perspective
   std::vector<Camera> cameras;  // of the world
   PhotoOf photo;                // may be empty
   double near_plane = 0.0;      // world units
@@ -27,24 +27,24 @@ struct RefitTargets {
 
 struct RefitSettings {
   int rounds = 12;          // each draws every target once
-  int rounds_linear = 6;    // after so many it is linearised anew, which draws every target once more
-  double damping = 0.05;    // of changes, in shares of what each coefficient weighs in the pictures
-  bool keep_zeros = false;  // coefficients beyond the constant ones that are 0 in all channels stay 0
+  int rounds_linear = 6;    // rounds between linearisations, each of which draws every target once more
+  double damping = 0.05;    // of changes, relative to each coefficient's weight in the pictures
+  bool keep_zeros = false;  // coefficients above degree 0 that are 0 in all channels stay 0
 };
 
-/// How far the model is from what is wanted, in any unit, in views that have no say; asked after each round.
+/// Returns a model's loss in validation views, in any unit; called after each round.
 using RefitJudge = std::function<double(const Model&)>;
 
 struct Refitted {
-  std::vector<float> sh;       // as Model has them, after the best round
-  std::vector<double> judged;  // before the first round, and after each; empty without a judge
-  int best_round = 0;          // 0: the model as it was
+  std::vector<float> sh;       // in Model's layout, after the best round
+  std::vector<double> judged;  // before the first round and after each; empty without a judge
+  int best_round = 0;          // 0: the unchanged model
 };
 
-/// Fits the harmonics of `model`, in the perspective that it names; it ends early where it gets no better.
-/// The best round is the last where there is no judge. Takes about seven times the memory of the harmonics,
-/// and none for pictures: one is drawn or read at a time. A coefficient of which no target shows anything
-/// stays. The same bits always. Model and original have the same axes, and are not Scaffold-GS's.
+/// Fits the harmonics of `model`, in its perspective. Ends early if it no longer improves. Without a judge
+/// the last round is the best. Takes about seven times the memory of the harmonics; pictures are drawn or
+/// read one at a time. Coefficients that affect no target stay. Deterministic. Model and original have the
+/// same axes and no scaffold.
 Refitted refit(gl::Context& context, const Model& model, const RefitTargets& targets,
                const RefitSettings& settings, const RefitJudge& judge);
 

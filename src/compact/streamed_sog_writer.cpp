@@ -27,21 +27,22 @@ namespace {
 
 using nlohmann::ordered_json;
 
-// A pixel as a level is seen, of the distance between Gaussians by which levels are chosen
-// (stream/choice.h): that is as if they lay on a square as wide as the box's diagonal, and they lie denser.
+// A pixel that shows a level, relative to the spacing by which levels are chosen (stream/choice.h). That
+// spacing assumes a square as wide as the box's diagonal; true spacings are smaller.
 constexpr double pixel_share = 0.2;
-// Which pairs are merged is judged once for all levels, as this one sees them.
+// The pairs to merge are chosen once for all levels, by the pixels of this one.
 constexpr int judged_level = 3;
-// Pictures of many leaves: one for so many leaves, so many at most, and one of each scene.
+// Pictures of many chunks: one for this many chunks, at most pictures_most in all, but at least one for each
+// scene.
 constexpr std::size_t leaves_a_picture = 4, pictures_most = 12;
-constexpr double more_most = 4.0;  // that they may lose more or less than each by itself
+constexpr double more_most = 4.0;  // limit of their loss over the prediction, and of its inverse
 
-/// A leaf of the tree.
+/// A chunk, a leaf of the tree.
 struct Leaf {
   std::span<const std::uint32_t> indices;
-  Box box;                    // around ellipsoids of one standard deviation, from zero
-  ordered_json lods;          // where its levels lie, and what they lose
-  ordered_json pixels, seen;  // by which that was found
+  Box box;                    // around one-sigma ellipsoids, from zero
+  ordered_json lods;          // files, ranges and errors of its levels
+  ordered_json pixels, seen;  // of the measured errors
 
   std::size_t count(int level) const { return ((indices.size() - 1) >> level) + 1; }
   double pixel(int level) const {
@@ -49,7 +50,7 @@ struct Leaf {
   }
 };
 
-/// A SOG: one level of leaves that follow one another.
+/// A SOG: one level of consecutive chunks.
 struct File {
   std::string folder;
   int level = 0;
@@ -60,32 +61,32 @@ struct File {
   std::string meta_name() const { return folder + "/meta.json"; }
 };
 
-/// Leaves that are worked on together, and the files in which all their levels lie.
+/// Chunks that are processed together, and the files of all their levels.
 struct Piece {
-  std::string errors;  // the file of what its levels lose
+  std::string errors;  // the file with the errors of its levels
   std::size_t first_leaf = 0, leaves = 0;
   std::vector<File> files;
 };
 
-using Levels = std::vector<Model>;  // of a leaf, from the finest
+using Levels = std::vector<Model>;  // of a chunk, from the finest
 
-/// Pieces that are drawn together, as a model they may be.
+/// Pieces that are drawn together as one model.
 struct Scene {
-  std::string losses;  // the file of what its pictures lose
+  std::string losses;  // the file with the losses of its pictures
   std::size_t first_piece = 0, pieces = 0, count = 0;
 };
 
-/// What goes where, decided before anything is written.
+/// The contents of all files, planned before anything is written.
 struct Plan {
   SpaceTree tree;
   std::vector<Leaf> leaves;
   std::vector<Piece> pieces;
   std::vector<Scene> scenes;
-  std::vector<std::string> filenames;         // of all SOGs, as leaves number them
+  std::vector<std::string> filenames;         // of all SOGs, by the chunks' file numbers
   std::vector<std::size_t> gaussians, files;  // by level
 };
 
-/// The largest nodes of so many Gaussians at most, and leaves where these have more, in order.
+/// Collects, in order, the largest nodes of at most `most` Gaussians, and larger leaves.
 void find_nodes(const SpaceNode& node, std::size_t most, std::vector<const SpaceNode*>& nodes) {
   if (node.count <= most || node.children.empty()) return nodes.push_back(&node);
   for (const SpaceNode& child : node.children) find_nodes(child, most, nodes);
@@ -117,7 +118,7 @@ Plan make_plan(const Model& model, const LevelSettings& settings) {
   const std::size_t all = model.count(), scenes = (all - 1) / settings.together + 1;
   for (std::size_t i = 0; i < nodes.size();) {
     Piece piece{fmt::format("errors_{}.json", plan.pieces.size()), plan.leaves.size(), 0, {}};
-    // Nodes that follow one another share a piece, since what lies far out is a node of a few.
+    // Consecutive nodes share a piece, since far outliers are nodes of a few Gaussians.
     std::size_t count = 0;
     std::vector<const SpaceNode*> leaves;
     do {
@@ -129,7 +130,7 @@ Plan make_plan(const Model& model, const LevelSettings& settings) {
     piece.leaves = leaves.size();
     for (std::size_t level = 0; level < plan.files.size(); ++level)
       add_files(level, settings.file, piece, plan);
-    // Scenes are of about as many Gaussians.
+    // Scenes have about equal numbers of Gaussians.
     if (plan.scenes.empty() || plan.scenes.back().count * scenes >= all)
       plan.scenes.push_back({fmt::format("together_{}.json", plan.scenes.size()), plan.pieces.size()});
     ++plan.scenes.back().pieces;
@@ -145,7 +146,7 @@ ordered_json box_json(const Box& b) {
   return {{"min", {b.low.x, b.low.y, b.low.z}}, {"max", {b.high.x, b.high.y, b.high.z}}};
 }
 
-/// The node and the box around it, from the next leaf on.
+/// Returns the JSON of a node, and its box. `next` is the next chunk.
 std::pair<ordered_json, Box> node_json(const SpaceNode& node, const Leaf*& next) {
   if (node.children.empty()) {
     const Leaf& leaf = *next++;
@@ -163,7 +164,7 @@ std::pair<ordered_json, Box> node_json(const SpaceNode& node, const Leaf*& next)
   return {{{"bound", box_json(around)}, {"children", std::move(children)}}, around};
 }
 
-/// lod-meta.json, once the leaves have the errors of their levels.
+/// Returns lod-meta.json, once the chunks have the errors of their levels.
 ordered_json meta_json(const Plan& plan) {
   const Leaf* next = plan.leaves.data();
   return {{"version", 1},
@@ -176,7 +177,7 @@ ordered_json meta_json(const Plan& plan) {
           {"tree", node_json(plan.tree.root, next).first}};
 }
 
-/// In Morton order, whose pictures pack best.
+/// Returns the finest level in Morton order, whose pictures compress best.
 Model finest(const Model& model, const Leaf& leaf) {
   const Model as_it_lies = with_order(model, leaf.indices);
   return with_order(as_it_lies, morton_order(as_it_lies.position));
@@ -223,7 +224,7 @@ class LevelsWriter {
   }
 
  private:
-  /// While one is judged, which one thread does that may leave all cores idle, the next is written and the
+  /// Measures a piece in one thread, which may leave cores idle. Meanwhile the next one is written and the
   /// one after it is merged.
   void write_pieces(Progress& progress) {
     std::vector<const Piece*> left;
@@ -256,7 +257,7 @@ class LevelsWriter {
     progress.update(done_ += gaussians);
   }
 
-  /// None where nothing is left to write.
+  /// Returns the levels to write; empty if nothing is left.
   std::vector<Levels> merged(const Piece& piece, Progress& progress) {
     int coarsest = -1;
     for (const File& file : piece.files) {
@@ -271,18 +272,18 @@ class LevelsWriter {
     return levels;
   }
 
-  /// By what was written: rounded colours, scales and rotations cost as much as a level may.
+  /// Measures the written files: rounded colours, scales and rotations cost as much as a level may.
   void judge(const Piece& piece) {
     write(piece.errors, json_of(judge_.alone(decoded_[&piece] = written(piece))));
   }
 
-  /// As far as the folder has it.
+  /// Returns whether the folder has the piece's files and errors.
   bool is_judged(const Piece& piece) const {
     return folder_.has(piece.errors) &&
            std::ranges::all_of(piece.files, [&](const File& file) { return folder_.has(file.meta_name()); });
   }
 
-  /// Those of which all pieces are judged.
+  /// Measures the scenes whose pieces are complete.
   void judge_scenes() {
     for (const Scene& scene : plan_.scenes) {
       const auto pieces = std::span(plan_.pieces).subspan(scene.first_piece, scene.pieces);
@@ -371,8 +372,8 @@ class LevelsWriter {
     return leaf_errors(piece.errors, folder_.read(piece.errors), piece.leaves, plan_.gaussians.size());
   }
 
-  /// Over what each by itself would lose: the median, since eyes from which hardly anything is seen are far
-  /// off.
+  /// Returns the ratio of measured to predicted loss in pictures of many chunks. It is the median, since eyes
+  /// that see hardly anything are far off.
   double lost_together() const {
     std::vector<double> shares;
     for (const Scene& scene : plan_.scenes)
@@ -385,7 +386,7 @@ class LevelsWriter {
   const LevelFolder& folder_;
   const JudgeLevels& judge_;
   Plan plan_;
-  std::map<const Piece*, std::vector<Levels>> decoded_;  // until they are drawn together
+  std::map<const Piece*, std::vector<Levels>> decoded_;  // kept for the pictures of many chunks
   std::mutex counting_;
   std::size_t done_ = 0;
 };

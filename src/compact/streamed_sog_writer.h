@@ -1,5 +1,6 @@
 #pragma once
-// A model as a streamed SOG (formats/streamed_sog.h): a tree of its parts, each at several levels of detail.
+// Writes a model as a streamed SOG (formats/streamed_sog.h): a tree of its chunks, each at several levels of
+// detail.
 
 #include <cstddef>
 #include <functional>
@@ -13,40 +14,39 @@
 namespace binosplat {
 
 struct LevelSettings {
-  std::size_t leaf = 2048;      // Gaussians of the finest level in a leaf of the tree, at most
-  int levels = 8;               // each with half of the Gaussians of the one before in each leaf, rounded up
-  std::size_t file = 131072;    // Gaussians of a SOG, at most, or one leaf: readers decode whole files
-  std::size_t piece = 1048576;  // of the finest level, at most, worked on at a time; no SOG has leaves of two
-  std::size_t together = 5242880;  // of the finest level, at most, or a piece, in pictures of many leaves
+  std::size_t leaf = 2048;  // largest number of Gaussians of a chunk (a leaf of the tree) at the finest level
+  int levels = 8;           // each halves the Gaussians of each chunk, rounded up
+  std::size_t file = 131072;       // Gaussians of a SOG, at most, or one chunk: readers decode whole files
+  std::size_t piece = 1048576;     // finest Gaussians processed at a time, at most; no SOG spans two pieces
+  std::size_t together = 5242880;  // finest Gaussians in pictures of many chunks, at most, or one piece
 };
 
-/// The errors of a leaf's levels (stream/choice.h); the innermost lists have a number for each width of a
+/// The errors of a chunk's levels (stream/choice.h); the innermost lists have a number for each width of a
 /// pixel.
 struct LeafErrors {
-  std::vector<double> pixels;                              // world units, from the narrowest
+  std::vector<double> pixels;                              // world units, ascending
   std::vector<std::vector<double>> seen;                   // by direction, px
   std::vector<std::vector<std::vector<double>>> of_level;  // by level and direction, px times squared colour
 };
 
-/// The squared error of a picture of many leaves: as the leaves' own errors predict it, and as measured.
+/// The squared error of a picture of many chunks: predicted by the chunks' own errors, and measured.
 struct LossTogether {
   double predicted = 0.0, measured = 0.0;
-  bool drawn = true;  // false: there was no room for the picture
+  bool drawn = true;  // false: memory was short
 };
 
-/// Measures errors of leaves, whose levels are given from the finest on, as they read back from the files.
+/// Measures errors of chunks, given by their levels from the finest on, as read back from the files.
 struct JudgeLevels {
   std::function<std::vector<LeafErrors>(std::span<const std::vector<Model>> leaves)> alone;
-  /// The errors of `pictures` pictures of all leaves, or of fewer (lab/loss_together.h).
+  /// Returns the errors of `pictures` pictures of all chunks, or of fewer (compact/loss_together.h).
   std::function<std::vector<LossTogether>(std::span<const std::vector<Model>> leaves,
                                           std::span<const LeafErrors> errors, int pictures)>
       together;
 };
 
-/// The folder that a streamed SOG is written to; names are relative to it. Files may be written by several
-/// threads at a time.
+/// The folder of the streamed SOG; names are relative to it. Several threads may write files at a time.
 struct LevelFolder {
-  /// Whether it has a file, whole, and for a meta.json those that this names.
+  /// Returns whether the folder has a complete file; for a meta.json, also all files that it names.
   std::function<bool(const std::string& name)> has;
   std::function<std::string(const std::string& name)> read;
   std::function<void(const std::string& name, std::span<const std::byte> bytes)> write;
@@ -54,19 +54,21 @@ struct LevelFolder {
 
 struct LevelsWritten {
   std::vector<std::size_t> gaussians;  // by level
-  std::size_t files = 0, kept = 0;     // SOGs, and those of them that were there
-  std::vector<std::string> losses;     // what SOGs could not keep, a line each
+  std::size_t files = 0, kept = 0;     // SOGs, and those that were there before
+  std::vector<std::string> losses;     // properties that SOGs lose, a line each
 };
 
-/// Writes a model in the frame of SOG. Level 0 is the model itself, the others are merged from it
-/// (scene/merge.h), for pixels of a fifth of the distance between a leaf's Gaussians by which levels are
-/// chosen (stream/choice.h). A SOG has one level of neighbouring leaves. Its meta.json is written after its
-/// pictures, and lod-meta.json when all are there: SOGs whose meta.json the folder has already, from a run
-/// with the same model and settings that was interrupted, are left as they are, and the result has the same
-/// bytes, if memory suffices for the same pictures. What levels lose is kept beside the SOGs, in
-/// errors_0.json and together_0.json and so on, and written to lod-meta.json: a leaf has "pixels" and "seen",
-/// and each of its lods "errors", as much larger or smaller as the median picture of many leaves is measured
-/// to lose more or less than predicted. Progress is shown.
+/// Writes a model in the frame of SOG. Level 0 is the model; the others are merged from it (scene/merge.h),
+/// for pixels of a fifth of the spacing by which levels are chosen (stream/choice.h). A SOG has one level of
+/// neighbouring chunks. Shows progress.
+///
+/// An interrupted run can be continued with the same model and settings. A SOG's meta.json is written after
+/// its pictures, and lod-meta.json last; SOGs whose meta.json exists are kept. The result has the same bytes,
+/// if memory suffices for the same pictures.
+///
+/// The errors of levels are kept beside the SOGs, in errors_0.json, together_0.json and so on. lod-meta.json
+/// gets them, too: "pixels" and "seen" of each chunk, and "errors" of each of its lods. These errors are
+/// scaled by the median ratio of measured to predicted loss in pictures of many chunks.
 LevelsWritten write_streamed_sog(const Model& model, const LevelSettings& settings, const LevelFolder& folder,
                                  const JudgeLevels& judge);
 

@@ -20,12 +20,12 @@ namespace binosplat::compact {
 
 namespace {
 
-constexpr int drawings = 3;                                 // of a view whose time is reported
-constexpr int trial_rounds = 4;                             // that colours of a candidate are fitted in
-constexpr std::size_t some = 256;                           // Gaussians that a thread takes at a time
+constexpr int drawings = 3;                                 // of a view, for the reported time
+constexpr int trial_rounds = 4;                             // of fitting the colours of a candidate
+constexpr std::size_t some = 256;                           // Gaussians of a thread at a time
 constexpr double after_bits = 0.25, after_harmonics = 0.5;  // shares of the bound
 
-/// What a model loses in the views that had no say in it, and whether the bound allows for that.
+/// Measures the loss of a model in the validation views, and whether the bound allows it.
 class TrimJudge {
  public:
   TrimJudge(gl::Context& context, const Model& original, const lab::ViewSplit& views,
@@ -42,7 +42,8 @@ class TrimJudge {
     test_own_ = open(views.test_own);
   }
 
-  /// What the bound is on: the mean of the views held back, in the size that loses more.
+  /// Returns the value that the bound limits: the mean over the validation views, at the size that loses
+  /// more.
   double judged(const Model& model) {
     const std::size_t views = held_back_->views().size();
     Progress progress(
@@ -54,16 +55,16 @@ class TrimJudge {
     return std::min(db, held_back_own_->cost(model, 1, tell).mean_db);
   }
 
-  /// The same, less where it is better.
+  /// The same as a loss: smaller is better.
   double loss(const Model& model) { return -sign() * judged(model); }
 
-  /// A drop is counted from what this model loses: shares of the bound are of what it leaves.
+  /// Drops are relative to this model's loss: shares of the bound are shares of the rest.
   void start_from(const Model& whole) { start_ = judged(whole); }
 
   bool holds(double db, double share) const { return sign() * db >= sign() * bound(share); }
 
-  /// The largest amount that holds a share of the bound, at which the model's cost is `db(amount)`; 0 must
-  /// hold.
+  /// Returns the largest amount within a share of the bound, if `db(amount)` is the model's cost; 0 must be
+  /// within it.
   double largest(const std::function<double(double)>& db, double share,
                  measure::ToleranceSearch search) const {
     search.within = is_drop() ? 0.03 * (target_.db - start_) : 0.1;
@@ -71,7 +72,7 @@ class TrimJudge {
     return measure::find_tolerance(value, sign() * bound(share), search).tolerance;
   }
 
-  /// Measures what a step has to tell of its model, in all views.
+  /// Measures a step's model in all views.
   void report(const Model& model, TrimStep& step) {
     step.held_back = held_back_->cost(model, drawings);
     if (held_back_own_) step.held_back_own = held_back_own_->cost(model);
@@ -83,15 +84,15 @@ class TrimJudge {
   bool is_drop() const { return target_.kind == CalibrationTarget::Kind::drop; }
   double sign() const { return is_drop() ? -1.0 : 1.0; }
 
-  /// The least PSNR, or the largest drop, for a share of what the whole bound allows to be lost.
+  /// Returns the least PSNR, or the largest drop, for a share of the allowed loss.
   double bound(double share) const {
     return is_drop() ? start_ + share * (target_.db - start_) : target_.db - 10.0 * std::log10(share);
   }
 
   CalibrationTarget target_;
-  int judged_ = 0;      // models
-  double start_ = 0.0;  // what the whole model loses, as a drop: below 0 where fitting gained
-  std::unique_ptr<lab::Calibrator> held_back_, held_back_own_;  // own: in the cameras' own size, or none
+  int judged_ = 0;      // models so far
+  double start_ = 0.0;  // the whole model's loss as a drop; below 0 if fitting gained
+  std::unique_ptr<lab::Calibrator> held_back_, held_back_own_;  // own: at the cameras' own size, or null
   std::unique_ptr<lab::Calibrator> test_, test_own_;
 };
 
@@ -105,7 +106,7 @@ ColourFit::Coefficients coefficients(const Model& model, std::size_t gaussian) {
   return now;
 }
 
-/// Harmonics of so many degrees, nearest to the colours that the training views see.
+/// Returns the model at these degrees, with harmonics nearest to the colours in the training views.
 Model nearest_of_degrees(const Model& whole, const Weights& weights,
                          const std::vector<std::uint8_t>& degrees) {
   Model model = with_degrees(whole, degrees);
@@ -124,7 +125,7 @@ Model nearest_of_degrees(const Model& whole, const Weights& weights,
   return model;
 }
 
-/// How much the colours of each Gaussian change at each degree below this one (ColourFit::change).
+/// Returns how much each Gaussian's colours change at each degree below this one (ColourFit::change).
 std::vector<std::array<double, 3>> changes_below(int degree, const Model& whole, const Weights& weights) {
   std::vector<std::array<double, 3>> changes(whole.count());
   parallel_for(
@@ -181,10 +182,10 @@ class Trimmer {
   double cost(const Model& model, int bits) { return judge_.judged(settings_.write(model, bits).model); }
   bool holds(const Model& model, int bits, double share) { return judge_.holds(cost(model, bits), share); }
 
-  /// What is trimmed.
+  /// The model to trim.
   const Model& whole() const { return refitted_ ? *refitted_ : original_; }
 
-  /// Whether it got nearer.
+  /// Fits colours; returns whether the model improved.
   bool fit(Model& model, const RefitSettings& settings) {
     const RefitTargets targets{original_, views_.training, *settings_.refit, views_.near_plane};
     Refitted found = refit(context_, model, targets, settings,
@@ -193,7 +194,7 @@ class Trimmer {
     return found.best_round > 0;
   }
 
-  /// A candidate, its colours fitted again where that is asked for and helps.
+  /// Fits a candidate's colours, if requested and useful.
   Model fitted(Model model) {
     if (settings_.refit) fit(model, {.rounds = trial_rounds, .keep_zeros = true});
     return model;
@@ -221,7 +222,7 @@ class Trimmer {
     if (packs && model_.degree > 0 && holds(model_, found_.harmonic_bits, after_harmonics)) lower_degrees();
   }
 
-  /// Zeros are packed well: a degree for each Gaussian.
+  /// Chooses a degree for each Gaussian, since the format packs zeros well.
   void lower_degrees() {
     const std::vector<std::array<double, 3>> changes = changes_below(model_.degree, whole(), weights_);
     std::vector<double> positive;
@@ -229,7 +230,7 @@ class Trimmer {
       if (of[0] > 0.0) positive.push_back(of[0]);
     }
     if (positive.empty()) return;
-    // The degree that each needs where its colours may change by so much.
+    // The degree of each Gaussian if its colours may change by this much.
     const auto degrees = [&](double change) {
       std::vector<std::uint8_t> of(changes.size());
       for (std::size_t i = 0; i < of.size(); ++i) {
@@ -265,7 +266,7 @@ class Trimmer {
       for (std::size_t k = 0; k < static_cast<std::size_t>(amount); ++k) kept[by_worth[k]] = 0;
       return fitted(with_gaussians(model_, kept));
     };
-    std::map<std::size_t, double> known;  // amounts that come to the same number
+    std::map<std::size_t, double> known;  // amounts are rounded to whole numbers
     const auto db = [&](double amount) {
       const auto [at, is_new] = known.try_emplace(static_cast<std::size_t>(amount));
       if (is_new) at->second = cost(without(amount), found_.harmonic_bits);
@@ -304,7 +305,7 @@ class Trimmer {
   const TrimSettings& settings_;
   const Model& original_;
   TrimJudge judge_;
-  std::optional<Model> refitted_;  // the original with fitted colours, where that is asked for
+  std::optional<Model> refitted_;  // the original with fitted colours, if requested
   Model model_;                    // as trimmed so far
   Weights weights_;
   Trimmed found_;

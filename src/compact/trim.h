@@ -1,6 +1,6 @@
 #pragma once
-// Finds the smallest model whose pictures stay within a bound, in three steps. Each is a search whose result
-// is judged in views that were not used to choose what goes.
+// Finds the smallest model whose pictures stay within a bound, in three steps. Each step is a search that is
+// validated in views other than the training views.
 
 #include <algorithm>
 #include <functional>
@@ -14,57 +14,57 @@
 
 namespace binosplat::compact {
 
-/// A model as its file keeps it, and the bytes of that file.
+/// A model as read back from its file, and the file's size.
 struct WrittenModel {
   Model model;
   std::uintmax_t bytes = 0;
 };
 
-/// Writes a model to a file of the wanted format and reads it back.
+/// Writes a model to a file of the requested format and reads it back.
 using TrialWriter = std::function<WrittenModel(const Model&, int harmonic_bits)>;
 
 /// The model after one step.
 struct TrimStep {
-  std::string name;  // what was done last
+  std::string name;  // the last change
   std::size_t gaussians = 0;
   int degree = 0;
   std::uintmax_t bytes = 0;
   lab::Calibrator::Cost held_back;
-  lab::Calibrator::Cost test;  // all 0 without such views
-  // In the cameras' own size, where the views are smaller (ViewSplit).
+  lab::Calibrator::Cost test;  // all 0 without test views
+  // At the cameras' own size, if the views are smaller (ViewSplit).
   std::optional<lab::Calibrator::Cost> held_back_own, test_own;
 
-  /// What the bound is on: the mean of the size that loses more; a PSNR, as a drop is of one size.
+  /// Returns the value that the bound limits: the lower mean PSNR of both sizes. Drops exist at one size
+  /// only.
   double worse_db() const {
     return held_back_own ? std::min(held_back.mean_db, held_back_own->mean_db) : held_back.mean_db;
   }
 };
 
 struct Trimmed {
-  Model model;             // what to write, with
-  int harmonic_bits = 8;   // of spz
-  bool fits = true;        // the bound allows for what the format itself costs; else nothing was left out
-  bool less = false;       // anything could be left out, or colours fitted
-  std::size_t unseen = 0;  // Gaussians that touch no pixel of the training views
-  std::vector<TrimStep> steps;  // from the whole model on, which has the bytes of no file
+  Model model;                  // to write, with
+  int harmonic_bits = 8;        // of spz
+  bool fits = true;             // false: the format alone exceeds the bound, and nothing was removed
+  bool less = false;            // something was removed, or colours were fitted
+  std::size_t unseen = 0;       // Gaussians that touch no pixel of the training views
+  std::vector<TrimStep> steps;  // from the whole model on, which has no file and so no bytes
 };
 
-/// How to trim.
+/// Settings of trim().
 struct TrimSettings {
-  CalibrationTarget target;  // what may be lost, in the mean of the views held back
+  CalibrationTarget target;  // the allowed mean loss in the validation views
   ModelFormat format = ModelFormat::ply;
   TrialWriter write;
-  std::optional<PhotoOf> refit;  // fit colours anew to these photos, or to the model's own pictures
+  std::optional<PhotoOf> refit;  // fit colours to these photos, or to the model's own pictures
 };
 
-/// Searches in the order in which the bound is spent: as few bits as the format has a choice of (spz) for a
-/// quarter of it; the harmonics that change colours least for another: a lower degree for all, then, where
-/// zeros are packed (spz), for as many Gaussians as possible; last the Gaussians without which the pictures
-/// change least, for all that remains, half of it at least. What a Gaussian is worth is learned in the
-/// training views, the bound is on the mean of those held back, in both sizes where they have two. Every
-/// candidate is judged as it reads back from its file, so the bound holds for what is written. The model's
-/// axes are those of the format, and it is not Scaffold-GS's. Throws Error for views that a target cannot be
-/// measured in (Calibrator).
+/// Spends the bound in this order. A quarter: as few bits as the format offers (spz). Another quarter:
+/// harmonics that change colours least, first by a lower degree for all, then, if the format packs zeros
+/// (spz), for as many Gaussians as possible. The rest, at least half: the Gaussians whose removal changes the
+/// pictures least. Training views determine these changes; the bound limits the mean over the validation
+/// views, at both sizes if they have two. Every candidate is judged as read back from its file, so the bound
+/// holds for the written file. The model has the format's axes and no scaffold. Throws Error for views in
+/// which a target cannot be measured (Calibrator).
 Trimmed trim(gl::Context& context, const Model& model, const lab::ViewSplit& views,
              const TrimSettings& settings);
 

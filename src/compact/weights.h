@@ -1,5 +1,5 @@
 #pragma once
-// What each Gaussian of a model is worth in some views.
+// Measures the contribution of each Gaussian of a model to some views.
 
 #include <vector>
 
@@ -12,22 +12,22 @@ namespace binosplat::compact {
 
 struct Weights {
   std::size_t views = 0;
-  /// By Gaussian: its blending weight alpha * T summed over the pixels of all views, px; 0 exactly where no
+  /// By Gaussian: its blending weight alpha * T, summed over the pixels of all views, px; exactly 0 if no
   /// pixel blends it.
   std::vector<double> weight;
-  std::vector<ColourFit> colours;  // by Gaussian, where asked for
+  std::vector<ColourFit> colours;  // by Gaussian, if requested
 
-  /// How many Gaussians touch no pixel of any view.
+  /// Returns how many Gaussians touch no pixel of any view.
   std::size_t unseen() const;
 };
 
-/// What the pictures of the views would change by without each Gaussian alone, squared and summed
-/// (render::LinearBlend::changes). As weigh().
+/// Returns by how much the views' pictures change without each Gaussian alone, squared and summed
+/// (render::LinearBlend::changes). Parameters as for weigh().
 std::vector<double> changes_without(gl::Context& context, const Model& model,
                                     const std::vector<Camera>& cameras, double near_plane);
 
-/// Draws each view once, exactly. `cameras` are of the world (scene/axes.h), `near_plane` in its units.
-/// Progress is shown.
+/// Draws each view once, exactly. `cameras` are of the world (scene/axes.h), `near_plane` is in its units.
+/// Shows progress.
 Weights weigh(gl::Context& context, const Model& model, const std::vector<Camera>& cameras, double near_plane,
               bool with_colours = false);
 

@@ -18,8 +18,8 @@ constexpr int streets_beside = 5;  // on either side of the main street
 constexpr int blocks_along = 12;
 constexpr double street_pitch = 64.0, crossing_pitch = 100.0, first_crossing = -120.0;
 constexpr double last_crossing = first_crossing + blocks_along * crossing_pitch;
-constexpr double road = 4.5, front = 7.5;            // from the middle of a street: kerb, houses
-constexpr double side_road = 3.5, side_front = 6.0;  // the same of a side street
+constexpr double road = 4.5, front = 7.5;  // from the middle of a street to the kerb and to the houses
+constexpr double side_road = 3.5, side_front = 6.0;  // the same for a side street
 constexpr double kerb = 0.12;                        // height of pavements
 
 Material asphalt(double x, double z) {
@@ -27,7 +27,7 @@ Material asphalt(double x, double z) {
   return {.colour = dvec3(0.345, 0.35, 0.365) * (0.82 + 0.24 * patches + 0.12 * grit), .gloss = 0.16};
 }
 
-/// A street along z, crossings included; x is from its middle.
+/// Returns the material of a street along z, with crossings; x is measured from its middle.
 Material road_at(double x, double z) {
   const double along = part_of(z - first_crossing, crossing_pitch);
   const double from_crossing = std::min(along, crossing_pitch - along);
@@ -41,7 +41,7 @@ Material road_at(double x, double z) {
   return look;
 }
 
-/// Pavements, kerbs and the yard of a block, by metres along it and from its side.
+/// Returns the material of a block's pavements, kerbs and yard, by metres along it and from its side.
 Material block_at(double u, double v) {
   constexpr double wide = street_pitch - 2.0 * road, tall = crossing_pitch - 2.0 * side_road;
   if (std::min(v, wide - v) > front - road && std::min(u, tall - u) > side_front - side_road) {
@@ -65,7 +65,7 @@ void add_street_tree(Stage& stage, Random& random, const dvec3& foot, double lar
   add_tree(stage, foot, radius, pick(random, leaves));
 }
 
-void add_lamp_post(Stage& stage, const Frame& frame) {  // x leads over the street
+void add_lamp_post(Stage& stage, const Frame& frame) {  // x points over the street
   stage.frame = frame;
   const double grain = stage.grain({});
   if (grain > 0.6) return;
@@ -76,13 +76,13 @@ void add_lamp_post(Stage& stage, const Frame& frame) {  // x leads over the stre
   stage.box({0.62, -4.70, -0.16}, {0.94, -4.25, 0.16}, {}, lantern);
 }
 
-// The side view of a car: where it is along its length (z, forwards) and how high (y, downwards).
+// Side view of a car: position along its length (z, forwards) and height (y, downwards).
 constexpr std::array outline = {dvec2(2.08, -0.28),  dvec2(2.12, -0.62),  dvec2(1.96, -0.80),
                                 dvec2(0.98, -0.92),  dvec2(0.28, -1.40),  dvec2(-0.95, -1.43),
                                 dvec2(-1.68, -0.97), dvec2(-2.06, -0.86), dvec2(-2.10, -0.28)};
 constexpr double car_half = 0.85;
 
-/// By where a point is in the car's frame.
+/// Returns the material at a point of the car's frame.
 Material car_at(const dvec3& paint, const dvec3& p) {
   const double across = std::abs(p.x), along = std::abs(p.z);
   const double wheel = glm::length(dvec2(along - 1.32, p.y + 0.31));
@@ -96,7 +96,7 @@ Material car_at(const dvec3& paint, const dvec3& p) {
   return {.colour = paint * (p.y > -0.34 ? 0.35 : 1.0), .gloss = 0.45};
 }
 
-void add_car(Stage& stage, const Frame& frame, const dvec3& paint) {  // z leads forwards
+void add_car(Stage& stage, const Frame& frame, const dvec3& paint) {  // z points forwards
   stage.frame = frame;
   stage.solid(Solid::Shape::box, {-car_half, -1.1, -2.0}, {car_half, 0.0, 2.0});
   if (stage.grain({}) > 0.7) return;
@@ -114,7 +114,7 @@ void add_car(Stage& stage, const Frame& frame, const dvec3& paint) {  // z leads
     const auto flank = [&](double x, double behind, double ahead, double low, double tall) {
       panel({side * x, low, side > 0.0 ? behind : ahead}, side * (ahead - behind) * away, tall * up);
     };
-    // The body, the wheels that reach below it, and the cabin, which narrows towards the roof.
+    // The body, the wheels that extend below it, and the cabin, which narrows towards the roof.
     flank(car_half, -2.10, 2.10, -0.28, 0.56);
     flank(car_half, -1.68, 1.68, -0.02, 0.26);
     for (int k = 0; k < 4; ++k) {
@@ -124,7 +124,7 @@ void add_car(Stage& stage, const Frame& frame, const dvec3& paint) {  // z leads
   }
 }
 
-/// One side of a street between two crossings.
+/// Adds one side of a street between two crossings.
 void add_street_side(Stage& stage, Random& random, double x, double crossing, double side) {
   static const dvec3 paints[] = {{0.74, 0.12, 0.11}, {0.66, 0.67, 0.67}, {0.20, 0.22, 0.24},
                                  {0.20, 0.34, 0.56}, {0.56, 0.58, 0.60}, {0.20, 0.38, 0.33},
@@ -144,7 +144,7 @@ void add_street_side(Stage& stage, Random& random, double x, double crossing, do
   }
 }
 
-/// A high house far away.
+/// Adds a distant high house.
 void add_tower(Stage& stage, Random& random, double x, double z, double height) {
   const double half = random.uniform(8.0, 18.0);
   const dvec3 wall = mix({0.74, 0.69, 0.62}, {0.52, 0.55, 0.60}, random.uniform());
@@ -158,7 +158,7 @@ void add_tower(Stage& stage, Random& random, double x, double z, double height) 
   }
 }
 
-/// All that stands and lies in the city of a seed.
+/// Adds all things of the city with this seed.
 void add_city(Stage& stage, std::uint64_t seed) {
   Random random(seed + 6);
   constexpr double start = first_crossing - side_road, end = last_crossing + side_road, around = 2700.0;
@@ -194,8 +194,8 @@ void add_city(Stage& stage, std::uint64_t seed) {
       }
     }
   }
-  // What closes the view: fields around the city, and high houses where the main street ends,
-  // behind and beside the streets.
+  // The background: fields around the city, and high houses at both ends of the main street and beside the
+  // streets.
   ground(fields_at, {-around, start}, {-edge, end}, 0.0, 5.0);
   ground(fields_at, {edge, start}, {around, end}, 0.0, 5.0);
   ground(fields_at, {-around, -around}, {around, start}, 0.0, 5.0);
@@ -212,9 +212,8 @@ void add_city(Stage& stage, std::uint64_t seed) {
 
 /// The grain doubles at this distance from the nearest camera.
 constexpr double near_distance = 4.0;
-constexpr double along_streets = 0.33;  // how much a metre along them counts, as people walk there
-/// Coarse surfaces are no coarser than this share of their distance: Gaussians that reach around a camera are
-/// drawn as fog.
+constexpr double along_streets = 0.33;  // weight of a metre along the streets, where people walk
+/// Surfaces are at most this share of their distance coarse: Gaussians around a camera are drawn as fog.
 constexpr double coarsest = 0.1;
 
 Lighting afternoon() {
@@ -224,7 +223,7 @@ Lighting afternoon() {
           .bounce = {0.19, 0.17, 0.14}};
 }
 
-/// The stage of a city, `finest` before the cameras.
+/// Returns the stage of a city with the grain `finest` in front of the cameras.
 Stage stage_of(std::uint64_t seed, double finest) {
   Stage stage([finest, cameras = city_cameras()](const dvec3& p, double coarseness) {
     double near = 1e9;
@@ -239,7 +238,7 @@ Stage stage_of(std::uint64_t seed, double finest) {
   return stage;
 }
 
-/// The stage for about `count` Gaussians: of the grain that asks for so many.
+/// Returns the stage whose grain requests about settings.count Gaussians.
 Stage stage_for(const CitySettings& settings) {
   double grain = 0.0517 * std::sqrt(1e6 / static_cast<double>(settings.count));
   for (int round = 1;; ++round) {
@@ -247,13 +246,13 @@ Stage stage_for(const CitySettings& settings) {
     double wanted = static_cast<double>(stage.discs.size());
     for (const Surface& s : stage.surfaces) wanted += std::max(1.0, s.weight);
     const double share = wanted / static_cast<double>(settings.count);
-    // All Gaussians will be given out; this share more or less of them changes no detail.
+    // share_out() makes the count exact; a difference of 5 % changes no detail.
     if ((share > 0.95 && share < 1.05) || round == 8) return stage;
     grain *= std::sqrt(share);
   }
 }
 
-/// Gives every surface one Gaussian, and the rest by weight, so that all are `count`.
+/// Gives every surface one Gaussian, and shares the rest by weight, so that the total is `count`.
 void share_out(Stage& stage, std::size_t count) {
   double sum = 0.0, reached = 0.0;
   for (const Surface& s : stage.surfaces) sum += std::max(0.0, s.weight - 1.0);

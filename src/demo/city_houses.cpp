@@ -1,4 +1,5 @@
-// demo:city: houses: far away as blocks with painted windows, and near with every window set into the wall.
+// Houses of demo:city: distant ones are blocks with painted windows, near ones have each window set into the
+// wall.
 
 #include <algorithm>
 #include <cmath>
@@ -9,11 +10,11 @@ namespace binosplat::demo {
 
 namespace {
 
-/// Coarser than this, the houses of a row are drawn as one.
+/// With a coarser grain, the houses of a row are one block.
 constexpr double grain_of_rows = 5.0;
-constexpr double grain_of_openings = 0.25;  // at a finer grain windows are deep
+constexpr double grain_of_openings = 0.25;  // with a finer grain windows are deep
 constexpr double row_depth = 11.0;
-constexpr double hidden = 1.6;    // what streets see little of has fewer Gaussians
+constexpr double hidden = 1.6;    // coarseness of parts that streets hardly show
 constexpr double overhang = 0.3;  // of roofs
 
 struct House {
@@ -23,15 +24,15 @@ struct House {
   double roof_rise;  // 0: a flat roof
   bool brick, shop;
   dvec3 wall, trim, door, roof;
-  std::int64_t number;             // for whatever else differs from house to house
-  double left = 0.0, right = 0.0;  // eaves of the houses beside it; 0 where the row ends
+  std::int64_t number;             // seed for other differences between houses
+  double left = 0.0, right = 0.0;  // eaves of the neighbouring houses; 0 at the end of a row
 
   double eave() const { return floors * floor_height + 0.45; }
 };
-/// A side of a house that has windows. What it shows is in metres from its left end and from the ground.
+/// A side of a house with windows. Positions are in metres from its left end and above the ground.
 struct Wall {
   House house;
-  Frame frame;  // as of a house, for whoever stands before it
+  Frame frame;  // as a house's, seen from outside
   double width;
   bool is_front;
   std::int64_t number;
@@ -62,7 +63,7 @@ Opening opening_of(const Wall& wall, int floor, int column) {
   return opening(blind ? Opening::Kind::none : Opening::Kind::window, 0.58, sill, sill + 1.55);
 }
 
-/// What an opening shows, in metres from its lower left corner.
+/// Returns an opening's material, by metres from its lower left corner.
 Material pane_at(const Wall& wall, const Opening& o, int key, double a, double b) {
   const House& house = wall.house;
   const double wide = o.u1 - o.u0, tall = o.v1 - o.v0;
@@ -90,7 +91,7 @@ Material masonry_at(const House& house, double u, double v) {
   const double shift = 13.0 * static_cast<double>(house.number);
   const dvec3 mortar = mix(house.wall, dvec3(0.72, 0.68, 0.62), 0.6);
   const dvec3 colour = house.brick ? bricks(u + shift, v, house.wall, mortar) : house.wall;
-  // Weather: large soft spots, and dirt near the ground.
+  // Weathering: large soft spots, and dirt near the ground.
   const double spots = 0.88 + 0.20 * fractal(0.6 * u + shift, 0.45 * v);
   return {.colour = colour * (spots * (0.86 + 0.14 * ramp(-0.3, 1.3, v)))};
 }
@@ -123,10 +124,10 @@ Material roof_at(const House& house, double u, double v) {
   return {.colour = house.roof * (mottled * tile * edge), .gloss = 0.12};
 }
 
-/// A window, door or shop window behind the wall, and an awning before it.
+/// Adds a window, door or shop window recessed in the wall, and a shop's awning.
 void add_opening(Stage& stage, const Wall& wall, const Opening& o) {
   const double deep = o.kind == Opening::Kind::window ? 0.16 : 0.24;
-  // The four sides of the hole.
+  // The four sides of the recess.
   const dvec3 round[] = {{o.u0, -o.v0, 0}, {o.u0, -o.v1, 0}, {o.u1, -o.v1, 0}, {o.u1, -o.v0, 0}};
   for (std::size_t k = 0; k < 4; ++k)
     stage.sheet(round[k], round[(k + 1) % 4] - round[k], deep * away, Material{wall.house.trim * 0.9});
@@ -168,7 +169,8 @@ void add_wall(Stage& stage, const Wall& wall) {
   }
 }
 
-/// What stands out beside a lower neighbour: a strip of wall, and the gable. `along` leads over the side.
+/// Adds the parts that show above a lower neighbour: a strip of wall, and the gable. `along` runs along the
+/// side.
 void add_side(Stage& stage, const House& house, const dvec3& corner, const dvec3& along, double neighbour) {
   const Texture look = [house](double u, double v) { return masonry_at(house, u, v); };
   const auto strip = [&](double inset, double v0, double v1) {
@@ -209,7 +211,7 @@ void add_house(Stage& stage, const House& house) {
   };
   wall({}, right, w, 0);
   wall({w, 0.0, row_depth}, -right, w, 1);
-  // Rows end in walls with windows.
+  // The ends of rows have walls with windows.
   if (house.left == 0.0) wall({0.0, 0.0, row_depth}, -away, row_depth, 2);
   if (house.right == 0.0) wall({w, 0.0, 0.0}, away, row_depth, 3);
   stage.frame = frame;
@@ -267,7 +269,7 @@ void add_row(Stage& stage, Random& random, const dvec3& start, const dvec3& to_r
   stage.frame = {};
   if (stage.grain(start + 0.5 * length * to_right) > grain_of_rows) {
     houses.resize(1);
-    houses[0].left = houses[0].right = 1e9;  // neither are its ends seen
+    houses[0].left = houses[0].right = 1e9;  // its ends are not visible either
     sum = houses[0].width;
   }
   for (std::size_t k = 0; k < houses.size(); ++k) {

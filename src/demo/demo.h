@@ -1,7 +1,6 @@
 #pragma once
-// The scenes that the program makes by itself: demo:room, a room, which `./demo` draws where no model is
-// given, and demo:city, streets of houses as large as one likes, for measuring what real captures of this
-// size need.
+// The built-in scenes. demo:room is the room that `./demo` draws if no model is given. demo:city is streets
+// of houses with any number of Gaussians, for benchmarks at the size of real captures.
 
 #include <cstddef>
 #include <cstdint>
@@ -17,14 +16,14 @@ constexpr const char* demo_city_name = "demo:city";
 
 struct Demo {
   Model model;
-  std::vector<Camera> cameras;  // heads, 1,280 x 720; the first is the one to show
+  std::vector<Camera> cameras;  // heads, 1,280 x 720; the first one is the default view
 };
 
-/// The heads in the room.
+/// Returns the heads in the room.
 std::vector<Camera> room_cameras();
 
-/// A furnished room of 5 x 4 x 2.8 m (metres, y downwards) with a window on hills as far as 400 m away, some
-/// 90 thousand Gaussians of degree 3. Every call makes the same bits.
+/// Returns a furnished room of 5 x 4 x 2.8 m (metres, y downwards), with a window on hills up to 400 m away.
+/// It has about 90 thousand Gaussians of degree 3. Deterministic.
 Demo demo_room();
 
 struct CitySettings {
@@ -35,17 +34,17 @@ struct CitySettings {
 constexpr std::size_t city_count_min = 10'000;
 constexpr std::size_t city_count_max = 100'000'000;
 
-/// Throws Error, naming --count, for a city too small or too large.
+/// Throws Error, naming --count, for a count out of range.
 void check(const CitySettings& settings);
 
-/// A head in the main street that looks along it, one above it and one at a corner.
+/// Returns three heads: in the main street looking along it, above it, and at a corner.
 std::vector<Camera> city_cameras();
 
-/// Streets of houses with trees, lamps and cars on level ground, 0.6 km wide and 1.2 km long (metres, y
-/// downwards; the first camera looks along z), high houses and hills beyond them and a sky. Degree 1, which
-/// is what a reflection in a window or on a car needs at least. However many Gaussians there are, they close
-/// the surfaces; more of them are smaller, and show more of what is there, most where the cameras are. The
-/// same settings make the same bits, on any number of threads. Throws Error as check does.
+/// Returns streets of houses with trees, lamps and cars on level ground, 0.6 km wide and 1.2 km long. High
+/// houses, hills and a sky lie beyond. Units are metres, y points down, and the first camera looks along z.
+/// Degree 1 is the least for reflections in windows and on cars. Any number of Gaussians closes the surfaces;
+/// more of them are smaller and show more detail, most of all near the cameras. Deterministic for equal
+/// settings, on any number of threads. Throws Error as check() does.
 Demo demo_city(const CitySettings& settings = {});
 
 }  // namespace binosplat

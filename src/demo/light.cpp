@@ -12,16 +12,16 @@ namespace binosplat::demo {
 
 namespace {
 
-/// Within this distance a surface dims what it faces.
+/// Within this distance a surface shades the surface that faces it.
 constexpr double occlusion_reach = 0.7;
-/// Rays start this far off their surface: it must not shade itself. Outdoors, where window panes lie deep in
-/// walls, more.
+/// Distance of a ray's start from its surface, which must not shade itself. It is larger outdoors, where
+/// window panes are recessed in walls.
 constexpr double room_lift = 4e-3, outdoor_lift = 0.3;
 
-/// Colours that people choose, as light. Displays take the square root.
+/// Converts display-referred colours to linear light. Displays take the square root.
 dvec3 to_linear(const dvec3& colour) { return colour * colour; }
 
-/// Linear light to a display value, with the shoulder of a film (Narkowicz's fit of ACES).
+/// Converts linear light to display values with a film-like shoulder (Narkowicz's fit of ACES).
 dvec3 developed(const dvec3& light) {
   dvec3 out;
   for (int i = 0; i < 3; ++i) {
@@ -34,8 +34,8 @@ dvec3 developed(const dvec3& light) {
 using Harmonics = std::array<dvec3, 16>;
 
 /// Adds a lobe max(0, cos)^sharpness about an axis, the direction from the eye in which it is brightest.
-/// Coefficient (l, m) is band(l) times the basis function at the axis (Funk-Hecke), and the integrals
-/// 2 pi int_0^1 t^s P_l(t) dt have closed forms.
+/// Coefficient (l, m) is band(l) times the basis function at the axis (Funk-Hecke); the integrals 2 pi
+/// int_0^1 t^s P_l(t) dt have closed forms.
 void add_lobe(Harmonics& sh, const dvec3& axis, const dvec3& rise, double sharpness) {
   const double s = sharpness, i0 = 1.0 / (s + 1.0), i1 = 1.0 / (s + 2.0), i2 = 1.0 / (s + 3.0),
                i3 = 1.0 / (s + 4.0);
@@ -46,7 +46,7 @@ void add_lobe(Harmonics& sh, const dvec3& axis, const dvec3& rise, double sharpn
   }
 }
 
-/// A light that a surface sees: where it is, and its irradiance on what faces it.
+/// A light that reaches a surface: its direction, and its irradiance on a surface that faces it.
 struct SeenLight {
   dvec3 direction, irradiance;
 };
@@ -55,7 +55,7 @@ class Baker {
  public:
   Baker(const Stage& stage, const Lighting& light) : stage_(stage), light_(light) {
     constexpr int rays = 16;
-    for (int i = 0; i < rays; ++i) {  // more of them near the normal, as a diffuse surface weighs them
+    for (int i = 0; i < rays; ++i) {  // denser near the normal, by the cosine of a diffuse surface
       const double r = std::sqrt((i + 0.5) / rays);
       dome_.emplace_back(r * circle(0.38196601125 * i), std::sqrt(1.0 - r * r));
     }
@@ -76,21 +76,21 @@ class Baker {
   }
 
  private:
-  /// The share of the sun's light.
+  /// Returns the visible share of the sun's light.
   double sun_outdoors(const dvec3& p, const dvec3& normal, bool leaves) const {
     const double facing = glm::dot(normal, light_.to_sun);
     const dvec3 from = p + outdoor_lift * normal;
     if ((!leaves && facing <= 0.0) || !stage_.solids.is_free(from, light_.to_sun, 1e3)) return 0.0;
-    if (leaves) return 0.3 + 0.5 * ramp(-0.6, 0.9, facing);  // other leaves do not darken them
+    if (leaves) return 0.3 + 0.5 * ramp(-0.6, 0.9, facing);  // leaves do not shade each other
     if (stage_.crowns.is_free(from, light_.to_sun, 1e3)) return facing;
-    // The sun comes through leaves in spots.
+    // Sunlight through leaves has spots.
     return facing * (0.12 + 0.88 * ramp(0.58, 0.72, noise(2.3 * (p.x - p.y), 2.3 * (p.z + p.y))));
   }
 
   void light_outdoors(const Disc& disc, Harmonics& sh) const {
     const Material& material = disc.material;
     const dvec3 &p = disc.position, &normal = disc.axes[2];
-    // Between houses little of the sky is seen.
+    // Houses hide much of the sky.
     const double open = 0.62 + 0.38 * ramp(0.0, 14.0, -p.y);
     const dvec3 light = light_.sun * sun_outdoors(p, normal, material.two_sided) +
                         light_.sky * (open * (0.72 - 0.28 * normal.y)) +
@@ -105,7 +105,7 @@ class Baker {
     }
   }
 
-  /// The irradiance of one side of a surface in the room, and the lights that it sees.
+  /// Returns the irradiance of one side of a surface in the room, and adds the lights that reach it.
   dvec3 received(const dvec3& p, const dmat3& axes, std::vector<SeenLight>& lights) const {
     const Interior& room = *light_.room;
     const dvec3 normal = axes[2];
@@ -139,11 +139,11 @@ class Baker {
     const dvec3 diffuse = to_linear(material.colour) * (light + material.glow);
     sh[0] = (developed(diffuse) - 0.5) / sh_c0;
     if (material.gloss <= 0.0) return;
-    // The lights' mirror images: normalised Phong lobes, as far as they brighten what is seen. Models take
-    // the direction from the eye to the Gaussian, which is the lobe's axis with its sign turned.
+    // The lights' mirror images: normalised Phong lobes of the increase in brightness. Models use the
+    // direction from the eye to the Gaussian, the negative of the lobe's axis.
     for (const SeenLight& l : lights) {
-      // Schlick's Fresnel term for glass and varnish: more at grazing angles, as far as a broad lobe can bear
-      // it.
+      // Schlick's Fresnel term for glass and varnish, which grows at grazing angles. It is limited, because
+      // the lobe is broad.
       const double side = 1.0 - glm::dot(normal, l.direction);
       const double fresnel = std::min(0.3, 0.04 + 0.96 * side * side * side * side * side);
       const double lobe = material.gloss * fresnel * (material.sharpness + 1.0) / (2.0 * pi);

@@ -1,7 +1,7 @@
 #pragma once
-// Light for procedural scenes, baked once into the Gaussians' spherical harmonics: a sun, a sky and haze, and
-// within a room lamps and ambient occlusion; the scene's solids cast shadows. Mirrored lobes depend on where
-// one looks from. Irradiances are linear, in units in which 1 on a white wall is nearly white.
+// Light for procedural scenes, baked into the Gaussians' spherical harmonics: sun, sky and haze; in a room
+// also lamps and ambient occlusion. The scene's solids cast shadows, and mirrored lobes depend on the viewing
+// direction. Irradiances are linear; 1 on a white wall is nearly white.
 
 #include <optional>
 
@@ -10,30 +10,30 @@
 
 namespace binosplat::demo {
 
-/// A lamp, or a piece of a window.
+/// A lamp, or a part of a window.
 struct Lamp {
   dvec3 place;
   dvec3 power;        // irradiance at 1 m
-  dvec3 facing{0.0};  // a window's normal, from the room to the outside
+  dvec3 facing{0.0};  // a window's outward normal
 };
 
-/// A box in which lamps shine instead of the sky. Its walls are solids of the stage.
+/// A box with lamps in place of the sky. Its walls are solids of the stage.
 struct Interior {
   dvec3 low, high;
   dvec3 sun;
   std::vector<Lamp> lamps;
-  dvec3 ambient;  // where nothing is near
+  dvec3 ambient;  // without occlusion
 };
 
 struct Lighting {
   dvec3 to_sun;                   // unit
-  dvec3 sun, sky, bounce;         // the last from sunlit ground and walls
+  dvec3 sun, sky, bounce;         // bounce: from sunlit ground and walls
   dvec3 haze{0.80, 0.85, 0.90};   // a colour
-  double haze_distance = 1500.0;  // where it covers a half
+  double haze_distance = 1500.0;  // distance at which it covers half
   std::optional<Interior> room;
 };
 
-/// The Model that the stage's Gaussians and surfaces make in this light.
+/// Returns the model of the stage's Gaussians and surfaces in this light.
 Model bake(Stage& stage, const Lighting& light, int degree, const char* name);
 
 }  // namespace binosplat::demo

@@ -11,7 +11,7 @@ namespace {
 
 using namespace demo;
 
-/// A late afternoon: a low sun through the window, the lamp already on.
+/// Late afternoon: a low sun through the window, and the lamp is on.
 Lighting evening_light() {
   Lighting light{.to_sun = glm::normalize(dvec3(-0.42, -0.43, 0.84)), .haze_distance = 250.0};
   light.sun = {1.5, 1.2, 0.8};
@@ -55,7 +55,7 @@ void add_floor(Stage& stage) {
   constexpr double plank = 0.15, gap = 0.006;
   for (int k = 0; k * plank < room_size.x; ++k) {
     const double x = room_low.x + k * plank, across = std::min(plank, room_high.x - x) - gap;
-    const double joint = 2.0 * hash(k, 7);  // where one board ends and the next one starts
+    const double joint = 2.0 * hash(k, 7);  // end of one board and start of the next
     const auto board = [=](double u, double v) {
       const double seed = k * 10 + std::floor((u + joint) / 2.0);
       Material wood = wooden({0.60, 0.41, 0.25}, seed, 3.5)(u, v);
@@ -68,7 +68,7 @@ void add_floor(Stage& stage) {
   }
 }
 
-/// The pattern of the rug at (x, y) from its middle.
+/// Returns the material of the rug at (x, y) from its middle.
 Material woven(double x, double y) {
   const dvec3 red(0.52, 0.18, 0.17), navy(0.17, 0.21, 0.35), gold(0.78, 0.60, 0.32);
   const auto rings = [&](double at, double size, const dvec3& ground) {
@@ -90,7 +90,7 @@ Material woven(double x, double y) {
 
 void add_rug(Stage& stage) {
   const dvec3 middle(0.15, 0.0, -0.25), half(rug_half.x, 0.0, rug_half.y);
-  // The floor under it is hidden, but for its rim.
+  // The floor under the rug is hidden, except at its rim.
   stage.solid(Shape::box, middle - half + dvec3(0.06, -0.009, 0.06),
               middle + half + dvec3(-0.06, 0.02, -0.06));
   const auto look = [](double u, double v) { return woven(v - rug_half.x, rug_half.y - u); };
@@ -98,7 +98,7 @@ void add_rug(Stage& stage) {
               Grain(0.028), all_borders);
 }
 
-/// Painted boards between a skirting and a rail.
+/// Returns painted boards between a skirting and a rail.
 constexpr double panelling = 0.88;
 Material boarding(double u, double high) {
   const bool edge = std::abs(high - 0.12) < 0.012 || std::abs(high - 0.81) < 0.012;
@@ -106,7 +106,7 @@ Material boarding(double u, double high) {
   return {.colour = white * (groove ? 0.80 : edge ? 0.70 : 1.0), .gloss = 0.3};
 }
 
-/// A pattern of leaves, one in every cell of a brick-like lattice, turned to and fro.
+/// Returns wallpaper: a leaf in every cell of a brick-like lattice, in alternating directions.
 Material wallpaper(double u, double high) {
   const dvec3 ground = mix(dvec3(0.30, 0.47, 0.47), dvec3(0.34, 0.52, 0.51), fractal(3.0 * u, 3.0 * high));
   const double row = std::floor(high / 0.36), odd = part_of(row, 2.0), sway = odd - 0.5;
@@ -159,18 +159,18 @@ void add_window(Stage& stage) {
   };
   const double front = room_high.z - 0.02, back = room_high.z + 0.14, z = room_high.z + 0.06;
   const dvec2 l = window_low, h = window_high;
-  // Reveal and casing, sill below.
+  // Reveal, casing, and the sill below.
   bar({l.x - 0.08, l.y - 0.08, front}, {h.x + 0.08, l.y, back});
   bar({l.x - 0.08, l.y, front}, {l.x, h.y, back});
   bar({h.x, l.y, front}, {h.x + 0.08, h.y, back});
   bar({l.x - 0.12, h.y, front - 0.12}, {h.x + 0.12, h.y + 0.04, back});
-  // Sashes: posts, and bars across.
+  // Sashes: posts and crossbars.
   for (int i = 0; i <= 3; ++i) {
     const double x = l.x + (h.x - l.x) * i / 3.0;
     bar({std::max(x - 0.028, l.x), l.y, z}, {std::min(x + 0.028, h.x), h.y, z + 0.05});
   }
   for (const double y : {l.y, l.y + 0.52, h.y - 0.05}) bar({l.x, y, z}, {h.x, y + 0.05, z + 0.05});
-  // Panes: hardly there, but they mirror the lamp and the room.
+  // Panes: nearly transparent, but they mirror the lamp and the room.
   const Material glass{.colour = {0.75, 0.84, 0.86}, .opacity = 0.05, .gloss = 2.0, .sharpness = 12};
   stage.sheet({l.x, h.y, z + 0.025}, (h.x - l.x) * right, (l.y - h.y) * down, glass, Grain(0.09));
 }
@@ -189,7 +189,7 @@ void add_curtains(Stage& stage) {
   stage.tube({{window_low.x - 0.5, y, z}, {window_high.x + 0.5, y, z}}, 0.013, 0.012, brass);
 }
 
-/// Within the room the grain is a metre; outside it grows with the distance.
+/// The grain is a metre in the room, and grows with the distance outside.
 double room_grain(const dvec3& place, double coarseness) {
   return coarseness * (1.0 + std::max(0.0, glm::length(place) - 5.0) / 4.0);
 }
@@ -213,8 +213,8 @@ Demo demo_room() {
   add_outside(stage, light.to_sun);
   add_things(stage);
   Demo demo{bake(stage, light, 3, demo_room_name), room_cameras()};
-  // Nobody sees what lies inside of boxes, but a wall's Gaussians would show through what stands close before
-  // it wherever their centres come first in depth.
+  // Removes Gaussians inside boxes, which nobody should see. A wall's Gaussians would show through things
+  // close in front of it if their centres have the smaller depth.
   std::vector<std::uint8_t> kept;
   for (std::size_t i = 0; i < demo.model.count(); ++i)
     kept.push_back(demo.model.opacity[i] > 0.0f && !stage.solids.hide(demo.model.position[i]));

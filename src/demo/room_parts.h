@@ -1,5 +1,5 @@
 #pragma once
-// What demo:room is put together from.
+// Parts of demo:room.
 
 #include "demo/scenery.h"
 
@@ -16,10 +16,10 @@ constexpr dvec3 walnut{0.42, 0.26, 0.16}, oak{0.66, 0.47, 0.29}, cream{0.90, 0.8
     white{0.90, 0.88, 0.83};
 const Material brass{.colour = {0.74, 0.56, 0.27}, .gloss = 3.0};
 
-/// Wood with its grain along u.
+/// Returns wood with its grain along u.
 Texture wooden(const dvec3& colour, double seed, double gloss = 1.5);
 
-/// Furniture, and what stands, hangs and lies about.
+/// Adds furniture and smaller things.
 void add_things(Stage& stage);
 
 }  // namespace binosplat::demo

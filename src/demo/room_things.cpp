@@ -1,4 +1,4 @@
-// demo:room: furniture, and what stands, hangs and lies about.
+// Furniture and smaller things of demo:room.
 #include <algorithm>
 #include <cmath>
 
@@ -8,7 +8,7 @@ namespace binosplat::demo {
 
 namespace {
 
-/// Turned or bent wood: its grain along v, the way along a tube or a profile; u is an angle.
+/// Returns turned or bent wood, with its grain along v, the length along a tube or a profile; u is an angle.
 Texture round_wood(const dvec3& colour) {
   return [flat = wooden(colour, 3)](double a, double v) { return flat(v, 0.02 * circle(a / (2.0 * pi)).y); };
 }
@@ -17,7 +17,7 @@ void add_table(Stage& stage) {
   stage.frame = {{0.95, 0, 0.5}};
   constexpr double radius = 0.55, top = -0.74;
   const auto plate = [=, wood = wooden(walnut, 8, 4.0)](double angle, double v) {
-    // The boards of the top run across it, whatever the ring.
+    // The boards of the top run straight across it.
     const dvec2 p = std::min(v, radius) * circle(angle / (2.0 * pi));
     Material board = wood(p.x + 7.0 * std::floor(p.y / 0.11), p.y);
     if (std::abs(std::remainder(p.y, 0.11)) < 0.006 && v < radius) board.colour *= 0.7;
@@ -31,7 +31,7 @@ void add_table(Stage& stage) {
   stage.solid(Shape::ellipsoid, {-0.2, -0.05, -0.2}, {0.2, 0.0, 0.2});
 }
 
-void add_chair(Stage& stage, const dvec3& foot, double degrees) {  // the sitter looks to low z
+void add_chair(Stage& stage, const dvec3& foot, double degrees) {  // the sitter looks towards low z
   stage.frame = turned(foot, degrees);
   constexpr double seat = -0.45;
   stage.solid_box({-0.21, seat, -0.20}, {0.21, seat + 0.03, 0.20}, {0.05, 0.025}, wooden(oak, 11));
@@ -50,7 +50,7 @@ void add_chair(Stage& stage, const dvec3& foot, double degrees) {  // the sitter
   stage.tube({{-0.21, -0.86, 0.22}, {0, -0.90, 0.285}, {0.21, -0.86, 0.22}}, 0.020, 0.02, round_wood(oak));
 }
 
-void add_armchair(Stage& stage) {  // the sitter looks to low z
+void add_armchair(Stage& stage) {  // the sitter looks towards low z
   stage.frame = turned({-1.72, 0, 0.95}, 35.0);
   const auto cloth = [](double u, double v) {
     return Material{.colour = dvec3(0.80, 0.56, 0.18) * (0.90 + 0.2 * noise(90.0 * u, 90.0 * v))};
@@ -77,7 +77,7 @@ void add_armchair(Stage& stage) {  // the sitter looks to low z
   });
 }
 
-/// The spines of books on a shelf of this height, by metres along it and from below.
+/// Returns the spines of books on a shelf of this height, by metres along it and from below.
 Material books_at(int shelf, double height, double u, double v) {
   const double warped = u / 0.036 + 0.7 * noise(11.0 * u, shelf), book = std::floor(warped) + 100.0 * shelf;
   const auto lot = [&](double which) { return hash_at(book, which); };
@@ -111,7 +111,7 @@ void add_lamp(Stage& stage) {
   stage.frame = {lamp_bulb};
   const double ceiling = room_low.y - lamp_bulb.y;
   stage.wire({{0, ceiling, 0}, {0, -0.22, 0}}, 0.004, 0.02, {.colour = {0.12, 0.11, 0.10}});
-  // The shade glows from within.
+  // The shade glows from inside.
   const auto shade = [](double angle, double) {
     const double rib = 0.9 + 0.1 * circle(16.0 * angle / (2.0 * pi)).x;
     return Material{
@@ -122,7 +122,7 @@ void add_lamp(Stage& stage) {
   stage.ellipsoid({}, {0.045, 0.055, 0.045}, 0.012, Material{.colour = {1.0, 0.95, 0.82}, .glow = 6.0});
 }
 
-/// What is painted: x and y from 0 to 1, y upwards.
+/// Returns the painting's colour; x and y run from 0 to 1, y upwards.
 dvec3 evening_by_the_sea(double x, double y) {
   if (y < 0.34) {
     const double glitter = 0.7 / (1.0 + 60.0 * (x - 0.62) * (x - 0.62)) + 0.25 * noise(9.0 * x, 50.0 * y);
@@ -132,7 +132,7 @@ dvec3 evening_by_the_sea(double x, double y) {
   return mix({0.95, 0.62, 0.36}, {0.30, 0.36, 0.56}, ramp(0.34, 1.0, y + 0.15 * fractal(3.0 * x, 7.0 * y)));
 }
 
-/// Hangs a picture behind glass, by its lower left corner.
+/// Hangs a picture behind glass; `corner` is its lower left one.
 void hang(Stage& stage, const dvec3& corner, const dvec3& u, const dvec2& size) {
   stage.frame = {corner, dmat3(u, down, glm::cross(u, down))};  // z into the wall
   stage.solid(Shape::box, {0, -size.y, -0.01}, {size.x, 0, 0.02});
@@ -146,7 +146,7 @@ void hang(Stage& stage, const dvec3& corner, const dvec3& u, const dvec2& size) 
 
 constexpr double table_top = -0.74;
 
-/// A leaf that starts at `from`, leads `along` and bends down; its upper side faces up.
+/// Adds a leaf that starts at `from`, runs `along` and bends down; its upper side faces up.
 void add_leaf(Stage& stage, const dvec3& from, const dvec3& along, const dvec2& size, const dvec3& colour) {
   constexpr double spacing = 0.006;
   const int pieces = static_cast<int>(size.x / spacing);
@@ -208,7 +208,7 @@ void add_flowers(Stage& stage) {
     const dvec3 head = (0.065 + 0.12 * hash(k, 2)) * out + (0.36 + 0.14 * hash(k, 3)) * up;
     stage.wire({-0.025 * out + 0.02 * up, neck, head}, 0.0022, 0.016, {.colour = green});
     if (k % 2 == 0) add_leaf(stage, mix(neck, head, 0.4), {-out.z, -0.5, out.x}, {0.09, 0.03}, green);
-    for (int petal = 0; petal < 16; ++petal) {  // two crowns around a yellow middle
+    for (int petal = 0; petal < 16; ++petal) {  // two rings around a yellow middle
       const dvec2 c = circle(petal / 8.0 + (petal < 8 ? 0.0 : 0.06));
       const dvec3 outwards = glm::normalize(dvec3(c.x, petal < 8 ? -0.35 : -0.9, c.y));
       stage.disc(head + 0.018 * outwards,
@@ -282,7 +282,7 @@ void add_near_plant(Stage& stage) {
   stage.lathe({}, {{0.0, 0.0}, {0.14, 0.0}, {0.14, 0.02}, {0.03, 0.04}, {0.02, 0.90}, {0.14, 0.95}}, 0.02,
               round_wood(walnut));
   stage.solid(Shape::ellipsoid, {-0.12, -0.17, -0.12}, {0.12, 0.02, 0.12});
-  // Leaves on thin stems; the nearest one reaches the viewer's arm.
+  // Leaves on thin stems; the nearest one is within the viewer's reach.
   for (int k = 0; k < 22; ++k) {
     const dvec3 outwards(circle(0.382 * k).x, 0, circle(0.382 * k).y), root = 0.17 * up + 0.02 * outwards;
     const dvec3 joint = (0.29 + 0.30 * hash(k, 91)) * up + (0.10 + 0.16 * hash(k, 92)) * outwards;

@@ -9,7 +9,7 @@ namespace {
 
 dvec3 sky_colour(const Sky& sky, const dvec3& direction) {
   const double high = -direction.y;
-  // Two ranges of hills; the farther one is higher, and hazier.
+  // Two ranges of hills; the farther one is higher and hazier.
   for (int range = 0; range < 2; ++range) {
     const double ridge = fractal(3.0 * direction.x + 9.0 * range + 5.0, 3.0 * direction.z + 7.0);
     if (high > (0.03 + 0.04 * range) * (0.3 + ridge)) continue;
@@ -21,7 +21,7 @@ dvec3 sky_colour(const Sky& sky, const dvec3& direction) {
   const double cloud = fractal(flat * direction.x + sky.clouds, flat * direction.z + 40.0);
   colour = mix(colour, dvec3(0.98, 0.97, 0.96), ramp(0.53, 0.72, cloud) * ramp(0.02, 0.16, high));
   double near_sun = std::max(0.0, glm::dot(direction, sky.to_sun));
-  for (int k = 0; k < 5; ++k) near_sun *= near_sun;  // to the power of 32
+  for (int k = 0; k < 5; ++k) near_sun *= near_sun;  // power of 32
   return colour + dvec3(0.40, 0.32, 0.18) * near_sun;
 }
 
@@ -44,7 +44,7 @@ void add_tree(Stage& stage, const dvec3& foot, double radius, const dvec3& colou
   const double own = hash_at(100.0 * foot.x, 100.0 * foot.z);
   const dvec3 middle = foot + radius * (2.1 + 0.3 * own) * up;
   const double grain = stage.grain(foot, coarseness);
-  const auto leaves = [=](double reach, double out) {  // deep inside it is dark
+  const auto leaves = [=](double reach, double out) {  // darker inside
     return Material{.colour = colour * (0.5 + 0.35 * ramp(0.25, 0.95, reach) + 0.25 * ramp(-0.2, 0.8, out))};
   };
   stage.crown(middle, radius, coarseness, leaves, static_cast<std::uint32_t>(own * 0x1p32));
@@ -56,7 +56,7 @@ void add_tree(Stage& stage, const dvec3& foot, double radius, const dvec3& colou
 }
 
 void add_sky(Stage& stage, const Sky& sky) {
-  constexpr int cells = 8;  // along an edge of a cube whose upper half is brought to a ball
+  constexpr int cells = 8;  // along an edge of a cube whose upper half is projected onto a sphere
   const auto face = [&](const dvec3& middle, const dvec3& to_right, const dvec3& upwards, int from_row) {
     for (int j = from_row; j < cells; ++j) {
       for (int i = 0; i < cells; ++i) {

@@ -10,21 +10,21 @@ namespace binosplat::demo {
 
 namespace {
 
-/// Gaussians a cell apart overlap enough to close a surface when their standard deviation is this share of
-/// the cell: at an opacity of 0.97 the corner between four of them is covered by 99 %.
+/// Standard deviation of a Gaussian as a share of the cell. Gaussians a cell apart then close a surface: at
+/// an opacity of 0.97 the corner between four of them is covered by 99 %.
 constexpr double overlap = 0.76;
-/// A sheet's outermost Gaussians lie this many cells inside its border: half transparent just there.
+/// A sheet's outermost Gaussians are this many cells inside its border, where they are half transparent.
 constexpr double margin_at_border = 0.83;
-/// Thickness of a Gaussian as a share of its smaller side, and at most: kilometres of ground must not become
-/// fog.
+/// Thickness of a Gaussian as a share of its smaller side, and the largest thickness: kilometres of ground
+/// must not become fog.
 constexpr double flatness = 0.08, thickest = 0.25;
 /// A sheet is split until its grain varies less than this, or until it has this many Gaussians in a row.
 constexpr double grain_varies = 1.5, piece_grains = 4.0;
-/// Of leaves in a crown of radius 1.
+/// Area of the leaves of a crown of radius 1.
 constexpr double crown_area = 22.0;
 
-/// How a length is divided into `count` Gaussians: the first lies `first` from its start, the others a cell
-/// apart. Where the surface goes on beyond its border, the outermost Gaussian lies half a cell inside.
+/// Divides a length into `count` Gaussians: the first lies `first` from its start, the others a cell apart.
+/// At a border where the surface continues, the outermost Gaussian is half a cell inside.
 struct Cells {
   double first, size;
   Cells(double length, std::uint64_t count, bool low_ends, bool high_ends) {
@@ -39,7 +39,7 @@ dvec3 flat(double along_u, double along_v) {
   return {u, v, std::min(thickest, flatness * std::min(u, v))};
 }
 
-/// Points of a smooth curve (Catmull-Rom) through `points`, about `step` apart.
+/// Returns points of a smooth curve (Catmull-Rom) through `points`, about `step` apart.
 std::vector<dvec3> curve(const std::vector<dvec3>& points, double step) {
   std::vector<dvec3> out;
   const std::size_t n = points.size();
@@ -57,7 +57,7 @@ std::vector<dvec3> curve(const std::vector<dvec3>& points, double step) {
   return out;
 }
 
-/// Lengths of a polyline from its start to each point.
+/// Returns the length of a polyline up to each point.
 template <typename Point>
 std::vector<double> lengths(const std::vector<Point>& points) {
   std::vector<double> sums{0.0};
@@ -66,7 +66,7 @@ std::vector<double> lengths(const std::vector<Point>& points) {
   return sums;
 }
 
-/// The material of a cell, and its mean colour: of more points, the larger the cell is.
+/// Returns the material of a cell with its mean colour; larger cells are sampled at more points.
 Material mean_material(const Surface& surface, const dvec2& middle, const dvec2& extent) {
   const double size = std::max(extent.x, extent.y);
   const int n = size < 0.05 ? 1 : size < 1.0 ? 2 : 3;
@@ -102,7 +102,7 @@ void make_sheet(const Surface& s, const std::function<void(const Disc&)>& add) {
   }
 }
 
-/// A point within the unit ball.
+/// Returns a random point in the unit ball.
 dvec3 in_ball(Random& random) {
   while (true) {
     dvec3 p;
@@ -114,7 +114,7 @@ dvec3 in_ball(Random& random) {
 
 void make_crown(const Surface& s, const std::function<void(const Disc&)>& add) {
   constexpr std::uint32_t lumps = 11;
-  constexpr double lump_radius = 0.50;  // of the crown's
+  constexpr double lump_radius = 0.50;  // of the crown's radius
   std::array<dvec3, lumps> middles;
   Random of_crown(std::uint64_t{s.seed} * 77 + 5);
   for (std::uint32_t k = 0; k < lumps; ++k)
@@ -124,7 +124,7 @@ void make_crown(const Surface& s, const std::function<void(const Disc&)>& add) {
     Random random((std::uint64_t{s.seed} << 32) + i);
     const dvec3 out = glm::normalize(in_ball(random));
     const double deep = std::max(random.uniform(), random.uniform()) * 0.35 + 0.65;
-    // A few Gaussians alone are the whole crown.
+    // With few Gaussians each one is the whole crown.
     const double shell = lump_radius * deep * (1.0 - 0.5 * size / s.u.x);
     const dvec3 place = s.count < lumps ? dvec3(0.0) : middles[i % lumps] + shell * out;
     const dvec3 normal = glm::normalize(0.5 * in_ball(random) + out + place);
@@ -174,7 +174,7 @@ double ramp(double low, double high, double x) {
 }
 
 dvec2 circle(double turn) {
-  // The series of cosine and sine at a quarter of the angle, which is then doubled twice.
+  // Series of cosine and sine at a quarter of the angle, which is then doubled twice.
   const double x = 0.5 * pi * (turn - std::floor(turn + 0.5)), s = x * x;
   dvec2 p(1.0 - s / 2.0 * (1.0 - s / 12.0 * (1.0 - s / 30.0 * (1.0 - s / 56.0 * (1.0 - s / 90.0)))),
           x * (1.0 - s / 6.0 * (1.0 - s / 20.0 * (1.0 - s / 42.0 * (1.0 - s / 72.0 * (1.0 - s / 110.0))))));
@@ -223,7 +223,7 @@ void Stage::add_pieces(const Surface& surface) {
   }
   Surface low = surface, high = surface;
   if (most <= grain_varies * least || std::max(length_u, length_v) <= piece_grains * least) {
-    // Strips much narrower than the grain are not to become needles.
+    // Strips much narrower than the grain must not become needles.
     const double columns = std::max(length_u / (here * surface.grain.u / coarseness), 1.0),
                  rows = std::max(length_v / (here * surface.grain.v / coarseness), 1.0);
     low.weight = columns * rows;
@@ -277,7 +277,7 @@ void Stage::crown(const dvec3& middle, double radius, double coarseness, const T
                   std::uint32_t seed) {
   crowns.add(Solid::Shape::ellipsoid, frame, middle - radius, middle + radius);
   const double size = radius / grain(middle, coarseness);
-  if (size < 0.6) return;  // too small to be seen
+  if (size < 0.6) return;  // too small to be visible
   Surface ball{
       .corner = frame.at(middle), .u = dvec3(radius), .texture = leaves, .crown = true, .seed = seed};
   ball.weight = crown_area * size * size;
@@ -297,7 +297,7 @@ void Stage::ellipsoid(const dvec3& middle, const dvec3& radii, double spacing, c
 void Stage::lathe(const dvec3& foot, const std::vector<dvec2>& profile, double spacing,
                   const Texture& texture, const dvec3& stretch) {
   const std::vector<double> way = lengths(profile);
-  // Each stretch between sharp corners is a surface of its own, which ends at them.
+  // Each part between sharp corners is a surface of its own, which ends there.
   std::size_t from = 0;
   for (std::size_t to = 1; to < profile.size(); ++to) {
     const auto along = [&](std::size_t k) { return glm::normalize(profile[k] - profile[k - 1]); };
@@ -330,7 +330,7 @@ void Stage::tube(const std::vector<dvec3>& points, double radius, double spacing
   const std::vector<dvec3> path = curve(points, spacing);
   const std::vector<double> way = lengths(path);
   const int around = std::max(5, static_cast<int>(std::lround(2.0 * pi * radius / spacing)));
-  dvec3 side(0.3, 0.2, 1.0);  // carried along the path, so that the rings do not twist
+  dvec3 side(0.3, 0.2, 1.0);  // transported along the path, so that the rings do not twist
   for (std::size_t i = 0; i + 1 < path.size(); ++i) {
     const double length = way[i + 1] - way[i];
     const dvec3 forward = (path[i + 1] - path[i]) / length;
@@ -348,8 +348,7 @@ void Stage::wire(const std::vector<dvec3>& points, double radius, double spacing
   const std::vector<dvec3> path = curve(points, spacing);
   for (std::size_t i = 0; i + 1 < path.size(); ++i) {
     const dvec3 along = path[i + 1] - path[i], forward = glm::normalize(along);
-    // A wire has no front: its normal is as near to upwards as it can be, which is right for light from
-    // above.
+    // A wire has no front: its normal is as near to upwards as possible, which suits light from above.
     const dvec3 upwards = std::abs(forward.y) < 0.95 ? up : -away;
     const dvec3 normal = glm::normalize(upwards - forward * glm::dot(forward, upwards));
     disc(0.5 * (path[i] + path[i + 1]), axes_from_normal(normal, forward),

@@ -8,7 +8,7 @@ namespace binosplat::demo {
 
 namespace {
 
-/// The part of a ray that lies in a half space: where gap + t * step >= 0.
+/// Intersects a ray with a half space: gap + t * step >= 0.
 void cut(double gap, double step, double& enter, double& leave) {
   if (step > 0.0) {
     enter = std::max(enter, -gap / step);
@@ -19,7 +19,7 @@ void cut(double gap, double step, double& enter, double& leave) {
   }
 }
 
-/// How far along a ray a solid is entered; `reach` if it is not before.
+/// Returns the distance along a ray at which it enters a solid; `reach` if it does not before.
 double entered(const Solid& solid, const dvec3& from, const dvec3& direction, double reach) {
   const dvec3 p = solid.to_unit * from + solid.unit_origin, d = solid.to_unit * direction;
   double enter = 0.0, leave = reach;
@@ -104,7 +104,7 @@ double Solids::way(const dvec3& from, const dvec3& direction, double reach, bool
 }
 
 bool Solids::hide(const dvec3& p) const {
-  constexpr double skin = 0.003;  // a box's own faces stay
+  constexpr double skin = 0.003;  // a box's own faces remain
   return std::any_of(solids_.begin(), solids_.end(), [&](const Solid& s) {
     if (s.shape != Solid::Shape::box || glm::clamp(p, s.low, s.high) != p) return false;
     const dvec3 deep = (1.0 - glm::abs(s.to_unit * p + s.unit_origin)) * s.half;

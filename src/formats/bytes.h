@@ -1,5 +1,5 @@
 #pragma once
-// Numbers in the bytes of a file whose least byte comes first, as all binary formats here have them.
+// Little-endian numbers in the bytes of a file.
 
 #include <bit>
 #include <cstddef>
@@ -10,7 +10,7 @@ namespace binosplat {
 
 static_assert(std::endian::native == std::endian::little, "readers take numbers from files as they are");
 
-/// The number at `at`, aligned or not. The caller has checked that its bytes are there.
+/// Returns the number at `at`, aligned or not. The caller has checked that its bytes exist.
 template <typename T>
 T load_number(const std::byte* at) {
   T value;
@@ -18,18 +18,18 @@ T load_number(const std::byte* at) {
   return value;
 }
 
-/// Puts a number at `at`, aligned or not. The caller has made room.
+/// Stores a number at `at`, aligned or not. The caller has made room.
 template <typename T>
 void store_number(std::byte* at, T value) {
   std::memcpy(at, &value, sizeof(T));
 }
 
-/// `bits` bits of a word from bit `low` on.
+/// Returns `bits` bits of a word, starting at bit `low`.
 constexpr std::uint32_t bit_field(std::uint32_t word, int low, int bits) {
   return (word >> low) & ((1u << bits) - 1u);
 }
 
-/// A half float (IEEE 754 binary16) by its bits; every one fits a float exactly.
+/// Returns the half float (IEEE 754 binary16) with these bits; every half fits a float exactly.
 inline float half_of(std::uint16_t h) {
   const std::uint32_t sign = (h & 0x8000u) << 16, exponent = (h >> 10) & 31u, fraction = h & 1023u;
   if (exponent == 0) {

@@ -27,7 +27,7 @@ namespace binosplat {
 
 namespace {
 
-/// One object of a cameras.json; every error names the file, the object's number and the key.
+/// Reads one object of a cameras.json; every error names the file, the object's number and the key.
 Camera read_camera(const JsonValue& object) {
   const auto number = [&](const char* key, double otherwise) {
     return object.has(key) ? object.at(key).number() : otherwise;
@@ -50,7 +50,7 @@ Camera read_camera(const JsonValue& object) {
   return camera;
 }
 
-/// INRIA's cameras.json.
+/// Reads INRIA's cameras.json.
 std::vector<Camera> load_list(const std::filesystem::path& path, const nlohmann::json& root) {
   if (root.empty()) fail("{} holds no cameras", path.string());
   std::vector<Camera> cameras;
@@ -70,7 +70,7 @@ std::vector<Camera> load_list(const std::filesystem::path& path, const nlohmann:
   return cameras;
 }
 
-/// Where cameras may lie in a folder; the first that is there is taken.
+/// Returns the first existing source of cameras in a folder.
 std::optional<std::filesystem::path> cameras_in(const std::filesystem::path& folder) {
   std::error_code ignored;
   for (const char* name : {"cameras.json", "transforms.json", "transforms_train.json"}) {
@@ -101,7 +101,7 @@ std::vector<Camera> load_any(const std::filesystem::path& named, const std::opti
       path.string(), root.type_name());
 }
 
-/// How a name ends that has a number before that: as a photo's, or as one of a pair's.
+/// Returns the ending of a name that stays behind a number, as in NAME_2.png: a photo's, or a pair's.
 std::string_view ending_of(std::string_view name) {
   for (const std::string_view ending : {".png", ".jpg", ".jpeg", "_left", "_right"}) {
     if (lowered(std::string(name)).ends_with(ending)) return name.substr(name.size() - ending.size());
@@ -109,12 +109,12 @@ std::string_view ending_of(std::string_view name) {
   return "";
 }
 
-/// Gives cameras whose name another one has before them a number, as in NAME_2, that makes a new name of it.
-/// Of NeRF's synthetic scenes INRIA's trainer calls views of the test and of the training the same.
+/// Makes names unique: a camera whose name occurred before becomes NAME_2 or so. INRIA's trainer gives equal
+/// names to test and training views of NeRF's synthetic scenes.
 void tell_apart(const std::filesystem::path& path, std::vector<Camera>& cameras) {
   std::set<std::string> names, met;
   for (const Camera& camera : cameras) {
-    // They become names of files, and stand on terminals.
+    // Names become file names and are printed on terminals.
     if (std::any_of(camera.name.begin(), camera.name.end(),
                     [](unsigned char c) { return std::iscntrl(c) != 0; }))
       fail("{}: the name {:?} has a control character; take it out", path.string(), camera.name);
@@ -211,7 +211,7 @@ std::optional<std::filesystem::path> find_photos(const std::filesystem::path& ca
   fs::path folder = fs::is_directory(path, ignored) ? path : path.parent_path();
   // The names in such files are relative to their own folder.
   if (path.filename().string().starts_with("transforms")) return folder;
-  // A reconstruction's folder lies in the scene's, up to three levels deep.
+  // A reconstruction's folder is up to three levels below the scene's.
   const int levels = is_colmap(folder) ? 4 : 1;
   for (int up = 0; up < levels; ++up, folder = folder.parent_path()) {
     for (const char* name : {"images", "photos"}) {

@@ -13,9 +13,9 @@ namespace binosplat {
 namespace {
 
 constexpr std::size_t evenly = 64;
-constexpr int rounds = 24;  // of Lloyd's: later ones change the error by less than a hundredth
+constexpr int rounds = 24;  // of Lloyd's algorithm: later ones change the error by less than a hundredth
 
-/// Sums of the values up to each, so that the mean of any stretch of them is at hand.
+/// Returns prefix sums, which give the mean of any range of values.
 std::vector<double> sums_of(const std::vector<float>& values) {
   std::vector<double> sums(values.size() + 1, 0.0);
   std::inclusive_scan(values.begin(), values.end(), sums.begin() + 1, std::plus<>(), 0.0);
@@ -27,7 +27,7 @@ struct Entry {
   bool stays = false;
 };
 
-/// Moves those that may to the mean of the values nearest to them.
+/// Moves the free entries to the mean of the values nearest to them.
 void move_to_means(std::vector<Entry>& entries, const std::vector<float>& values,
                    const std::vector<double>& sums) {
   std::sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) { return a.value < b.value; });
@@ -74,7 +74,7 @@ class PaletteMaker {
       const auto end = order_.begin() + static_cast<std::ptrdiff_t>(cell.end);
       const auto cut =
           std::partition(begin, end, [&](std::uint32_t i) { return row_(i)[cell.axis] < cell.middle; });
-      if (cut == begin || cut == end) {  // all the same but for rounding
+      if (cut == begin || cut == end) {  // all are equal but for rounding
         done.push_back(cell);
         continue;
       }
@@ -89,7 +89,7 @@ class PaletteMaker {
  private:
   using Sums = std::vector<double>;
 
-  /// Adds up add(row, sums) over rows, in an order that is always the same.
+  /// Adds up add(row, sums) over rows, in a fixed order.
   template <typename Add>
   Sums sum(std::size_t begin, std::size_t end, const Add& add) const {
     constexpr std::size_t worth_a_thread = 4096;

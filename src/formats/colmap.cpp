@@ -21,21 +21,21 @@ bool is_there(const fs::path& path) {
   return fs::is_regular_file(path, ignored);
 }
 
-/// How much of a lens's parameters a pinhole has, too, and what the others do: src/colmap/sensor/models.h in
-/// COLMAP. Nothing for lenses that no plane holds. A fisheye without distortion is none that a plane holds
-/// either: it has equal angles at equal distances.
+/// The pinhole part of a lens's parameters, and the distortion by the others: src/colmap/sensor/models.h in
+/// COLMAP. Nothing for lenses without a flat picture: that includes fisheyes without distortion, whose
+/// distances are proportional to angles.
 struct PlaneLens {
   std::size_t focal_lengths;
   Distortion distortion;
 };
 
-/// Fitzgibbon's: a ray goes through what is drawn at u / (1 + k u^2).
+/// Fitzgibbon's division model: the pinhole place of a point drawn at u is u / (1 + k u^2).
 Distortion division(double k) {
   if (k == 0.0) return {};
   return [k](const glm::dvec2& at) { return 2.0 / (1.0 + std::sqrt(1.0 - 4.0 * k * glm::dot(at, at))) * at; };
 }
 
-/// Devernay's and Faugeras's: as far out as the angle is wide.
+/// Devernay and Faugeras: the distance from the centre is proportional to the angle.
 Distortion field_of_view(double omega) {
   if (omega == 0.0) return {};
   return [omega](const glm::dvec2& at) {
@@ -44,7 +44,7 @@ Distortion field_of_view(double omega) {
   };
 }
 
-/// The enhanced unified model of Khomutenko.
+/// Khomutenko's enhanced unified model.
 Distortion unified(double alpha, double beta) {
   if (alpha == 0.0 || beta == 0.0) return {};
   return [alpha, beta](const glm::dvec2& at) {
@@ -92,7 +92,7 @@ Camera camera_of(const fs::path& file, const ColmapImage& image, const ColmapLen
   camera.cy = lens.parameters[second + 2];
   check_lens(where, camera);
 
-  // World to camera is R(q) p + t: the rows of R are the camera's axes.
+  // World to camera is R(q) p + t, so the rows of R are the camera's axes.
   const glm::dvec4& q = image.rotation;
   const double w = q.x, x = q.y, y = q.z, z = q.w;
   camera.rotation = glm::dmat3({1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)},

@@ -46,9 +46,9 @@ std::size_t parameters_of(int model) {
   return model >= 0 && model < std::ssize(colmap_models) ? colmap_models[model].parameters : 0;
 }
 
-/// A quaternion of length 1; a pose without one is refused.
+/// Normalises a quaternion; throws Error for zero and for values that are not finite.
 glm::dvec4 unit(const std::string& where, const glm::dvec4& q) {
-  // Squares of its numbers may be too large or too small for a double; not so next to the largest of them.
+  // Its squares may overflow or underflow a double; divided by the largest component they do not.
   const glm::dvec4 size = glm::abs(q), shrunk = q / std::max({size.x, size.y, size.z, size.w});
   const double length = glm::length(shrunk);
   if (!std::isfinite(length)) fail("{}: the rotation is no quaternion (all zero, or not finite)", where);
@@ -61,12 +61,12 @@ void check_pose(const std::string& where, const ColmapImage& image) {
   }
 }
 
-/// Takes one number after the other from a file's bytes.
+/// Reads the numbers of a file one after the other.
 class Cursor {
  public:
   Cursor(const std::filesystem::path& file, std::span<const std::byte> bytes) : file_(file), bytes_(bytes) {}
 
-  /// Says in errors which record is being read.
+  /// Sets the record that errors name.
   void at_record(const char* kind, std::uint64_t index, std::uint64_t count) {
     record_ = fmt::format("{} {} of {}, counted from 0,", kind, index, count);
   }
@@ -107,14 +107,14 @@ class Cursor {
   std::string record_ = "the number of records";
 };
 
-/// The lines of a text, numbered from 1.
+/// Reads the lines of a text, numbered from 1.
 class Lines {
  public:
   Lines(const std::filesystem::path& file, std::string_view text) : file_(file), text_(text) {
-    if (text_.starts_with("\xef\xbb\xbf")) at_ = 3;  // a mark of UTF-8, as editors leave it
+    if (text_.starts_with("\xef\xbb\xbf")) at_ = 3;  // a byte order mark of UTF-8, as editors write it
   }
 
-  /// The next line, whatever is in it, without blanks at its end; false at the end.
+  /// Reads the next line, of any content, without trailing blanks; returns false at the end.
   bool next(std::string_view& line) {
     if (at_ >= text_.size()) return false;
     const std::size_t end = std::min(text_.find('\n', at_), text_.size());
@@ -125,7 +125,7 @@ class Lines {
     return true;
   }
 
-  /// The next line that is no comment.
+  /// Reads the next line that is no comment.
   bool next_no_comment(std::string_view& line) {
     while (next(line)) {
       const std::size_t first = line.find_first_not_of(" \t");
@@ -134,7 +134,7 @@ class Lines {
     return false;
   }
 
-  /// The next line that is neither blank nor a comment.
+  /// Reads the next line that is neither blank nor a comment.
   bool next_record(std::string_view& line) {
     while (next_no_comment(line)) {
       if (!line.empty()) return true;
@@ -151,14 +151,14 @@ class Lines {
   std::size_t number_ = 0;
 };
 
-/// A number as COLMAP reads it, with or without a plus sign.
+/// Parses a number as COLMAP does, with an optional plus sign.
 std::optional<double> number_in(std::string_view word) {
   if (word.starts_with('+')) word.remove_prefix(1);
   const std::optional<double> value = take_real(word);
   return word.empty() ? value : std::nullopt;
 }
 
-/// A whole one may be written as 160.0.
+/// Accepts whole numbers written as 160.0.
 template <typename T>
 T parse_number(const Lines& lines, std::string_view word, const char* what) {
   const std::optional<double> value = number_in(word);
@@ -172,13 +172,13 @@ bool are_numbers(std::span<const std::string_view> words) {
   return std::ranges::all_of(words, [](std::string_view word) { return number_in(word).has_value(); });
 }
 
-/// Whether a line has points that an image shows, or none: X Y POINT3D_ID of each.
+/// Returns whether a line lists an image's points, X Y POINT3D_ID of each, or is empty.
 bool are_points(std::string_view line) {
   const std::vector<std::string_view> words = words_of(line);
   return words.size() % 3 == 0 && are_numbers(words);
 }
 
-/// The fields of an image's line, of which the name is all that is left: cameras call photos "IMG (1).jpg".
+/// Splits an image's line. The name is the rest of the line: cameras name photos "IMG (1).jpg".
 std::vector<std::string_view> fields_of_image(std::string_view line) { return words_of(line, 10); }
 
 bool is_image(std::string_view line) {
@@ -209,7 +209,7 @@ std::map<std::uint32_t, ColmapLens> colmap_lenses(const std::filesystem::path& p
     lens.model = cursor.take<std::int32_t>();
     lens.width = cursor.take<std::uint64_t>();
     lens.height = cursor.take<std::uint64_t>();
-    // Where its parameters end is not known either.
+    // The number of its parameters is unknown, too.
     if (colmap_model_name(lens.model).empty())
       fail("{}: camera {} has the model {}, which is not known (0 to 17 are)", path.string(), lens.id,
            lens.model);
@@ -272,7 +272,7 @@ std::vector<ColmapImage> colmap_images_text(const std::filesystem::path& path) {
   const MappedFile file(path);
   Lines lines(path, as_text(file.bytes()));
   std::vector<ColmapImage> images;
-  bool may_be_points = false;  // the next line, of the image before: programs leave out those without any
+  bool may_be_points = false;  // the next line may be the last image's; some programs omit empty ones
   for (std::string_view line; lines.next_no_comment(line);) {
     const bool points = std::exchange(may_be_points, false);
     if (line.empty() || (points && are_points(line))) continue;

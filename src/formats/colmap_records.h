@@ -1,5 +1,5 @@
 #pragma once
-// The records of COLMAP's files as they stand there.
+// The records of COLMAP's files, as stored.
 
 #include <cstdint>
 #include <filesystem>
@@ -13,10 +13,10 @@ namespace binosplat {
 
 struct ColmapLens {
   std::uint32_t id = 0;
-  int model = 0;            // COLMAP's number of it
+  int model = 0;            // COLMAP's number
   std::uint64_t width = 0;  // px
   std::uint64_t height = 0;
-  std::vector<double> parameters;  // as many as the model has; none of a model that is not known
+  std::vector<double> parameters;  // as many as the model has; none for an unknown model
 };
 
 struct ColmapImage {
@@ -27,10 +27,10 @@ struct ColmapImage {
   std::string name;
 };
 
-/// "" for a number that none has.
+/// Returns the name of a lens model, or "" for an unknown number.
 std::string_view colmap_model_name(int model);
 
-/// Each reads a whole file and throws Error naming it and the record where it is damaged or cut short.
+/// Each reads a whole file. They throw Error naming the file and the record if it is damaged or cut short.
 std::map<std::uint32_t, ColmapLens> colmap_lenses(const std::filesystem::path& path);
 std::map<std::uint32_t, ColmapLens> colmap_lenses_text(const std::filesystem::path& path);
 std::vector<ColmapImage> colmap_images(const std::filesystem::path& path);

@@ -20,20 +20,21 @@ constexpr std::size_t plain_fields = 12;  // without the bounds of colours
 constexpr const char* vertex_fields[] = {"packed_position", "packed_rotation", "packed_scale",
                                          "packed_color"};
 
-/// What is read of an element: where its rows begin, and where in them the wanted properties lie.
+/// An element's rows: their first byte, and the offsets of the wanted properties.
 struct PackedRows {
   std::size_t at = 0;
   std::size_t bytes = 0;  // of a row
   std::vector<std::size_t> offsets;
 };
 
-/// 11, 10 and 11 bits as three fractions, the highest bits first.
+/// Unpacks 11, 10 and 11 bits as three fractions, from the highest bits on.
 glm::dvec3 fractions(std::uint32_t word) {
   return {bit_field(word, 21, 11) / 2047.0, bit_field(word, 11, 10) / 1023.0,
           bit_field(word, 0, 11) / 2047.0};
 }
 
-/// The largest of w, x, y, z is left out (the highest two bits say which), the others have 10 bits each.
+/// Unpacks a quaternion: the highest two bits name the omitted largest of w, x, y, z; the others have 10 bits
+/// each.
 glm::vec4 rotation_of(std::uint32_t word) {
   SmallestThree three{static_cast<int>(bit_field(word, 30, 2))};
   for (int k = 0; k < 3; ++k)
@@ -41,7 +42,7 @@ glm::vec4 rotation_of(std::uint32_t word) {
   return three.quaternion();
 }
 
-/// A byte of the harmonics: the middle of its step, but for the two ends.
+/// Decodes a byte of the harmonics: the middle of its step, except at both ends.
 float harmonic_of(std::byte stored) {
   const int b = std::to_integer<int>(stored);
   const double n = b == 0 ? 0.0 : b == 255 ? 1.0 : (b + 0.5) / 256.0;
@@ -76,7 +77,7 @@ class CompressedPlyReader {
   }
 
  private:
-  /// Walks the elements in the order of their data.
+  /// Finds the elements in the order of their data.
   void find_elements() {
     std::size_t at = header_.data;
     for (const PlyElement& element : header_.elements) {
@@ -138,7 +139,7 @@ class CompressedPlyReader {
     }
   }
 
-  /// Three numbers of a chunk from `field` on, and the three after them: two ends.
+  /// Interpolates between three numbers of a chunk, from `field` on, and the three after them.
   glm::dvec3 between(std::size_t chunk, std::size_t field, const glm::dvec3& fraction) const {
     const std::byte* row = bytes_.data() + chunks_.at + chunk * chunks_.bytes;
     glm::dvec3 value;
@@ -175,7 +176,7 @@ class CompressedPlyReader {
   const PlyHeader& header_;
   PackedRows chunks_, vertices_, harmonics_;
   std::size_t chunks_count_ = 0, count_ = 0, harmonics_count_ = 0;
-  bool coloured_ = false;  // chunks have the bounds of colours
+  bool coloured_ = false;  // chunks have bounds of colours
   int degree_ = 0;
 };
 

@@ -10,7 +10,7 @@ namespace {
 
 using namespace std::string_view_literals;
 
-/// What a content is, for people, and how it begins; empty where that tells nothing.
+/// A content's description for errors, and its first bytes; empty if those do not identify it.
 struct Kind {
   Content content;
   std::string_view words;
@@ -45,10 +45,10 @@ bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n'; 
 
 bool is_text(char c) { return static_cast<unsigned char>(c) >= 0x20 || is_blank(c); }
 
-/// Whether bytes from 0x80 on are characters of UTF-8; the last one may be truncated. Of one Gaussian in a
-/// .splat no byte need be below 0x20, but hardly ever are they such characters.
+/// Returns whether bytes from 0x80 on form UTF-8; the last character may be cut. A .splat of one Gaussian may
+/// have no byte below 0x20, but hardly ever valid UTF-8.
 bool is_utf8(std::string_view text) {
-  int following = 0;  // bytes that belong to the character at hand
+  int following = 0;  // bytes left of the current character
   for (const char c : text) {
     const int ones = std::countl_one(static_cast<unsigned char>(c));
     if ((following > 0) != (ones == 1) || ones > 4) return false;

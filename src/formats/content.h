@@ -1,5 +1,5 @@
 #pragma once
-// What a file is, by its first bytes.
+// Recognises files by their first bytes.
 
 #include <cstddef>
 #include <span>
@@ -32,14 +32,15 @@ enum class Content {
 
 Content content_of(std::span<const std::byte> bytes);
 
-/// For the end of an error's text: "a PNG picture", "a git-LFS pointer, ... (fetch the file with: git lfs
-/// pull)".
+/// Describes a content for the end of an error's text: "a PNG picture", "a git-LFS pointer, ... (fetch the
+/// file with: git lfs pull)".
 std::string_view describe(Content content);
 
-/// A piece of a file for the text of an error: 40 characters at most, what is not printable ASCII as '?'.
+/// Quotes a part of a file for an error's text: at most 40 characters, non-printable or non-ASCII ones as
+/// '?'.
 std::string quoted(std::string_view text);
 
-/// The bytes as characters.
+/// Views bytes as characters.
 inline std::string_view as_text(std::span<const std::byte> bytes) {
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }

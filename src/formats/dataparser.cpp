@@ -18,15 +18,15 @@ struct Similarity : RigidTransform {
   double scale = 1.0;
 };
 
-// What ns-process-data did to the poses before it wrote them; nothing for COLMAP's own. `is_moved` is false
-// where they are in no world that a dataparser knows.
+// Returns the transform that ns-process-data applied to the poses before it wrote them; the identity for
+// COLMAP's own. Sets `is_moved` to false if no dataparser uses these poses' world.
 Similarity applied(const fs::path& cameras, bool& is_moved) {
   std::error_code ignored;
   is_moved = true;
   const fs::path cameras_file = resolve_cameras(cameras);
   if (fs::is_directory(cameras_file, ignored)) return {};
   const MappedFile file(cameras_file);
-  is_moved = content_of(file.bytes()) != Content::ply;  // of the model's own
+  is_moved = content_of(file.bytes()) != Content::ply;  // false for the model's own camera
   if (!is_moved) return {};
   const nlohmann::json root = parse_json(cameras_file.string(), as_text(file.bytes()));
   is_moved = is_transforms(root);
@@ -36,7 +36,7 @@ Similarity applied(const fs::path& cameras, bool& is_moved) {
   if (value.has("applied_transform")) {
     done = {read_rows(value.at("applied_transform"))};
   } else if (fs::exists(cameras_file.parent_path() / "colmap/sparse/0", ignored)) {
-    // Files from before the key was written.
+    // Older files lack the key.
     done.rotation = glm::dmat3(0, 1, 0, 1, 0, 0, 0, 0, -1);
   }
   if (value.has("applied_scale")) done.scale = value.at("applied_scale").above_zero();

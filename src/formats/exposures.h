@@ -1,6 +1,6 @@
 #pragma once
-// The exposures that INRIA's training leaves in exposure.json: what it made of each view's picture before it
-// compared it with the photo (train_test_exp), since photos of one scene differ in exposure and white.
+// The exposures in exposure.json of INRIA's training (train_test_exp). Photos of one scene differ in exposure
+// and white balance, so the training maps each view's picture by these before it compares it with the photo.
 
 #include <cstddef>
 #include <filesystem>
@@ -14,19 +14,19 @@ class Exposures {
  public:
   Exposures() = default;  // none
 
-  /// Reads a file: by the name of each view three rows of four numbers. As INRIA's renderer has it, a colour
-  /// is a row before the first three columns, and the last column is added. Throws Error naming the file, the
-  /// view and the place for what is no such thing.
+  /// Reads a file: three rows of four numbers by view name. As in INRIA's renderer, a colour is a row vector
+  /// times the first three columns, plus the last column. Throws Error naming the file, the view and the
+  /// place if it is invalid.
   explicit Exposures(const std::filesystem::path& file);
 
-  /// By a view's name as it stands, or else without a picture's ending; nothing is changed of a view that is
-  /// not there. For base/image.h, exposed().
+  /// Returns the exposure of a view by its name, with or without a picture's ending, for exposed() of
+  /// base/image.h. A missing view gets the identity.
   glm::mat4x3 of(const std::string& view) const;
   bool has(const std::string& view) const { return find(view) != nullptr; }
 
   const std::filesystem::path& file() const { return file_; }
   std::size_t count() const { return by_name_.size(); }
-  /// Whether they change any picture. The trainer writes the file without train_test_exp, too.
+  /// Returns whether any picture changes: the trainer writes the file without train_test_exp, too.
   bool change_any() const;
 
  private:
@@ -34,7 +34,7 @@ class Exposures {
 
   std::filesystem::path file_;
   std::map<std::string, glm::mat4x3> by_name_;
-  std::map<std::string, std::string> by_stem_;  // names; empty where two have this stem
+  std::map<std::string, std::string> by_stem_;  // names by stem; empty if two have this stem
 };
 
 }  // namespace binosplat

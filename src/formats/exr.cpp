@@ -30,7 +30,7 @@ namespace {
 constexpr const char* encoding_name = "binosplatEncoding";
 constexpr const char* coverage_name = "coverage";
 
-/// OpenEXR compresses in threads of its own, none unless told.
+/// OpenEXR compresses in its own threads, and has none by default.
 void use_all_cores() {
   static const bool once = [] {
     Imf::setGlobalThreadCount(static_cast<int>(std::thread::hardware_concurrency()));
@@ -51,7 +51,7 @@ Imf::Compression compression_of(ExrCompression compression) {
   return Imf::NO_COMPRESSION;
 }
 
-/// What OpenEXR writes, kept in memory: on a file of its own it would swallow a full disk in a destructor.
+/// Keeps OpenEXR's output in memory: its own file stream ignores a full disk in a destructor.
 class MemoryStream : public Imf::OStream {
  public:
   explicit MemoryStream(const char* name) : Imf::OStream(name) {}
@@ -74,10 +74,10 @@ class MemoryStream : public Imf::OStream {
 struct Plane {
   std::string name;
   std::vector<float> values;
-  std::vector<half> halves;  // instead of values where the channel is stored so
+  std::vector<half> halves;  // replaces `values` if the channel is stored as halves
 };
 
-/// The channels of a picture, their names after `prefix`.
+/// Returns the channels of a picture, named with `prefix`.
 std::vector<Plane> planes_of(const Picture& picture, const std::string& prefix, const ExrOptions& options) {
   const Image image = composite(picture, options.background);
   const std::size_t count = picture.colour.size(), channels = static_cast<std::size_t>(image.channels);
@@ -135,7 +135,7 @@ void write_planes(Imf::OStream& stream, int width, int height, std::vector<Plane
   file.writePixels(height);
 }
 
-/// The channels that make an Image: R G B or Y, and A unless the picture holds its background.
+/// Returns the channels of an Image: R G B or Y, and A unless the colours include the background.
 std::vector<std::string> wanted_channels(const std::filesystem::path& path,
                                          const Imf::ChannelList& channels) {
   std::vector<std::string> wanted;
@@ -168,12 +168,12 @@ std::vector<std::string> wanted_channels(const std::filesystem::path& path,
   return wanted;
 }
 
-/// Px of a window that OpenEXR has found to be in order.
+/// Size of a window that OpenEXR has validated, px.
 glm::ivec2 size_of(const Imath::Box2i& window) {
   return {window.max.x - window.min.x + 1, window.max.y - window.min.y + 1};
 }
 
-/// The part of a picture of the data window that lies in the display window, and 0 around it.
+/// Crops a picture of the data window to the display window, and fills the rest with 0.
 Image in_display_window(const Image& stored, const Imath::Box2i& data, const Imath::Box2i& display) {
   const glm::ivec2 size = size_of(display);
   Image image(size.x, size.y, stored.channels);
@@ -190,13 +190,13 @@ Image in_display_window(const Image& stored, const Imath::Box2i& data, const Ima
   return image;
 }
 
-/// Reads the wanted channels of the data window as they are stored.
+/// Reads the wanted channels of the data window, unconverted.
 Image read_channels(Imf::InputFile& file, const std::vector<std::string>& wanted) {
   const Imath::Box2i window = file.header().dataWindow();
   const glm::ivec2 size = size_of(window);
   Image image(size.x, size.y, static_cast<int>(wanted.size()));
   const std::size_t step = sizeof(float) * wanted.size();
-  // OpenEXR fills one slice a channel; of Y that stands for R, G and B the others are copied below.
+  // OpenEXR fills one slice a channel; Y is copied to R, G and B below.
   Imf::FrameBuffer frame;
   for (std::size_t c = 0; c < wanted.size(); ++c) {
     frame.insert(wanted[c], Imf::Slice::Make(Imf::FLOAT, &image.data[c], window, step,
@@ -211,7 +211,7 @@ Image read_channels(Imf::InputFile& file, const std::vector<std::string>& wanted
   return image;
 }
 
-/// Reads the first line and the last one, of which one stands at the end of the file.
+/// Reads the first and the last line: one of them is at the end of the file.
 void read_ends(Imf::InputFile& file, const std::vector<std::string>& wanted) {
   const Imath::Box2i window = file.header().dataWindow();
   std::vector<float> line(static_cast<std::size_t>(size_of(window).x));
@@ -224,13 +224,13 @@ void read_ends(Imf::InputFile& file, const std::vector<std::string>& wanted) {
   file.readPixels(window.max.y);
 }
 
-/// Whether pixels are stored as display values.
+/// Returns whether pixels are stored as display values.
 bool is_display(const Imf::Header& header) {
   const auto* encoding = header.findTypedAttribute<Imf::StringAttribute>(encoding_name);
   return encoding != nullptr && encoding->value() == "display";
 }
 
-/// What `work` returns, with errors that begin with `what` in the place of OpenEXR's own, which name no file.
+/// Calls `work`. Errors begin with `what` and replace OpenEXR's own, which name no file.
 template <typename Work>
 auto with_errors(const std::string& what, const Work& work) {
   use_all_cores();
@@ -269,7 +269,7 @@ double linear_to_srgb(double v) {
 
 namespace {
 
-/// Of one picture, or of a default view and those that are named.
+/// Encodes one picture, or a default view and further named views.
 std::string bytes_of(const std::filesystem::path& path, const std::vector<const Picture*>& pictures,
                      const Imf::StringVector& views, const ExrOptions& options) {
   return with_errors("cannot write " + path.string(), [&] {
@@ -352,13 +352,13 @@ glm::ivec2 exr_size(const std::filesystem::path& path, std::span<const std::byte
 bool is_whole_exr(const std::filesystem::path& path, std::span<const std::byte> bytes) {
   check_exr_header(path, bytes, {});
   return read_file(path, [](Imf::InputFile& file) {
-    // Of a block of what is written here.
+    // Lines of a block in files written here.
     const int lines = file.header().compression() == Imf::ZIP_COMPRESSION ? 16 : 1;
     const Imath::Box2i window = file.header().dataWindow();
     for (int y = window.min.y; y <= window.max.y; y += lines) {
       const char* block = nullptr;
       int size = 0;
-      file.rawPixelData(y, block, size);  // throws where it is cut
+      file.rawPixelData(y, block, size);  // throws if it is cut
     }
     return file.isComplete();
   });

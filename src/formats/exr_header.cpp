@@ -14,7 +14,7 @@ namespace binosplat {
 
 namespace {
 
-/// The headers of a file as OpenEXR's C library reads them, which takes no memory on their word.
+/// Reads a file's headers with OpenEXR's C library, which allocates nothing by their numbers.
 class ExrHeaders {
  public:
   ExrHeaders(const std::filesystem::path& path, std::span<const std::byte> bytes)
@@ -40,7 +40,8 @@ class ExrHeaders {
     const exr_result_t result = exr_start_read(&context, path.c_str(), &how);
     context_.reset(context);
     check(result);
-    // What the library goes on after, the C++ library that reads the pixels may take for something else.
+    // The C library continues after faults that the C++ library, which reads the pixels, may interpret
+    // otherwise.
     if (!fault_.empty()) check(EXR_ERR_UNKNOWN);
   }
 
@@ -50,7 +51,7 @@ class ExrHeaders {
     return count;
   }
 
-  /// Throws Error for a part whose pixels the file cannot hold, or that are beyond `limit`.
+  /// Throws Error if the file cannot hold a part's pixels, or they exceed `limit`.
   void check_part(int part, const PictureLimit& limit) const {
     exr_attr_box2i_t data, shown;
     exr_compression_t compression;
@@ -65,7 +66,8 @@ class ExrHeaders {
     const std::int64_t shown_width = extent(shown.min.x, shown.max.x),
                        shown_height = extent(shown.min.y, shown.max.y);
 
-    // Of one colour all over, 7,000 px a byte were seen with DWA, 500 with the others, of up to 4 channels.
+    // For pictures of one colour, measured up to 7,000 px a byte with DWA and 500 with the others, for up to
+    // 4 channels.
     const bool dwa = compression == EXR_COMPRESSION_DWAA || compression == EXR_COMPRESSION_DWAB;
     const int most = (dwa ? 16384 : 1024) * 4 / std::clamp(channels->num_channels, 4, 4096);
     const auto check_window = [&](std::int64_t w, std::int64_t h) {
@@ -73,14 +75,14 @@ class ExrHeaders {
     };
     check_window(width, height);
     check_room(path_, width, height, limit);
-    // What is shown around the data takes no bytes.
-    constexpr std::int64_t no_reason = std::int64_t{1} << 24;  // px: 4096 x 4096
+    // The area around the data window takes no bytes.
+    constexpr std::int64_t no_reason = std::int64_t{1} << 24;  // px that are always allowed: 4096 x 4096
     if (std::min(shown_width, shown_height) < 1 || shown_width > no_reason / shown_height)
       check_window(shown_width, shown_height);
     check_room(path_, shown_width, shown_height, limit);
 
-    // OpenEXR reads blocks of whole lines or rows of tiles, and makes room for a whole one even where the
-    // picture is smaller.
+    // OpenEXR reads blocks of whole lines or rows of tiles, and allocates a whole block even for smaller
+    // pictures.
     const bool tiled = storage == EXR_STORAGE_TILED || storage == EXR_STORAGE_DEEP_TILED;
     std::uint32_t tile_width = 1, tile_height = 1;
     std::int32_t lines = 1, blocks = 0;
@@ -91,10 +93,10 @@ class ExrHeaders {
     }
     const std::int64_t block_height = tiled ? std::int64_t{tile_height} : lines;
     const std::int64_t row = std::max(width, std::int64_t{tile_width});
-    constexpr std::int64_t small = std::int64_t{1} << 22;  // px that need no reason
+    constexpr std::int64_t small = std::int64_t{1} << 22;  // px that are always allowed
     if (row > small / block_height) check_window(row, block_height);
 
-    // A block takes 16 bytes at least: its place in a table, its own place and size.
+    // A block takes at least 16 bytes: its entry in a table, its position and its size.
     check(exr_get_chunk_count(context_.get(), part, &blocks));
     if (blocks < 0 || static_cast<std::size_t>(blocks) > bytes_.size() / 16) {
       fail("{} is damaged or cut short: its header promises {} blocks, which {} bytes cannot hold",
@@ -122,7 +124,7 @@ class ExrHeaders {
   const std::filesystem::path& path_;
   std::span<const std::byte> bytes_;
   std::unique_ptr<std::remove_pointer_t<exr_context_t>, Finish> context_;
-  std::string fault_;  // the first
+  std::string fault_;  // the first one
 };
 
 }  // namespace

@@ -30,8 +30,8 @@ std::string unquoted(std::string_view text) {
   return std::string(is_quoted(text) ? text.substr(1, text.size() - 2) : text);
 }
 
-/// A value as a word. What is text, and reads like a truth value, is put into quotes, so that none takes it
-/// for one; YAML 1.1, which trainers write, has yes and on for true.
+/// Converts a value to a word. Text that reads like a truth value is quoted, so that it is not mistaken for
+/// one. YAML 1.1, which trainers write, also has yes and on for true.
 std::string word_of(const YAML::Node& node) {
   if (node.IsNull()) return "null";
   constexpr std::string_view yes[] = {"true", "True", "TRUE", "yes", "Yes", "YES", "on", "On", "ON"};
@@ -47,12 +47,12 @@ std::string word_of(const YAML::Node& node) {
 
 struct FlatYaml {
   FlatValues values;
-  std::vector<YAML::Node> above;  // the mappings around what is added
+  std::vector<YAML::Node> above;  // mappings around the current value
   std::size_t added = 0;
 
-  /// Of two values of a key the last one counts, with all that is in it.
+  /// Of duplicate keys the last one counts, with all of its content.
   void add(const YAML::Node& node, const std::string& path) {
-    // References multiply what a file holds, and may name what they are part of.
+    // References multiply a file's content, and may be circular.
     constexpr std::size_t most = 20000, longest = 500;
     if (++added > most) throw YAML::Exception(node.Mark(), fmt::format("more than {} values", most));
     if (path.size() > longest || std::ranges::any_of(above, [&](const YAML::Node& n) { return n.is(node); }))
@@ -70,7 +70,7 @@ struct FlatYaml {
   }
 };
 
-/// Where a value of a Namespace ends: at a comma or the end, outside quotes and brackets.
+/// Returns the end of a Namespace's value: the comma or the end, outside quotes and brackets.
 std::size_t end_of_value(std::string_view text) {
   int depth = 0;
   char quote = '\0';
@@ -96,7 +96,7 @@ std::size_t end_of_value(std::string_view text) {
 }  // namespace
 
 FlatValues yaml_values(const std::string& source, std::string_view text) {
-  // In UTF-16, which begins with its mark, zeros are halves of letters.
+  // UTF-16 begins with its byte order mark; its zeros are halves of letters.
   const auto bad = std::ranges::find_if(
       text, [](unsigned char c) { return (c < 0x20 && c != '\t' && c != '\n' && c != '\r') || c == 0x7f; });
   if (bad != text.end() && !text.starts_with("\xff\xfe") && !text.starts_with("\xfe\xff")) {

@@ -27,7 +27,7 @@ constexpr const char* packed_names[] = {"KHR_gaussian_splatting_compression_spz_
                                         "KHR_gaussian_splatting_compression_spz",
                                         "KHR_spz_gaussian_splats_compression", "KHR_spz_compression"};
 
-/// What this reader does as it is asked to: a file that requires anything else must not be drawn.
+/// Extensions that this reader implements; a file that requires any other must not be drawn.
 constexpr const char* also_known[] = {splatting_extension, "EXT_mesh_gpu_instancing", "KHR_node_visibility",
                                       "KHR_mesh_quantization"};
 
@@ -36,7 +36,7 @@ bool is_known(const std::string& name) {
   return std::ranges::any_of(also_known, is) || std::ranges::any_of(packed_names, is);
 }
 
-/// Two whole numbers with a point between, as in "2.0".
+/// Parses two whole numbers with a point between, as in "2.0".
 std::pair<unsigned, unsigned> version_in(const JsonValue& value) {
   const std::string text = value.text();
   const auto numbers = two_numbers(text, '.');
@@ -44,12 +44,12 @@ std::pair<unsigned, unsigned> version_in(const JsonValue& value) {
   return *numbers;
 }
 
-/// Throws Error for what asks for more than this reader knows.
+/// Throws Error if the file requires more than this reader knows.
 void check_asset(const JsonValue& root) {
   const JsonValue asset = root.at("asset");
   const bool has_least = asset.has("minVersion");
   const JsonValue version = has_least ? asset.at("minVersion") : asset.at("version");
-  // All of 2.x can be read by readers of 2.0, unless a file says that it cannot.
+  // A reader of 2.0 can read all of 2.x, unless the file has a minVersion.
   const auto [major, minor] = version_in(version);
   if (major != 2 || (has_least && minor > 0))
     version.fail_here("glTF of version {}.{} is not known; 2.0 is", major, minor);
@@ -64,7 +64,7 @@ void check_asset(const JsonValue& root) {
   }
 }
 
-/// An extension that is not known, which may have numbers of its own in place of attributes.
+/// Returns an unknown extension, which may store numbers in place of attributes.
 std::string unknown_in(const JsonValue& holder) {
   if (!holder.has("extensions")) return {};
   for (const auto& [name, value] : holder.at("extensions").value().items())
@@ -82,10 +82,9 @@ std::optional<std::size_t> packed_view(const JsonValue& primitive, const JsonVal
   return std::nullopt;
 }
 
-/// Drafts of the extension have logarithms of the scales, which then are not all above 0, as scales must
-/// be.
+/// Drafts of the extension store logarithms of the scales, so some are below 0; final scales never are.
 void undo_logarithms(const std::filesystem::path& path, std::vector<float>& scales) {
-  constexpr std::ptrdiff_t few = 100;  // one in so many may be damaged
+  constexpr std::ptrdiff_t few = 100;  // one in this many may be damaged
   const auto below = std::ranges::count_if(scales, [](float s) { return s < 0.0f; });
   if (below <= std::ssize(scales) / few) return;
   log_warning("{}: its scales are taken for logarithms, as they were in drafts: {} are below 0",
@@ -127,12 +126,11 @@ class GltfReader {
   }
 
  private:
-  /// What any number of nodes may share is read once: nodes times primitives may be far more than the file
-  /// has bytes.
+  /// Data that nodes share is read once: nodes times primitives may far exceed the file's bytes.
   struct Mesh {
-    std::size_t left = 0;  // nodes that are still to show it
+    std::size_t left = 0;  // nodes that have yet to show it
     bool known = false;
-    bool morphs = false;  // Gaussians, by weights
+    bool morphs = false;  // its Gaussians move by weights
     Model model;
     std::size_t others = 0, points = 0;  // primitives that are no Gaussians
   };
@@ -151,7 +149,7 @@ class GltfReader {
     read_ += of_one * places.count();
     for (std::size_t i = 0; i < places.count(); ++i) {
       const glm::dmat4 matrix = shown.matrix * places.at(i);
-      // So files hide things, by a scale of 0.
+      // A scale of 0 hides a node.
       if (glm::dmat3(matrix) == glm::dmat3(0.0)) continue;
       const bool is_last = mesh.left == 0 && i + 1 == places.count();
       Model part = is_last ? std::move(mesh.model) : mesh.model;
@@ -161,7 +159,7 @@ class GltfReader {
     }
   }
 
-  /// Throws Error where a node moves Gaussians by other means than its place.
+  /// Throws Error if anything but its transform moves a node's Gaussians.
   void check_still(const GltfNode& shown, const Mesh& mesh) const {
     if (shown.node.has("skin"))
       shown.node.at("skin").fail_here("it moves Gaussians by joints, which cannot be drawn");
@@ -197,9 +195,9 @@ class GltfReader {
     mesh.known = true;
   }
 
-  /// Before memory is taken for so many more Gaussians.
+  /// Checks the total before memory is allocated for the copies.
   void check_copies(const JsonValue& node, std::size_t count, std::size_t copies) const {
-    // Nodes may share a mesh, and meshes their numbers: a few bytes each, however many Gaussians they add.
+    // Nodes can share a mesh, and meshes their numbers: a few bytes add any number of Gaussians.
     const std::size_t most_here = most_gaussians_in(document_.size());
     if (count == 0) return;
     if (copies > (most_here - std::min(most_here, read_)) / count) {
@@ -254,7 +252,7 @@ class GltfReader {
     const auto coefficient = [&](int degree, int m) {
       return name(fmt::format("SH_DEGREE_{}_COEF_{}", degree, m));
     };
-    // In drafts the base colour and the opacity were those of points.
+    // Drafts store base colour and opacity in COLOR_0, as points do.
     if (!attributes.has(name("OPACITY")) && !attributes.has(coefficient(0, 0)) && attributes.has("COLOR_0")) {
       const std::vector<float> colours = attribute(attributes, "COLOR_0", 4, n);
       split_colours(colours, harmonics.emplace_back(), opacities);
@@ -263,7 +261,7 @@ class GltfReader {
       harmonics.push_back(attribute(attributes, coefficient(0, 0), 3, n));
     }
     check_opacities(path_.string(), opacities);
-    // Of degrees up to the highest there is, all coefficients must be there.
+    // Up to the highest degree present, all coefficients must exist.
     for (int degree = 1; degree <= 3; ++degree) {
       for (int m = 0; m <= 2 * degree; ++m)
         if (attributes.has(coefficient(degree, m))) model.degree = degree;
@@ -272,7 +270,7 @@ class GltfReader {
       for (int m = 0; m <= 2 * degree; ++m)
         harmonics.push_back(attribute(attributes, coefficient(degree, m), 3, n));
     }
-    model.lacks_degree_4 = attributes.has(coefficient(4, 0));  // which the format does not define
+    model.lacks_degree_4 = attributes.has(coefficient(4, 0));  // the format does not define it
     model.resize(n);
     std::vector<std::uint8_t> kept(n);
     std::array<float, 3 * sh_count(3)> sh{};
@@ -293,11 +291,11 @@ class GltfReader {
   const std::filesystem::path& path_;
   GltfDocument document_;
   Model model_;
-  std::vector<glm::dvec3> places_;  // of its Gaussians in the scene
+  std::vector<glm::dvec3> places_;  // positions of its Gaussians in the scene
   bool packed_ = false;
-  std::string unknown_;  // an extension of the primitive that is read, which this reader does not know
+  std::string unknown_;  // an unknown extension of the current primitive
   std::map<std::size_t, Mesh> meshes_;
-  std::size_t read_ = 0;                 // Gaussians, of all nodes
+  std::size_t read_ = 0;                 // Gaussians of all nodes so far
   std::size_t others_ = 0, points_ = 0;  // primitives that are no Gaussians
 };
 

@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::uint32_t json_chunk = 0x4e4f534a, binary_chunk = 0x004e4942;
 
-/// A number of a type, of whole numbers that are normalized as a part of the largest.
+/// Reads a number of type T; normalized integers become fractions of the largest.
 template <typename T>
 float load_as(const std::byte* at, bool normalized) {
   const auto value = static_cast<float>(load_number<T>(at));
@@ -25,7 +25,7 @@ float load_as(const std::byte* at, bool normalized) {
   return std::max(value / static_cast<float>(std::numeric_limits<T>::max()), -1.0f);
 }
 
-/// The types that numbers of Gaussians may have, by glTF's numbers of them.
+/// The number types of Gaussians, by glTF's codes.
 struct Component {
   int type;
   std::size_t bytes;
@@ -49,7 +49,7 @@ const Component& component_of(const JsonValue& holder) {
 
 constexpr const char* meshopt_names[] = {"EXT_meshopt_compression", "KHR_meshopt_compression"};
 
-/// Whether a buffer has no bytes because they are another one's, compressed.
+/// Returns whether a buffer is a placeholder for another, compressed one.
 bool is_stand_in(const JsonValue& buffer) {
   return std::any_of(std::begin(meshopt_names), std::end(meshopt_names), [&](const char* name) {
     return buffer.has("extensions") && buffer.at("extensions").has(name) &&
@@ -94,11 +94,11 @@ void GltfDocument::open_binary(std::span<const std::byte> bytes) {
       json_length > chunks.size() - 20) {
     fail("{}: the first chunk, {} bytes at byte 12, is no JSON that fits the file", name, json_length);
   }
-  // Some programs fill up by zeros, where the format has blanks.
+  // Some programs pad with zeros; the format has blanks.
   std::string_view json = as_text(chunks.subspan(20, json_length));
   while (json.ends_with('\0')) json.remove_suffix(1);
   json_ = parse_json(name, json);
-  // Chunks of other types are passed over, as the format asks for.
+  // The format requires readers to skip chunks of other types.
   for (auto rest = chunks.subspan(20 + json_length); rest.size() >= 8;) {
     const std::size_t size = load_number<std::uint32_t>(rest.data());
     const bool is_binary = load_number<std::uint32_t>(&rest[4]) == binary_chunk;
@@ -133,7 +133,7 @@ std::span<const std::byte> GltfDocument::bytes_of(std::size_t index, const JsonV
     if (index != 0 || binary_.empty()) buffer.fail_here("it has no uri, and the file no binary chunk for it");
     return binary_;
   }
-  // A URI may hold megabytes of data, and any number of views may ask for them.
+  // Decoded once: a URI may hold megabytes, and any number of views may use it.
   if (const auto known = buffers_.find(index); known != buffers_.end()) return known->second;
   const JsonValue uri = buffer.at("uri");
   if (has_data(uri)) return buffers_[index] = data_in(uri);
@@ -141,7 +141,7 @@ std::span<const std::byte> GltfDocument::bytes_of(std::size_t index, const JsonV
   std::error_code ignored;
   if (!std::filesystem::is_regular_file(file, ignored))
     uri.fail_here("{} is missing; fetch or export it again", file.string());
-  // Buffers may share a file, which is kept once.
+  // Buffers may share a file, which is mapped once.
   auto& known = files_[file];
   if (!known) {
     known = std::make_unique<MappedFile>(file);
@@ -162,7 +162,7 @@ std::vector<std::filesystem::path> GltfDocument::files() const {
 }
 
 std::span<const std::byte> GltfDocument::view(std::size_t index) {
-  // A view that is compressed with meshopt has its bytes as they are, too, unless that is required.
+  // A view with optional meshopt compression also has its uncompressed bytes.
   const JsonValue view = root().at("bufferViews").at(index);
   const auto bytes = buffer(view.at("buffer").whole(gltf_number_most));
   const std::size_t offset = optional_size(view, "byteOffset"),
@@ -190,7 +190,7 @@ std::vector<float> GltfDocument::read(std::size_t index, std::size_t components,
     accessor.at("type").fail_here("expected {}, found {}", types[components], accessor.at("type").text());
   if (accessor.at("count").whole(gltf_number_most) != count)
     accessor.at("count").fail_here("expected {}, as {} have", count, like);
-  component_of(accessor);  // which throws
+  component_of(accessor);  // throws for an unreadable type
   std::vector<float> values = accessor.has("bufferView") ? read_dense(accessor, components, count)
                                                          : zeros(accessor, components, count);
   if (accessor.has("sparse")) read_sparse(accessor, components, values);
@@ -252,7 +252,7 @@ void GltfDocument::read_sparse(const JsonValue& accessor, std::size_t components
   const bool normalized = is_normalized(accessor);
   for (std::size_t k = 0; k < count; ++k) {
     std::size_t i = 0;
-    std::memcpy(&i, &index_bytes[index_at + k * index_size], index_size);  // the lowest byte first
+    std::memcpy(&i, &index_bytes[index_at + k * index_size], index_size);  // little-endian
     if (i >= values.size() / components)
       sparse.fail_here("element {} is replaced, of {}", i, values.size() / components);
     for (std::size_t c = 0; c < components; ++c)

@@ -1,6 +1,6 @@
 #pragma once
-// A glTF file's JSON and the numbers in its buffers, whatever container they are in: .glb, or .gltf with
-// buffers in data: URIs or in files beside it.
+// A glTF file's JSON and the numbers in its buffers, for both containers: .glb, and .gltf with buffers in
+// data: URIs or in files beside it.
 
 #include <filesystem>
 #include <map>
@@ -14,38 +14,38 @@
 
 namespace binosplat {
 
-/// Sizes, counts and indices beyond this are damage.
+/// Larger sizes, counts and indices are damage.
 inline constexpr std::uint64_t gltf_number_most = std::uint64_t{1} << 40;
 
 class GltfDocument {
  public:
-  /// `bytes` are the file's and outlive this. Throws Error for a container or JSON that is damaged or cut
-  /// short.
+  /// `bytes` are the file's and must outlive this object. Throws Error for a damaged or cut container or
+  /// JSON.
   GltfDocument(const std::filesystem::path& path, std::span<const std::byte> bytes);
 
   const JsonValue& root() const { return *root_; }
 
-  /// The bytes of a buffer view. Throws Error naming the key where it leaves its buffer, or where that is
-  /// missing, cut short, or only there compressed.
+  /// Returns the bytes of a buffer view. Throws Error naming the key if it exceeds its buffer, or if that is
+  /// missing, cut short, or only present compressed.
   std::span<const std::byte> view(std::size_t index);
 
-  /// The numbers of the accessor `index`, `components` each element one after the other, integers brought to
-  /// 0 to 1 or -1 to 1 where it says `normalized`; zeros where it has no view, but for those that `sparse`
-  /// replaces. Throws Error naming the key where it leaves its view, or has another number of components or
-  /// elements than asked for, as those have that `like` names, or a type that is not float, byte or short.
+  /// Returns the numbers of the accessor `index`, `components` an element. Integers become 0 to 1 or -1 to 1
+  /// if it is `normalized`. Without a view they are zeros; `sparse` replaces some. Throws Error naming the
+  /// key if it exceeds its view, or if its type is other than float, byte or short. Also throws for other
+  /// than `components` and `count`; the text explains `count` by `like`.
   std::vector<float> read(std::size_t index, std::size_t components, std::size_t count,
                           const char* like = "the positions");
 
-  /// Whether any of an accessor's numbers are in the file, and not zeros because there are no others.
+  /// Returns whether the file has numbers for an accessor; one without a view and `sparse` is all zeros.
   bool has_numbers(std::size_t accessor) const;
 
-  /// The files that its buffers name, whether they are there or not.
+  /// Returns the files that its buffers name, existing or not.
   std::vector<std::filesystem::path> files() const;
 
-  /// Bytes of the file and of the buffers that were read so far.
+  /// Size of the file and of the buffers read so far.
   std::size_t size() const { return size_; }
 
-  /// The number of elements of an accessor; not checked against the bytes.
+  /// Returns an accessor's number of elements, not checked against the bytes.
   std::size_t count(std::size_t accessor) const;
 
  private:

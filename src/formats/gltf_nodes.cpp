@@ -9,12 +9,12 @@ namespace binosplat {
 
 namespace {
 
-/// Whether a node has an extension, and what it says.
+/// Returns a node's extension, if present.
 std::optional<JsonValue> extension_of(const JsonValue& node, const char* name) {
   return node.has("extensions") ? node.at("extensions").find(name) : std::nullopt;
 }
 
-/// Translation, rotation as x y z w, and scale, in the order in which glTF applies them: scale first.
+/// Composes translation, rotation (x y z w) and scale in glTF's order: scale first.
 glm::dmat4 composed(const JsonValue& where, const glm::dvec3& translation, const glm::dvec4& rotation,
                     const glm::dvec3& scale) {
   if (!(glm::length(rotation) > 0.0)) where.fail_here("a rotation is a quaternion of length 0");
@@ -25,7 +25,7 @@ glm::dmat4 composed(const JsonValue& where, const glm::dvec3& translation, const
   return matrix;
 }
 
-/// A node's own transform: a matrix, or translation, rotation and scale.
+/// Returns a node's own transform: a matrix, or translation, rotation and scale.
 glm::dmat4 transform_of(const JsonValue& node) {
   const auto numbers = [&](const char* key, std::size_t n, double* to) {
     if (!node.has(key)) return;

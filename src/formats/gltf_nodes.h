@@ -1,5 +1,5 @@
 #pragma once
-// The nodes of a glTF's scene: which meshes they show, and where.
+// The nodes of a glTF's scene, with their meshes and transforms.
 
 #include <cstddef>
 #include <glm/glm.hpp>
@@ -9,25 +9,25 @@
 
 namespace binosplat {
 
-/// A node that shows a mesh.
+/// A node with a mesh.
 struct GltfNode {
   JsonValue node;
   glm::dmat4 matrix;  // in the world of the scene
   std::size_t mesh;
 };
 
-/// Those of the scene that is shown, the first where none is named, without those that are hidden
-/// (KHR_node_visibility), themselves or by one above them. Throws Error naming the key for nodes that are not
-/// there or have two parents, and for transforms that are none.
+/// Returns the nodes with a mesh of the default scene (or the first), except those that are hidden or below a
+/// hidden one (KHR_node_visibility). Throws Error naming the key for missing nodes, nodes with two parents,
+/// and invalid transforms.
 std::vector<GltfNode> nodes_shown(const JsonValue& root);
 
-/// Where a node has its mesh, in the node: where EXT_mesh_gpu_instancing says, or once, where the node is.
+/// The transforms of a mesh's copies within a node: those of EXT_mesh_gpu_instancing, or one identity.
 class MeshPlaces {
  public:
-  /// Throws Error naming the key for attributes that differ in number.
+  /// Throws Error naming the key if the attributes differ in number.
   MeshPlaces(GltfDocument& document, const JsonValue& node);
 
-  /// Not checked against the bytes where no attribute moves anything.
+  /// Number of copies; checked against the bytes only if an attribute moves, rotates or scales them.
   std::size_t count() const { return count_; }
 
   /// Throws Error naming the key for a rotation of length 0.
@@ -36,7 +36,7 @@ class MeshPlaces {
  private:
   JsonValue attributes_;
   std::size_t count_ = 1;
-  std::vector<float> translations_, rotations_, scales_;  // empty where they change nothing
+  std::vector<float> translations_, rotations_, scales_;  // empty if they change nothing
 };
 
 }  // namespace binosplat

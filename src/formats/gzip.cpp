@@ -21,9 +21,9 @@ constexpr std::size_t most_at_once = std::size_t{1} << 30;
 GzipReader::GzipReader(std::string source, std::span<const std::byte> bytes)
     : source_(std::move(source)), stream_(std::make_unique<z_stream>()) {
   *stream_ = {};
-  // zlib does not write to what it reads.
+  // zlib does not write to its input.
   stream_->next_in = reinterpret_cast<Bytef*>(const_cast<std::byte*>(bytes.data()));
-  // Files beyond 4 GiB are none of those formats'.
+  // Files of these formats are below 4 GiB.
   stream_->avail_in = static_cast<uInt>(std::min<std::size_t>(bytes.size(), 0xffffffff));
   if (inflateInit2(stream_.get(), with_gzip_header) != Z_OK) throw std::bad_alloc();
 }

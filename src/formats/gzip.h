@@ -1,5 +1,5 @@
 #pragma once
-// gzip: read in pieces whose sizes the reader knows beforehand, so that nothing unfolds beyond them.
+// Reads gzip in parts of known size, so that nothing unpacks beyond them.
 
 #include <cstddef>
 #include <memory>
@@ -11,19 +11,19 @@ struct z_stream_s;
 
 namespace binosplat {
 
-/// The most bytes that deflate, which zip archives use, too, can make of one.
+/// The largest factor by which deflate, also in zip archives, expands.
 inline constexpr std::size_t deflate_growth_most = 1032;
 
 class GzipReader {
  public:
-  /// Starts with the first member of `bytes`, which outlive this; `source` names them in errors.
+  /// Starts at the first member of `bytes`, which must outlive this object; `source` names them in errors.
   GzipReader(std::string source, std::span<const std::byte> bytes);
   ~GzipReader();
   GzipReader(const GzipReader&) = delete;
   GzipReader& operator=(const GzipReader&) = delete;
 
-  /// The next bytes, `most` or those up to the end. Throws Error where they are damaged, cut short or their
-  /// checksum, which stands at the end, is wrong.
+  /// Returns the next bytes: `most`, or fewer at the end. Throws Error if they are damaged or cut short, or
+  /// if the checksum at the end is wrong.
   std::vector<std::byte> read(std::size_t most);
 
  private:
@@ -32,7 +32,7 @@ class GzipReader {
   bool ended_ = false;
 };
 
-/// The bytes as gzip has them; always the same for the same ones: it has no time in it.
+/// Compresses bytes. The result is deterministic: it contains no time.
 std::vector<std::byte> gzip_of(std::span<const std::byte> bytes);
 
 }  // namespace binosplat

@@ -1,12 +1,11 @@
 #pragma once
-// The parts of a scene as one model.
+// Joins the parts of a scene into one model.
 
 #include "scene/model.h"
 
 namespace binosplat {
 
-/// Adds the Gaussians of `part`; harmonics that one of the two does not have are 0. Says with a warning where
-/// the two are seen differently.
+/// Appends the Gaussians of `part`; missing higher harmonics are 0. Warns if the two differ in perspective.
 void join(Model& all, Model&& part);
 
 }  // namespace binosplat

@@ -27,18 +27,18 @@ class JpegReader {
       fail("{}: broken JPEG: it ends before its picture begins", path.string());
     if (colours_ == TJCS_CMYK || colours_ == TJCS_YCCK)
       fail("{}: a CMYK JPEG; convert it to RGB", path.string());
-    // Two bits a block of 8 x 8 make 256, progressive ones less.
+    // Two bits a block of 8 x 8 px are 256 px a byte; progressive files need less.
     check_size(path, size_.x, size_.y, bytes.size(), 1024);
   }
 
   const glm::ivec2& size() const { return size_; }
 
-  /// Whether the mark that ends a picture follows on the one that begins its pixels. Among those it is none.
+  /// Returns whether an end marker follows the start of the pixels. Pixel data cannot contain one.
   bool has_end() const {
     const std::string_view text = as_text(bytes_);
     std::size_t at = 2;
     while (at + 4 <= text.size() && text[at] == '\xff' && text[at + 1] != '\xda') {
-      // A marker may have any number of bytes 255 before it.
+      // Any number of bytes 255 may precede a marker.
       const bool fill = text[at + 1] == '\xff';
       const auto high = static_cast<unsigned char>(text[at + 2]);
       at += fill ? 1 : 2 + std::size_t{256} * high + static_cast<unsigned char>(text[at + 3]);
@@ -53,7 +53,7 @@ class JpegReader {
     const int format = channels == 1 ? TJPF_GRAY : TJPF_RGB;
     if (tjDecompress2(decoder_.get(), data(), bytes_.size(), values.data(), size_.x, size_.x * channels,
                       size_.y, format, TJFLAG_ACCURATEDCT | TJFLAG_LIMITSCANS) != 0) {
-      // A cut file is only a warning to the library, which fills the rest with grey.
+      // The library only warns about a cut file, and fills the rest with grey.
       const std::string_view reason = tjGetErrorStr2(decoder_.get());
       if (tjGetErrorCode(decoder_.get()) != TJERR_WARNING ||
           reason.find("remature") != std::string_view::npos) {

@@ -10,7 +10,8 @@ namespace binosplat {
 
 namespace {
 
-/// What is parsed is copied, compared and written by recursion, which must not leave the stack.
+/// Throws Error for deep nesting: parsed values are copied, compared and written by recursion, which must not
+/// overflow the stack.
 void check_depth(const std::string& source, std::string_view text) {
   constexpr int most = 500;
   int depth = 0;
@@ -24,7 +25,7 @@ void check_depth(const std::string& source, std::string_view text) {
     if (c == ']' || c == '}') --depth;
     if (depth > most) {
       const auto line = 1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(i), '\n');
-      const Content content = content_of(std::as_bytes(std::span(text)));  // bytes of a binary file, say
+      const Content content = content_of(std::as_bytes(std::span(text)));  // may be a binary file
       fail("{}: its lists and objects are nested more than {} deep, at line {}, byte {}{}", source, most,
            line, i + 1, content == Content::json ? "" : fmt::format("; it looks like {}", describe(content)));
     }
@@ -76,7 +77,7 @@ JsonValue JsonValue::at(const std::string& key) const {
   const auto found = value_->find(key);
   if (found == value_->end())
     fail("{}: the key '{}{}{}' is missing", source(), where(), step_ ? "." : "", key);
-  // Keys of the file go into errors' texts as they are; the ones asked for here are the program's own.
+  // Errors show the file's keys unescaped; keys requested here are the program's own.
   return inner(*found, key);
 }
 

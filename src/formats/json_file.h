@@ -1,5 +1,5 @@
 #pragma once
-// JSON from files: values that know where they stand, so that every error can say so.
+// JSON values that know their file and key, so that every error can name them.
 
 #include <cstdint>
 #include <glm/glm.hpp>
@@ -15,12 +15,12 @@
 namespace binosplat {
 
 /// Parses a whole text. Throws Error naming `source` (a file, or a file in an archive), the line and the
-/// byte; also for lists and objects nested more than 500 deep, which no file needs (a tree over
-/// a planet takes 60).
+/// byte. Also throws for more than 500 nested lists and objects, which no file needs (a tree over a planet
+/// takes 60).
 nlohmann::json parse_json(const std::string& source, std::string_view text);
 
-/// A value in a file. What it is asked for and is not, ends in an Error that names the file and the keys that
-/// lead there, as in "scene/meta.json, key 'means.files[1]': expected text in quotes".
+/// A value in a file. An access that does not fit its type throws an Error that names the file and the keys,
+/// as in "scene/meta.json, key 'means.files[1]': expected text in quotes".
 class JsonValue {
  public:
   JsonValue(std::string source, const nlohmann::json& root)
@@ -29,19 +29,19 @@ class JsonValue {
   const nlohmann::json& value() const { return *value_; }
   const std::string& source() const { return *source_; }
 
-  /// Whether an object has this key, with a value other than null.
+  /// Returns whether an object has this key, with a value other than null.
   bool has(const std::string& key) const;
   JsonValue at(const std::string& key) const;                   // throws if it is missing
-  std::optional<JsonValue> find(const std::string& key) const;  // nothing where has() is false
+  std::optional<JsonValue> find(const std::string& key) const;  // nothing if has() is false
   JsonValue at(std::size_t index) const;                        // throws beyond size()
   std::size_t size() const;                                     // of a list; throws for anything else
-  JsonValue list_of(std::size_t n) const;                       // itself, if it is a list of n
-  double number() const;                                        // finite
-  double above_zero() const;                                    // finite, too
-  std::uint64_t whole(std::uint64_t most) const;  // from 0 to `most`, at most 2^53; 5.0 is whole, too
+  JsonValue list_of(std::size_t n) const;         // returns itself; throws unless it is a list of n
+  double number() const;                          // finite
+  double above_zero() const;                      // finite and above 0
+  std::uint64_t whole(std::uint64_t most) const;  // 0 to `most`, at most 2^53; 5.0 is whole, too
   int pixels() const { return static_cast<int>(whole(std::numeric_limits<int>::max())); }
   std::string text() const;
-  /// The numbers of a list of n.
+  /// Returns the numbers of a list of n.
   template <int n>
   glm::vec<n, double> vector() const {
     glm::vec<n, double> numbers;
@@ -58,8 +58,8 @@ class JsonValue {
   }
 
  private:
-  /// A key, or an index as in "[3]", and what stands before it. Values share the steps that lead to them, and
-  /// only an error spells them out: a tree of many long paths costs no more than its nodes.
+  /// A key, or an index as in "[3]", and the step before it. Values share these steps, and only an error
+  /// joins them to text: a tree of many long paths costs no more than its nodes.
   struct Step {
     std::shared_ptr<const Step> before;
     std::string name;

@@ -14,7 +14,7 @@ namespace {
 constexpr std::size_t ksplat_header_bytes = 4096, section_header_bytes = 1024;
 constexpr std::size_t most_sections = 65536;
 
-/// How the three levels store a Gaussian.
+/// Storage of a Gaussian at the three compression levels.
 struct Storage {
   std::size_t position, scale, rotation, harmonic;  // bytes of all three, three, four, and of one coefficient
 };
@@ -22,7 +22,7 @@ constexpr Storage storages[] = {{12, 12, 16, 4}, {6, 6, 8, 2}, {6, 6, 8, 1}};
 constexpr std::size_t colour_bytes = 4;
 
 struct Section {
-  std::size_t count = 0, most = 0;  // Gaussians there are, and have room
+  std::size_t count = 0, most = 0;  // Gaussians present, and capacity
   std::size_t bucket_size = 0, buckets = 0, full_buckets = 0, partial_buckets = 0;
   double block = 0.0;  // side of a bucket, world units
   std::size_t bucket_bytes = 0;
@@ -82,7 +82,7 @@ class KsplatReader {
   }
 
   void read_sections() {
-    // The number of sections at byte 8 is 0 in some files; those without Gaussians take no room.
+    // In some files the number of sections at byte 8 is 0; sections without Gaussians take no room.
     const std::size_t most = word(4), promised = word(16);
     if (most > most_sections || ksplat_header_bytes + most * section_header_bytes > bytes_.size()) {
       fail("{} is damaged or cut short: its header has room for {} sections, which {} bytes cannot hold",
@@ -121,7 +121,7 @@ class KsplatReader {
       fail("{}: section {} has harmonics of degree {}; expected 0 to 3", source_, index, s.degree);
     if (s.count > s.most)
       fail("{}: section {} has {} Gaussians and room for {}", source_, index, s.count, s.most);
-    // All of them are below 2^32, and so is their sum far below 2^64.
+    // All are below 2^32, so the sum is far below 2^64.
     const std::size_t needed = 4 * s.partial_buckets + s.buckets * s.bucket_bytes + s.most * record_bytes(s);
     if (needed > bytes_.size() - at) {
       fail("{} is cut short: section {} takes {} bytes from byte {} on, and {} are there", source_, index,
@@ -134,7 +134,7 @@ class KsplatReader {
     return s;
   }
 
-  /// The bucket of each Gaussian: full ones first, then those that are not, by their lengths. Level 0 has
+  /// Returns the bucket of each Gaussian: first the full ones, then the others by their lengths. Level 0 has
   /// none.
   std::vector<std::size_t> buckets_of(const Section& s) const {
     std::vector<std::size_t> buckets;
@@ -191,7 +191,7 @@ class KsplatReader {
       sh[c] = static_cast<float>((std::to_integer<int>(at[c]) / 255.0 - 0.5) / sh_c0);
     const float opacity = static_cast<float>(std::to_integer<int>(at[3]) / 255.0);
     at += colour_bytes;
-    // Band after band, and channel after channel within a band.
+    // By band, and within a band by channel.
     std::size_t first = 0;
     for (int band = 1; band <= s.degree; ++band) {
       const std::size_t width = 2 * static_cast<std::size_t>(band) + 1;
@@ -207,7 +207,7 @@ class KsplatReader {
   const std::string& source_;
   std::span<const std::byte> bytes_;
   std::size_t level_ = 0;
-  float sh_low_ = 0.0f, sh_high_ = 0.0f;  // what bytes of level 2 stand for
+  float sh_low_ = 0.0f, sh_high_ = 0.0f;  // range of level 2's bytes
   std::vector<Section> sections_;
   std::size_t count_ = 0;
 };

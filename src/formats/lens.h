@@ -1,5 +1,5 @@
 #pragma once
-// What every reader of cameras asks of them.
+// Checks that every reader of cameras makes.
 
 #include <string>
 
@@ -7,12 +7,12 @@
 
 namespace binosplat {
 
-/// Throws Error beginning with `where` for pictures without pixels or with more than 2^31, and for focal
-/// lengths and principal points that are none.
+/// Throws Error beginning with `where` for pictures without pixels or with more than 2^31, and for invalid
+/// focal lengths and principal points.
 void check_lens(const std::string& where, const Camera& camera);
 
-/// What is wrong with columns that should be the axes of a camera, x right, y down, z forward: not orthogonal
-/// or not of length 1 within 1e-3, or mirrored. "" if nothing is.
+/// Returns why columns are no camera axes (x right, y down, z forward): not orthogonal or not of length 1
+/// within 1e-3, or mirrored. Returns "" if they are.
 std::string rotation_fault(const glm::dmat3& columns);
 
 }  // namespace binosplat

@@ -19,8 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Of the files folder/BEFORE N AFTER, or of those of the name `inside` in such folders, the one of the
-/// largest N.
+/// Returns the file folder/BEFORE N AFTER of the largest N, or the file `inside` in the folder of that name.
 std::optional<fs::path> latest(const fs::path& folder, std::string_view before, std::string_view after,
                                const fs::path& inside = {}) {
   std::error_code ignored;
@@ -40,7 +39,7 @@ std::optional<fs::path> latest(const fs::path& folder, std::string_view before, 
   return found;
 }
 
-/// Whether a file is a model by its name, and not the points that a training begins with.
+/// Returns whether a file is named as a model, and not as the points from which training begins.
 bool is_named_as_model(const fs::path& path) {
   const std::string ending = lowered_ending(path), name = lowered(path.filename().string());
   for (const char* points : {"input.ply", "points3d.ply", "sparse_pc.ply", "sparse.ply"}) {
@@ -51,7 +50,7 @@ bool is_named_as_model(const fs::path& path) {
   });
 }
 
-/// Whether a file is there and has a text in it, as that one may, too, which is cut short.
+/// Returns whether a file exists and contains a text. A damaged or cut file may.
 bool has_text(const fs::path& path, std::string_view text) {
   std::error_code ignored;
   if (!fs::is_regular_file(path, ignored)) return false;
@@ -59,8 +58,8 @@ bool has_text(const fs::path& path, std::string_view text) {
   return as_text(file.bytes()).find(text) != std::string_view::npos;
 }
 
-/// Whether a file that is called as a model holds something else: a ply with a mesh or points, or a glTF
-/// without Gaussians. What cannot be read counts as a model, so that its error is seen.
+/// Returns whether a file named as a model is something else: a ply with a mesh or points, or a glTF without
+/// Gaussians. Unreadable files count as models, so that their error is shown.
 bool is_no_model(const fs::path& path) {
   try {
     if (lowered_ending(path).starts_with(".gl")) return !has_text(path, "gaussian_splat");
@@ -99,7 +98,7 @@ Model load_content(const fs::path& path, const ModelOptions& options) {
 
 std::vector<fs::path> models_in(const fs::path& folder) {
   std::error_code ignored;
-  // Other programs, too, have files of these names.
+  // Other programs use these file names, too.
   if (has_text(folder / "lod-meta.json", "\"lodLevels\"")) return {folder / "lod-meta.json"};
   if (has_text(folder / "meta.json", "\"means\"")) return {folder / "meta.json"};
   const fs::path clouds = folder / "point_cloud", ply = "point_cloud.ply";
@@ -185,7 +184,7 @@ Model load_model(const fs::path& path, const ModelOptions& options) {
 
 void follow(const TrainingRun& run, const fs::path& file, Model& model) {
   model.kernel_px2 = run.kernel_px2.value_or(model.kernel_px2);
-  if (!run.antialiased || model.scaffold) return;  // Scaffold-GS trains without
+  if (!run.antialiased || model.scaffold) return;  // Scaffold-GS trains without anti-aliasing
   if (model.antialiased_by.empty()) {
     model.antialiased = *run.antialiased;
     model.antialiased_by = run.file.string();
@@ -201,7 +200,7 @@ std::optional<fs::path> find_exposures(const fs::path& path) {
 }
 
 std::optional<TrainingRun> run_of(const fs::path& file) {
-  // The levels of a streamed SOG were made of a model, and say what that was.
+  // A streamed SOG's levels come from a model and already carry its properties.
   return is_streamed_sog(file) ? std::nullopt : find_training_run(file);
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-// The entrance for model files: what a file is, is decided by its content, never by its name.
+// The entry point for model files: their content decides the format, never their name.
 
 #include <binosplat/model.h>
 #include <filesystem>
@@ -11,32 +11,32 @@
 
 namespace binosplat {
 
-/// The models that a folder stands for, best one: lod-meta.json or meta.json of a SOG, by what is in it;
-/// point_cloud.ply, also in point_cloud/ or the latest point_cloud/iteration_N/ (INRIA, Scaffold-GS); the
-/// latest ply/point_cloud_N.ply (gsplat); all files in it that are called as models are, by their numbers,
-/// without meshes and points among them; exports/splat/splat.ply (nerfstudio).
+/// Returns the models in a folder; the first match of this list: lod-meta.json or meta.json with a SOG's
+/// content; point_cloud.ply, also in point_cloud/ or the latest point_cloud/iteration_N/ (INRIA,
+/// Scaffold-GS); the latest ply/point_cloud_N.ply (gsplat); all files with a model's ending, sorted by their
+/// numbers, without meshes and point clouds; exports/splat/splat.ply (nerfstudio).
 std::vector<std::filesystem::path> models_in(const std::filesystem::path& folder);
 
-/// The file itself, or the model that a folder stands for. Throws Error for a folder with none or several.
+/// Returns the file itself, or the only model in a folder. Throws Error for a folder with none or several.
 std::filesystem::path file_of(const std::filesystem::path& path);
 
-/// Reads a trained model of any format of the registry (formats/registry.h). `path` may be a folder with one
-/// of models_in(). Says on standard error how many Gaussians were left out because a value is not finite or
-/// the quaternion is zero. Throws Error for anything that is not such a model; the text says what the file
-/// looks like instead. Whether a model was trained with anti-aliasing its file says, or else the run beside
-/// it (run_of). Warns of what the run did and is not drawn.
+/// Reads a trained model of any format of the registry (formats/registry.h), or the only one of models_in() a
+/// folder. Logs how many Gaussians were dropped for values that are not finite or a zero quaternion. The
+/// model's file determines anti-aliasing; if it does not, the training run beside it does (run_of). Warns of
+/// features of the run that are not drawn. Throws Error for other files; the text names the file's apparent
+/// format.
 Model load_model(const std::filesystem::path& path, const ModelOptions& options = {});
 
-/// The same by the model's file alone, whatever lies beside it: for files that binosplat has just written.
+/// The same from the model's file only, whatever lies beside it: for files that binosplat has just written.
 Model load_model_alone(const std::filesystem::path& path, const ModelOptions& options = {});
 
-/// The training that a model's file comes from, if its files are there (formats/training_run.h).
+/// Returns the training run of a model's file, if its files exist (formats/training_run.h).
 std::optional<TrainingRun> run_of(const std::filesystem::path& file);
 
-/// Takes from a run what the model's own file does not say; warns where the two contradict each other.
+/// Sets properties from a run that the model's file lacks; warns if the two contradict each other.
 void follow(const TrainingRun& run, const std::filesystem::path& file, Model& model);
 
-/// The exposure.json of that training (formats/exposures.h), for a model's file or a folder with one.
+/// Returns the exposure.json of that training (formats/exposures.h), for a model's file or its folder.
 std::optional<std::filesystem::path> find_exposures(const std::filesystem::path& path);
 
 }  // namespace binosplat

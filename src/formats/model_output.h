@@ -1,5 +1,5 @@
 #pragma once
-// Models as files, in the formats that other programs read.
+// Writes models in the formats that other programs read.
 
 #include <cstdint>
 #include <filesystem>
@@ -11,38 +11,36 @@
 
 namespace binosplat {
 
-/// ".ply, .sog or .spz".
+/// Returns ".ply, .sog or .spz".
 std::string written_endings();
 
-/// The format that is written, by the end of a name, in any case; none for .compressed.ply, which is read and
-/// not written.
+/// Returns the format to write for a name, by its ending in any case; none for .compressed.ply, which is only
+/// read.
 std::optional<ModelFormat> model_format_of(const std::filesystem::path& path);
 
-/// Bytes that a model takes in a format (FormatRow::bytes).
+/// Returns a model's size in a format, in bytes (FormatRow::bytes).
 std::uint64_t bytes_in(ModelFormat format, std::size_t count, int degree);
 
-/// Writes a model whose axes are FormatRow::axes (bring_into_axes does that) to `file`, which the caller
-/// commits. Returns what the format could not keep, a line each: quantisation within its range, which the
-/// format is for, is none of it.
-///  - ply: INRIA's (formats/ply.h), all numbers as floats: a model that came from a ply reads back the same
-///    to the bit.
-///  - spz: version 3 within gzip (formats/spz.h). `harmonic_bits`, 1 to 8, are those of a coefficient of
-///    degrees 2 and 3; degree 1 has one more where 8 leave it. Niantic's own writer takes 4. An extension
-///    names the axes.
-///  - SOG: version 2 as an archive (formats/sog.h), in Morton order (formats/morton.h); harmonics of degrees
-///  1 to 3 from a palette
-///    of 65,536 at most (formats/codebook.h).
-/// Progress is shown where it takes long. Throws Error where the disk is full, for a model that the format
-/// cannot hold at all, and for a Scaffold-GS model, whose Gaussians no file has.
+/// Writes a model to `file`, which the caller commits. Its axes must be FormatRow::axes (bring_into_axes
+/// converts them). Returns a line for each property that the format loses, except quantisation within its
+/// range.
+/// - ply: INRIA's (formats/ply.h), all numbers as floats: a model from a ply is read back bit for bit.
+/// - spz: version 3 within gzip (formats/spz.h). `harmonic_bits`, 1 to 8, is the precision of a coefficient
+///   of degrees 2 and 3; degree 1 has one bit more, up to 8. Niantic's writer uses 4. An extension names the
+///   axes.
+/// - SOG: version 2 as an archive (formats/sog.h), in Morton order (formats/morton.h). Harmonics of degrees 1
+///   to 3 are in a palette of at most 65,536 (formats/codebook.h).
+/// Shows progress if it takes long. Throws Error if the disk is full, for a model that the format cannot
+/// represent, and for a Scaffold-GS model, whose Gaussians no file holds.
 std::vector<std::string> write_model(OutputFile& file, const Model& model, ModelFormat format,
                                      int harmonic_bits = 8);
 
-/// Of that, what is said of the model's low-pass: nothing where the format keeps it.
+/// Returns the line about the model's low-pass; nothing if the format keeps it.
 std::vector<std::string> kernel_loss(const Model& model, ModelFormat format);
 
-/// Reads back what write_model() wrote of `model`, before it is committed: numbers that a format has no room
-/// for show here. Throws Error where the file cannot be read or has another count; takes the model's memory
-/// once more, and only warns where that is not there.
+/// Reads back write_model()'s file of `model` before it is committed, which exposes numbers beyond the
+/// format's range. Throws Error if the file cannot be read or has another count. This takes the model's
+/// memory once more; it only warns if that is not available.
 void read_back(OutputFile& file, const Model& model, ModelFormat format);
 
 }  // namespace binosplat

@@ -1,5 +1,5 @@
 #pragma once
-// The writers behind write_model (formats/model_output.h), and what they share.
+// The writers behind write_model (formats/model_output.h), and their common parts.
 
 #include <algorithm>
 #include <cmath>
@@ -13,24 +13,24 @@
 
 namespace binosplat {
 
-/// What could not be kept.
+/// Properties that a format loses, a line each.
 using Losses = std::vector<std::string>;
 
 Losses write_ply(OutputFile& file, const Model& model);
 Losses write_sog(OutputFile& file, const Model& model);
 Losses write_spz(OutputFile& file, const Model& model, int harmonic_bits);
 
-/// The files of a SOG in a folder, meta.json first; Gaussians stay in their order.
+/// Returns the files of a SOG in a folder, meta.json first; Gaussians stay in their order.
 ZipEntries sog_files(const Model& model);
-/// What none of its files can keep.
+/// Returns the losses of every SOG of this model.
 Losses sog_losses(const Model& model);
 
-/// The nearest whole number from 0 to `most`.
+/// Returns the nearest whole number from 0 to `most`.
 inline std::uint32_t nearest_step(double v, std::uint32_t most) {
   return static_cast<std::uint32_t>(std::clamp(std::floor(v + 0.5), 0.0, static_cast<double>(most)));
 }
 
-/// Adds a line to `losses` if there are Gaussians for which `lost` is true.
+/// Adds a line to `losses` if `lost` is true for some Gaussians.
 template <typename Lost>
 void count_lost(Losses& losses, const Model& model, const char* what, const Lost& lost) {
   std::size_t count = 0;
@@ -38,13 +38,14 @@ void count_lost(Losses& losses, const Model& model, const char* what, const Lost
   if (count > 0) losses.push_back(fmt::format("{} of {} Gaussians have {}", count, model.count(), what));
 }
 
-/// Whether a ply can express the low-pass by Mip-Splatting's filter, which is in the scales already.
+/// Returns whether a ply can express the low-pass by Mip-Splatting's filter, which the scales already
+/// include.
 inline bool is_mip_splatting(const Model& model) {
   return model.antialiased && model.kernel_px2 == mip_splatting_kernel_px2;
 }
 
-/// What a ply's header says of a model's training: that it was without anti-aliasing only where a file or an
-/// option said so, since the run beside it may say otherwise.
+/// Returns a ply header's comment about anti-aliasing. `default` (without) is
+/// written only if a file or an option decided it: otherwise the training run beside the file decides.
 inline std::string antialias_comment(const Model& model) {
   if (model.antialiased) return "comment SplatRenderMode: mip\n";
   return model.antialiased_by.empty() ? "" : "comment SplatRenderMode: default\n";

@@ -1,5 +1,5 @@
 #pragma once
-// An order in which neighbours in space are mostly neighbours in the file.
+// An order by which neighbours in space are mostly neighbours in the file.
 
 #include <cstdint>
 #include <glm/glm.hpp>
@@ -8,8 +8,8 @@
 
 namespace binosplat {
 
-/// The indices of the positions along a Morton curve (1966) of 2^21 steps an axis over the box around them;
-/// those of one cell in their old order.
+/// Returns the indices of the positions along a Morton curve (1966) of 2^21 steps an axis over their bounding
+/// box; those in one cell keep their order.
 std::vector<std::uint32_t> morton_order(std::span<const glm::vec3> positions);
 
 }  // namespace binosplat

@@ -20,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A list of 16, or the text of one.
+/// Parses a list of 16 numbers, or a text of one.
 std::array<double, 16> sixteen_numbers(const JsonValue& value) {
   std::array<double, 16> numbers{};
   if (!value.value().is_string()) {
@@ -36,9 +36,9 @@ std::array<double, 16> sixteen_numbers(const JsonValue& value) {
   return numbers;
 }
 
-/// Turns and moves a camera to where a camera-to-world matrix with OpenGL's axes has it: y is up there and z
-/// backwards. A row, or in a matrix of columns a column, of 0 0 0 1 is the last; of keyframes it decides the
-/// order of the numbers, and where it is none of the two, quotes do.
+/// Sets a camera's pose from a camera-to-world matrix with OpenGL's axes: y up and z backwards. The matrix's
+/// last row must be 0 0 0 1. In a keyframe, its place decides between row-major and column-major numbers. If
+/// both or neither fit, numbers in quotes are column-major.
 void place(Camera& camera, const JsonValue& value, bool is_keyframe) {
   const std::array<double, 16> n = sixteen_numbers(value);
   const auto is_last = [&](std::size_t first, std::size_t step) {
@@ -63,14 +63,14 @@ void set_vertical_fov(Camera& camera, double degrees) {
   camera.cy = 0.5 * camera.height;
 }
 
-/// Seconds from one frame to the next, where the path has them.
+/// Returns the seconds between frames, if the path has them.
 std::optional<double> seconds_a_frame(const JsonValue& root, std::size_t frames) {
   if (root.has("seconds")) return root.at("seconds").above_zero() / static_cast<double>(frames);
   if (root.has("fps")) return 1.0 / root.at("fps").above_zero();
   return std::nullopt;
 }
 
-/// Seconds from the keyframe before, where the path has them.
+/// Returns the seconds since the previous keyframe, if the path has them.
 std::optional<double> transition(const JsonValue& root, const JsonValue& keyframe) {
   const bool overrides = keyframe.has("override_transition_enabled") &&
                          keyframe.at("override_transition_enabled").value() == true;

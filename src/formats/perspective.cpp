@@ -12,7 +12,7 @@ namespace binosplat {
 namespace {
 
 constexpr const char *order_key = "sortingMethod", *projection_key = "projection";
-// By the numbers of shared/axes.h.
+// Indexed by the numbers of shared/axes.h.
 constexpr std::array<std::string_view, 2> order_words = {"zDepth", "cameraDistance"};
 constexpr std::array<std::string_view, 2> projection_words = {"perspective", "tangential"};
 
@@ -26,7 +26,7 @@ int number_of(const char* key, std::string_view word, const std::array<std::stri
   return otherwise;
 }
 
-// key: word, for what is not 3D-GS's.
+// Returns key and word of each property that differs from 3D-GS.
 std::vector<std::pair<std::string, std::string>> words_of_perspective(const Perspective& perspective) {
   std::vector<std::pair<std::string, std::string>> words;
   if (perspective.order != ORDER_DEPTH)
@@ -57,7 +57,7 @@ void write_perspective(const Perspective& perspective, nlohmann::ordered_json& h
 }
 
 Perspective read_perspective(const std::vector<std::string>& comments) {
-  // Of several comments that say it the last one counts.
+  // The last of several comments counts.
   const auto word = [&](std::string_view key) {
     std::string found;
     for (const std::string& comment : comments) {

@@ -1,5 +1,5 @@
 #pragma once
-// What load_image chooses from.
+// The readers of each picture format, for load_image and picture_size.
 
 #include <cstddef>
 #include <cstdint>
@@ -18,29 +18,28 @@ Image load_jpeg(const std::filesystem::path& path, std::span<const std::byte> by
 Image load_exr(const std::filesystem::path& path, std::span<const std::byte> bytes,
                const PictureLimit& limit);
 
-/// What picture_size() chooses from.
 glm::ivec2 png_size(const std::filesystem::path& path, std::span<const std::byte> bytes);
 glm::ivec2 jpeg_size(const std::filesystem::path& path, std::span<const std::byte> bytes);
 glm::ivec2 exr_size(const std::filesystem::path& path, std::span<const std::byte> bytes);
 
-/// Throws Error for a picture of more than 2^31 px, or of more than the file's bytes can hold at the best
-/// compression that its format reaches, before anyone makes room for it: a header costs nothing to forge.
+/// Throws Error for a picture of more than 2^31 px, or of more than the file's bytes can hold at the format's
+/// best compression. It runs before memory is allocated, because headers can be forged.
 void check_size(const std::filesystem::path& path, std::int64_t width, std::int64_t height,
                 std::uint64_t file_bytes, std::uint64_t most_pixels_a_byte);
 
-/// Throws Error for a picture that check_size lets pass and that takes more than it may.
+/// Throws Error for a picture that passed check_size() but exceeds its memory limit.
 void check_room(const std::filesystem::path& path, std::int64_t width, std::int64_t height,
                 const PictureLimit& limit);
 
-/// Throws Error for an OpenEXR file whose headers promise what its bytes cannot hold: the library makes room
-/// for attributes, tables and blocks of pixels before it looks; and for pictures beyond `limit`.
+/// Throws Error for an OpenEXR file whose headers promise more than its bytes can hold, and for pictures
+/// beyond `limit`. The library allocates attributes, tables and blocks of pixels before it checks.
 void check_exr_header(const std::filesystem::path& path, std::span<const std::byte> bytes,
                       const PictureLimit& limit);
 
-/// Whether a PNG has all of its chunks, up to the one that ends it, and where `by_sums` each as it was
-/// written.
+/// Returns whether a PNG has all of its chunks up to the end; with `by_sums`, checks each chunk's checksum.
 bool is_whole_png(std::span<const std::byte> bytes, bool by_sums);
-/// Whether an OpenEXR file in lines has all of its blocks. Throws Error for what OpenEXR cannot read.
+/// Returns whether an OpenEXR file in scan lines has all of its blocks. Throws Error if OpenEXR cannot read
+/// it.
 bool is_whole_exr(const std::filesystem::path& path, std::span<const std::byte> bytes);
 
 }  // namespace binosplat

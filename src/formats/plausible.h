@@ -1,5 +1,5 @@
 #pragma once
-// What a file may unpack to, asked before memory is taken for it: a kilobyte of zeros unpacks to gigabytes.
+// Limits on unpacked sizes, checked before memory is allocated: a kilobyte of zeros unpacks to gigabytes.
 
 #include <algorithm>
 #include <atomic>
@@ -7,17 +7,17 @@
 
 namespace binosplat {
 
-/// Gaussians that are taken of any file, whatever its size: who trusts a file says so (--max-memory).
+/// Gaussians that are always allowed, whatever the file's size: --max-memory raises it for trusted files.
 inline std::atomic<std::uint64_t> gaussians_allowed{0};
 
-/// The most Gaussians that readers take of a file of `bytes` bytes on the disk: one a byte, while real models
-/// have three bytes and more for each however they are packed, and a million besides, which made-up models of
-/// equal values need.
+/// Returns the most Gaussians that readers accept from a file of `bytes` bytes on disk: one a byte, plus a
+/// million. Real models take three bytes or more for each in every format; synthetic models of equal values
+/// need the million.
 inline std::uint64_t most_gaussians_in(std::uint64_t bytes) {
   return std::max(bytes + (std::uint64_t{1} << 20), gaussians_allowed.load());
 }
 
-/// How an error says so.
+/// The end of the errors' texts.
 constexpr const char* more_may_be_allowed = "; if it is right, --max-memory MB allows more";
 
 }  // namespace binosplat

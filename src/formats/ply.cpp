@@ -23,12 +23,12 @@ namespace {
 
 constexpr std::size_t progress_block = 65536;  // Gaussians between two reports of progress
 
-/// The rows of a text file's elements as numbers.
+/// Parses the rows of a text file's elements.
 class PlyText : public PlyLines {
  public:
   using PlyLines::PlyLines;
 
-  /// One value a property; of lists the length.
+  /// Parses one value a property; of a list, its length.
   void parse_row(const PlyElement& element, std::uint64_t row, std::string_view line,
                  std::vector<double>& values) {
     values.clear();
@@ -50,7 +50,7 @@ class PlyText : public PlyLines {
     }
   }
 
-  /// A number of a Gaussian, as text has it.
+  /// Returns a number of a Gaussian from a row of text.
   double value_of(const PlyLayout& layout, const PlyLayout::Source& source,
                   const std::vector<double>& values) const {
     const double value = values[source.property];
@@ -83,10 +83,11 @@ class PlyText : public PlyLines {
   }
 };
 
-/// Base colours that are no bytes were read as 0 to 1. Some programs write 0 to 255: the largest decides.
+/// Base colours other than uchar were read as 0 to 1. Some programs write 0 to 255, so the largest value
+/// decides.
 void settle_colours(const std::filesystem::path& path, const std::vector<std::uint8_t>& kept, Model& model) {
   const std::size_t values = 3 * static_cast<std::size_t>(sh_count(model.degree));
-  constexpr double most = 2.0;  // of 0 to 1: trainers' may be beyond that
+  constexpr double most = 2.0;  // of 0 to 1: trained colours may exceed 1
   double largest = 0.0;
   for (std::size_t k = 0; k < model.sh.size(); ++k) {
     if (k % values < 3 && kept[k / values] != 0) largest = std::max(largest, 0.5 + sh_c0 * model.sh[k]);
@@ -149,14 +150,14 @@ class PlyReader {
   }
 
  private:
-  /// Room for all Gaussians; the file must have been found long enough before.
+  /// Allocates all Gaussians. The caller has checked that the file is long enough.
   void make_room() {
     model_.resize(layout_.vertices->count);
     kept_.assign(layout_.vertices->count, 0);
     if (layout_.wide) places_.resize(layout_.vertices->count);
   }
 
-  /// Gaussian i, of which number(source) is each number.
+  /// Decodes Gaussian i; number(source) returns each of its numbers.
   template <typename Number>
   void keep(std::size_t i, const Number& number) {
     RawGaussian raw;
@@ -175,7 +176,7 @@ class PlyReader {
         path_.string(), element.name, row, element.count, bytes_.size());
   }
 
-  /// Binary rows of one size.
+  /// Reads binary rows of one size.
   void read_fixed(const PlyElement& element, bool gaussians) {
     const std::size_t row = element.row_bytes(), behind = end_of_rows(path_, bytes_, element, at_);
     if (gaussians) {
@@ -194,7 +195,7 @@ class PlyReader {
     at_ = behind;
   }
 
-  /// Binary rows with lists, whose sizes only a walk can tell.
+  /// Reads binary rows with lists, whose sizes only a walk reveals.
   void read_ragged(const PlyElement& element, bool gaussians) {
     const std::size_t most = (bytes_.size() - at_) / element.row_bytes();
     if (element.count > most) fail_cut(element, most);
@@ -209,8 +210,8 @@ class PlyReader {
     }
   }
 
-  /// Where each property lies in the row at byte `row`, relative to it. Returns the byte where the row ends,
-  /// or one beyond the file's end where the row does not fit.
+  /// Finds the offset of each property in the row at byte `row`. Returns the row's end, or one byte beyond
+  /// the file's end if the row does not fit.
   std::size_t find_offsets(const PlyElement& element, std::size_t row,
                            std::vector<std::size_t>& offsets) const {
     offsets.clear();
@@ -238,10 +239,10 @@ class PlyReader {
     });
   }
 
-  /// Text: one line an element.
+  /// Reads text: one line a row.
   void read_text(const PlyElement& element, bool gaussians) {
     if (element.properties.empty()) return;
-    // A value takes a digit and a blank at least.
+    // A value takes at least a digit and a blank.
     const std::size_t shortest = 2 * element.properties.size();
     const std::size_t left = text_.left() + 1;
     if (element.count > left / shortest) fail_cut(element, left / shortest);
@@ -266,7 +267,7 @@ class PlyReader {
   Progress progress_;
   Model model_;
   std::vector<std::uint8_t> kept_;
-  std::vector<glm::dvec3> places_;  // where layout_.wide
+  std::vector<glm::dvec3> places_;  // if layout_.wide
 };
 
 }  // namespace

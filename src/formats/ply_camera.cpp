@@ -20,15 +20,15 @@ namespace {
 
 using Numbers = std::vector<double>;
 
-/// Goes to an element's first row, and reads rows of one number.
+/// Reads rows of one number of an element.
 class CameraRows {
  public:
   CameraRows(const std::filesystem::path& path, std::span<const std::byte> bytes, const PlyHeader& header)
       : path_(path), bytes_(bytes), header_(header) {}
 
-  /// The numbers of the element and its property `name`; none where there is no such element.
+  /// Returns the numbers of the element `name` with a property of that name; nothing if there is none.
   std::optional<Numbers> read(const char* name) const {
-    constexpr std::size_t most = 16;  // that any of them has
+    constexpr std::size_t most = 16;  // the largest number of rows of any of them
     const PlyElement* element = header_.find(name);
     if (element == nullptr || element->find(name) == nullptr) return std::nullopt;
     if (element->properties.size() != 1 || element->has_list() || element->count > most)
@@ -121,7 +121,7 @@ void set_pose(const CameraRows& rows, Camera& camera) {
   const bool first_version = extrinsic->size() == 12;
   if (!first_version && extrinsic->size() != 16)
     rows.fail("extrinsic", fmt::format("{} numbers; expected the 16 of a matrix (or 12)", extrinsic->size()));
-  // Row by row, of what takes the world to the camera: glm's columns are those rows, which are the axes.
+  // Row-major world-to-camera: its rows are the camera's axes, stored here as glm's columns.
   glm::dmat3 axes;
   glm::dvec3 shift;
   for (int row = 0; row < 3; ++row) {
@@ -147,7 +147,7 @@ bool has_ply_camera(const std::filesystem::path& path) {
     const PlyElement* element = header.find("intrinsic");
     return element != nullptr && element->find("intrinsic") != nullptr;
   } catch (const Error&) {
-    return false;  // who reads the model says what is wrong
+    return false;  // the reader of the model reports the fault
   }
 }
 

@@ -26,7 +26,7 @@ constexpr TypeName type_names[] = {
     {"half", PlyType::float16},    {"float16", PlyType::float16}, {"float", PlyType::float32},
     {"float32", PlyType::float32}, {"double", PlyType::float64},  {"float64", PlyType::float64}};
 
-/// Reads one line after the other into a header.
+/// Parses a header line by line.
 class HeaderReader {
  public:
   HeaderReader(const std::filesystem::path& path, std::string_view text)
@@ -57,7 +57,7 @@ class HeaderReader {
   }
 
  private:
-  /// The next line without its end and blanks around it.
+  /// Returns the next line without its end and surrounding blanks.
   std::string_view next_line() {
     ++header_.lines;
     const std::string_view rest = text_.substr(at_);
@@ -94,7 +94,7 @@ class HeaderReader {
               quoted(word));
   }
 
-  /// Names go into errors' texts as they are.
+  /// Checks a name: errors print names unescaped.
   std::string read_name(std::string_view word) const {
     const auto control = [](char c) { return static_cast<unsigned char>(c) < ' ' || c == 127; };
     if (word.size() > 200 || std::any_of(word.begin(), word.end(), control))

@@ -1,5 +1,5 @@
 #pragma once
-// The header of a ply file (Turk 1994): which elements it holds, and how they are stored.
+// The header of a ply file (Turk 1994): its elements and their storage.
 
 #include <cstddef>
 #include <cstdint>
@@ -28,18 +28,18 @@ struct PlyProperty {
 
 struct PlyElement {
   std::string name;
-  std::uint64_t count = 0;  // as the header says; not checked against the file
+  std::uint64_t count = 0;  // as in the header; not checked against the file
   std::vector<PlyProperty> properties;
 
   const PlyProperty* find(std::string_view property) const;
   bool has_list() const;
-  std::size_t row_bytes() const;  // with lists: the least, where all are empty
+  std::size_t row_bytes() const;  // with lists: the minimum, if all are empty
 };
 
 struct PlyHeader {
   PlyFormat format = PlyFormat::ascii;
   std::vector<PlyElement> elements;   // in the order of their data
-  std::vector<std::string> comments;  // without the word itself
+  std::vector<std::string> comments;  // without the word 'comment'
   std::size_t data = 0;               // byte where the data begins
   std::size_t lines = 0;              // of the header
 

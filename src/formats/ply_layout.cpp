@@ -13,14 +13,14 @@ namespace binosplat {
 
 namespace {
 
-/// What trainers of other shapes write beside the properties of Gaussians, and what it is the mark of.
+/// Properties by which files of other kernels are recognised, and those kernels.
 constexpr std::pair<const char*, const char*> other_kernels[] = {
     {"beta", "Beta kernels (Deformable Beta Splatting)"},
     {"sb_params_0", "colours of spherical Betas (Deformable Beta Splatting)"},
     {"trbf_center", "Gaussians that come and go with time (Spacetime Gaussians)"},
 };
 
-/// Refuses files that are well-formed but hold something else.
+/// Throws Error for files that are well-formed but not models of Gaussians.
 void refuse_relatives(const std::filesystem::path& path, const PlyHeader& header) {
   const std::string name = path.string();
   const PlyElement* vertices = header.find("vertex");
@@ -57,7 +57,7 @@ void refuse_relatives(const std::filesystem::path& path, const PlyHeader& header
   if (vertices->count == 0) fail("{} holds no Gaussians: its header says 'element vertex 0'", name);
 }
 
-/// The number of f_rest properties of an element, after checking that they run from 0 without a gap.
+/// Returns the number of f_rest properties after checking that they run from 0 without a gap.
 std::size_t count_rest(const std::filesystem::path& path, const PlyElement& vertices) {
   const std::size_t count = static_cast<std::size_t>(
       std::count_if(vertices.properties.begin(), vertices.properties.end(),
@@ -75,13 +75,13 @@ void add_source(const std::filesystem::path& path, PlyLayout& layout, const std:
   if (property == nullptr) fail("{}: element 'vertex' has no property '{}'", path.string(), name);
   if (property->count_type)
     fail("{}: property '{}' of element 'vertex' is a list; expected one number", path.string(), name);
-  // ply has no halves. Exporters declare them as ushort, and no whole numbers describe a Gaussian.
+  // ply has no halves. Exporters declare them as ushort, which no number of a Gaussian is otherwise.
   const bool halves = property->type == PlyType::uint16;
   layout.sources.push_back({static_cast<std::size_t>(property - layout.vertices->properties.data()),
                             halves ? PlyType::float16 : property->type, halves});
 }
 
-/// Finds out whether there are base colours in the place of coefficients, and of which type.
+/// Sets layout.rgb if there are base colours in place of coefficients, and their type.
 void find_rgb(const std::filesystem::path& path, PlyLayout& layout) {
   if (layout.vertices->find("f_dc_0") != nullptr) return;
   layout.rgb = layout.rgb_bytes = true;
@@ -123,7 +123,7 @@ PlyLayout find_layout(const std::filesystem::path& path, const PlyHeader& header
       std::ranges::any_of(header.comments, [](const std::string& comment) {
         return lowered(comment).find("splatrendermode: 2dgs") != std::string::npos;
       });
-  // The third scale of a flat one is the second until decode() knows better.
+  // A flat Gaussian's third scale reads the second one until decode() replaces it.
   for (const char* name : {"x", "y", "z", "scale_0", "scale_1", layout.flat ? "scale_1" : "scale_2", "rot_0",
                            "rot_1", "rot_2", "rot_3", "opacity"}) {
     add(name);

@@ -32,8 +32,8 @@ double load_ply_as(const std::byte* at, bool swapped) {
   return static_cast<double>(std::bit_cast<T>(load_ply_bits<Bits>(at, swapped)));
 }
 
-/// A number as it is stored at `at`, of which the caller has checked that its bytes are there. Every type
-/// fits a double exactly. `swapped`: its bytes come in the other order than this machine's.
+/// Returns a stored number. The caller has checked that its bytes exist. Every type fits a double exactly.
+/// `swapped`: its byte order differs from this machine's.
 inline double load_ply_number(PlyType type, const std::byte* at, bool swapped) {
   switch (type) {
     case PlyType::int8:
@@ -58,7 +58,7 @@ inline double load_ply_number(PlyType type, const std::byte* at, bool swapped) {
   return load_ply_as<double, std::uint64_t>(at, swapped);
 }
 
-/// Whether the numbers of a binary file come in the other order than this machine's.
+/// Returns whether a binary file's byte order differs from this machine's.
 constexpr bool is_swapped(PlyFormat format) {
   return (format == PlyFormat::big_endian) != (std::endian::native == std::endian::big);
 }

@@ -1,5 +1,5 @@
 #pragma once
-// The rows of a ply file's elements: where they lie in a binary file, and line by line in a text.
+// Rows of a ply file's elements: their bytes in a binary file, their lines in a text.
 
 #include <cstddef>
 #include <filesystem>
@@ -11,13 +11,12 @@
 
 namespace binosplat {
 
-/// The byte behind an element's rows in a binary file, which have no lists and begin at byte `at`. Throws
-/// Error for a file that ends before.
+/// Returns the byte after an element's rows, which have no lists and begin at byte `at` of a binary file.
+/// Throws Error for a file that ends before.
 std::size_t end_of_rows(const std::filesystem::path& path, std::span<const std::byte> bytes,
                         const PlyElement& element, std::size_t at);
 
-/// The byte of such a row at which a property begins. Throws Error for one that is missing or has another
-/// type.
+/// Returns a property's offset in such a row, in bytes. Throws Error if it is missing or has another type.
 std::size_t offset_in_row(const std::filesystem::path& path, const PlyElement& element,
                           const std::string& name, PlyType type);
 
@@ -27,11 +26,11 @@ class PlyLines {
   PlyLines(const std::filesystem::path& path, std::string_view text, const PlyHeader& header)
       : path_(path), text_(text), at_(header.data), number_(header.lines) {}
 
-  /// The next line that is not blank, for a row of an element. Throws Error at the end of the file.
+  /// Returns the next line that is not blank, for a row of an element. Throws Error at the end of the file.
   std::string_view next(const PlyElement& element, std::uint64_t row);
-  /// Of the line that next() returned last, counted from 1.
+  /// Number of the line that next() returned last, counted from 1.
   std::size_t number() const { return number_; }
-  /// Bytes that are not read yet.
+  /// Unread bytes.
   std::size_t left() const { return text_.size() - at_; }
 
   static constexpr std::string_view blanks = " \t\r";

@@ -1,4 +1,4 @@
-// INRIA's ply, as its trainer writes it.
+// Writes INRIA's ply, as its trainer does.
 
 #include <cmath>
 
@@ -11,9 +11,8 @@ namespace binosplat {
 
 namespace {
 
-/// The float near `start` that `decode` takes to exactly `wanted`, or the nearest one to `start` if there is
-/// none. `step` is a quarter of what a
-/// rounding of `wanted` is worth there; decoding takes a few roundings.
+/// Returns the float near `start` that `decode` maps to exactly `wanted`, or the one nearest to `start` if
+/// none does. `step` is a quarter of a rounding step of `wanted` there; decoding rounds a few times.
 template <typename Decode>
 float float_for(float wanted, double start, double step, const Decode& decode) {
   for (int k = 0; k <= 32; ++k) {
@@ -24,13 +23,13 @@ float float_for(float wanted, double start, double step, const Decode& decode) {
   return static_cast<float>(start);
 }
 
-/// The logarithm as which a scale is stored; that of 0 is finite, but becomes 0 again.
+/// Returns the stored logarithm of a scale. That of 0 is finite, but decodes to 0.
 float ply_log_scale(float scale) {
   const double start = std::max(std::log(static_cast<double>(scale)), -110.0);
   return float_for(scale, start, 0x1p-26, [](float raw) { return std::exp(raw); });
 }
 
-/// The same for an opacity: 0 and 1 are stored as -100 and 100.
+/// Returns the stored logit of an opacity: 0 and 1 become -100 and 100.
 float logit(float opacity) {
   const double a = opacity;
   const double start = std::clamp(std::log(a) - std::log1p(-a), -100.0, 100.0);
@@ -56,7 +55,7 @@ Losses write_ply(OutputFile& file, const Model& model) {
   for (const char* name : {"opacity", "scale_0", "scale_1", "scale_2", "rot_0", "rot_1", "rot_2", "rot_3"})
     add(name);
   if (is_mip_splatting(model)) add("filter_3D");
-  // Not before the elements: INRIA's viewer takes the third line for the count.
+  // After the elements: INRIA's viewer takes the third line for the count.
   header += antialias_comment(model);
   header += perspective_comments(model.perspective);
   file.write(header + "end_header\n");

@@ -1,5 +1,5 @@
-// libpng reports errors by longjmp, which runs no destructors: what it may jump out of keeps its objects in a
-// struct of the caller.
+// libpng reports errors by longjmp, which runs no destructors. Functions that it may leave keep their objects
+// in a struct of the caller.
 #include <png.h>
 #include <zlib.h>
 
@@ -52,7 +52,7 @@ bool read_png_header(PngReader& reader) {
   return true;
 }
 
-/// To 8 or 16 bits of grey, RGB or RGBA.
+/// Expands pixels to 8 or 16 bits of grey, RGB or RGBA.
 bool expand(PngReader& reader) {
   if (setjmp(png_jmpbuf(reader.png)) != 0) return false;
   png_set_expand(reader.png);
@@ -71,7 +71,7 @@ bool read_rows(PngReader& reader) {
   return true;
 }
 
-/// Reads all up to the pixels, and returns the picture's size.
+/// Reads everything before the pixels, and returns the picture's size.
 glm::ivec2 begin(PngReader& reader) {
   reader.png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &reader, on_error, on_warning);
   if (reader.png == nullptr || (reader.info = png_create_info_struct(reader.png)) == nullptr)
@@ -80,7 +80,7 @@ glm::ivec2 begin(PngReader& reader) {
   const png_uint_32 width = png_get_image_width(reader.png, reader.info);
   const png_uint_32 height = png_get_image_height(reader.png, reader.info);
   const int bits = png_get_bit_depth(reader.png, reader.info) * png_get_channels(reader.png, reader.info);
-  constexpr std::uint64_t best_deflate = 1032;  // bytes out of one byte of a zlib stream
+  constexpr std::uint64_t best_deflate = 1032;  // bytes from one byte of a zlib stream
   check_size(reader.path, width, height, reader.bytes.size(),
              best_deflate * 8 / static_cast<std::uint64_t>(bits) + 1);
   return glm::ivec2(width, height);
@@ -88,7 +88,7 @@ glm::ivec2 begin(PngReader& reader) {
 
 }  // namespace
 
-// Chunks of LENGTH NAME DATA SUM, behind a signature.
+// A PNG is a signature, then chunks of LENGTH NAME DATA CHECKSUM.
 bool is_whole_png(std::span<const std::byte> bytes, bool by_sums) {
   constexpr std::size_t signature = 8, around = 12;
   const auto number = [&](std::size_t at) {

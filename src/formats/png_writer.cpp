@@ -1,5 +1,5 @@
-// PNG by libdeflate, which makes smaller files than zlib in half the time: a signature, then chunks of LENGTH
-// NAME DATA SUM, of which IDAT holds the filtered rows as one zlib stream.
+// Writes PNG by libdeflate, which makes smaller files than zlib in half the time. A PNG is a signature, then
+// chunks of LENGTH NAME DATA CHECKSUM; IDAT holds the filtered rows as one zlib stream.
 #include <libdeflate.h>
 
 #include <cstdlib>
@@ -20,7 +20,6 @@ namespace {
 
 using Bytes = std::vector<std::uint8_t>;
 
-/// Big-endian.
 void append_big_endian(std::string& out, std::uint32_t number) {
   for (int shift = 24; shift >= 0; shift -= 8) out += static_cast<char>(number >> shift & 255U);
 }
@@ -32,7 +31,7 @@ void append_chunk(std::string& png, std::string_view name, std::string_view data
   append_big_endian(png, libdeflate_crc32(0, &png[begin], png.size() - begin));
 }
 
-/// The image's row `y` as PNG stores it: big-endian. NaN becomes 0.
+/// Encodes the image's row `y` for PNG, big-endian. NaN becomes 0.
 void encode_row(const Image& image, int y, int bits, std::uint8_t* row) {
   const std::size_t count = static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.channels);
   const float* values = &image.data[static_cast<std::size_t>(y) * count];
@@ -47,7 +46,7 @@ void encode_row(const Image& image, int y, int bits, std::uint8_t* row) {
   }
 }
 
-/// PNG's filters keep of each byte what differs from a guess: of `left`, `above`, or the mean of both.
+/// PNG's filters store each byte's difference from a prediction: `left`, `above`, or the mean of both.
 enum Filter : std::uint8_t { sub = 1, up = 2, average = 3 };
 
 void filter(Filter type, const std::uint8_t* row, const std::uint8_t* left, const std::uint8_t* above,
@@ -58,7 +57,7 @@ void filter(Filter type, const std::uint8_t* row, const std::uint8_t* left, cons
   }
 }
 
-/// How much is left to pack, as PNG's specification proposes to tell: the sum of what differs, either way.
+/// Estimates the compressed size as PNG's specification proposes: the sum of absolute differences.
 std::uint64_t left_to_pack(const Bytes& filtered) {
   std::uint64_t sum = 0;
   for (const std::uint8_t byte : filtered)
@@ -66,12 +65,12 @@ std::uint64_t left_to_pack(const Bytes& filtered) {
   return sum;
 }
 
-/// All rows, each after the number of the filter that leaves least of it. Paeth's, the fourth, leaves no less
-/// of pictures that are drawn, and takes as long as the other three.
+/// Filters each row with the filter of the smallest estimate, after that filter's number. Paeth, the fourth
+/// filter, saves nothing on rendered pictures, and takes as long as the other three.
 Bytes filtered_rows(const Image& image, int bits) {
   const std::size_t pixel = static_cast<std::size_t>(image.channels * bits / 8);
   const std::size_t size = pixel * static_cast<std::size_t>(image.width);
-  // A pixel of zeros stands before each row, and a row of zeros above the first.
+  // A pixel of zeros precedes each row, and a row of zeros the first.
   Bytes row(pixel + size), above(pixel + size), best(size), tried(size), all;
   all.reserve((1 + size) * static_cast<std::size_t>(image.height));
   for (int y = 0; y < image.height; ++y) {
@@ -114,16 +113,16 @@ std::string png_bytes(const Image& image, const PngOptions& options) {
   std::string header;
   append_big_endian(header, static_cast<std::uint32_t>(image.width));
   append_big_endian(header, static_cast<std::uint32_t>(image.height));
-  // Deflate, filters by row, not interlaced.
+  // Deflate, adaptive filters, not interlaced.
   header += {static_cast<char>(bits), colour_type, 0, 0, 0};
 
   std::string png = "\x89PNG\r\n\x1a\n";
   append_chunk(png, "IHDR", header);
-  append_chunk(png, "sRGB", std::string_view("\0", 1));  // to be shown as it is perceived
-  // Neither packed, nor in a language.
+  append_chunk(png, "sRGB", std::string_view("\0", 1));  // rendering intent: perceptual
+  // Uncompressed, without a language.
   for (const auto& [key, value] : notes) append_chunk(png, "iTXt", key + std::string(5, '\0') + value);
   std::string rows = packed(filtered_rows(image, bits), level);
-  // A chunk's length has 31 bits; readers put the pieces together.
+  // A chunk's length has 31 bits; readers join several IDAT.
   constexpr std::size_t piece = std::size_t{1} << 30;
   for (std::size_t at = 0; at < rows.size(); at += piece)
     append_chunk(png, "IDAT", std::string_view(rows).substr(at, piece));

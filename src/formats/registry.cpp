@@ -33,8 +33,8 @@ bool is_usd(const ModelBytes& f) {
          (f.content == Content::zip && is_usdz(f.path, f.bytes));
 }
 
-/// Formats without a mark of their own are recognised by their numbers. A name lets a damaged file be read
-/// for the sake of the error, but does not decide what another file is.
+/// Recognises a format without magic bytes by its numbers. The file name lets a damaged file reach the
+/// reader, which explains the fault, but never overrides another format.
 bool is_unmarked(const ModelBytes& f, const char* ending, bool (*is)(std::span<const std::byte>)) {
   return f.content == Content::unknown && (is(f.bytes) || f.path.extension() == ending);
 }

@@ -1,6 +1,6 @@
 #pragma once
-// The registry of model formats: one row a format. Reading, writing, help, errors, sizes and the lists on the
-// pages follow from its rows.
+// The registry of model formats: a row for each. Reading, writing, help, errors, sizes and the lists on the
+// pages use its rows.
 
 #include <cstdint>
 #include <filesystem>
@@ -17,7 +17,7 @@
 
 namespace binosplat {
 
-/// In the order of the rows, which is the order in which they are tried on a file.
+/// In the order of the rows, in which they are tried on a file.
 enum class ModelFormat {
   scaffold,
   compressed_ply,
@@ -31,46 +31,48 @@ enum class ModelFormat {
   splat
 };
 
-/// A file whose format is to be found.
+/// The contents of a file whose format is wanted.
 struct ModelBytes {
   std::filesystem::path path;
   std::span<const std::byte> bytes;
   Content content = Content::unknown;
-  nlohmann::json json;  // what a JSON file holds
+  nlohmann::json json;  // parsed contents of a JSON file
 };
 
 struct FormatRow {
   const char* name;     // in help, errors, and on the pages
-  const char* endings;  // of its files; none where another row's files have the same
+  const char* endings;  // of its files; "" if another row's files have the same
   bool (*recognises)(const ModelBytes&);
   Model (*read)(const ModelBytes&, const ModelOptions&);
-  /// The files that it is read from besides the one that names them; null where there are none.
+  /// Returns the additional files of a model that the first one names; null if there are none.
   std::vector<std::filesystem::path> (*named_by)(const ModelBytes&) = nullptr;
 
-  /// Null where the format is not written. `harmonic_bits` are spz's. Returns what the format cannot keep.
+  /// Null if the format is only read. Only spz uses `harmonic_bits`. Returns the properties that the format
+  /// loses.
   std::vector<std::string> (*write)(OutputFile&, const Model&, int harmonic_bits) = nullptr;
-  /// Bytes of `count` Gaussians with `higher` numbers of higher harmonics each, but for the header; of spz
-  /// before gzip and of SOG before WebP, each of which takes off more than a third of trained models.
+  /// Returns the bytes of `count` Gaussians with `higher` numbers of higher harmonics each, without the
+  /// header. For spz it is the size before gzip and for SOG before WebP; both save more than a third for
+  /// trained models.
   std::uint64_t (*bytes)(std::uint64_t count, std::uint64_t higher) = nullptr;
-  const char* axes = "RDF";  // of what is written
+  const char* axes = "RDF";  // of written files
 };
 
 std::span<const FormatRow> format_rows();
 const FormatRow& row_of(ModelFormat format);
 
-/// The rows that have a writer.
+/// Returns the formats that have a writer.
 std::vector<ModelFormat> written_formats();
 
-/// The word that options, reports and JSON have for a format that is written: its ending without the dot.
+/// Returns the word for a written format in options, reports and JSON: its ending without the dot.
 std::string word_of(ModelFormat format);
 
-/// What a file is; none where no row recognises it.
+/// Returns the row that recognises a file, or null.
 const FormatRow* format_of(const ModelBytes& file);
 
-/// The bytes of a file at `path`, with its JSON parsed. Throws Error for JSON that is damaged.
+/// Returns the bytes of a file at `path`, with parsed JSON. Throws Error for damaged JSON.
 ModelBytes examine(const std::filesystem::path& path, std::span<const std::byte> bytes);
 
-/// The rows' names, as in "ply, SOG or spz".
+/// Returns the rows' names, as in "ply, SOG or spz".
 std::string names_of_formats();
 
 }  // namespace binosplat

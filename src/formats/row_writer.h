@@ -1,5 +1,5 @@
 #pragma once
-// Rows of one size, made on all cores and handed on in blocks.
+// Encodes rows of one size on all cores, and passes them on in blocks.
 
 #include <algorithm>
 #include <cstddef>
@@ -16,10 +16,10 @@ class RowWriter {
  public:
   using Sink = std::function<void(std::span<const std::byte>)>;
 
-  /// `all` rows will go to `sink`, over all calls of write().
+  /// `all` is the number of rows of all calls of write(), for the progress.
   RowWriter(Sink sink, std::uint64_t all) : sink_(std::move(sink)), progress_("writing", all) {}
 
-  /// Writes `count` rows of `bytes` zeros each, after encode(i, row) has put its numbers into row i.
+  /// Writes `count` rows of `bytes` bytes each; encode(i, row) fills row i, which starts as zeros.
   template <typename Encode>
   void write(std::size_t count, std::size_t bytes, const Encode& encode) {
     constexpr std::size_t most = 65536;

@@ -15,11 +15,11 @@ namespace binosplat {
 
 namespace {
 
-// Shaders have a bit for each Gaussian of an anchor, in one word.
+// A shader keeps one bit for each Gaussian of an anchor in one word.
 constexpr std::size_t offsets_max = 31;
 constexpr std::size_t features_max = 256;
 
-/// Where in a row of the file each number of an anchor lies.
+/// Offsets of an anchor's numbers in a row of the file.
 struct AnchorLayout {
   std::size_t row = 0;  // bytes
   std::vector<std::size_t> position, scale, rotation, offset, feature;
@@ -74,7 +74,7 @@ class AnchorReader {
     return offset_in_row(path_, *vertices_, name, PlyType::float32);
   }
 
-  // The columns NAME0, NAME1, ... in the order of their numbers, whatever the file's.
+  // Returns the columns NAME0, NAME1, ... by number, whatever their order in the file.
   std::vector<std::size_t> columns(const std::string& name, std::size_t count) const {
     std::vector<std::size_t> out;
     for (std::size_t i = 0; i < count; ++i) out.push_back(column(name + std::to_string(i)));
@@ -108,7 +108,7 @@ class AnchorReader {
     layout_.feature = columns("f_anchor_feat_", features);
   }
 
-  // Anchor n of the file into slot n; whether it may be kept.
+  // Decodes anchor n into slot n; returns whether it is valid.
   bool decode(std::size_t n) {
     const std::byte* row = bytes_.data() + header_.data + n * layout_.row;
     bool finite = true;
@@ -140,7 +140,7 @@ class AnchorReader {
     return finite && norm > 0.0;
   }
 
-  // Closes the gaps of what is left out, and counts it.
+  // Removes invalid anchors and counts them.
   void keep_only(const std::vector<std::uint8_t>& good) {
     const auto close = [&](auto& values, std::size_t each) {
       auto to = values.begin();

@@ -7,7 +7,7 @@
 
 namespace binosplat {
 
-/// Fills everything of the anchors, K and F; see scaffold_file.h. Throws Error naming `ply`.
+/// Fills in the anchors, K and F (see scaffold_file.h). Throws Error naming `ply`.
 void load_anchors(const std::filesystem::path& ply, Scaffold& scaffold);
 
 }  // namespace binosplat

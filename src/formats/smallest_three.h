@@ -1,5 +1,5 @@
 #pragma once
-// Unit quaternions by their three smallest components, as packed formats store them.
+// Unit quaternions stored as their three smallest components, as in packed formats.
 
 #include <algorithm>
 #include <cmath>

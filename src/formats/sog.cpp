@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A .sog archive by the names that its meta.json gives, which may lie in a folder of it with its pictures.
+/// A .sog archive, read by the names in its meta.json, which may lie in a folder with its pictures.
 class Archive {
  public:
   explicit Archive(const fs::path& path)
@@ -26,14 +26,14 @@ class Archive {
         most_(file_.bytes().size() + (std::size_t{1} << 18)) {
     for (const std::string& name : zip_.names()) {
       const std::string below = plain(name);
-      if (below.starts_with("__MACOSX/")) continue;  // what macOS keeps beside the files
+      if (below.starts_with("__MACOSX/")) continue;  // macOS stores metadata there
       const auto [entry, is_new] = names_.emplace(below, name);
       if (!is_new && name_of(below) == meta_name) fail_many(path, entry->second, name);
     }
     folder_ = folder_of_meta(path);
   }
 
-  /// Pictures are packed already: deflate takes hardly anything off those that are no bombs.
+  /// Pictures are compressed, so deflate hardly shrinks valid ones further: a larger size is an attack.
   std::vector<std::byte> read(const std::string& name) const {
     const std::string below = plain((folder_ / name).string());
     const auto entry = names_.find(below);
@@ -41,7 +41,7 @@ class Archive {
   }
 
  private:
-  /// Without what some programs write: "\\" for "/", and "./" or "/" before all.
+  /// Normalises a name: some programs write "\\" for "/", and "./" or "/" at the start.
   static std::string plain(std::string name) {
     std::replace(name.begin(), name.end(), '\\', '/');
     return fs::path(name).lexically_normal().relative_path().generic_string();
@@ -54,7 +54,7 @@ class Archive {
          path.string(), binosplat::quoted(a), binosplat::quoted(b));
   }
 
-  /// Of the meta.json that lies least deep.
+  /// Returns the folder of the topmost meta.json.
   fs::path folder_of_meta(const fs::path& path) const {
     std::vector<fs::path> found;
     for (const auto& [below, name] : names_) {
@@ -78,8 +78,8 @@ class Archive {
 
   MappedFile file_;
   ZipFile zip_;
-  std::size_t most_;                          // bytes of a file in it
-  std::map<std::string, std::string> names_;  // plain ones, and as they stand in the archive
+  std::size_t most_;                          // largest size of a file in it
+  std::map<std::string, std::string> names_;  // normalised names, and names in the archive
   fs::path folder_;
 };
 
@@ -129,8 +129,8 @@ Model load_sog(const std::filesystem::path& meta, const nlohmann::json& root) {
 SogSource sog_in_archive(const std::filesystem::path& archive) {
   const std::vector<std::byte> meta = Archive(archive).read("meta.json");
   const nlohmann::json root = parse_json(archive.string() + ": meta.json", as_text(meta));
-  // Opened anew for each file: the library is not made for several threads, and of a streamed SOG's many
-  // archives none is held open.
+  // Opens the archive anew for each file: the library is not thread-safe, and a streamed SOG has too many
+  // archives to keep open.
   return {archive.string(), root, [archive](const std::string& name) { return Archive(archive).read(name); }};
 }
 

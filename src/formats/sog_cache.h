@@ -1,5 +1,5 @@
 #pragma once
-// Pictures of SOGs that are read again and again, a few Gaussians at a time.
+// A cache of SOGs' decoded pictures, for streams that repeatedly read a few Gaussians.
 
 #include <cstddef>
 #include <list>
@@ -10,13 +10,13 @@
 
 namespace binosplat {
 
-/// Keeps those that were used last. May be called by several threads.
+/// Keeps the most recently used pictures. Several threads may call it.
 class SogCache {
  public:
-  /// So many bytes at most, beside those that are in use.
+  /// Keeps at most this many bytes, besides the pictures in use.
   explicit SogCache(std::size_t most) : most_(most) {}
 
-  /// The pictures of the SOG that has this number. Throws Error as decoding them does.
+  /// Returns the pictures of the SOG with this number. Throws Error as decoding them does.
   std::shared_ptr<const SogSource::Textures> textures(std::size_t number, const SogSource& source);
   bool has(std::size_t number);
 
@@ -28,7 +28,7 @@ class SogCache {
 
   std::size_t most_;
   std::mutex mutex_;
-  std::list<Kept> kept_;  // the last used first
+  std::list<Kept> kept_;  // most recently used first
   std::size_t bytes_ = 0;
 };
 

@@ -15,7 +15,7 @@ namespace fs = std::filesystem;
 
 constexpr std::uint64_t most_levels = 100;
 constexpr std::uint64_t most_gaussians = std::uint64_t{1} << 32;
-// Of what levels lose, of pixels' widths and of places: products of such numbers are still finite.
+// Limit for errors, widths of pixels and positions: products of such numbers stay finite.
 constexpr double most_lost = 1e20;
 
 std::vector<double> widths_of(const JsonValue& value) {
@@ -30,7 +30,7 @@ std::vector<double> widths_of(const JsonValue& value) {
   return widths;
 }
 
-/// A list of numbers for each direction, of one for each width.
+/// Reads a list of numbers for each direction, one for each width.
 std::vector<double> by_direction(const JsonValue& value, std::size_t widths) {
   const JsonValue directions = value.list_of(detail_directions);
   std::vector<double> numbers;
@@ -53,8 +53,8 @@ void check_bound(const JsonValue& bound, const LodChunk& leaf) {
     bound.fail_here("expected numbers from -{0} to {0}", most_lost);
 }
 
-/// Whether a leaf says what it loses of each pixel that shows it: not where its finest level shows nothing,
-/// and another one does.
+/// Returns whether a leaf's errors per visible pixel are bounded. They are not if its finest level shows
+/// nothing and another level does.
 bool knows_errors(const LodChunk& leaf) {
   return std::ranges::all_of(leaf.levels, [&](const LodChunk::Level& level) {
     return std::ranges::equal(level.errors, leaf.seen,
@@ -62,7 +62,7 @@ bool knows_errors(const LodChunk& leaf) {
   });
 }
 
-// Calls see(node) for every node of the tree that has Gaussians, always in one order.
+// Calls see(node) for every node of the tree that has Gaussians, in a fixed order.
 void walk(const JsonValue& root, const std::function<void(const JsonValue&)>& see) {
   std::vector<JsonValue> nodes{root.at("tree")};
   while (!nodes.empty()) {
@@ -86,7 +86,7 @@ SogLevels::SogLevels(const fs::path& path, const nlohmann::json& json) : path_(p
   count_ = static_cast<int>(root.at("lodLevels").whole(most_levels));
   if (count_ == 0) root.at("lodLevels").fail_here("expected one level at least");
   const JsonValue names = root.at("filenames");
-  std::set<fs::path> named;  // twice, a file could be taken any number of times
+  std::set<fs::path> named;  // named twice, a file could be used any number of times
   for (std::size_t i = 0; i < names.size(); ++i) {
     files_.push_back(file(names.at(i)));
     if (!named.insert(files_.back().lexically_normal()).second)
@@ -184,7 +184,7 @@ fs::path SogLevels::file(const JsonValue& value) const {
   return path_.parent_path() / name;
 }
 
-// Which file a leaf's level lies in, and where.
+// Parses the file and range of a leaf's level.
 SogLevels::Place SogLevels::place(int level, const JsonValue& lod) const {
   const std::uint64_t index = lod.at("file").whole(most_gaussians);
   if (index >= files_.size()) {

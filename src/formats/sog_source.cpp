@@ -19,7 +19,7 @@ namespace {
 
 enum Texture { means_l, means_u, quats, scales, sh0, labels, texture_count };
 
-/// A byte's value between two ends.
+/// Returns the values of a byte between two ends.
 std::array<float, 256> linear_table(double low, double high) {
   std::array<float, 256> table;
   for (std::size_t b = 0; b < 256; ++b)
@@ -27,7 +27,7 @@ std::array<float, 256> linear_table(double low, double high) {
   return table;
 }
 
-/// 256 values; the first may be null, a fault of old writers, and is then a step before the second.
+/// Reads 256 values. Old writers wrote null as the first: it is one step below the second.
 std::array<float, 256> codebook(const JsonValue& values) {
   values.list_of(256);
   std::array<float, 256> table;
@@ -86,8 +86,8 @@ SogSource::SogSource(std::string source, const nlohmann::json& json, ReadFile re
     read_tables_v1(meta);
   }
   if (meta.has("shN")) read_harmonics(meta.at("shN"));
-  // The low bytes of positions are noise, which no picture packs: their size limits how many Gaussians there
-  // may be. What takes less than a byte for 256 of them is forged, however few they are.
+  // The low bytes of positions are noise, which no picture compresses, so their size limits the number of
+  // Gaussians. Less than a byte for 256 of them is a forgery, however few they are.
   const std::vector<std::byte> low = read_(files_[means_l]);
   bytes_ = low.size();
   const WebpSize size = webp_size(named(files_[means_l]), low);
@@ -188,7 +188,7 @@ bool SogSource::decode_one(const Textures& textures, std::size_t i, Model& model
     scale[c] = scale_[channel][texel(scales)[c]];
     sh[channel] = dc_[channel][texel(sh0)[c]];
   }
-  // The largest of w, x, y, z is left out; the fourth byte says which.
+  // The largest of w, x, y, z is omitted; the fourth byte names it.
   glm::vec4 rotation(1, 0, 0, 0);
   if (three[3] >= 252) {
     SmallestThree smallest{three[3] - 252};

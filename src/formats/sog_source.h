@@ -1,5 +1,5 @@
 #pragma once
-// One SOG from wherever its files are: a folder, an archive, a test's memory.
+// One SOG in any storage: a folder, an archive, a test's memory.
 
 #include <array>
 #include <cstdint>
@@ -19,51 +19,51 @@ namespace binosplat {
 
 class SogSource {
  public:
-  /// The bytes of a file by the name that meta.json gives it; throws Error naming it. Several threads call
-  /// it.
+  /// Returns the bytes of a file by its name in meta.json; throws Error naming it. Several threads call it.
   using ReadFile = std::function<std::vector<std::byte>(const std::string& name)>;
 
-  /// Gaussians `first` to `first + count` - 1, which go to a model's slots from `slot` on.
+  /// Gaussians `first` to `first + count - 1`, for a model's slots from `slot` on.
   struct Range {
     std::size_t first = 0;
     std::size_t count = 0;
     std::size_t slot = 0;
   };
 
-  /// Checks meta.json, and by the headers of the pictures that what it promises can be there. `source` names
-  /// meta.json or the archive in errors.
+  /// Checks meta.json, and that the pictures' headers fit it. `source` names meta.json or the archive in
+  /// errors.
   SogSource(std::string source, const nlohmann::json& json, ReadFile read);
 
   std::size_t count() const { return count_; }
-  /// Bytes of the picture that is hardest to pack (formats/plausible.h).
+  /// Size of the picture that compresses least (formats/plausible.h).
   std::uint64_t bytes() const { return bytes_; }
   int degree() const { return degree_; }
   bool antialiased() const { return antialiased_; }
   bool flat() const { return flat_; }  // 2D Gaussian Splatting: the third scale is 0
   const Perspective& perspective() const { return perspective_; }
 
-  /// All of its pictures, decoded, four bytes a texel: most of what reading takes, however little is taken.
+  /// All of its decoded pictures, four bytes a texel. Decoding them takes most of the time, even for a few
+  /// Gaussians.
   struct Textures {
     std::array<std::vector<std::uint8_t>, 6> data;
     std::size_t bytes() const;
   };
   std::shared_ptr<const Textures> textures() const;
 
-  /// Decodes ranges, which must lie below count(), into a model of this degree or a higher one; kept[i] says
-  /// whether slot i may stay. May be called for disjoint slots by several threads.
+  /// Decodes ranges, which must lie below count(), into a model of this degree or a higher one. Sets kept[i]
+  /// if slot i is valid. Several threads may call it for disjoint slots.
   void decode(Model& model, std::span<const Range> ranges, std::vector<std::uint8_t>& kept) const {
     decode(model, ranges, kept, *textures());
   }
-  /// The same by pictures that are there already.
+  /// The same from decoded pictures.
   void decode(Model& model, std::span<const Range> ranges, std::vector<std::uint8_t>& kept,
               const Textures& textures) const;
-  /// The Gaussians of each range that may stay, as a model by itself, which is else like `like`; slots do not
-  /// count.
+  /// Returns the valid Gaussians of each range as a model of its own, with the other properties of `like`.
+  /// Slots are ignored.
   std::vector<Model> decode_each(const Model& like, std::span<const Range> ranges,
                                  const Textures& textures) const;
 
  private:
-  using Table = std::array<float, 256>;  // what a byte stands for
+  using Table = std::array<float, 256>;  // value of each byte
 
   void read_tables(const JsonValue& meta);
   void read_tables_v1(const JsonValue& meta);
@@ -88,18 +88,18 @@ class SogSource {
   std::array<Table, 3> dc_;     // per channel, coefficients of degree 0
   Table opacity_;
   Table sh_;                 // coefficients of the higher degrees
-  std::size_t palette_ = 0;  // entries; a label beyond has no harmonics
+  std::size_t palette_ = 0;  // entries; a label beyond these has no harmonics
   std::vector<std::uint8_t> palette_texels_;
 };
 
-/// A SOG by its meta.json or its archive, told by content.
+/// Opens a SOG by its meta.json or its archive, recognised by content.
 SogSource open_part(const std::filesystem::path& path);
 
-/// The SOG of a meta.json, whose pictures lie in its folder.
+/// Opens the SOG of a meta.json, with pictures in its folder.
 SogSource sog_in_folder(const std::filesystem::path& meta, const nlohmann::json& root);
 
-/// The SOG in a .sog archive, whose meta.json may lie in a folder of it, beside its pictures. Throws Error
-/// where there is none or more than one.
+/// Opens the SOG in a .sog archive. Its meta.json may lie in a folder of the archive, beside its pictures.
+/// Throws Error if there is none or more than one.
 SogSource sog_in_archive(const std::filesystem::path& archive);
 
 }  // namespace binosplat

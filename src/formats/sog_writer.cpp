@@ -1,4 +1,4 @@
-// PlayCanvas' SOG, version 2.
+// Writes PlayCanvas' SOG, version 2.
 
 #include <algorithm>
 #include <array>
@@ -24,12 +24,12 @@ namespace binosplat {
 
 namespace {
 
-/// Logarithms of scales beyond this are clipped, as by PlayCanvas.
+/// Larger logarithms of scales are clipped, as in PlayCanvas.
 constexpr double sog_log_scale_most = 20.0;
 
 using Rgba = std::array<std::uint8_t, 4>;
 
-/// A picture, a texel a Gaussian but for the palette's, and its name in the archive.
+/// A picture, one texel a Gaussian (except the palette's), and its name in the archive.
 struct TableTexture {
   std::string name;
   int width = 0, height = 0;
@@ -48,7 +48,7 @@ float sog_log_scale(float scale) {
       std::clamp(std::log(static_cast<double>(scale)), -sog_log_scale_most, sog_log_scale_most));
 }
 
-/// What positions are stored as.
+/// Returns the stored value of a position.
 double log_position(double p) { return std::copysign(std::log1p(std::abs(p)), p); }
 
 class SogWriter {
@@ -68,7 +68,7 @@ class SogWriter {
 
   using Report = std::function<void(std::size_t done, std::size_t all)>;
 
-  /// Calls `report` after each picture, from one thread at a time.
+  /// Returns the files. Calls `report` after each picture, from one thread at a time.
   ZipEntries files(const Report& report) {
     add_positions();
     add_scales();
@@ -91,7 +91,7 @@ class SogWriter {
   }
 
  private:
-  /// A picture with value(i) for Gaussian i, under a name that it returns.
+  /// Adds a picture with value(i) for Gaussian i; returns its file name.
   template <typename Value>
   std::string add(const std::string& name, const Value& value) {
     TableTexture& texture = textures_.emplace_back(name + ".webp", width_, height_);
@@ -99,7 +99,7 @@ class SogWriter {
     return texture.name;
   }
 
-  /// get(i, c) for all Gaussians and channels.
+  /// Builds a codebook of get(i, c) for all Gaussians and channels.
   template <typename Get>
   Codebook codebook(const Get& get) const {
     std::vector<float> values(3 * model_.count());
@@ -196,7 +196,7 @@ class SogWriter {
 
   const Model& model_;
   std::span<const std::uint32_t> order_;
-  std::size_t values_;  // coefficients of a Gaussian, degree 0 included
+  std::size_t values_;  // coefficients of a Gaussian, including degree 0
   std::size_t width_ = 0, height_ = 0;
   nlohmann::ordered_json meta_;
   std::deque<TableTexture> textures_;

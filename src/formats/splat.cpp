@@ -23,7 +23,7 @@ glm::vec4 load_rotation(const std::byte* at) {
   return q;
 }
 
-/// Whether a record is one that a trained model may have.
+/// Returns whether a trained model may contain this record.
 bool is_plausible(const std::byte* record) {
   const glm::vec3 scale = load_vec3(record + 12);
   const double length = glm::length(load_rotation(record + 28));

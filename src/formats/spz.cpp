@@ -55,13 +55,13 @@ class SpzDecoder {
     glm::vec3 p;
     for (int c = 0; c < 3; ++c, at += 3) {
       const std::uint32_t bits = load_number<std::uint16_t>(at) | std::to_integer<std::uint32_t>(at[2]) << 16;
-      const int fixed = static_cast<int>(bits << 8) >> 8;  // 24 bits with their sign
+      const int fixed = static_cast<int>(bits << 8) >> 8;  // sign-extends 24 bits
       p[c] = static_cast<float>(std::ldexp(fixed, -contents_.fraction_bits));
     }
     return p;
   }
 
-  /// As w, x, y, z; stored are x, y, z and, from version 3 on, the three smallest of x, y, z, w.
+  /// Returns w, x, y, z. The file stores x, y, z; from version 3 on, the three smallest of x, y, z, w.
   glm::vec4 rotation(std::size_t i) const {
     const std::byte* at = rotations_ + sizes_.rotation * i;
     SmallestThree three{3};

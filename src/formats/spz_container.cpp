@@ -61,8 +61,8 @@ Header read_spz_header(const std::string& source, std::span<const std::byte> byt
   return header;
 }
 
-/// The bytes of all attributes, if `packed` ones may be so many Gaussians and unfold to as many as `least`
-/// each: room is made for no more than that.
+/// Returns the bytes of all attributes. Throws Error unless `packed` bytes can hold that many Gaussians and
+/// expand to `least` bytes each, so nothing larger is allocated.
 std::size_t attribute_bytes(const std::string& source, const SpzContents& contents, std::size_t least,
                             std::size_t packed) {
   if (contents.count > most_gaussians_in(packed) || contents.count * least / deflate_growth_most > packed) {
@@ -83,7 +83,7 @@ std::size_t attribute_bytes(const std::string& source, const SpzContents& conten
       source, contents.count, contents.degree, needed, found);
 }
 
-/// Records of a type, a length and so many bytes. Unknown ones are passed over.
+/// Reads records of a type, a length and that many bytes. Skips unknown ones.
 void read_extensions(const std::string& source, std::span<const std::byte> bytes, SpzContents& contents) {
   while (!bytes.empty()) {
     const std::size_t length = bytes.size() < 8 ? 0 : load_number<std::uint32_t>(&bytes[4]);
@@ -107,7 +107,7 @@ void warn_of_rest(const std::string& source, bool there) {
   if (there) log_warning("{}: bytes after the last attribute are ignored", source);
 }
 
-/// Of versions 1 to 3, whose bytes `read` hands out one after the other, so many at most.
+/// Unpacks versions 1 to 3. `read` returns the next bytes, at most the given number.
 SpzContents unpack_attributes(const std::string& source, std::size_t packed,
                               const std::function<std::vector<std::byte>(std::size_t most)>& read) {
   Header header = read_spz_header(source, read(spz_header_bytes));
@@ -119,7 +119,7 @@ SpzContents unpack_attributes(const std::string& source, std::size_t packed,
   contents.attributes = read(needed);
   if (contents.attributes.size() < needed) fail_short(source, contents, needed, contents.attributes.size());
   const bool extended = (header.flags & extensions_flag) != 0;
-  // gzip's checksum is tested at the end, which this meets unless there is more.
+  // gzip tests its checksum at the end, which this reaches unless more follows.
   const std::vector<std::byte> rest = read(extended ? most_extensions : 1);
   if (extended) {
     read_extensions(source, rest, contents);
@@ -129,7 +129,7 @@ SpzContents unpack_attributes(const std::string& source, std::size_t packed,
   return std::move(header.contents);
 }
 
-/// Unpacks the streams of version 4, whose table stands at byte `toc`.
+/// Unpacks the streams of version 4, whose table is at byte `toc`.
 void unpack_streams(const std::string& source, std::span<const std::byte> bytes, std::size_t toc,
                     SpzContents& contents) {
   const SpzSizes sizes = spz_sizes(contents.version, contents.degree);
@@ -137,7 +137,8 @@ void unpack_streams(const std::string& source, std::span<const std::byte> bytes,
                              sizes.scale,    sizes.rotation, sizes.harmonics};
   constexpr const char* names[] = {"positions", "opacities", "colours", "scales", "rotations", "harmonics"};
   const std::size_t streams = contents.degree == 0 ? 5 : 6;
-  // zstd has no bound of its own: a stream of one value takes a few bytes. Positions never are such.
+  // zstd's expansion is unbounded: a stream of one value takes a few bytes. Positions are never such a
+  // stream.
   contents.attributes.resize(attribute_bytes(source, contents, sizes.position, bytes.size()));
   std::size_t at = toc + 16 * streams, to = 0;
   for (std::size_t i = 0; i < streams; ++i) {

@@ -1,4 +1,4 @@
-// Niantic's spz, version 3: attribute after attribute in whole bytes, within gzip.
+// Writes Niantic's spz, version 3: attribute after attribute in whole bytes, within gzip.
 
 #include "formats/bytes.h"
 #include "formats/gzip.h"
@@ -11,10 +11,10 @@ namespace binosplat {
 namespace {
 
 constexpr std::uint32_t version = 3;
-constexpr int fraction_bits_usual = 12;  // what other writers always take
+constexpr int fraction_bits_usual = 12;  // always used by other writers
 constexpr int fraction_bits_most = 24;
 constexpr double position_most = (1 << 23) - 1;
-constexpr double steps_least = 1 << 14;  // to the outermost position: of a small model 12 bits leave few
+constexpr double steps_least = 1 << 14;  // to the outermost position: for a small model 12 bits give too few
 
 double outermost(const Model& model) {
   double most = 0.0;
@@ -24,7 +24,7 @@ double outermost(const Model& model) {
   return most;
 }
 
-/// How many bits of fraction the positions get: they have 24 with the sign.
+/// Returns the positions' number of fraction bits, of 24 with the sign.
 int fraction_bits(const Model& model) {
   const double most = outermost(model);
   int bits = fraction_bits_usual;
@@ -35,18 +35,18 @@ int fraction_bits(const Model& model) {
   return bits;
 }
 
-/// A coefficient in `steps` of 256 of its range of -1 to 1, as a multiple of 256 / steps from -128 on.
+/// Quantises a coefficient in -1 to 1 to `steps` of 256, as a multiple of 256 / steps from -128 on.
 std::byte harmonic_byte(double v, int steps) {
   const int bucket = 256 / steps;
   const auto most = static_cast<std::uint32_t>(steps - 1);
   return static_cast<std::byte>(static_cast<int>(nearest_step((v + 1.0) * 128.0 / bucket, most)) * bucket);
 }
 
-/// Steps of the coefficient with this index among the higher ones, all channels counted: degree 1 has a bit
-/// more than the others.
+/// Returns the steps of the higher coefficient of index `k`, counting all channels: degree 1 has one bit more
+/// than the others.
 int steps_of(std::size_t k, int harmonic_bits) { return 1 << std::min(harmonic_bits + (k < 9 ? 1 : 0), 8); }
 
-/// The three smallest of x, y, z, w: nine bits and a sign each, the first highest.
+/// Packs the three smallest of x, y, z, w: nine bits and a sign each, the first one highest.
 std::uint32_t packed_rotation(const glm::vec4& q) {
   const SmallestThree smallest = smallest_three(glm::vec4(q.y, q.z, q.w, q.x));
   auto word = static_cast<std::uint32_t>(smallest.largest);

@@ -24,13 +24,13 @@ namespace {
 namespace fs = std::filesystem;
 using Taken = SogLevels::TakenOfFile;
 
-/// A SOG and what is taken of it.
+/// A SOG and the ranges read from it.
 struct LoadedPart {
   SogSource source;
   Taken taken;
 };
 
-/// The finest level that is there, or the one that was asked for.
+/// Returns the requested level, or the finest complete one.
 int choose(const fs::path& path, const SogLevels& levels, std::optional<int> lod) {
   const auto range = [&] { return levels.count() == 1 ? "0" : fmt::format("0 to {}", levels.count() - 1); };
   if (lod && (*lod < 0 || *lod >= levels.count())) {
@@ -117,7 +117,7 @@ Model load_taken(const fs::path& lod_meta, const SogLevels& levels, const std::v
     bytes += part.source.bytes();
     model.degree = std::max(model.degree, part.source.degree());
     model.antialiased = model.antialiased || part.source.antialiased();
-    model.perspective = part.source.perspective();  // of all alike
+    model.perspective = part.source.perspective();  // equal in all
     for (SogLevels::Taken& taken : part.taken) {
       taken.range.slot = total;
       total += taken.range.count;

@@ -19,7 +19,7 @@ static_assert(std::endian::native == std::endian::little, "tensors are read as t
 
 constexpr std::size_t tensor_bytes_max = std::size_t{64} << 20;
 
-// ROOT of the archive, by its only entry ROOT/data.pkl.
+// Returns ROOT of the archive, from its only entry ROOT/data.pkl.
 std::string root_of(const std::filesystem::path& path, const ZipFile& archive) {
   std::string root;
   for (const std::string& name : archive.names()) {

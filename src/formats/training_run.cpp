@@ -18,9 +18,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t largest_run_file = std::size_t{1} << 20;  // bytes; trainers' have some ten thousand
+constexpr std::size_t largest_run_file = std::size_t{1} << 20;  // bytes; usual are about ten thousand
 
-/// What a value means for the pictures. A value that begins with '!' stands for all others.
+/// The effect of a setting's value on the pictures. A value that begins with '!' matches all others.
 struct Clue {
   const char *key, *value, *sentence;
 };
@@ -29,7 +29,7 @@ constexpr const char* no_eval3d =
     "it was trained by 3DGUT, which evaluates Gaussians along each ray and has no low-pass. They are drawn "
     "as splats with hardly any (--kernel-px2 0.001), which comes to some 45 dB: large ones near the eye look "
     "otherwise";
-/// For it (tests/bench/results/judges.md).
+/// The low-pass for such models (tests/bench/results/judges.md).
 constexpr double along_rays_kernel_px2 = 0.001;
 constexpr const char* no_sigma_points =
     "it was trained with the unscented transform, and is drawn by a linear projection: large Gaussians near "
@@ -91,10 +91,10 @@ constexpr Clue of_3dgrut[] = {
 struct RunKind {
   const char *name, *trainer;
   FlatValues (*read)(const std::string& source, std::string_view text);
-  const char* prefix;  // of the keys below
-  const char* mark;    // a key that no file of this kind lacks, and others have not
+  const char* prefix;  // of the following keys
+  const char* mark;    // a key that every file of this kind has, and no other kind
   const char *antialiasing, *word_for_it;
-  const char* said;  // keys that a reader wants to know, besides those of the clues
+  const char* said;  // keys to report besides those of the clues
   std::vector<Clue> clues;
 };
 
@@ -120,7 +120,7 @@ const std::vector<RunKind>& run_kinds() {
   return kinds;
 }
 
-/// A value as it may stand on a terminal.
+/// Makes a value printable on a terminal.
 std::string printable(std::string value) {
   constexpr std::size_t longest = 60;
   if (value.size() > longest) value = value.substr(0, longest) + "...";
@@ -129,7 +129,7 @@ std::string printable(std::string value) {
   return value;
 }
 
-/// A value of a key, in small letters: Python says True, YAML true.
+/// Returns a key's value in lower case: Python writes True, YAML true.
 std::optional<std::string> value_of(const FlatValues& values, const RunKind& kind, std::string_view key) {
   const auto found = values.find(kind.prefix + std::string(key));
   if (found == values.end()) return std::nullopt;
@@ -153,7 +153,7 @@ void tell(const FlatValues& values, const RunKind& kind, TrainingRun& run) {
   for (const Clue& clue : kind.clues) {
     const auto value = value_of(values, kind, clue.key);
     if (!value || !holds(clue, *value)) continue;
-    // 3DGUT's evaluation along rays goes with its transform, and says more.
+    // The sentence about 3DGUT's evaluation along rays covers its transform, too.
     if (clue.sentence == no_sigma_points && !run.otherwise.empty()) continue;
     if (clue.sentence == no_exposures && find_above(run.file, exposures_name)) continue;
     if (clue.sentence == no_eval3d) run.kernel_px2 = along_rays_kernel_px2;
@@ -161,7 +161,7 @@ void tell(const FlatValues& values, const RunKind& kind, TrainingRun& run) {
     (is_advice ? run.advice : run.otherwise).emplace_back(clue.sentence);
   }
   const auto value = value_of(values, kind, kind.antialiasing);
-  // In the place of true or false, text says nothing.
+  // Other text than true or false decides nothing.
   if (value && (*kind.word_for_it != 't' || *value == "true" || *value == "false"))
     run.antialiased = *value == kind.word_for_it;
 }
@@ -190,7 +190,7 @@ std::optional<fs::path> find_above(const fs::path& model, const std::string& nam
     folder = folder.parent_path();
     const fs::path file = folder / name;
     if (!fs::is_regular_file(file, ignored)) continue;
-    // Named as the model is, from where the program runs.
+    // Relative to the working directory, if the model's path is relative.
     return model.is_absolute() ? file : file.lexically_proximate(fs::current_path());
   }
   return std::nullopt;

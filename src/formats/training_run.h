@@ -1,5 +1,5 @@
 #pragma once
-// How a model was trained, as far as the files say that trainers leave beside their models.
+// How a model was trained, from files that trainers write beside their models.
 
 #include <filesystem>
 #include <optional>
@@ -9,29 +9,29 @@
 
 namespace binosplat {
 
-/// What a run's file says.
+/// The contents of a run's file.
 struct TrainingRun {
   std::filesystem::path file;
-  std::string trainer;               // for people
-  std::optional<bool> antialiased;   // trained with the opacity that the low-pass takes away
-  std::optional<double> kernel_px2;  // that comes nearest to it, where it had no usual low-pass, px^2
-  std::vector<std::pair<std::string, std::string>> said;  // what may matter to pictures, in the file's words
-  /// What this program draws otherwise than the training did, what of that is seen, and what to do.
+  std::string trainer;               // for display
+  std::optional<bool> antialiased;   // trained with opacity compensated for the low-pass
+  std::optional<double> kernel_px2;  // nearest low-pass if training had an unusual one, px^2
+  std::vector<std::pair<std::string, std::string>> said;  // settings that may affect pictures, as in the file
+  /// Differences between the training's rendering and this program's: their effect, and a remedy.
   std::vector<std::string> otherwise;
-  std::vector<std::string> advice;  // what to give, or not to give, so that it is drawn as it was trained
+  std::vector<std::string> advice;  // options that draw it as it was trained
 };
 
 constexpr const char* exposures_name = "exposure.json";
 
-/// The file `name` that belongs to a model's file: in its folder, or in one of `most` above, the nearest. Up
-/// to two above INRIA's point_cloud/iteration_N/, gsplat's ply/ and nerfstudio's exports/splat/ have their
-/// run's files.
+/// Returns the file `name` in the folder of a model's file, or in the nearest of up to `most` folders above
+/// it. For INRIA's point_cloud/iteration_N/, gsplat's ply/ and nerfstudio's exports/splat/ the run's files
+/// are one or two levels above.
 std::optional<std::filesystem::path> find_above(const std::filesystem::path& model, const std::string& name,
                                                 int most = 2);
 
-/// The run of a model's file, of the nearest of gsplat's cfg.yml, nerfstudio's config.yml, INRIA's cfg_args,
-/// LichtFeld Studio's training_config.json and 3DGRUT's parsed.yaml (find_above). A file that is called so
-/// and is another program's is passed over; so is, with a warning, one that cannot be read: nobody named it.
+/// Returns the run of a model's file, from the nearest of gsplat's cfg.yml, nerfstudio's config.yml, INRIA's
+/// cfg_args, LichtFeld Studio's training_config.json and 3DGRUT's parsed.yaml (find_above). Skips files of
+/// these names from other programs. Skips unreadable ones with a warning, since the user did not name them.
 std::optional<TrainingRun> find_training_run(const std::filesystem::path& model);
 
 }  // namespace binosplat

@@ -16,13 +16,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// One frame; what it does not have, the file may have for all.
+/// One frame; the file's values are defaults for all frames.
 class Frame {
  public:
   Frame(const fs::path& path, const JsonValue& root, const JsonValue& frame)
       : path_(path), root_(root), frame_(frame) {}
 
-  /// All of a camera that is named.
+  /// Reads all of a camera except its name.
   void read(Camera& camera) const {
     read_size(camera);
     read_focal(camera);
@@ -59,7 +59,7 @@ class Frame {
   }
 
   void read_focal(Camera& camera) const {
-    // An angle across `pixels`, in radians, or one in degrees.
+    // From an angle across `pixels`, in radians or in degrees.
     const auto focal = [&](const char* radians, const char* degrees, int pixels) -> std::optional<double> {
       auto angle = number(radians);
       if (!angle && number(degrees)) angle = glm::radians(*number(degrees));

@@ -1,5 +1,5 @@
 #pragma once
-// URIs in files of models (RFC 3986), as far as they name files beside them or hold data themselves.
+// URIs in files of models (RFC 3986): files beside them, or embedded data.
 
 #include <cstddef>
 #include <filesystem>
@@ -11,19 +11,19 @@
 
 namespace binosplat {
 
-/// Bytes for all that is written as % and two hexadecimal digits; a % without them stays.
+/// Replaces each % and two hexadecimal digits by their byte; other % stay.
 std::string percent_decoded(std::string_view text);
 
-/// Whether a URI has the scheme data:.
+/// Returns whether a URI has the scheme data:.
 bool has_data(const JsonValue& uri);
 
-/// The bytes of one that has (RFC 2397), in base64 or percent-encoded. Throws Error naming the key for one
-/// without a comma, or with what is no base64.
+/// Returns the bytes of a data: URI (RFC 2397), base64 or percent-encoded. Throws Error naming the key if the
+/// comma is missing or the base64 is invalid.
 std::vector<std::byte> data_in(const JsonValue& uri);
 
-/// The file in `folder`, or below it, that a relative URI names: by its decoded name or, if only that is
-/// there, by the name as it is written, which some programs do not encode. Throws Error naming the key for
-/// one that would lie elsewhere.
+/// Returns the file in or below `folder` that a relative URI names. The name is decoded; if only a file of
+/// the undecoded name exists, it is that one, since some programs do not encode. Throws Error naming the key
+/// for a URI that leads elsewhere.
 std::filesystem::path file_named(const std::filesystem::path& folder, const JsonValue& uri);
 
 }  // namespace binosplat

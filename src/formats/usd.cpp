@@ -25,7 +25,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// How `usdcat` makes one text file of whatever a scene is made of.
+/// Returns the command that merges a scene's files into one text file.
 std::string flatten_command(const fs::path& path) {
   fs::path text = path.filename();
   return fmt::format("usdcat --flatten {} -o {}", path.filename().string(),
@@ -43,7 +43,7 @@ bool has_schema(const UsdaPrim& prim, std::string_view schema) {
   return std::ranges::count(found->second.texts(), schema) > 0;
 }
 
-/// A token that a prim may have.
+/// Returns a token of a prim, or "".
 std::string token_of(const UsdaPrim& prim, std::string_view name) {
   const UsdaText* value = prim.attribute(name);
   return value != nullptr ? value->text() : "";
@@ -57,7 +57,7 @@ class UsdReader {
   Model read() {
     note_parts_elsewhere(file_);
     for (const UsdaPrim& prim : file_.prims) show(prim, {});
-    // As renderers have it: what stands for others to be seen quickly is not drawn beside these.
+    // As in renderers, proxies are not drawn beside prims with the purpose render.
     for (const auto& add_proxy : proxies_)
       if (!has_render_) add_proxy();
     if (model_.count() == 0 && model_.left_out == 0) fail_without_gaussians();
@@ -101,7 +101,7 @@ class UsdReader {
     }
   }
 
-  /// What a prim has of those above it.
+  /// Properties that a prim inherits from those above it.
   struct Inherited {
     glm::dmat4 matrix{1.0};
     std::string colours, purpose;
@@ -135,7 +135,7 @@ class UsdReader {
       others_.insert(prim.type);
       nurec_ = nurec_ || prim.attribute("omni:nurec:isNuRecVolume") != nullptr;
     }
-    if (prim.type == "PointInstancer") return;  // what is in it is a pattern of what it shows
+    if (prim.type == "PointInstancer") return;  // its children are prototypes of its instances
     for (const UsdaPrim& child : prim.prims) show(child, inherited);
   }
 
@@ -145,7 +145,7 @@ class UsdReader {
       log_warning("{}: its colours are linear light, which is drawn as if it were display values: too dark",
                   source_);
     }
-    // So files hide things, by a scale of 0.
+    // A scale of 0 hides a prim.
     if (glm::dmat3(matrix) == glm::dmat3(0.0)) return;
     Model part = gaussians_of(prim, flat);
     if (!transform(part, matrix, places_))
@@ -154,8 +154,8 @@ class UsdReader {
     join(model_, std::move(part));
   }
 
-  /// The numbers of an attribute, of floats or, where there are none, of halves: `each` for each of `count`
-  /// Gaussians; none where it is not there.
+  /// Returns an attribute's numbers, floats or else halves: `each` for each of `count` Gaussians; empty if it
+  /// is missing.
   std::vector<float> values(const UsdaPrim& prim, const std::string& name, std::size_t components,
                             std::size_t each, std::size_t count) const {
     const UsdaText* text = prim.attribute(name);
@@ -219,10 +219,10 @@ class UsdReader {
   std::string source_;  // for errors: the path, and the file in an archive
   UsdaPrim file_;
   Model model_;
-  std::vector<glm::dvec3> places_;  // of its Gaussians in the scene
+  std::vector<glm::dvec3> places_;  // positions of its Gaussians in the scene
   bool flat_ = false, nurec_ = false, has_render_ = false;
   std::vector<std::function<void()>> proxies_;
-  std::string elsewhere_;         // the word by which it has parts in other files or in variants
+  std::string elsewhere_;         // the word for its parts in other files or variants, for errors
   std::set<std::string> others_;  // types of prims that are no Gaussians
 };
 

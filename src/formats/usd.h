@@ -12,23 +12,23 @@
 
 namespace binosplat {
 
-/// Reads the Gaussians of all prims that are defined, active, not invisible and not guides (nor proxies,
-/// where others have the purpose `render`), moved by the transforms of those above them (xformOp, of all
-/// kinds that need no time). Throws Error naming the line where something is damaged, missing, cannot be
-/// drawn, or is only there at points in time. What references name and variants hold is not put together: an
-/// error, or a warning where there are Gaussians without it, names the command that does so.
+/// Reads the Gaussians of all prims that are defined, active, visible and not guides; proxies count only if
+/// no prim has the purpose `render`. They are mapped by the transforms of the prims above (xformOp, all kinds
+/// that do not depend on time). Throws Error naming the line if something is damaged, missing, cannot be
+/// drawn, or exists only as time samples. References and variants are not resolved: the error (or a warning,
+/// if there are other Gaussians) names the command that does it.
 Model load_usda(const std::filesystem::path& path, std::string_view text);
 
-/// How many units of a scene make a metre, where the file at `path` is one and says so by its metersPerUnit.
+/// Returns the units per metre of a scene, if the file at `path` is one and has metersPerUnit.
 std::optional<double> usd_units_per_metre(const std::filesystem::path& path);
 
-/// Whether a zip archive is a .usdz, whose first file is an OpenUSD scene.
+/// Returns whether a zip archive is a .usdz, whose first file is an OpenUSD scene.
 bool is_usdz(const std::filesystem::path& path, std::span<const std::byte> archive);
 
-/// Reads the scene that is the archive's first file. Throws Error as load_usda(), and for a binary one.
+/// Reads the scene in the archive's first file. Throws Error as load_usda(), and for a binary scene.
 Model load_usdz(const std::filesystem::path& path, std::span<const std::byte> archive);
 
-/// Throws the Error of a binary scene, with the command that makes text of it.
+/// Throws Error for a binary scene, with the command that converts it to text.
 [[noreturn]] void refuse_usd_crate(const std::filesystem::path& path);
 
 }  // namespace binosplat

@@ -16,7 +16,7 @@ glm::dmat4 turn_around(char axis, double degrees) {
                      glm::dvec3(axis == 'X' ? 1 : 0, axis == 'Y' ? 1 : 0, axis == 'Z' ? 1 : 0));
 }
 
-/// Rows, as OpenUSD has them, of a matrix that is multiplied from the left: the columns of ours.
+/// Reads rows of a matrix for row vectors, as OpenUSD writes it: they are our columns.
 glm::dmat4 matrix_in(UsdaText text) {
   glm::dmat4 matrix(1.0);
   text.expect('(');
@@ -32,7 +32,7 @@ glm::dmat4 matrix_in(UsdaText text) {
   return matrix;
 }
 
-/// The matrix of xformOp:KIND.
+/// Returns the matrix of xformOp:KIND.
 glm::dmat4 operation(std::string_view kind, const UsdaText& value) {
   const glm::dmat4 still(1.0);
   if (kind == "transform") return matrix_in(value);
@@ -50,7 +50,7 @@ glm::dmat4 operation(std::string_view kind, const UsdaText& value) {
   std::string sorted(axes);
   std::ranges::sort(sorted);
   if (sorted != "XYZ") value.fail_here("the transform xformOp:{} is not known", kind);
-  // The first letter is turned around first.
+  // The first letter's rotation is applied first.
   const std::vector<double> angles = value.numbers(3);
   glm::dmat4 matrix(1.0);
   for (const char axis : axes)

@@ -1,5 +1,5 @@
 #pragma once
-// Where an OpenUSD prim is: its transform operations, in the order that it names.
+// The transform of an OpenUSD prim: its operations, in their listed order.
 
 #include <glm/glm.hpp>
 
@@ -7,8 +7,8 @@
 
 namespace binosplat {
 
-/// A prim's place in the scene, of that of the prim above it. Throws Error naming the line for operations
-/// that are not there, not known, or only there at points in time.
+/// Returns a prim's transform in the scene, given its parent's. Throws Error naming the line for operations
+/// that are missing, unknown, or only present as time samples.
 glm::dmat4 usd_transform(const UsdaPrim& prim, const glm::dmat4& parent);
 
 }  // namespace binosplat

@@ -9,7 +9,7 @@ namespace binosplat {
 
 namespace {
 
-constexpr int prims_deep_most = 500;  // what is read by recursion must not leave the stack
+constexpr int prims_deep_most = 500;  // recursion must not overflow the stack
 
 bool is_blank_or_separator(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n' || c == ';'; }
 
@@ -27,12 +27,12 @@ bool edits_list(std::string_view word) {
   return is_one_of(word, {"prepend", "append", "add", "delete", "reorder"});
 }
 
-/// What stands in parentheses behind a prim, and at the top of a file.
+/// Reads the parentheses after a prim, and at the top of a file.
 void read_metadata(UsdaText& text, UsdaValues& values) {
   if (!text.take('(')) return;
   while (!text.take(')')) {
     if (text.next() == '"' || text.next() == '\'') {
-      text.quoted();  // words for people
+      text.quoted();  // a comment for people
       continue;
     }
     std::string_view key = text.word();
@@ -42,7 +42,7 @@ void read_metadata(UsdaText& text, UsdaValues& values) {
   }
 }
 
-/// `uniform token visibility = "invisible" (...)`, from `word` on.
+/// Reads `uniform token visibility = "invisible" (...)`, from `word` on.
 void read_attribute(UsdaText& text, std::string_view word, UsdaPrim& prim) {
   while (edits_list(word) || is_one_of(word, {"custom", "uniform", "varying", "config"})) word = text.word();
   const bool orders = word == "nameChildren" || word == "properties";  // reorder nameChildren = [...]
@@ -55,8 +55,8 @@ void read_attribute(UsdaText& text, std::string_view word, UsdaPrim& prim) {
   if (text.next() == '(') text.value();
 }
 
-/// OpenUSD holds a sample until the next, and the first before it: what are all alike are the value at all
-/// times.
+/// OpenUSD holds a sample until the next, and the first one before it. So equal samples become a constant
+/// value.
 void hold_still(UsdaValues& attributes) {
   constexpr std::string_view ending = ".timeSamples";
   for (auto at = attributes.begin(); at != attributes.end();) {
@@ -150,7 +150,7 @@ std::string_view UsdaText::word() {
   return all_.substr(begin, at_ - begin);
 }
 
-// "..", '..', """..""" or '''..'''; three marks may have lines between.
+// Skips "..", '..', """..""" or '''..'''; only three marks allow line breaks.
 void UsdaText::skip_string() {
   const UsdaText before = *this;
   const std::string mark(1, all_[at_]);
@@ -193,7 +193,7 @@ void UsdaText::skip_item() {
 UsdaText UsdaText::value() {
   next();
   UsdaText value = *this;
-  std::string closing;  // marks that are still to come, the next one last
+  std::string closing;  // expected closing marks, the next one last
   do {
     const char c = next();
     if (c == 0) value.fail_here("this value does not end: the file is cut short");
@@ -210,7 +210,7 @@ UsdaText UsdaText::value() {
       skip_item();
     }
   } while (!closing.empty());
-  // A prim of another file is its name, a path, and how its times are moved.
+  // A prim of another file is its file name, a path, and its time offset.
   if (all_[value.at_] == '@' || all_[value.at_] == '<') {
     if (next() == '<') skip_item();
     if (next() == '(') this->value();
@@ -282,7 +282,7 @@ const UsdaText* UsdaPrim::attribute(std::string_view named) const {
 }
 
 UsdaPrim read_usda(const std::string& source, std::string_view text, bool only_metadata) {
-  UsdaText left(source, text);  // whose first line is a comment
+  UsdaText left(source, text);  // the first line is a comment
   UsdaPrim file{.specifier = {}, .type = {}, .name = {}, .where = left, .metadata = {}, .attributes = {}};
   read_metadata(left, file.metadata);
   while (!only_metadata && left.next() != 0) {

@@ -1,6 +1,6 @@
 #pragma once
-// OpenUSD's text files (.usda): which prims there are, and their values, each as the text it is written in.
-// What other files hold, and variants, are not put together, as `usdcat --flatten` does.
+// OpenUSD's text files (.usda): their prims, and the values as text. References to other files and variants
+// are not resolved; `usdcat --flatten` does that.
 
 #include <map>
 #include <memory>
@@ -12,25 +12,25 @@
 
 namespace binosplat {
 
-/// A stretch of a file's text, read from its start on. What it is asked for and is not, ends in an Error that
+/// A part of a file's text, parsed from its start. A text that does not fit the request throws an Error that
 /// names the file and the line.
 class UsdaText {
  public:
-  /// `text` outlives this.
+  /// `text` must outlive this object.
   UsdaText(const std::string& source, std::string_view text)
       : source_(std::make_shared<std::string>(source)), all_(text), end_(text.size()) {}
 
-  /// The next mark that is no blank and no comment, or 0 at the end.
+  /// Returns the next character that is no blank and not in a comment, or 0 at the end.
   char next();
   bool take(char mark);
   void expect(char mark);
 
-  /// A name, with the colons, points and brackets that are part of it; empty where there is none.
+  /// Reads a name, with its colons, points and brackets; empty if there is none.
   std::string_view word();
   std::string_view quoted();
-  /// Any value, without the blanks around it.
+  /// Reads any value, without the blanks around it.
   UsdaText value();
-  /// A number, or `count` in parentheses; each is handed to `put`.
+  /// Reads a number, or `count` numbers in parentheses, and passes each to `put`.
   template <typename Put>
   void tuple(std::size_t count, const Put& put) {
     if (count == 1) return put(number());
@@ -42,7 +42,7 @@ class UsdaText {
     take(',');
     expect(')');
   }
-  /// Calls item() for each item of a list in these marks.
+  /// Calls item() for each item of a list between these characters.
   template <typename Item>
   void list(char open, char close, const Item& item) {
     expect(open);
@@ -52,18 +52,18 @@ class UsdaText {
     }
   }
 
-  /// All of a value as one thing. Throws where more follows.
+  /// Read the whole rest as one value. They throw if more follows.
   std::vector<double> numbers(std::size_t count) const;
   std::vector<float> tuples(std::size_t count) const;  // a list of tuples, one after the other
   std::vector<std::string> texts() const;              // a list
   std::string text() const;
   std::vector<UsdaText> samples() const;  // of timeSamples, in their order
 
-  /// What is left of it, as it is written.
+  /// The unread text.
   std::string_view rest() const { return all_.substr(at_, end_ - at_); }
   const std::string& source() const { return *source_; }
 
-  /// Throws the Error of what is there in place of `wanted`.
+  /// Throws an Error about the text in place of `wanted`.
   [[noreturn]] void fail_to_find(const std::string& wanted) const;
   template <typename... Args>
   [[noreturn]] void fail_here(fmt::format_string<Args...> format, Args&&... args) const {
@@ -78,7 +78,7 @@ class UsdaText {
   void finish();
 
   std::shared_ptr<const std::string> source_;
-  std::string_view all_;  // the file's, so that lines can be counted
+  std::string_view all_;  // the whole file, to count lines
   std::size_t at_ = 0, end_;
 };
 
@@ -93,7 +93,7 @@ struct UsdaPrim {
   const UsdaText* attribute(std::string_view named) const;
 };
 
-/// The file, as a prim that has its metadata and, unless only that is wanted, its prims. `text` outlives it.
+/// Reads the file as a prim with its metadata and, unless `only_metadata`, its prims. `text` must outlive it.
 /// Throws Error naming the line.
 UsdaPrim read_usda(const std::string& source, std::string_view text, bool only_metadata = false);
 

@@ -22,7 +22,7 @@ std::string without_ending(std::string name) {
   return name;
 }
 
-/// The folders and the file of a name, without those that lead elsewhere.
+/// Splits a name into folders and file, without those that lead outside.
 fs::path parts_of(std::string name) {
   std::ranges::replace(name, '\\', '/');
   fs::path parts;
@@ -36,7 +36,7 @@ bool is_last(const fs::path& parts) { return parts.parent_path().empty(); }
 
 fs::path without_first(const fs::path& parts) { return parts.lexically_relative(*parts.begin()); }
 
-/// A picture of this name, as it stands or with an ending.
+/// Returns a picture of this name, with or without an ending.
 std::optional<fs::path> picture_at(const fs::path& name) {
   std::error_code ignored;
   for (const char* ending : {"", ".jpg", ".jpeg", ".png", ".exr", ".JPG", ".JPEG", ".PNG", ".EXR"}) {
@@ -45,7 +45,7 @@ std::optional<fs::path> picture_at(const fs::path& name) {
   return std::nullopt;
 }
 
-/// The picture of such parts in a folder; they may begin with the last of the folder's own.
+/// Returns the picture of such parts in a folder; the parts may begin with the folder's own last parts.
 std::optional<fs::path> picture_in(const fs::path& folder, const fs::path& parts) {
   const fs::path whole = fs::absolute(folder / ".").lexically_normal().parent_path();
   for (fs::path above = whole;; above = above.parent_path()) {

@@ -1,5 +1,5 @@
 #pragma once
-// Files that are named after views.
+// Names of files for views, and photos of views.
 
 #include <filesystem>
 #include <optional>
@@ -10,17 +10,16 @@
 
 namespace binosplat {
 
-/// A view's name as a file's: trainers' names may have folders, and the endings of the photos.
+/// Converts a view's name to a file's name: trainers' names may have folders and the photos' endings.
 std::string stem_of(std::string name);
 
-/// Sets each camera's short name: the shortest end of its name, from a folder in it on, that no other
-/// camera's name has, whatever the endings of their photos; else its whole name.
+/// Sets each camera's short name: the shortest end of its name, starting at a folder or the file, that is
+/// unique without the photos' endings; otherwise its whole name.
 void set_short_names(std::span<Camera> cameras);
 
-/// The file of a view's photo in a folder: by the view's name as it stands, or with a picture's ending. Then
-/// by ends of the name, from a folder in it on, the longest first: one that begins with the last folders of
-/// `folder` itself, or, down to the short name, any. Both "/" and "\" separate folders in a name. A whole
-/// path counts where there is nothing of that.
+/// Finds a view's photo in a folder: by the view's name, with or without a picture's ending. Then it tries
+/// ends of the name, each starting at a folder, from the longest to the short name. Such an end may overlap
+/// the last folders of `folder`. Both "/" and "\" separate folders in a name. An absolute path is tried last.
 std::optional<std::filesystem::path> find_view_photo(const std::filesystem::path& folder,
                                                      const std::string& view,
                                                      const std::string& short_name = "");
@@ -29,8 +28,8 @@ inline std::optional<std::filesystem::path> find_view_photo(const std::filesyste
   return find_view_photo(folder, view.name, view.short_name);
 }
 
-/// Throws Error where two of the views have one photo, as "a.jpg" and "a.png" have where only one of these is
-/// there: a view would be compared with another's photo. Of all views of a file, whichever are drawn.
+/// Throws Error if two of a file's views share one photo, as "a.jpg" and "a.png" do if only one exists. One
+/// view would be compared with the other's photo. Pass all views of the file, drawn or not.
 void check_photos_apart(const std::filesystem::path& folder, std::span<const Camera> views);
 
 }  // namespace binosplat

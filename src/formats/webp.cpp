@@ -36,13 +36,13 @@ WebpSize webp_size(const std::string& source, std::span<const std::byte> bytes) 
 }
 
 std::vector<std::byte> webp_file(std::span<const std::uint8_t> texels, int width, int height) {
-  constexpr int effort = 6;  // of 9: more takes off less than a hundredth and is many times slower
+  constexpr int effort = 6;  // of 9: more saves less than a hundredth and is many times slower
   WebPConfig config;
   WebPPicture picture;
   WebPMemoryWriter writer;
   bool good = WebPConfigInit(&config) != 0 && WebPConfigLosslessPreset(&config, effort) != 0 &&
               WebPPictureInit(&picture) != 0;
-  config.exact = 1;  // colours count where alpha is 0, too
+  config.exact = 1;  // keeps colours where alpha is 0
   picture.use_argb = 1;
   picture.width = width;
   picture.height = height;

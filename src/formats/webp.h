@@ -1,5 +1,5 @@
 #pragma once
-// WebP as SOG uses it: losslessly compressed tables of bytes, four a texel.
+// WebP for SOG: tables of bytes, four a texel, compressed without loss.
 
 #include <cstddef>
 #include <cstdint>
@@ -9,7 +9,7 @@
 
 namespace binosplat {
 
-/// Texels of the longest side that the format has.
+/// The format's longest side, texels.
 inline constexpr std::size_t webp_side_most = 16383;
 
 struct WebpSize {
@@ -20,17 +20,16 @@ struct WebpSize {
   }
 };
 
-/// The size that a file's header promises; `source` names it in errors. Throws Error for anything but a
-/// still, lossless WebP picture: the values of a lossy one are not those that were written.
+/// Returns the size in a file's header; `source` names it in errors. Throws Error unless it is a still,
+/// lossless WebP picture: lossy compression changes the values.
 WebpSize webp_size(const std::string& source, std::span<const std::byte> bytes);
 
-/// All texels row by row from the top left, four bytes each (R, G, B, and A = 255 where the file has none),
-/// never multiplied by alpha. Throws Error where the data is damaged. Check webp_size first: the memory that
-/// this needs is the header's promise.
+/// Returns all texels row by row from the top left, four bytes each (R, G, B, and A, 255 if the file has
+/// none), not premultiplied. Throws Error for damaged data. Check webp_size() first: this allocates the
+/// header's size.
 std::vector<std::uint8_t> webp_texels(const std::string& source, std::span<const std::byte> bytes);
 
-/// The file of a picture without losses, texels as webp_texels gives them. Throws Error where memory is
-/// short.
+/// Returns the file of a lossless picture; texels as from webp_texels(). Throws Error if memory is short.
 std::vector<std::byte> webp_file(std::span<const std::uint8_t> texels, int width, int height);
 
 }  // namespace binosplat

@@ -1,17 +1,16 @@
 #pragma once
-// Whether files of ours have all of their bytes: a loss of power, or a copy that was ended, leaves empty and
-// cut ones.
+// Checks that files of binosplat are complete: power losses and aborted copies leave empty or cut ones.
 
 #include <filesystem>
 
 namespace binosplat {
 
-/// Tells it of PNG by the sums of its chunks up to the last; of OpenEXR in lines, by its blocks; of WebP, by
-/// the size in its header; of JSON, by reading it. What is packed in them is not unpacked. False for other
-/// files, and where there is none or it cannot be read.
+/// Returns whether a file is complete: a PNG by its chunks' checksums, an OpenEXR in scan lines by its
+/// blocks, a WebP by the size in its header, JSON by parsing it. Does not unpack pixels. Returns false for
+/// other, missing and unreadable files.
 bool is_whole(const std::filesystem::path& file);
 
-/// Whether a SOG has its meta.json and all files that this names, whole.
+/// Returns whether a SOG has its meta.json and all files that it names, complete.
 bool is_whole_sog(const std::filesystem::path& meta);
 
 }  // namespace binosplat

@@ -1,5 +1,5 @@
 #pragma once
-// Files in a zip archive, by name. Nothing is ever written to a disk by a name that an archive gives.
+// Files in a zip archive, by name. No name from an archive is ever used to write to disk.
 
 #include <cstddef>
 #include <cstdint>
@@ -13,32 +13,31 @@ struct zip;
 
 namespace binosplat {
 
-/// Whether a name that a file gives stays below that file's folder.
+/// Returns whether a name in a file stays below that file's folder.
 bool stays_below(const std::string& name);
 
-/// Files of an archive that is to be written: names and contents.
+/// Files of an archive to write: names and contents.
 using ZipEntries = std::vector<std::pair<std::string, std::vector<std::byte>>>;
 
-/// An archive of these files, stored as they are; always the same bytes for the same files. Throws Error
-/// where memory is short.
+/// Returns an uncompressed archive of these files. It is deterministic. Throws Error if memory is short.
 std::vector<std::byte> zip_of(const ZipEntries& entries);
 
 class ZipFile {
  public:
-  /// Opens an archive whose bytes outlive this; `source` names it in errors. Throws Error where the list of
-  /// files at its end is damaged or missing.
+  /// Opens an archive whose bytes outlive this object; `source` names it in errors. Throws Error if the list
+  /// of files at its end is damaged or missing.
   ZipFile(std::string source, std::span<const std::byte> bytes);
 
   bool has(const std::string& name) const;
 
-  /// The names of its files, in its order.
+  /// Returns the names of its files, in file order.
   std::vector<std::string> names() const;
 
-  /// The same for an error's text, the first few.
+  /// Returns the first few names, for an error's text.
   std::string list() const;
 
-  /// A whole file, stored or deflated, its checksum tested. Throws Error where it is missing, damaged,
-  /// promises more than its bytes can unfold to, or more than `bytes_max`.
+  /// Returns a whole file, stored or deflated; verifies its checksum. Throws Error if it is missing, damaged,
+  /// promises more than its bytes can expand to, or more than `bytes_max`.
   std::vector<std::byte> read(const std::string& name, std::size_t bytes_max = SIZE_MAX) const;
 
  private:

@@ -9,7 +9,7 @@
 namespace binosplat {
 
 glm::dmat3 world_from_axes(std::string_view letters) {
-  constexpr std::string_view directions = "RDFLUB";  // x, y and z of the world, and against them
+  constexpr std::string_view directions = "RDFLUB";  // x, y and z of the world, then their opposites
   glm::dmat3 matrix(0.0);
   for (int i = 0; i < 3 && letters.size() == 3; ++i) {
     const auto k = static_cast<int>(directions.find(letters[static_cast<std::size_t>(i)]));
@@ -34,8 +34,8 @@ void bring_into_axes(Model& model, std::string_view letters) {
   const std::size_t values = 3 * static_cast<std::size_t>(sh_count(model.degree));
   const auto bring = [&](std::size_t i) {
     model.position[i] = turn * glm::dvec3(model.position[i]);
-    // D R S S R^T D^T = (D R D^T) (D S S D^T) (D R D^T)^T: the axes of the ellipsoid change places with
-    // those of the frame, and of its rotation's axis a mirror changes the sense. No number is rounded.
+    // D R S S R^T D^T = (D R D^T) (D S S D^T) (D R D^T)^T: D permutes the ellipsoid's axes as it does the
+    // frame's, and a mirror reverses the rotation's axis. No number is rounded.
     model.scale[i] = glm::abs(turn * glm::dvec3(model.scale[i]));
     const glm::vec4 q = model.rotation[i];
     model.rotation[i] = glm::dvec4(q.x, hand * (turn * glm::dvec3(q.y, q.z, q.w)));

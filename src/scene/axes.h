@@ -1,10 +1,10 @@
 #pragma once
-// Which way a model's axes point.
+// The axes of a model's frame, and conversions between it and the world.
 //
-// Cameras live in a world as COLMAP leaves it: x right, y down, z forward ("RDF" in the letters below). Most
-// models are trained in it; some formats store another frame. A model keeps the numbers of its file, so that
-// no spherical harmonics have to be turned, and cameras are brought into its frame instead. So they are, too,
-// into that of a model far away from zero, whose positions are relative to an origin beside it.
+// The cameras' world is COLMAP's: x right, y down, z forward ("RDF" in the letters below). Most models are
+// trained in it; some formats store another frame. A model keeps the numbers of its file, so that no
+// spherical harmonics are rotated, and cameras are brought into the model's frame instead. A model far from
+// zero has positions relative to an origin near it; cameras are brought into that frame, too.
 
 #include <glm/glm.hpp>
 #include <string_view>
@@ -14,20 +14,21 @@
 
 namespace binosplat {
 
-/// The directions of a frame's x, y and z by three letters: R or L (right, left), U or D (up, down), F or B
-/// (forward, back), each pair once, as in "RUB" (OpenGL, spz) and "LUF" (glTF). Returns the signed
-/// permutation whose columns are x, y and z in the world; frames that mirror are allowed. Throws Error.
+/// Parses the directions of a frame's x, y and z, in this order. `letters` has one of each pair: R or L
+/// (right, left), U or D (up, down), F or B (forward, back), as in "RUB" (OpenGL, spz) and "LUF" (glTF).
+/// Returns the signed permutation whose columns are x, y and z in the world. The frame may mirror. Throws
+/// Error for other letters.
 glm::dmat3 world_from_axes(std::string_view letters);
 
-/// A point of a model's frame, from its origin, in the world, and back.
+/// Convert a point between a model's frame (relative to its origin) and the world.
 glm::dvec3 into_world(const glm::dvec3& point, const ModelAxes& axes);
 glm::dvec3 into_axes(const glm::dvec3& point, const ModelAxes& axes);
 
-/// Changes a model's numbers to those of the frame `letters`, where it looks the same from every camera of
-/// the world; mirrored frames, too. Not for models with a scaffold.
+/// Converts a model's numbers to the frame `letters`, which may mirror: the model looks the same from every
+/// camera of the world. The model must not have a scaffold.
 void bring_into_axes(Model& model, std::string_view letters);
 
-/// A camera of the world as seen in a model's frame: it sees the model as the camera sees the world.
+/// Converts a camera of the world to a model's frame: its picture of the model is the world camera's.
 Camera into_axes(Camera camera, const ModelAxes& axes);
 
 }  // namespace binosplat

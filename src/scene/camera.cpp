@@ -56,7 +56,7 @@ Camera look_at(const glm::dvec3& eye, const glm::dvec3& at, const glm::dvec3& up
     fail("--fov {}: expected degrees between 0 and 180", fov_degrees);
   const glm::dvec3 forward = at - eye;
   const glm::dvec3 right = glm::cross(forward, up);
-  // Also true for values that are not finite.
+  // Written so that NaN fails, too.
   if (!(glm::length(right) > 1e-9 * glm::length(forward) * glm::length(up)) ||
       !std::isfinite(glm::length(right))) {
     fail(

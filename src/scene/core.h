@@ -1,5 +1,5 @@
 #pragma once
-// What a model is about, whatever lies far around it.
+// The core of a model: its subject, without far outliers and background.
 
 #include <glm/glm.hpp>
 
@@ -7,9 +7,9 @@
 
 namespace binosplat {
 
-/// The ball around the median position that holds half of the Gaussians, or one more, in the model's frame.
-/// Trained models have far outliers and a background larger than their subject, which would ruin a mean or a
-/// box.
+/// The ball around the median position that contains half of the Gaussians (or one more), in the model's
+/// frame. A mean or a box would fail: trained models have far outliers and a background larger than their
+/// subject.
 struct Core {
   glm::dvec3 middle{0.0};
   double radius = 0.0;  // world units, above 0
@@ -18,8 +18,8 @@ struct Core {
 /// Throws Error if the model is empty.
 Core core_of(const Model& model);
 
-/// A model with its core, which takes a while to find in a large model: a caller of several functions that
-/// use the core makes this once. Refers to the model. Throws as core_of() does.
+/// A model with its core. Finding the core of a large model is slow, so a caller of several functions
+/// computes it once. Refers to the model. Throws as core_of() does.
 struct CoredModel {
   const Model& model;
   Core core;

@@ -11,17 +11,17 @@ namespace binosplat {
 
 namespace {
 
-/// Samples of so many are enough.
+/// Larger sets are sampled.
 constexpr std::size_t most_gaussians = 20000, most_cameras = 64;
-/// Where fewer are in view, cameras look at something else.
+/// Below this share in view, the cameras look at something else.
 constexpr double least_seen = 0.01;
-/// So many times as many are in view where a frame is clearly the right one. Of trained scenes it is 17 times
-/// and more: their worlds' origin lies anywhere.
+/// The right frame has at least this many times as many in view. In trained scenes the factor is 17 or more,
+/// because their worlds' origin lies anywhere.
 constexpr double clearly = 2.0;
-/// The cosine of the cameras' up and the model's that says something.
+/// Least cosine between the cameras' up and the model's that is evidence.
 constexpr double along = 0.5;
 
-/// The share of the Gaussians that cameras have in their pictures, in the mean.
+/// Returns the mean share of the Gaussians in a camera's picture.
 double mean_in_view(const Model& model, std::span<const Camera> cameras, const ModelAxes& axes) {
   std::vector<double> shares(cameras.size());
   parallel_for(cameras.size(), [&](std::size_t k) {
@@ -56,7 +56,7 @@ std::optional<DetectedAxes> detect_axes(const Model& model, const std::string& o
   const auto capture = capture_of(cameras);
   const auto ground = capture ? find_ground(CoredModel(model)) : std::nullopt;
   if (!ground) return std::nullopt;
-  // How far the model's up is that of the cameras, -1 to 1, in each of both frames.
+  // Cosine between the model's up and the cameras' in both frames.
   const glm::dvec3 up = glm::transpose(world_from_axes(usual.axes)) * ground->up;
   const double in_usual = glm::dot(ground->up, capture->up);
   const double in_other = glm::dot(world_from_axes(others) * up, capture->up);

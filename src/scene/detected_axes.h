@@ -1,5 +1,5 @@
 #pragma once
-// In which of two frames the numbers of a model are, where its file does not say so and cameras are known.
+// Detects which of two frames a model uses, from known cameras, if its file does not say.
 
 #include <optional>
 #include <span>
@@ -12,17 +12,17 @@ namespace binosplat {
 
 struct DetectedAxes {
   std::string axes;
-  std::size_t cameras = 0;  // how many they were detected by
-  /// The shares of the Gaussians that these cameras have in view, in the mean, in these axes and in the
-  /// others.
+  std::size_t cameras = 0;  // number of cameras that were tested
+  /// Mean share of the Gaussians in view of these cameras, in the chosen axes and in the others.
   double seen = 0.0, seen_otherwise = 0.0;
-  bool by_ground = false;  // both are seen, and the ground that is found in the model is below in these only
+  /// The shares are similar, and the ground decided: the cameras stand above it in these axes only.
+  bool by_ground = false;
 };
 
-/// Chooses between the model's axes and `others` those in which cameras of the world look at the model: they
-/// have at least twice as many of its Gaussians in view, or, where both are seen, the side of the model that
-/// is found to be up (scene/ground.h) is up for them. Nothing where neither decides. Of many Gaussians and
-/// cameras it looks at a part.
+/// Chooses between the model's axes and `others`. First it compares the shares of Gaussians that cameras of
+/// the world see: the larger share wins if it is at least twice the other. Otherwise it compares the model's
+/// up (scene/ground.h) with the cameras'. Returns nothing if neither test decides. Samples large sets of
+/// Gaussians and cameras.
 std::optional<DetectedAxes> detect_axes(const Model& model, const std::string& others,
                                         std::span<const Camera> cameras);
 

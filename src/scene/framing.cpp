@@ -15,12 +15,12 @@ namespace binosplat {
 
 namespace {
 
-/// Cameras look down on the model by this angle, unless known cameras have a better one.
+/// Angle from which cameras look down on the model, unless known cameras give another.
 constexpr double elevation_degrees = 15.0;
-/// A sample of so many Gaussians is enough to find what stands in the way.
+/// Larger models are sampled to measure obstruction.
 constexpr std::size_t framing_sample = 200000;
 
-/// The circle around the core, or around what a scene was captured around, in the model's frame.
+/// A circle around the core, or around the captured point, in the model's frame.
 struct Ring {
   Core core;
   const ModelAxes& axes;
@@ -46,13 +46,13 @@ struct Ring {
     return glm::transpose(world_from_axes(axes.letters)) * direction;
   }
 
-  /// Where a point of the world lies, seen from the middle in the direction `away`, in radians.
+  /// Returns the angle on the ring, in radians, of the world direction `away` from the middle.
   double turn_to(const glm::dvec3& away) const {
     const glm::dvec3 there = from_world(away);
     return std::atan2(glm::dot(there, level[0]), glm::dot(there, level[1]));
   }
 
-  /// Where a camera at `turn` radians stands.
+  /// Returns the position at `turn` radians.
   glm::dvec3 eye(double turn) const {
     return core.middle +
            distance * (std::sin(elevation) * up +
@@ -60,8 +60,8 @@ struct Ring {
   }
 };
 
-/// How much of the view from `eye` to the core is taken by what lies in the nearer half of the way: the sum
-/// of the Gaussians' solid angles times opacity.
+/// Returns the obstruction of the view from `eye` to the core, in sr. It is the sum of solid angle times
+/// opacity of the Gaussians in the nearer half of the distance.
 double obstruction(const Model& model, const Ring& ring, const glm::dvec3& eye) {
   const glm::dvec3 forward = (ring.core.middle - eye) / ring.distance;
   const std::size_t stride = model.count() / framing_sample + 1;
@@ -79,14 +79,14 @@ double obstruction(const Model& model, const Ring& ring, const glm::dvec3& eye) 
   return sum * static_cast<double>(stride);
 }
 
-/// How clear the view is from one place on a ring.
+/// The place on a ring with the clearest view.
 struct Clearest {
   double turn = 0.0;        // radians
   double obstructed = 0.0;  // sr
 };
 
-/// Of 16 places on the ring the first one with the clearest view. Differences below 0.02 sr, one per cent of
-/// what is looked at, do not count: they would make the choice depend on noise.
+/// Returns the clearest of 16 places on the ring, the first among equals. Obstructions are rounded down to
+/// 0.02 sr, one per cent of the examined cone, so that noise does not decide.
 Clearest clearest_on(const Model& model, const Ring& ring) {
   constexpr int places = 16;
   std::array<double, places> found{};
@@ -98,7 +98,7 @@ Clearest clearest_on(const Model& model, const Ring& ring) {
   return {glm::two_pi<double>() * static_cast<double>(best - found.begin()) / places, *best};
 }
 
-// The point nearest to the cameras' axes: the sum of (1 - f f^T) (x - p) is zero.
+// Finds the point nearest to the cameras' axes: the sum of (1 - f f^T) (x - p) is zero.
 std::optional<Capture::Around> around_of(std::span<const Camera> cameras, const glm::dvec3& up) {
   glm::dmat3 across{0.0};
   glm::dvec3 places{0.0};
@@ -109,7 +109,7 @@ std::optional<Capture::Around> around_of(std::span<const Camera> cameras, const 
     places += of_one * camera.position;
   }
   const double count = static_cast<double>(cameras.size());
-  constexpr double parallel = 1e-3;  // 1/27 is the most: axes in all directions
+  constexpr double parallel = 1e-3;  // the largest value is 8/27: axes in all directions
   if (glm::determinant(across) < parallel * count * count * count) return std::nullopt;
   Capture::Around around{glm::inverse(across) * places};
   std::vector<double> distances, heights, facing;
@@ -135,8 +135,8 @@ std::optional<Capture> capture_of(std::span<const Camera> cameras, const std::op
   for (const Camera& camera : cameras) sum -= camera.rotation[1];
   constexpr double common = 0.3;
   if (cameras.empty() || glm::length(sum) < common * static_cast<double>(cameras.size())) return std::nullopt;
-  // People hold cameras level across, but up or down: the up that has the least of their right axes, and
-  // where these say little is near the mean. Minimises mean (r . u)^2 + near (u - mean)^2.
+  // People hold cameras level but tilt them up and down. So up is as perpendicular as possible to the right
+  // axes r, and otherwise near the mean up. It minimises mean (r . u)^2 + near (u - mean)^2.
   constexpr double near = 0.01;
   glm::dmat3 across(near);
   for (const Camera& camera : cameras)
@@ -149,9 +149,9 @@ Capture capture_of(const CoredModel& cored, const Ground& ground, double eyes) {
   Capture capture{ground.up};
   if (!ground.height) return capture;
   const Core& core = cored.core;
-  constexpr double highest = 0.7;  // radii: of a model that is no larger than a person
+  constexpr double highest = 0.7;  // in core radii, for a model no larger than a person
   const double eyes_at = *ground.height + std::min(eyes, highest * core.radius);
-  constexpr double crowded = 0.2;  // sr, of 1.8 that are looked at
+  constexpr double crowded = 0.2;  // sr, of the 1.8 sr that obstruction() examines
   std::optional<double> least;
   for (const double away : {0.9, 0.6, 0.4}) {
     Capture::Around around{into_world(core.middle, cored.model.axes)};

@@ -1,6 +1,6 @@
 #pragma once
-// Cameras for a model that brings none: one that frames it, and a ring of them around it. They are cameras of
-// the world (scene/axes.h), whatever the model's frame is.
+// Cameras for a model that has none: one that frames it, and a ring around it. They are cameras of the world
+// (scene/axes.h), whatever the model's frame is.
 
 #include <glm/glm.hpp>
 #include <optional>
@@ -13,53 +13,54 @@
 
 namespace binosplat {
 
-/// What should appear upwards unless the user says otherwise: COLMAP's worlds have y downwards.
+/// Default up direction: COLMAP's worlds have y downwards.
 constexpr glm::dvec3 default_up{0.0, -1.0, 0.0};
 
-/// Vertical field of view of cameras that the program makes up, in degrees.
+/// Vertical field of view of generated cameras, in degrees.
 constexpr double default_fov_degrees = 60.0;
 
-/// How a scene was captured: what goes for cameras that are made up where others are known. World units.
+/// How a scene was captured: the parameters of generated cameras, found from known cameras or from the
+/// ground. World units.
 struct Capture {
-  glm::dvec3 up = default_up;  // the mean of theirs, made level across as far as they are
-  /// What they stand around, nearest to all their axes, and how far from it and how high above it they are
-  /// in the median; nothing where their axes do not meet before them.
+  glm::dvec3 up = default_up;  // mean up of the cameras, corrected so that their right axes are level
+  /// The point nearest to all camera axes, with the cameras' median distance and median elevation. Nothing if
+  /// the axes are parallel, or if the median camera does not look at that point.
   struct Around {
     glm::dvec3 middle;
     double distance = 0.0;
     double elevation = 0.0;  // radians
-    glm::dvec3 first{0.0};   // from the middle to the first of them
+    glm::dvec3 first{0.0};   // from the middle to the first camera
   };
   std::optional<Around> around;
 };
 
-/// Nothing for no cameras, and for those that have no common up, unless `up` says what is up.
+/// Returns nothing if there are no cameras, or if they have no common up and `up` is not given.
 std::optional<Capture> capture_of(std::span<const Camera> cameras, const std::optional<glm::dvec3>& up = {});
 
-/// The same for a model without cameras, with the ground that was found in it. In a place, the camera stands
-/// on the floor, `eyes` world units above it (less in a tiny model), within the model's core, where the least
-/// stands in the way of looking at the core; or, where much does, in an open space. Throws Error if the model
-/// is empty.
+/// The same for a model without cameras, from its ground. If the ground has a floor, the camera stands on it,
+/// `eyes` world units above it (less in a tiny model). It stays within the core, on the side with the
+/// clearest view of the core. If every such view is obstructed, it stands in an open space, if there is one.
+/// Throws Error if the model is empty.
 Capture capture_of(const CoredModel& cored, const Ground& ground, double eyes);
 
-/// Room to stand in, where what a model is about is rooms or streets and not one thing in the middle: a
-/// circle to stand on around the middle of the widest open space near the middle of the model, with the eyes
-/// `eyes` world units above the ground, which must have a height. Its first place is where one sees farthest
-/// across the space. Nothing where there is no floor with room for a person.
+/// Finds a place to stand in a model of rooms or streets, which has no single subject. Returns a circle
+/// around the middle of the widest open space near the middle of the model. The eyes are `eyes` world units
+/// above the ground, which must have a height. The first place on the circle has the longest free line of
+/// sight across the space. Returns nothing if no floor has room for a person.
 std::optional<Capture::Around> open_space(const CoredModel& cored, const Ground& ground, double eyes);
 
-/// A camera that looks at the densest part of the model from slightly above, so far away that the part fills
-/// the picture, and from the side where the least stands in the way. A few far outliers change nothing.
-/// Or, where there is something `around` which to look, from there. Throws Error if the model is empty.
+/// Returns a camera that looks at the core from slightly above, from the side with the clearest view. The
+/// core fills the picture. A few far outliers change nothing. If the capture has `around`, the camera stands
+/// there instead. Throws Error if the model is empty.
 Camera frame_model(const CoredModel& cored, int width, int height, double fov_degrees = default_fov_degrees,
                    const Capture& capture = {});
 
-/// `count` cameras on a circle around the same part, called orbit_000 and so on; the first is frame_model's.
-/// Or on the circle `around` which the scene was captured, from its first camera on.
+/// Returns `count` cameras on a circle around the core, named orbit_000 and so on; the first has
+/// frame_model's pose. If the capture has `around`, they stand on that circle, from its first camera on.
 std::vector<Camera> orbit(const CoredModel& cored, int count, int width, int height,
                           double fov_degrees = default_fov_degrees, const Capture& capture = {});
 
-/// near_default, or less for a model so small that near_default would cut into it when it is framed.
+/// Returns near_default, or less for a model so small that near_default would cut into it when framed.
 double near_for(const CoredModel& cored);
 
 }  // namespace binosplat

@@ -16,25 +16,26 @@ namespace binosplat {
 
 namespace {
 
-/// A sample of so many Gaussians is enough.
+/// Larger models are sampled.
 constexpr std::size_t ground_sample = 50000;
-/// Flat is what is at most so thick beside its second axis; of less opacity it is air.
+/// A Gaussian is flat if its thinnest axis is at most this share of the second one; below this opacity it is
+/// ignored.
 constexpr float flat = 0.3f, opaque = 0.5f;
-/// Fewer flat Gaussians say nothing.
+/// Fewer flat Gaussians give no ground.
 constexpr std::size_t flat_least = 200;
-/// A surface is level, or upright, to so many degrees.
+/// Largest deviation of a level or upright surface, in degrees.
 constexpr double level_degrees = 10.0;
-/// What an upright surface counts for beside a level one of its size. Of a wall alone, without any floor, the
-/// directions in it must beat the one that it faces; of a floor alone it must be the other way round.
+/// Weight of an upright surface beside a level one of its size. For a wall without a floor, its in-plane
+/// directions must beat its normal; for a floor alone, the normal must win.
 constexpr double upright_counts = 0.3;
-/// By how much the best direction must beat all that are more than 30 degrees away.
+/// The best direction must beat all that are over 30 degrees away by this factor.
 constexpr double stands_out = 1.05;
 
 /// A flat Gaussian, in the world.
 struct Piece {
-  glm::dvec3 place;  // from the middle of the core, in its radii
+  glm::dvec3 place;  // relative to the core's middle, in core radii
   glm::dvec3 normal;
-  double weight;  // its area, the less the farther away it is
+  double weight;  // its area, less with distance from the core
 };
 
 std::vector<Piece> pieces_of(const CoredModel& cored) {
@@ -50,7 +51,7 @@ std::vector<Piece> pieces_of(const CoredModel& cored) {
     const glm::vec4& q = model.rotation[i];
     const glm::dmat3 turned = glm::mat3_cast(glm::dquat(q.x, q.y, q.z, q.w));
     const glm::dvec3 place = (glm::dvec3(model.position[i]) - core.middle) / core.radius;
-    // One huge Gaussian of the background is no floor.
+    // Limits a huge Gaussian of the background, which is no floor.
     const double area = std::min(static_cast<double>(wide) * other / (core.radius * core.radius), 0.01);
     const double weight = model.opacity[i] * area / (1.0 + 0.25 * glm::dot(place, place));
     if (weight > 0.0) pieces.push_back({world * place, world * turned[thin], weight});
@@ -60,14 +61,13 @@ std::vector<Piece> pieces_of(const CoredModel& cored) {
 
 const double aligned = std::cos(glm::radians(level_degrees)), across = std::sin(glm::radians(level_degrees));
 
-/// What a piece counts where a direction is up: above 0 if it is level then, below if it is upright.
+/// Returns a piece's vote for `up`: positive if the piece is level, negative if it is upright.
 double vote(const Piece& piece, const glm::dvec3& up) {
   const double x = std::abs(glm::dot(up, piece.normal));
   return x > aligned ? piece.weight : x < across ? -upright_counts * piece.weight : 0.0;
 }
 
-/// The direction, up or down, that the level pieces have for a normal as nearly as the upright ones lie in
-/// it.
+/// Refines an axis by least squares: the level pieces' normals lie along it, the upright ones' across it.
 glm::dvec3 refined(glm::dvec3 direction, std::span<const Piece> pieces) {
   for (int round = 0; round < 4; ++round) {
     glm::dmat3 sum(0.0);
@@ -77,7 +77,7 @@ glm::dvec3 refined(glm::dvec3 direction, std::span<const Piece> pieces) {
       sum += weight * glm::outerProduct(piece.normal, piece.normal);
       upright -= std::min(weight, 0.0);
     }
-    // The largest eigenvalue's direction, by powers; the shift keeps all of them positive.
+    // Power iteration to the largest eigenvalue's direction; the shift makes all eigenvalues positive.
     sum += glm::dmat3(upright);
     for (int k = 0; k < 50; ++k) direction = glm::normalize(sum * direction);
   }
@@ -86,7 +86,7 @@ glm::dvec3 refined(glm::dvec3 direction, std::span<const Piece> pieces) {
 
 std::optional<glm::dvec3> axis_of(std::span<const Piece> pieces) {
   if (pieces.size() < flat_least) return std::nullopt;
-  constexpr int count = 1000;  // on half a sphere, some 4 degrees apart: a Fibonacci spiral
+  constexpr int count = 1000;  // on a half sphere, a Fibonacci spiral with a spacing of about 4 degrees
   std::vector<glm::dvec3> directions(count);
   std::vector<double> votes(count);
   parallel_for(count, [&](int k) {
@@ -104,10 +104,10 @@ std::optional<glm::dvec3> axis_of(std::span<const Piece> pieces) {
   return refined(directions[best], pieces);
 }
 
-/// Which of both ends of the axis is up: models reach farther up from where most of them is than down. Where
-/// they do not, worlds have y downwards or z upwards.
+/// Returns the end of the axis that is up: models reach farther above the middle of their pieces than below.
+/// If neither end reaches clearly farther, up is -y or z, as is usual in worlds.
 glm::dvec3 upper(const glm::dvec3& axis, std::span<const Piece> pieces) {
-  constexpr double around = 3.0;  // radii: what is farther away is sky, above and below
+  constexpr double around = 3.0;  // core radii: pieces farther away are sky, above and below
   std::vector<double> heights;
   for (const Piece& piece : pieces) {
     if (glm::length(piece.place) < around) heights.push_back(glm::dot(piece.place, axis));
@@ -121,7 +121,7 @@ glm::dvec3 upper(const glm::dvec3& axis, std::span<const Piece> pieces) {
   return sense < 0.0 ? -axis : axis;
 }
 
-/// Along up from the core's middle, in its radii.
+/// Returns the floor's height along `up` from the core's middle, in core radii.
 std::optional<double> floor_of(const glm::dvec3& up, std::span<const Piece> pieces) {
   constexpr double around = 2.0;
   std::vector<double> heights;
@@ -132,9 +132,9 @@ std::optional<double> floor_of(const glm::dvec3& up, std::span<const Piece> piec
     if (std::abs(glm::dot(piece.normal, up)) > aligned) heights.push_back(glm::dot(piece.place, up));
   }
   if (heights.size() < flat_least / 2) return std::nullopt;
-  // Tables and ceilings are level, too: the floor is the lowest.
+  // Tables and ceilings are level, too: the floor is the lowest level surface.
   const double floor = quantile(std::move(heights), 0.1);
-  // It reaches all round, or what stands on it is an object on its base.
+  // A floor reaches all round the core; otherwise the level surface is the base of an object.
   constexpr double thick = 0.1, near = 0.3;
   constexpr int sectors = 8, most_sectors = 6;
   constexpr double share = 0.02;

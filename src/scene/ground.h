@@ -1,5 +1,5 @@
 #pragma once
-// Which way is up in a model and where its floor is, found in the model itself, for those without cameras.
+// Finds up and the floor of a model without cameras, from its Gaussians.
 
 #include <array>
 #include <glm/glm.hpp>
@@ -9,21 +9,21 @@
 
 namespace binosplat {
 
-/// In the world (scene/axes.h).
+/// Up and floor, in the world (scene/axes.h).
 struct Ground {
   glm::dvec3 up;
-  /// How far along `up` the floor lies that reaches around what the model is about, world units; nothing for
-  /// an object, which nobody stands in.
+  /// Height along `up` of the floor around the core, world units. Nothing for an object, in which nobody
+  /// stands.
   std::optional<double> height;
 };
 
-/// From the flat, opaque Gaussians, which lie in surfaces: up is where most of them face, as grounds, floors
-/// and tables do, or else what walls have in common; and rather the side on which a model reaches farther.
-/// Nothing where no direction stands out, as with models of round Gaussians and those that a network makes.
-/// `up`, where it is known, is taken as it is.
+/// Uses the flat, opaque Gaussians, which lie in surfaces. Up is the normal of most of them (grounds, floors,
+/// tables), or else the direction that all walls share. Of its two senses, up is the one in which the model
+/// reaches farther. Returns nothing if no direction stands out, as in models of round Gaussians, and for
+/// scaffolds. A given `up` is used as it is.
 std::optional<Ground> find_ground(const CoredModel& cored, const std::optional<glm::dvec3>& up = {});
 
-/// Two directions of length 1 in the plane across `up`, which has length 1: the same ones each time.
+/// Returns two unit vectors that span the plane perpendicular to the unit vector `up`; deterministic.
 std::array<glm::dvec3, 2> level_directions(const glm::dvec3& up);
 
 }  // namespace binosplat

@@ -35,8 +35,8 @@ glm::dvec3 sh_sum(std::span<const float> sh, const std::array<double, 16>& basis
   return sum;
 }
 
-// The basis is orthonormal: an entry is the integral of one function times a turned one. Both have degree 3
-// at most, for whose products 4 Gauss-Legendre nodes in z by 8 azimuths are exact.
+// The basis is orthonormal, so an entry is the integral of one function times a rotated one. Both have degree
+// 3 at most: 4 Gauss-Legendre nodes in z by 8 azimuths integrate their products exactly.
 HarmonicsTurn::HarmonicsTurn(const glm::dmat3& turn) {
   constexpr double nodes[][2] = {{-0.8611363115940526, 0.3478548451374538},
                                  {-0.3399810435848563, 0.6521451548625461},
@@ -54,7 +54,7 @@ HarmonicsTurn::HarmonicsTurn(const glm::dmat3& turn) {
       }
     }
   }
-  // What rounding leaves in place of 0 would make small numbers of coefficients that are none.
+  // Rounding errors in place of 0 would turn zero coefficients into small numbers.
   for (auto& row : matrix_) {
     for (double& entry : row) entry = std::abs(entry) < 1e-12 ? 0.0 : entry;
   }

@@ -1,6 +1,6 @@
 #pragma once
-// The spherical harmonics of models: real, with Condon-Shortley signs, in the order in which coefficients are
-// stored.
+// The real spherical harmonics of models, with Condon-Shortley signs, in the order of the stored
+// coefficients.
 
 #include <array>
 #include <glm/glm.hpp>
@@ -8,21 +8,21 @@
 
 namespace binosplat {
 
-/// The functions of degrees 0 to 3 at a unit direction.
+/// Evaluates the functions of degrees 0 to 3 at a unit direction.
 std::array<double, 16> sh_basis(const glm::dvec3& direction);
 
-/// The sum of one Gaussian's coefficients, coefficient-major with RGB together, by the functions: its colour
-/// less 0.5, which may be below 0.
+/// Returns the sum of one Gaussian's coefficients (coefficient-major, RGB together) times the functions: its
+/// colour minus 0.5, before clamping at 0.
 glm::dvec3 sh_sum(std::span<const float> sh, const std::array<double, 16>& basis);
 
-/// What coefficients become where a model is turned or mirrored: its colour towards `turn` * d is then what
-/// it was towards d. Each degree is mixed within itself.
+/// Rotates or mirrors coefficients: afterwards the colour towards `turn` * d is the earlier one towards d.
+/// Each degree is mixed only within itself.
 class HarmonicsTurn {
  public:
-  /// `turn` is orthogonal. Signed permutations of the axes change signs, and nothing else, exactly.
+  /// `turn` is orthogonal. Flips of axes only change signs, exactly.
   explicit HarmonicsTurn(const glm::dmat3& turn);
 
-  /// Turns one Gaussian's coefficients, coefficient-major with RGB together, in place.
+  /// Rotates one Gaussian's coefficients (coefficient-major, RGB together) in place.
   void apply(float* sh, int degree) const;
 
  private:

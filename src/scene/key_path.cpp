@@ -10,19 +10,19 @@ namespace binosplat {
 
 namespace {
 
-/// Seconds between keys, in the median; no film has fewer frames a second. A little above 0.1, so that no
-/// rounding of times makes keys of frames that are 0.1 s apart.
+/// Median seconds between keys; no film has fewer frames a second. Slightly above 0.1, so that rounded times
+/// of frames that are 0.1 s apart make no keys.
 constexpr double keys_apart = 0.1 * (1.0 + 1e-3);
-/// More frames would hardly fit in memory.
+/// More would hardly fit into memory.
 constexpr double key_path_frames_most = 1e6;
 
-// Focal lengths by their logarithms, so that a zoom is even, and the middle; of a picture of 1 by 1.
+// Focal lengths as logarithms, so that a zoom is even, and the principal point; all for a picture of 1 by 1.
 glm::dvec4 lens_of(const Camera& camera) {
   return {std::log(camera.fx / camera.width), std::log(camera.fy / camera.height), camera.cx / camera.width,
           camera.cy / camera.height};
 }
 
-/// The axis of a turn, as long as its angle.
+/// Returns a rotation's axis with its angle as length.
 glm::dvec3 rotation_vector(const glm::dquat& turn) {
   const glm::dvec3 axis(turn.x, turn.y, turn.z);
   const double sine = glm::length(axis);
@@ -34,16 +34,16 @@ glm::dquat turn_by(const glm::dvec3& turn) {
   return angle > 0.0 ? glm::angleAxis(angle, turn / angle) : glm::dquat(1, 0, 0, 0);
 }
 
-/// De Casteljau's cubic, which holds for any way of going from one to another.
+/// De Casteljau's cubic, for any interpolation `between`.
 template <typename T, typename Between>
 T cubic(const T& a, const T& b, const T& c, const T& d, double u, const Between& between) {
   const T ab = between(a, b, u), bc = between(b, c, u), cd = between(c, d, u);
   return between(between(ab, bc, u), between(bc, cd, u), u);
 }
 
-/// Catmull-Rom's slope at a knot from the slopes of the chords into it and out of it, which take the times
-/// `before` and `after`. Where one of them is much slower than the other (a turn on the spot, a walk straight
-/// ahead) it is bounded so that no way overshoots.
+/// Returns the Catmull-Rom slope at a knot, from the slopes of the chords into and out of it, which last
+/// `before` and `after`. It is bounded so that the path does not overshoot if one chord is much slower (a
+/// turn on the spot, a straight walk).
 template <typename V>
 V slope_between(const V& in, const V& out, double before, double after) {
   const V slope = (after * in + before * out) / (before + after);
@@ -52,7 +52,7 @@ V slope_between(const V& in, const V& out, double before, double after) {
   return steep > steepest ? slope * (steepest / steep) : slope;
 }
 
-// The cubic from a to b that leaves and arrives with these slopes.
+// The cubic from a to b with these slopes at its ends.
 template <typename V>
 V cubic_between(const V& a, const V& slope_a, const V& b, const V& slope_b, double apart, double u) {
   return cubic(a, a + slope_a * (apart / 3.0), b - slope_b * (apart / 3.0), b, u,
@@ -84,12 +84,12 @@ KeyPath::KeyPath(std::span<const Camera> keys, const std::optional<double>& seco
     fail("a path in {} seconds: expected more than 0", *seconds);
   first_ = keys[0];
   for (const Camera& key : keys) {
-    // At one size, or pixels would not stay square between keys of other aspects.
+    // All at one size: otherwise pixels between keys of different aspects would not be square.
     Knot knot{.place = key.position,
               .turned = glm::normalize(glm::quat_cast(key.rotation)),
               .lens = lens_of(resized(key, first_.width, first_.height))};
     if (!seconds) knot.at = *key.time - *keys[0].time;
-    // q and -q are one orientation: the nearer one, or the head would go the long way round.
+    // q and -q are one orientation: the nearer one avoids the long way round.
     if (!knots_.empty() && glm::dot(knot.turned, knots_.back().turned) < 0.0) knot.turned = -knot.turned;
     knots_.push_back(knot);
   }
@@ -97,8 +97,8 @@ KeyPath::KeyPath(std::span<const Camera> keys, const std::optional<double>& seco
   find_slopes();
 }
 
-// A way takes the longer, the farther it goes beside the others and the more it turns; a radian counts as
-// much as the usual way from key to key, since keys do not say how long a metre is.
+// A section's time grows with its relative length and its rotation. Keys do not define a metre, so one radian
+// counts as the mean distance between keys.
 void KeyPath::pace(double seconds) {
   std::vector<double> ways, turns;
   double all = 0.0;
@@ -108,7 +108,7 @@ void KeyPath::pace(double seconds) {
     all += ways.back();
   }
   const double usual = all > 0.0 ? all / static_cast<double>(ways.size()) : 1.0;
-  // Keys of one pose take a moment, too: a zoom, or a rest.
+  // Keys of equal pose also take time: a zoom, or a rest.
   constexpr double least = 0.05;
   for (std::size_t k = 0; k < ways.size(); ++k)
     knots_[k + 1].at = knots_[k].at + std::max(least, ways[k] / usual + turns[k]);
@@ -117,7 +117,7 @@ void KeyPath::pace(double seconds) {
 }
 
 void KeyPath::find_slopes() {
-  // Of the chord from each knot to the next.
+  // From each knot to the next.
   struct Chord {
     double apart;
     glm::dvec3 going, turning;
@@ -150,9 +150,9 @@ Camera KeyPath::at(double seconds) const {
   Camera camera = first_;
   camera.time = seconds;
   camera.position = cubic_between(a.place, a.going, b.place, b.going, apart, u);
-  // Not glm::slerp, which turns back where a way is longer than half a turn: it would jump.
+  // glm::slerp takes the shorter arc, so it would jump if a section turns by more than half a turn.
   const auto spherical = [](const glm::dquat& from, const glm::dquat& to, double share) {
-    // Opposite quaternions are one orientation, and glm::mix would divide by 0.
+    // Opposite quaternions are one orientation; glm::mix would divide by 0.
     return glm::dot(from, to) <= -1.0 ? from : glm::mix(from, to, share);
   };
   camera.rotation = glm::mat3_cast(
@@ -167,7 +167,7 @@ Camera KeyPath::at(double seconds) const {
 }
 
 std::vector<Camera> frames_of(const KeyPath& path, double frames_per_second, double seconds) {
-  constexpr double rounded = 1e-6;  // of a frame, which decides nothing
+  constexpr double rounded = 1e-6;  // of a frame: tolerates rounded times
   const double count = std::min(std::floor(path.seconds() * frames_per_second + rounded) + 1.0,
                                 std::max(1.0, std::ceil(seconds * frames_per_second - rounded)));
   if (!(count <= key_path_frames_most)) {

@@ -1,5 +1,5 @@
 #pragma once
-// A smooth way through cameras that somebody set as keys: for videos, and for playing them in a window.
+// A smooth path through key cameras, for videos and for playback in a window.
 
 #include <glm/gtc/quaternion.hpp>
 #include <limits>
@@ -11,27 +11,27 @@
 
 namespace binosplat {
 
-/// Whether all cameras have times, each later than the one before.
+/// Returns whether all cameras have times, each later than the one before.
 bool times_rise(std::span<const Camera> cameras);
 
-/// Whether cameras are keys to go through, and not themselves the frames of a path: their times rise, and
-/// are more than 0.1 s apart in the median, as no film's frames are.
+/// Returns whether cameras are keys, and not the frames of a path: their times rise, with a median step above
+/// 0.1 s, longer than a film's.
 bool are_keys(std::span<const Camera> cameras);
 
-/// The way through keys in their order: places, orientations and lenses by cubics that meet each key at its
-/// time and have one velocity on both sides of it. Rests before the first and after the last key.
+/// A path through keys in their order. Positions, orientations and lenses are cubics with continuous velocity
+/// that reach each key at its time. Before the first and after the last key the camera rests there.
 class KeyPath {
  public:
-  /// Without `seconds` the path takes the keys' own times, which must rise, from the first one on; with them
-  /// it takes that long, at a pace as even as places and turns allow. Throws Error for fewer than two keys,
-  /// times that do not rise, and seconds that are not above 0.
+  /// Without `seconds` the path uses the keys' own times, which must rise, relative to the first. With
+  /// `seconds` it takes that long, at a pace as even as distances and rotations allow. Throws Error for fewer
+  /// than two keys, times that do not rise, and seconds not above 0.
   explicit KeyPath(std::span<const Camera> keys, const std::optional<double>& seconds = {});
 
-  /// How long it takes from the first key to the last.
+  /// Duration from the first key to the last.
   double seconds() const { return knots_.back().at; }
 
-  /// The camera `seconds` after the first key, with that `time`. Its size is the first key's, to which the
-  /// others' lenses are resized().
+  /// Returns the camera `seconds` after the first key, with that `time`. It has the first key's size; the
+  /// lenses of the others are resized() to it.
   Camera at(double seconds) const;
 
  private:
@@ -50,8 +50,8 @@ class KeyPath {
   std::vector<Knot> knots_;
 };
 
-/// The cameras of a path, `frames_per_second` from its first key to its last or before `seconds`, called
-/// path_00000 and so on. Throws Error for more than a million.
+/// Samples a path at `frames_per_second` from its first key to its last, or to `seconds`. The cameras are
+/// named path_00000 and so on. Throws Error for more than a million.
 std::vector<Camera> frames_of(const KeyPath& path, double frames_per_second,
                               double seconds = std::numeric_limits<double>::infinity());
 

@@ -18,12 +18,12 @@ namespace binosplat {
 namespace {
 
 constexpr std::size_t neighbours = 8;
-// What a nat of shape is worth beside a squared difference of colours of 1.
+// Weight of a nat of shape beside a squared colour difference of 1.
 constexpr double shape_weight = 0.3;
-// Deviations count for no less than this share of the merged one's: from afar nobody sees less.
+// Deviations count as at least this share of the merged one's: smaller ones are invisible from afar.
 constexpr double thinnest = 0.5;
 constexpr double opaque_most = 0.999;
-// Of a square that is filled evenly, its area over the integral of the Gaussian with its moments.
+// Area of an evenly filled square over the integral of the Gaussian with its moments.
 constexpr double even_share = 6.0 / std::numbers::pi;
 
 double shadow(const glm::dvec3& deviations) {
@@ -33,7 +33,7 @@ double shadow(const glm::dvec3& deviations) {
   return std::numbers::pi * std::pow(sum / 3.0, 1.0 / p);
 }
 
-/// Where a pixel covers `pixel` world units.
+/// Area of the shadow if a pixel covers `pixel` world units.
 double seen_area(const Model& model, const glm::dvec3& deviations, double pixel) {
   const double low_pass = model.antialiased ? 0.0 : model.kernel_px2 * pixel * pixel;
   return shadow(glm::sqrt(deviations * deviations + low_pass));
@@ -43,7 +43,7 @@ double opacity_of(const Model& model, std::uint32_t i) {
   return std::clamp<double>(model.opacity[i], 1e-6, opaque_most);
 }
 
-/// `area` is that of its shadow.
+/// `area` is its shadow's.
 MergedPart part_of(const Model& model, std::uint32_t i, double area) {
   const glm::vec4& q = model.rotation[i];
   const glm::dmat3 turn = glm::mat3_cast(glm::dquat(q.x, q.y, q.z, q.w));
@@ -69,11 +69,10 @@ MergedPart sum_of(const MergedPart& a, const MergedPart& b) {
 
 double log_det(glm::dmat3 covariance, double least) {
   for (int k = 0; k < 3; ++k) covariance[k][k] += least;
-  return std::log(
-      std::max(glm::determinant(covariance), least * least * least));  // as it is but for rounding
+  // Only rounding makes the determinant smaller.
+  return std::log(std::max(glm::determinant(covariance), least * least * least));
 }
 
-/// What it costs to merge two.
 double cost_of(const MergedPart& a, const MergedPart& b) {
   const MergedPart sum = sum_of(a, b);
   const double trace = sum.covariance[0][0] + sum.covariance[1][1] + sum.covariance[2][2];
@@ -110,7 +109,7 @@ void append_merged(Model& merged, const Model& model, std::span<const std::uint3
     return;
   }
   MergedPart sum;
-  double depth = 0.0;  // optical, times area
+  double depth = 0.0;  // optical depth times area
   std::vector<double> sh(values);
   for (const std::uint32_t i : members) {
     const double area = seen_area(model, model.scale[i], pixel);
@@ -217,7 +216,7 @@ void Merger::merge(std::uint32_t a, std::uint32_t b) {
   next_[last_[a]] = b;
   last_[a] = last_[b];
   --left_;
-  // Its neighbours are those of both that are nearest now.
+  // The nearest of both clusters' neighbours.
   std::vector<std::pair<double, std::uint32_t>> all;
   for (const std::uint32_t of : {a, b}) {
     for (const std::uint32_t k : near_[of]) {

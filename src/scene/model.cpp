@@ -14,8 +14,8 @@ namespace binosplat {
 
 namespace {
 
-constexpr float opacity_rounding = 1e-3f;  // a step of halves beyond 1
-constexpr float scale_most = 1e13f;        // in pictures, its square must not overflow fp32
+constexpr float opacity_rounding = 1e-3f;  // one step of fp16 beyond 1
+constexpr float scale_most = 1e13f;        // its square must not overflow fp32 in the renderer
 
 bool finite(const glm::vec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 
@@ -53,7 +53,7 @@ bool place(Model& model, std::size_t i, const GaussianValues& values) {
   // The squares of an fp32 quaternion can overflow fp32.
   const glm::dvec4 q(rotation);
   const double square = glm::dot(q, q), norm = std::sqrt(square);
-  // One that is a unit quaternion rounded to fp32 stays as it is: what was written is read as it was.
+  // A unit quaternion rounded to fp32 stays unchanged, so that written files are read back bit for bit.
   const bool unit = std::abs(square - 1.0) <= 0x1p-23;
   model.position[i] = position;
   model.scale[i] = scale;
@@ -67,7 +67,7 @@ bool place(Model& model, std::size_t i, const GaussianValues& values) {
 }
 
 void check_opacities(const std::string& source, std::span<const float> opacities) {
-  constexpr std::ptrdiff_t few = 100;  // one in so many may be damaged
+  constexpr std::ptrdiff_t few = 100;  // one in this many may be damaged
   const auto is_beyond = [](float a) {
     return std::isfinite(a) && std::abs(a - 0.5f) > 0.5f + opacity_rounding;
   };
@@ -91,17 +91,17 @@ void keep_only(Model& model, const std::vector<std::uint8_t>& kept) {
 }
 
 bool choose_origin(Model& model) {
-  Model some;  // of which a sample is enough
+  Model some;  // a sample is enough
   for (std::size_t i = 0; i < model.count(); i += model.count() / 20000 + 1) {
     some.position.push_back(model.position[i]);
     some.scale.push_back(model.scale[i]);
   }
   if (some.count() == 0) return false;
   const auto [middle, radius] = core_of(some);
-  constexpr double far = 1024.0;  // where floats round by some hundredths of a pixel
+  constexpr double far = 1024.0;  // from here on floats round by some hundredths of a pixel
   if (glm::length(middle) <= far * radius) return false;
   const double step = std::exp2(std::ceil(std::log2(radius)));
-  model.axes.origin = glm::round(middle / step) * step;  // of so few digits that it rounds nothing
+  model.axes.origin = glm::round(middle / step) * step;  // few digits: subtracting it rounds nothing
   return true;
 }
 

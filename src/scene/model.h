@@ -34,36 +34,36 @@ struct Perspective {
   bool operator==(const Perspective&) const = default;
 };
 
-/// The frame of a model's numbers in the cameras' world (scene/axes.h).
+/// A model's frame relative to the world of cameras (scene/axes.h).
 struct ModelAxes {
-  std::string letters = "RDF";  // where its x, y and z point
-  /// What positions are relative to, in the model's axes: zero, but for models so far away from zero that
-  /// floats would round what pictures show (choose_origin).
+  std::string letters = "RDF";  // directions of its x, y and z
+  /// Origin of the positions, in the model's axes. It is zero unless the model is so far from zero that
+  /// rounding to floats would be visible (choose_origin).
   glm::dvec3 origin{0.0};
 };
 
-/// Arrays of equal length, one element a Gaussian, in file order. Every value is finite and every rotation of
-/// unit length: readers leave out what is not, and count it.
+/// Arrays of equal length, one element a Gaussian, in file order. Every value is finite and every rotation
+/// has unit length: readers drop other Gaussians and count them in `left_out`.
 struct Model {
-  std::string name;                 // for people: the file's or scene's name
-  std::string format;               // the file's, for people
+  std::string name;                 // for display: the file's or scene's name
+  std::string format;               // for display: the file's format
   int degree = 0;                   // the spherical harmonics' degree, 0 to 3
   std::vector<glm::vec3> position;  // world units, from axes.origin
   std::vector<glm::vec3> scale;     // standard deviations, world units (not logarithms)
   std::vector<glm::vec4> rotation;  // unit quaternions (w, x, y, z)
   std::vector<float> opacity;       // in [0, 1] (not logits)
   std::vector<float> sh;            // (count, sh_count(degree), 3): coefficient-major, RGB together
-  std::size_t left_out = 0;         // Gaussians of the source with values not finite or a zero quaternion
-  double kernel_px2 = KERNEL_PX2;   // variance of the low-pass it was trained with, px^2
-  bool antialiased = false;  // trained with the opacity that the low-pass takes away (Mip-Splatting, Yu 2024)
-  std::string antialiased_by;   // what says so, or that it was not; empty: nothing does
-  Perspective perspective;      // that it was trained with
-  bool lacks_degree_4 = false;  // its file has harmonics of degree 4, too, which nothing here draws
+  std::size_t left_out = 0;         // Gaussians of the source that were dropped as invalid (place())
+  double kernel_px2 = KERNEL_PX2;   // variance of the low-pass used in training, px^2
+  bool antialiased = false;     // trained with opacity compensated for the low-pass (Mip-Splatting, Yu 2024)
+  std::string antialiased_by;   // source of `antialiased`; empty: the default
+  Perspective perspective;      // used in training
+  bool lacks_degree_4 = false;  // its file also has harmonics of degree 4, which are not drawn
   ModelAxes axes;
-  /// Gaussians that it may come to have while it is drawn (scene/model_chunks.h): whoever draws it makes room
-  /// for all of them at once, since no frame should wait for that.
+  /// Number of Gaussians that the model may grow to while it is drawn (scene/model_chunks.h). Renderers
+  /// reserve memory for all of them at the start, so that no frame waits for an allocation.
   std::size_t room = 0;
-  /// Where there is one, it makes the Gaussians anew for each eye, and all arrays above but `position` are
+  /// If set, the scaffold generates the Gaussians for each eye, and all arrays above but `position` are
   /// stand-ins (scene/scaffold.h).
   std::shared_ptr<Scaffold> scaffold;
 
@@ -72,43 +72,44 @@ struct Model {
   void resize(std::size_t n);
 };
 
-/// What a file says of one Gaussian.
+/// The values of one Gaussian in a file.
 struct GaussianValues {
-  glm::dvec3 position;  // from zero, wherever the model's origin is
+  glm::dvec3 position;  // from zero, not from the model's origin
   glm::vec3 scale;      // standard deviations, or their logarithms
   glm::vec4 rotation;   // quaternion w x y z of any length
   float opacity;        // 0 to 1, or its logit
   const float* sh;      // 3 * sh_count(model.degree) values in the model's order
 };
 
-/// For readers that know the count and decode on several cores: resize(count), then for every slot `i` either
-/// decode_raw, where files hold what trainers store (logarithms and logits), or place, where they hold scales
-/// and opacities as they are drawn; then keep_only. Both return whether the Gaussian may be kept: not if a
-/// decoded value is not finite, the quaternion is zero, a scale is below 0 or the opacity further outside 0
-/// to 1 than rounding takes it.
+/// Both store Gaussian `i`, for readers that decode on several cores. Such a reader calls resize(count), then
+/// one of these for every `i`, then keep_only. decode_raw takes the values that trainers store (logarithms
+/// and logits), place takes linear scales and opacities. Both return whether the Gaussian is valid. Invalid
+/// are values that are not finite, zero quaternions, scales below 0 or above 1e13, and opacities outside 0 to
+/// 1 by more than rounding.
 bool decode_raw(Model& model, std::size_t i, const GaussianValues& raw);
 bool place(Model& model, std::size_t i, const GaussianValues& values);
 
-/// Throws Error, naming `source`, where more opacities than damage makes are beyond 0 to 1, and so of another
-/// kind.
+/// Throws Error, naming `source`, if over one per cent of the opacities lie outside 0 to 1: they are then
+/// probably logits.
 void check_opacities(const std::string& source, std::span<const float> opacities);
 
-/// Closes the gaps of those that are not kept (0), and counts them as left out.
+/// Removes the Gaussians whose `kept` is 0 and counts them in left_out.
 void keep_only(Model& model, const std::vector<std::uint8_t>& kept);
 
-/// For readers of positions that are finer than floats, which are rounded to floats from zero so far: moves
-/// the origin to the middle of a model whose distance from zero is so many times its size that the rounding
-/// shows. Returns whether it did; positions are then to be set again, from it.
+/// For readers of positions finer than floats, after these were rounded to floats from zero. If the distance
+/// from zero is so many times the model's size that rounding shows, sets axes.origin to about the middle and
+/// returns true. The reader then sets the positions again, relative to it.
 [[nodiscard]] bool choose_origin(Model& model);
 
-/// The same, and sets the positions again where it did.
+/// Calls choose_origin(); if it moved the origin, sets the positions again.
 void set_far_positions(Model& model, std::span<const glm::dvec3> positions);
 
-/// Gives a model's positions from another origin, as floats. Returns how far that moves one at most.
+/// Moves the origin and makes the positions relative to it. Returns the largest rounding error of a position,
+/// world units.
 double move_origin(Model& model, const glm::dvec3& origin);
 
-/// Box around the middle of the model, from zero, robust against far outliers: the 2nd to 98th percentile of
-/// positions per axis, of Gaussians that are not wholly transparent, unless all are.
+/// Returns the box of the 2nd to 98th percentile of positions on each axis, from zero, robust against
+/// outliers. It ignores wholly transparent Gaussians, unless all are.
 Bounds core_bounds(const Model& model);
 
 /// A box that is empty at first.
@@ -122,7 +123,7 @@ struct Box {
   Box operator+(const glm::dvec3& by) const { return {low + by, high + by}; }
 };
 
-/// The box around the ellipsoids of one standard deviation of all Gaussians, or of some, from the origin.
+/// Return the box around the one-sigma ellipsoids of all or some Gaussians, relative to the origin.
 Box reach_of(const Model& model);
 Box reach_of(const Model& model, std::span<const std::uint32_t> indices);
 

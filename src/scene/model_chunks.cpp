@@ -10,7 +10,7 @@ namespace binosplat {
 
 namespace {
 
-// Which the model grows by, and whose memory is touched then: more would take a frame's time (1,024: 5 ms).
+// Blocks by which the model grows: touching the memory of more would cost a frame's time (1,024: 5 ms).
 constexpr std::size_t blocks_at_once = 128;
 
 void hide(Model& model, std::size_t first, std::size_t count) {
@@ -19,8 +19,8 @@ void hide(Model& model, std::size_t first, std::size_t count) {
 
 }  // namespace
 
-// The first that is free, so that they stay side by side. Places that are made for later, too, lie where
-// something is, which makes no box larger.
+// Returns the first free block, so that used ones stay together. New blocks also get a position of the model,
+// so that no bounding box grows.
 std::size_t ModelChunks::take_block(Model& model, const glm::vec3& where) {
   if (free_.empty()) {
     const std::size_t before = owners_.size();
@@ -65,7 +65,7 @@ void ModelChunks::replace(Model& model, std::size_t chunk, const Model& by) {
 }
 
 void ModelChunks::replace(Model& model, std::span<const Replacement> all) {
-  std::vector<std::vector<std::size_t>> before;  // blocks of the chunks
+  std::vector<std::vector<std::size_t>> before;  // earlier blocks of the chunks
   for (const Replacement& each : all) before.push_back(give_back(each.chunk));
   for (const auto& [chunk, by] : all) take_place(model, chunk, *by);
   const auto fill = [&](std::size_t k) {

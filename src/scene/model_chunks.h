@@ -1,5 +1,5 @@
 #pragma once
-// A model whose chunks come and go while it is drawn.
+// A model whose chunks are replaced while it is drawn.
 
 #include <cstddef>
 #include <cstdint>
@@ -12,29 +12,29 @@
 
 namespace binosplat {
 
-/// Which Gaussians of a model are which chunk. A chunk lies in blocks of Gaussians anywhere in the model, and
-/// stays there until it is replaced; what is left of its last block, and blocks of no chunk, have an opacity
-/// of 0, so that they are never drawn.
+/// Stores which Gaussians of a model belong to which chunk. A chunk occupies blocks of Gaussians anywhere in
+/// the model, and keeps them until it is replaced. The unused rest of its last block and free blocks have
+/// opacity 0, so they are never drawn.
 class ModelChunks {
  public:
   static constexpr std::size_t block = 64;  // Gaussians
 
-  /// Begins with a model without Gaussians.
+  /// The model starts without Gaussians.
   explicit ModelChunks(std::size_t chunks) : blocks_(chunks), counts_(chunks) {}
 
   std::size_t size() const { return counts_.size(); }
-  /// How many Gaussians all chunks have.
+  /// Number of Gaussians in all chunks.
   std::size_t gaussians() const { return gaussians_; }
-  /// The chunk of each block; for blocks of no chunk it has any number.
+  /// The chunk of each block; arbitrary for free blocks.
   const std::vector<std::uint32_t>& owners() const { return owners_; }
-  /// The blocks in which a chunk lies, in the order of its Gaussians.
+  /// The blocks of a chunk, in the order of its Gaussians.
   const std::vector<std::size_t>& blocks(std::size_t chunk) const { return blocks_[chunk]; }
 
-  /// The Gaussians of a chunk.
+  /// Returns a copy of a chunk's Gaussians.
   Model chunk(const Model& model, std::size_t chunk) const;
 
-  /// Puts `by`, of the model's degree, in the place of a chunk. The model must be the same in every call. It
-  /// grows where it has no free block, and its `room` by an eighth where that is full.
+  /// Replaces a chunk by the Gaussians of `by`, a model of equal degree. The model must be the same in every
+  /// call. It grows if it has no free block; if its `room` is full, that grows by an eighth.
   void replace(Model& model, std::size_t chunk, const Model& by);
   /// The same for several chunks, on several cores.
   struct Replacement {
@@ -46,12 +46,12 @@ class ModelChunks {
   struct Range {
     std::size_t first = 0, count = 0;  // Gaussians of the model
   };
-  /// Places whose Gaussians have changed; places that were never filled are not among them.
+  /// Changed ranges of the model. They omit blocks that were never filled.
   struct Changes {
-    std::vector<Range> filled, emptied;  // each in order, and no two side by side
+    std::vector<Range> filled, emptied;  // each sorted, adjacent ranges joined
     bool empty() const { return filled.empty() && emptied.empty(); }
   };
-  /// What has changed since the last call.
+  /// Returns the changes since the last call.
   Changes take_changes();
 
  private:

@@ -12,7 +12,7 @@ namespace {
 
 void fail_at(const char* name, std::size_t row, std::string_view why) { fail("{}[{}]: {}", name, row, why); }
 
-/// Says why a row is no Gaussian.
+/// Throws Error that says why a row is invalid.
 void refuse_row(const GaussianValues& values, std::size_t row, int coefficients) {
   const auto finite = [](const auto* of, int count) {
     for (int k = 0; k < count; ++k) {
@@ -40,7 +40,7 @@ Model model_of_rows(std::size_t count, int degree, const std::string& axes,
   Model model;
   model.format = "arrays";
   model.degree = degree;
-  world_from_axes(axes);  // refuses what is none
+  world_from_axes(axes);  // throws for invalid letters
   model.axes.letters = axes;
   if (count == 0) fail("means: no Gaussians: expected one row or more");
   model.resize(count);

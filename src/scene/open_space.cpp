@@ -12,7 +12,8 @@ namespace binosplat {
 
 namespace {
 
-/// A square map of the floor has so many cells from the core's middle to its border, a radius away.
+/// The map of the floor is a square with this many cells from the core's middle to each side, one core
+/// radius.
 constexpr int space_half = 50;
 constexpr int space_side = 2 * space_half + 1;
 
@@ -26,9 +27,9 @@ std::size_t map_index(const glm::ivec2& cell) {
 
 struct Map {
   std::vector<double> cover = std::vector<double>(std::size_t{space_side} * space_side);
-  std::vector<char> floor = std::vector<char>(std::size_t{space_side} * space_side);  // or beside it
+  std::vector<char> floor = std::vector<char>(std::size_t{space_side} * space_side);  // 1: here or beside
 
-  /// Whether so much of the cell's face is covered that nobody can stand or look there.
+  /// Returns whether so much of the cell's face is covered that nobody can stand or look there.
   bool taken(const glm::ivec2& cell) const { return cover[map_index(cell)] > 0.25; }
 
   void add_floor(const glm::ivec2& cell) {
@@ -41,7 +42,8 @@ struct Map {
   }
 };
 
-/// How far, in cells, from each cell to the nearest that is taken or has no floor; 0 for those themselves.
+/// Returns each cell's distance, in cells, to the nearest that is taken or has no floor; 0 for those cells
+/// themselves.
 std::vector<double> room_in(const Map& map) {
   std::vector<glm::ivec2> closed;
   for (int y = 0; y < space_side; ++y) {
@@ -63,7 +65,7 @@ std::vector<double> room_in(const Map& map) {
   return room;
 }
 
-/// How far one gets along straight lines before something is in the way, in cells.
+/// Returns the length of the free straight line from a cell, in cells.
 double free_way(const Map& map, const glm::dvec2& from, const glm::dvec2& towards) {
   double way = 0.0;
   for (; way < 2.0 * space_side; way += 0.5) {
@@ -79,7 +81,7 @@ std::optional<Capture::Around> open_space(const CoredModel& cored, const Ground&
   const Model& model = cored.model;
   const Core& core = cored.core;
   const double cell_size = core.radius / space_half;
-  // The floor's place and directions in the model's frame.
+  // The floor's height and directions in the model's frame.
   const glm::dvec3 up = glm::transpose(world_from_axes(model.axes.letters)) * ground.up;
   const auto [aside, ahead] = level_directions(up);
   const double floor = *ground.height - glm::dot(model.axes.origin + core.middle, up);
@@ -99,7 +101,7 @@ std::optional<Capture::Around> open_space(const CoredModel& cored, const Ground&
     }
   }
   const std::vector<double> room = room_in(map);
-  // More room than this is no better; then what is near the middle is.
+  // More room than this does not count: then the place nearest to the middle wins.
   const double enough = 3.0 * eyes / cell_size, least = 0.3 * eyes / cell_size;
   glm::dvec2 middle{0.0};
   double best = -INFINITY, radius = 0.0;

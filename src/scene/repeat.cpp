@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::uint64_t copies_most = std::uint64_t{1} << 31;
 
-/// Makes `values` so many copies of itself, one after the other.
+/// Replaces `values` by `times` copies of itself.
 template <typename T>
 void copy_times(std::vector<T>& values, std::size_t times) {
   const std::size_t once = values.size();
@@ -24,7 +24,7 @@ void copy_times(std::vector<T>& values, std::size_t times) {
   for (std::size_t k = once; k < values.size(); ++k) values[k] = values[k - once];
 }
 
-/// Where each copy goes, in the model's own frame.
+/// Returns each copy's translation, in the model's own frame.
 std::vector<glm::dvec3> moves_of(int nx, int nz, double spacing, const ModelAxes& axes) {
   const glm::dmat3 into_frame = glm::transpose(world_from_axes(axes.letters));
   std::vector<glm::dvec3> moves;
@@ -35,7 +35,7 @@ std::vector<glm::dvec3> moves_of(int nx, int nz, double spacing, const ModelAxes
   return moves;
 }
 
-/// Copies of positions side by side.
+/// Repeats positions, each copy with its translation.
 void copy_to(std::vector<glm::vec3>& positions, std::span<const glm::dvec3> moves) {
   const std::size_t once = positions.size();
   copy_times(positions, moves.size());
@@ -43,7 +43,7 @@ void copy_to(std::vector<glm::vec3>& positions, std::span<const glm::dvec3> move
     positions[k] = glm::vec3(glm::dvec3(positions[k]) + moves[k / once]);
 }
 
-/// Copies of the anchors: each copy is seen, and decoded, from where it stands.
+/// Repeats the anchors. Each copy is decoded for the eye's direction and distance from it.
 std::shared_ptr<Scaffold> repeat(Scaffold s, std::span<const glm::dvec3> moves) {
   copy_to(s.position, moves);
   copy_times(s.offset_scale, moves.size());

@@ -1,6 +1,6 @@
 #pragma once
 // A Scaffold-GS model in memory (Lu et al., Scaffold-GS: Structured 3D Gaussians for View-Adaptive Rendering,
-// 2024): anchors with features, and the small networks that make K Gaussians of each, anew for every eye.
+// 2024): anchors with features, and small networks that generate K Gaussians of each anchor for every eye.
 
 #include <cstddef>
 #include <glm/glm.hpp>
@@ -13,8 +13,8 @@
 
 namespace binosplat {
 
-/// Two layers: outputs = second * max(0, first * inputs + first_bias) + second_bias. What follows (tanh, ...)
-/// is the user's.
+/// Two layers: outputs = second * max(0, first * inputs + first_bias) + second_bias. The caller applies the
+/// final activation (tanh, ...).
 struct Network {
   std::size_t inputs = 0;
   std::size_t hidden = 0;
@@ -23,30 +23,29 @@ struct Network {
   std::vector<float> first_bias;  // (hidden)
   std::vector<float> second;      // (outputs, hidden)
   std::vector<float> second_bias;
-  bool distance = false;  // the distance to the eye is an input, too
+  bool distance = false;  // the distance to the eye is also an input
 };
 
-/// Inputs of the three networks: feature (F), direction from the eye (3), distance where the network takes
-/// it, and for the colour the row of the appearance. Gaussian k of anchor n has the id n * K + k; its mean
-/// is the same for every eye.
+/// Inputs of the three networks: feature (F), direction from the eye (3), the distance if the network takes
+/// it, and for the colour the appearance. Gaussian k of anchor n has the id n * K + k; its mean is the same
+/// for every eye.
 struct Scaffold {
   std::string name;
-  std::size_t offset_count = 0;     // K: Gaussians of one anchor
-  std::size_t feature_count = 0;    // F
-  std::vector<glm::vec3> position;  // by anchor, world units
-  std::vector<glm::vec3>
-      offset_scale;                 // world units of an offset; with `rotation` what the anchor cull projects
-  std::vector<glm::vec3> scale;     // the largest standard deviations of its Gaussians, world units
-  std::vector<glm::vec4> rotation;  // unit quaternions (w, x, y, z)
-  std::vector<glm::vec3> offset;    // (anchor, K), in offset_scale
-  std::vector<float> feature;       // (anchor, F)
-  Network opacity;                  // K; tanh: alpha, a Gaussian only where above 0
-  Network covariance;               // 7 K: 3 for sigmoid, times scale; quaternion (w, x, y, z)
-  Network colour;                   // 3 K; sigmoid: RGB
-  std::optional<Network> bank;      // of the feature bank: direction and distance to 3, softmax
-  std::vector<float> appearances;   // (row, appearance_size)
-  std::size_t appearance_size = 0;  // 0: colours have none
-  std::size_t appearance = 0;       // the row that colours are made with
+  std::size_t offset_count = 0;         // K: Gaussians of one anchor
+  std::size_t feature_count = 0;        // F
+  std::vector<glm::vec3> position;      // by anchor, world units
+  std::vector<glm::vec3> offset_scale;  // world units of an offset; the anchor cull projects it by `rotation`
+  std::vector<glm::vec3> scale;         // the largest standard deviations of its Gaussians, world units
+  std::vector<glm::vec4> rotation;      // unit quaternions (w, x, y, z)
+  std::vector<glm::vec3> offset;        // (anchor, K), in offset_scale
+  std::vector<float> feature;           // (anchor, F)
+  Network opacity;                 // K outputs; tanh gives alpha; a Gaussian exists only if it is above 0
+  Network covariance;              // 7 K outputs: 3 through a sigmoid, times scale; a quaternion (w, x, y, z)
+  Network colour;                  // 3 K outputs; sigmoid: RGB
+  std::optional<Network> bank;     // of the feature bank: direction and distance to 3 outputs, softmax
+  std::vector<float> appearances;  // (row, appearance_size)
+  std::size_t appearance_size = 0;  // 0: colours use no appearance
+  std::size_t appearance = 0;       // the row that colours use
   std::size_t left_out = 0;         // anchors of the source with values that are not finite
 
   std::size_t anchor_count() const { return position.size(); }
@@ -60,15 +59,15 @@ struct Scaffold {
   }
 };
 
-/// The model by which a Scaffold-GS scene is drawn, framed and repeated: its Gaussians by id, at their means;
-/// scales, rotations and opacities are stand-ins of usual size, since the true ones depend on the eye.
+/// Returns the model that draws, frames and repeats a Scaffold-GS scene: its Gaussians by id, at their means.
+/// Scales, rotations and opacities are stand-ins of typical size, since the true ones depend on the eye.
 Model stand_in(std::shared_ptr<Scaffold> scaffold);
 
-/// What it is, for people: "Scaffold-GS, 18290 anchors of 10 Gaussians, features of 32".
+/// Describes it for display: "Scaffold-GS, 18290 anchors of 10 Gaussians, features of 32".
 std::string describe(const Scaffold& scaffold);
 
-/// Takes row `id` of the appearances for colours. Throws Error, naming --appearance, for a model without
-/// appearances or with fewer.
+/// Selects row `id` of the appearances for colours. Throws Error, naming --appearance, if the model has no
+/// such row.
 void choose_appearance(Scaffold& scaffold, std::size_t id);
 
 }  // namespace binosplat

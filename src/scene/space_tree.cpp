@@ -10,10 +10,11 @@ namespace binosplat {
 
 namespace {
 
-/// Whatever lies far out, a tree is no deeper than this and the halvings that are left: files nest as deep.
+/// From this depth on nodes are split at the median, which bounds the depth of the tree. lod-meta.json nests
+/// as deep.
 constexpr int deepest_middle = 64;
 
-/// Puts those in the first half of the longest side before the others, and says how many they are.
+/// Moves the positions in the first half of the longest side to the front, and returns their number.
 std::size_t part(std::span<const glm::vec3> positions, std::span<std::uint32_t> chunk, int depth) {
   glm::vec3 low(positions[chunk.front()]), high(low);
   for (const std::uint32_t i : chunk) {
@@ -33,7 +34,7 @@ std::size_t part(std::span<const glm::vec3> positions, std::span<std::uint32_t> 
   const auto beyond = std::stable_partition(chunk.begin(), chunk.end(),
                                             [&](std::uint32_t i) { return positions[i][axis] < middle; });
   const auto first = static_cast<std::size_t>(beyond - chunk.begin());
-  return first > 0 ? first : half;  // all are at one place, or as near as floats can be
+  return first > 0 ? first : half;  // 0: all are at one place, or as near as floats can be
 }
 
 void split(SpaceNode& node, std::span<const glm::vec3> positions, std::span<std::uint32_t> order,

@@ -1,5 +1,5 @@
 #pragma once
-// A model split in two again and again, so that neighbours in space are neighbours in memory.
+// A binary space partition, so that neighbours in space are neighbours in memory.
 
 #include <cstddef>
 #include <cstdint>
@@ -9,20 +9,21 @@
 
 namespace binosplat {
 
-/// Positions `first` to `first + count` - 1 of an order.
+/// Entries `first` to `first + count - 1` of the tree's order.
 struct SpaceNode {
   std::size_t first = 0, count = 0;
-  std::vector<SpaceNode> children;  // two, or none of a leaf
+  std::vector<SpaceNode> children;  // two, or none in a leaf
 };
 
 struct SpaceTree {
-  std::vector<std::uint32_t> order;  // indices
+  std::vector<std::uint32_t> order;  // indices of the positions
   SpaceNode root;
 };
 
-/// Splits the box around the positions in halves across its longest side, so that what lies far out is by
-/// itself, and those at one place by their indices, until no leaf has more than `most`. The order of what is
-/// not split stays. Beyond 64 splits on end, which takes outliers without end, it splits at the median.
+/// Halves the bounding box of the positions across its longest side, until no leaf has more than `most`. Far
+/// outliers so get nodes of their own. Positions at one place are split by their indices. Positions within a
+/// leaf keep their order. Deeper than 64 splits, which only series of ever farther outliers reach, it splits
+/// at the median.
 SpaceTree make_space_tree(std::span<const glm::vec3> positions, std::size_t most);
 
 }  // namespace binosplat

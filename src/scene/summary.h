@@ -1,5 +1,5 @@
 #pragma once
-// What a model is made of, in numbers by which a damaged one is found.
+// Statistics of a model that expose a damaged one, for `info`.
 
 #include <array>
 #include <cstddef>
@@ -11,15 +11,15 @@ namespace binosplat {
 
 struct ModelSummary {
   Bounds all;                             // around all positions, from zero
-  Bounds core;                            // core_bounds
-  std::array<std::size_t, 10> opacity{};  // Gaussians by tenths of opacity; 1 counts to the last
-  /// Gaussians by decades of their largest scale: n for scales from 10^n up to 10^(n+1), world units.
+  Bounds core;                            // core_bounds()
+  std::array<std::size_t, 10> opacity{};  // Gaussians by tenths of opacity; 1 is in the last
+  /// Gaussians by decade of their largest scale: entry n counts scales from 10^n up to 10^(n+1) world units.
   std::map<int, std::size_t> scale;
   double opacity_median = 0.0;
-  double scale_median = 0.0;  // each Gaussian's largest scale counts, world units
+  double scale_median = 0.0;  // of each Gaussian's largest scale, world units
 
-  std::size_t invisible = 0;            // opacity below tau, so that no pixel ever sees them
-  std::size_t without_size = 0;         // all three scales are 0; in none of the decades
+  std::size_t invisible = 0;            // opacity below tau, invisible in every pixel
+  std::size_t without_size = 0;         // all three scales are 0; in no decade
   std::size_t flat = 0;                 // smallest scale below a hundredth of the middle one
   std::size_t needles = 0;              // largest scale over a hundred times the middle one
   std::size_t far = 0;                  // farther from the core's box than five times its diagonal

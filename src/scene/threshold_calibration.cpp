@@ -23,7 +23,7 @@ class Hash {
   std::uint64_t state_ = 0xcbf29ce484222325ull;
 };
 
-/// From the nearest of the views, but one.
+/// Returns the distance to the nearest view other than `but`.
 double distance_to(const ThresholdCalibration& calibration, const glm::dvec3& position,
                    const CalibratedView* but = nullptr) {
   double distance = INFINITY;

@@ -1,6 +1,6 @@
 #pragma once
-// What calibration finds for a model: the transmittance bound at each depth, and which tolerance of each
-// threshold rule costs as much as was asked for (formats/calibration_file.h keeps it).
+// The results of `calibrate` for a model: the transmittance bound at each depth, and the tolerance of each
+// threshold rule that reaches the requested quality. formats/calibration_file.h reads and writes them.
 
 #include <binosplat/settings.h>
 
@@ -14,7 +14,8 @@
 namespace binosplat {
 
 struct CalibrationTarget {
-  /// dB lost against the photos, mean over the views; or PSNR against the exact pictures, likewise.
+  /// drop: dB lost against the photos. quality: PSNR against the exact pictures. Both are means over the
+  /// views.
   enum class Kind { drop, quality } kind = Kind::quality;
   double db = 40.0;
 };
@@ -23,7 +24,7 @@ struct CalibrationEntry {
   int th = TH_SQUARED;                    // TH_ of shared/axes.h
   int transmittance = TRANSMITTANCE_ONE;  // TRANSMITTANCE_
   double tolerance = 0.0;                 // K or kappa, at the calibration's focal length
-  double reached_db = 0.0;                // the drop, or PSNR: the mean over the views
+  double reached_db = 0.0;                // the drop, or the PSNR: the mean over the views
   double worst_db = 0.0;                  // of the worst view
   std::string worst_view;
   double pairs_removed = 0.0;  // share of the exact frames' pairs, mean over the views
@@ -40,7 +41,7 @@ struct ThresholdCalibration {
   std::string model_name;
   std::size_t gaussians = 0;
   std::uint64_t hash = 0;   // model_hash()
-  Perspective perspective;  // that the views were drawn with; a table of another's depths says nothing
+  Perspective perspective;  // used for the views; a table by the other kind of depth is invalid
   int width = 0;            // px, of the first view
   int height = 0;
   double focal = 0.0;       // px, mean over the views
@@ -52,17 +53,19 @@ struct ThresholdCalibration {
   std::vector<CalibrationEntry> entries;
 };
 
-/// A number that changes with any value of the model but its name; the same on every machine.
+/// Returns a hash of the model's counts and arrays (not of its name, axes or perspective); equal on every
+/// machine.
 std::uint64_t model_hash(const Model& model);
 
-/// Whether the model is the one that was calibrated.
+/// Returns whether this model was calibrated.
 bool is_of(const ThresholdCalibration& calibration, const Model& model);
 
-/// How far from calibrated views the calibration knows what to expect, world units: twice the largest
-/// distance of one from its nearest neighbour; infinite for fewer than two. Compares all pairs of views.
+/// Returns how far from a calibrated view the calibration applies, world units: twice the largest distance
+/// between a view and its nearest neighbour. It is infinite for fewer than two views. Compares all pairs of
+/// views.
 double reach_of(const ThresholdCalibration& calibration);
 
-/// Whether a camera at `position`, world units, stands within that reach of a calibrated view.
+/// Returns whether a camera at `position`, world units, is within `reach` of a calibrated view.
 bool covers(const ThresholdCalibration& calibration, const glm::dvec3& position, double reach);
 
 }  // namespace binosplat

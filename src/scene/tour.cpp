@@ -17,18 +17,18 @@ namespace binosplat {
 
 namespace {
 
-/// What a turn of a radian counts for when the next camera is chosen: a neighbour that looks the other way is
-/// not near, but places decide.
+/// Weight of rotation in the distance between cameras. A neighbour that looks the other way is not near, but
+/// positions decide.
 constexpr double metres_a_radian = 0.5;
-/// Cameras that differ by less than both are one stop: a way of a few millimetres has no direction worth
-/// keeping, and a head would tremble there.
+/// Cameras that differ by less than both are one stop: the direction of a path of a few millimetres is noise,
+/// and the head would tremble there.
 constexpr double same_metres = 0.01, same_degrees = 1.0;
-/// Two places nearer than this share of all cameras' extent are one that was rounded.
+/// Two positions nearer than this share of the cameras' extent are one position, rounded.
 constexpr double rounding = 1e-6;
-/// No change of velocity is quicker than from rest to full speed in this time, which bounds what a frame
-/// differs from the last where the way turns back.
+/// Shortest time from rest to full speed. It bounds every change of velocity, and so the change between
+/// frames where the path turns back.
 constexpr double seconds_to_full_speed = 0.15;
-/// In longer tours the times of keys that are near each other would be rounded.
+/// In longer tours the times of nearby keys would be rounded.
 constexpr double tour_seconds_most = 1e9;
 
 /// The camera between the eyes of a pair.
@@ -42,7 +42,7 @@ Camera head_of(const Camera& left, const Camera& right) {
   return head;
 }
 
-/// The angle between two orientations in radians; by the chord, which is exact for small angles, too.
+/// Returns the angle between two orientations in radians, from the chord, which is exact for small angles.
 double turn_between(const Camera& a, const Camera& b) {
   const glm::dmat3 apart = a.rotation - b.rotation;
   const double square =
@@ -50,8 +50,9 @@ double turn_between(const Camera& a, const Camera& b) {
   return 2.0 * std::asin(std::min(1.0, std::sqrt(square / 8.0)));
 }
 
-/// The heads that are worth a stop, with the first one's lens and places in metres: the first, then the
-/// others in an order that the list's does not change.
+/// Returns the stops of a tour, with the first head's lens and positions in metres. The first head comes
+/// first; the others are sorted, so that the list's order has no effect. Skips heads that coincide with a
+/// stop.
 std::vector<Camera> stops_of(const std::vector<Camera>& heads, double units_per_metre) {
   std::vector<Camera> all(heads.size(), heads[0]);
   for (std::size_t k = 0; k < heads.size(); ++k) {
@@ -74,13 +75,12 @@ std::vector<Camera> stops_of(const std::vector<Camera>& heads, double units_per_
   return stops;
 }
 
-/// How far it is from one stop to another, in metres.
+/// Distance between two stops for ordering, in metres.
 double way_between(const Camera& a, const Camera& b) {
   return glm::distance(a.position, b.position) + metres_a_radian * turn_between(a, b);
 }
 
-/// 2-opt: parts of the tour are gone through backwards for as long as that makes it shorter; the first stop
-/// stays, the last need not.
+/// 2-opt: reverses sections while that shortens the tour. The first stop stays, the last may change.
 void shorten(std::vector<Camera>& stops) {
   constexpr double worth = 1e-9;  // m
   for (bool shorter = true; shorter;) {
@@ -102,7 +102,7 @@ void shorten(std::vector<Camera>& stops) {
   }
 }
 
-/// How the head goes and turns from one pose to another, as shares of what is allowed.
+/// Velocity and angular velocity between two poses, as shares of the motion's limits.
 struct Velocity {
   glm::dvec3 going, turning;
 };
@@ -115,8 +115,8 @@ Velocity velocity(const Camera& a, const Camera& b, const Motion& motion) {
           2.0 * glm::dvec3(turn.x, turn.y, turn.z) / (glm::radians(motion.degrees_per_second) * seconds)};
 }
 
-/// By how much a path must be slower from one time to another, so that neither speed nor the change of
-/// velocity is more than allowed; below 1 where it may be faster.
+/// Returns the factor by which a section must be slower to keep speed and change of velocity within the
+/// limits; below 1 if it may be faster.
 double haste(const KeyPath& path, double begin, double end, const Motion& motion) {
   constexpr int samples = 16;
   const double step = (end - begin) / samples;
@@ -138,7 +138,7 @@ double haste(const KeyPath& path, double begin, double end, const Motion& motion
   return most;
 }
 
-/// How long it takes at full speed from each camera to the next, in seconds.
+/// Returns the seconds from each camera to the next at full speed.
 std::vector<double> seconds_between(std::span<const Camera> cameras, const Motion& motion) {
   std::vector<double> seconds;
   for (std::size_t k = 1; k < cameras.size(); ++k) {
@@ -149,9 +149,9 @@ std::vector<double> seconds_between(std::span<const Camera> cameras, const Motio
   return seconds;
 }
 
-/// The way through the stops as keys: they, and where one is far from the next, up to seven between them,
-/// half a second apart. The way is a path with centripetal times, which are apart by the root of what a way
-/// is long: it has no loops or cusps.
+/// Returns the keys of a tour: the stops, and up to seven keys between distant ones, half a second apart.
+/// They lie on a path with centripetal times (spacing by the root of the distance), which has no loops or
+/// cusps.
 std::vector<Camera> keys_through(std::vector<Camera> stops, const Motion& motion) {
   constexpr double seconds_a_key = 0.5, keys_most = 8.0;
   const std::vector<double> seconds = seconds_between(stops, motion);
@@ -172,10 +172,9 @@ std::vector<Camera> keys_through(std::vector<Camera> stops, const Motion& motion
   return keys;
 }
 
-/// Gives keys their times: from one to the next it takes as little as neither speed nor change of velocity
-/// being more than allowed lets it.
+/// Sets the keys' times, as short as the limits of speed and change of velocity allow.
 void give_times(std::vector<Camera>& keys, const Motion& motion) {
-  constexpr int rounds = 16;      // how fast one way is gone changes those beside it
+  constexpr int rounds = 16;      // a section's speed affects its neighbours
   constexpr double least = 1e-6;  // s
   std::vector<double> seconds = seconds_between(keys, motion);
   for (int round = 0; round <= rounds; ++round) {

@@ -1,5 +1,5 @@
 #pragma once
-// A head that goes through a model's cameras: paths for videos, and to measure on what moves.
+// Camera paths of a head that visits a model's cameras, for videos and for benchmarks of moving views.
 
 #include <limits>
 #include <span>
@@ -10,24 +10,24 @@
 
 namespace binosplat {
 
-/// The cameras in their order, where both eyes of a pair, NAME_left and NAME_right, are the one head between
-/// them, in the place of the first of the two.
+/// Returns the cameras in their order. The head between the eyes replaces each pair, NAME_left and
+/// NAME_right, at the index of the first eye.
 std::vector<Camera> heads_of(std::span<const Camera> cameras);
 
-/// How fast a head goes and how fast it turns at most. From rest to full speed, or to turn so, it takes 0.15
-/// s at least, and no other change of its velocity is quicker.
+/// The highest speed and rotation rate of a head. It accelerates from rest to full speed or rate in at least
+/// 0.15 s, and no other change of its velocity is quicker.
 struct Motion {
   std::string name;
   double metres_per_second = 0.0;
   double degrees_per_second = 0.0;
 };
 
-/// What heads do: calm (0.3 m/s, 12 degrees a second), walk (1.5, 45), fast (6, 200: turns, and what a head
-/// does not do, for what must hold all the same).
+/// Returns the named motions: calm (0.3 m/s, 12 degrees/s), walk (1.5, 45), fast (6, 200: faster than any
+/// head, a stress test).
 const std::vector<Motion>& head_motions();
 
-/// World units that may be taken for a metre where no scale is known, as who takes photos goes about a step
-/// between two: from each camera to its nearest neighbour elsewhere, in the median. 1 for fewer than two
+/// Estimates a metre in world units if no scale is known: photographers move about a step between two photos.
+/// Returns the median distance of a camera to its nearest neighbour at another place, or 1 for fewer than two
 /// places. Eyes of a pair count as one head (heads_of()), as in tours.
 double metre_of(std::span<const Camera> cameras);
 
@@ -35,17 +35,17 @@ struct TourSettings {
   Motion motion;
   double frames_per_second = 90.0;
   double units_per_metre = 1.0;                              // world units
-  double seconds = std::numeric_limits<double>::infinity();  // the tour is cut off there
+  double seconds = std::numeric_limits<double>::infinity();  // the tour ends there
 };
 
-/// The cameras of a head that goes through all of `cameras`, one a frame, with `time`. It begins with the
-/// first; of the others' order it is known that no part of it would be shorter backwards, and it depends
-/// neither on that of the list nor on the motion. The head follows the path (scene/key_path.h) through keys
-/// on a smooth way through the cameras, among them the cameras themselves, and goes from each key to the next
-/// as fast as the motion allows: never more than one per cent faster. Cameras within 1 cm and 1 degree of
-/// another are left out. All have the first camera's lens and size. Speeds, frames a second, units and
-/// seconds must be above 0. Throws Error for fewer than two cameras, all of one pose, tours of 1e9 s or more,
-/// and more than a million frames.
+/// Returns the cameras of a head that visits all `cameras`, one a frame, with `time`. The tour begins with
+/// the first camera. It orders the others so that no reversal of a section would shorten it. Their order in
+/// the list and the motion have no effect on that order. The head follows a path (scene/key_path.h) through
+/// keys: the cameras themselves, and others on a smooth path through them. It moves between keys as fast as
+/// the motion allows, and exceeds that by at most one per cent. Cameras within 1 cm and 1 degree of another
+/// are skipped. All frames have the first camera's lens and size. Speeds, frames a second, units and seconds
+/// must be above 0. Throws Error for fewer than two cameras, cameras of one pose, tours of 1e9 s or more, and
+/// more than a million frames.
 std::vector<Camera> tour(std::span<const Camera> cameras, const TourSettings& settings);
 
 }  // namespace binosplat

@@ -14,10 +14,10 @@ namespace binosplat {
 
 namespace {
 
-// Of a map that was written as floats, what is so little is rounding.
+// Smaller differences are rounding, since maps are written as floats.
 constexpr double even_enough = 1e-6;
 
-/// The same numbers: both keep columns one after the other.
+/// Views a glm matrix as an Eigen one: both store columns.
 Eigen::Map<const Eigen::Matrix3d> to_eigen(const glm::dmat3& m) {
   return Eigen::Map<const Eigen::Matrix3d>(&m[0][0]);
 }
@@ -32,13 +32,13 @@ glm::dquat quaternion(const glm::vec4& wxyz) { return {wxyz.x, wxyz.y, wxyz.z, w
 
 glm::vec4 wxyz(const glm::dquat& q) { return glm::dvec4(q.w, q.x, q.y, q.z); }
 
-/// A rotation's axes, of which one may have another sense: an ellipsoid is the same then.
+/// Returns the rotation of orthogonal axes. A mirror negates them, which leaves an ellipsoid unchanged.
 glm::dquat quaternion_of(const glm::dmat3& orthogonal) {
   return glm::normalize(glm::quat_cast(glm::determinant(orthogonal) < 0.0 ? -orthogonal : orthogonal));
 }
 
-/// The ellipsoid M C C^T M^T of M and C = R diag(scale): with M C = U diag(s) V^T its axes are U, and s along
-/// them. Not by way of the covariance itself, which squares what thin Gaussians have of digits.
+/// Maps an ellipsoid: M and C = R diag(scale) give M C = U diag(s) V^T, with axes U and scales s. The
+/// covariance itself would square thin Gaussians and lose half their digits.
 void map_ellipsoid(const glm::dmat3& linear, glm::vec4& rotation, glm::vec3& scale) {
   glm::dmat3 axes = linear * glm::mat3_cast(quaternion(rotation));
   for (int c = 0; c < 3; ++c) axes[c] *= scale[c];
@@ -55,14 +55,14 @@ bool transform(Model& model, const glm::dmat4& map, std::vector<glm::dvec3>& pla
   const auto svd = decomposed(linear);
   const double largest = svd.singularValues()[0], smallest = svd.singularValues()[2];
   glm::dmat3 q = from_eigen(svd.matrixU() * svd.matrixV().transpose());
-  // What flattens has no side of its own.
+  // A flattening map has no handedness: use a rotation.
   if (smallest <= even_enough * largest && glm::determinant(q) < 0.0)
     q = from_eigen(svd.matrixU() * Eigen::Vector3d(1, 1, -1).asDiagonal() * svd.matrixV().transpose());
   const bool even = largest - smallest <= even_enough * largest;
   const bool turns = (to_eigen(q) - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff() > even_enough;
   const glm::dquat turn = quaternion_of(q);
   const double size = svd.singularValues()[1];
-  std::optional<HarmonicsTurn> harmonics;  // which takes as long as many a small model
+  std::optional<HarmonicsTurn> harmonics;  // as slow as mapping a small model
   if (turns && model.degree > 0) harmonics.emplace(q);
   const std::size_t values = 3 * static_cast<std::size_t>(sh_count(model.degree));
   std::atomic<bool> good = true;

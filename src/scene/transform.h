@@ -1,5 +1,5 @@
 #pragma once
-// A model moved by any affine map of its space.
+// Applies an affine map to a model.
 
 #include <glm/glm.hpp>
 
@@ -7,18 +7,16 @@
 
 namespace binosplat {
 
-/// Moves a model by x -> M x + t, given as the columns of a matrix whose last row is 0 0 0 1. With Q the
-/// orthogonal factor of M = Q P, P symmetric without negative eigenvalues (the polar decomposition):
-/// - means are mapped, and covariances become M S M^T, also where M scales unevenly, shears, mirrors or
-///   flattens: what a Gaussian becomes under such a map is a Gaussian again;
-/// - harmonics are turned by Q, and mirrored where it mirrors, so that a colour is seen from Q d that was
-///   seen from d. Where P is not even, directions themselves go another way than by Q, and a model's colours
-///   are then not those of one that was trained so; but no harmonics of the same degree could be, and the
-///   turn nearest to M is what KHR_gaussian_splatting asks for.
+/// Applies x -> M x + t to a model. The matrix holds the columns of M and t; its last row is 0 0 0 1. Q is
+/// the orthogonal factor of M = Q P, with P symmetric without negative eigenvalues (polar decomposition):
+/// - means are mapped, and covariances S become M S M^T, also if M scales unevenly, shears, mirrors or
+///   flattens: any affine map of a Gaussian is a Gaussian;
+/// - harmonics are rotated (and mirrored) by Q: the colour along Q d is the earlier one along d. If P is
+///   uneven, true directions change otherwise, so colours are approximate. No harmonics of the same degree
+///   are exact there, and KHR_gaussian_splatting asks for the rotation nearest to M.
 ///
-/// Appends where each Gaussian comes to lie to `places`, of more digits than the model keeps. Returns whether
-/// all numbers are finite; where they are not, the model is of no use any more. Not for models with a
-/// scaffold or an origin.
+/// Appends the new position of each Gaussian to `places`, in doubles. Returns whether all numbers are finite;
+/// otherwise the model is unusable. The model must have no scaffold and no origin.
 [[nodiscard]] bool transform(Model& model, const glm::dmat4& map, std::vector<glm::dvec3>& places);
 
 }  // namespace binosplat

@@ -11,21 +11,21 @@ namespace binosplat {
 
 namespace {
 
-// What chunks lose together, over the sum of what each loses by itself: those that lie before and beside one
-// another are wrong alike. 0.6 to 1.0 dB, in headset pictures of the city, from street and air, and of
-// taebak.
+// The loss of chunks together over the sum of their losses alone: neighbouring and overlapping chunks err
+// alike. Measured: 0.6 to 1.0 dB in headset pictures of the city, from street and air, and of taebak.
 const double together = std::pow(10.0, 0.08);
-constexpr double fades = 0.9;      // what was measured counts so much beside what is measured next
+constexpr double fades = 0.9;      // weight of earlier samples against the next one
 constexpr double nothing = 1e-20;  // squared error of a picture
-// A sample of some chunks says at most so many times what is predicted of all, and at least one part of it:
-// single chunks are off by more.
+// A sample's ratio of measured to predicted error is limited to this factor and its inverse: single chunks
+// vary more.
 constexpr double by_chance = 8.0;
 
 }  // namespace
 
-// By Efraimidis and Spirakis (2006): the largest of random numbers to the power of one over the weight. That
-// is the root of what is lost: a sample's sum is mostly of those that lose much, and would be twice so with
-// what is lost itself, while they lose 1.1 times what is predicted where others lose 0.6 (city, street).
+// Weighted sampling by Efraimidis and Spirakis (2006): takes the largest of random numbers to the power of
+// one over the weight. The weight is the root of the loss. With the loss itself as weight, chunks of large
+// loss would dominate a sample's sum even more. They lose 1.1 times the prediction, while others lose 0.6
+// times (city, street).
 std::vector<std::size_t> sample_of(const LevelChoice& choice, std::span<const std::size_t> levels,
                                    std::size_t most, unsigned seed) {
   Random random(seed);
@@ -74,7 +74,7 @@ void LevelCalibration::add(const SampleError& error) {
   if (!(error.predicted > 0.0 && error.all > 0.0)) return;
   const double left = 1.0 - std::min(error.predicted / error.all, 1.0),
                times = error.measured / error.predicted;
-  if (left < 0.01) {  // then nothing is up to chance
+  if (left < 0.01) {  // the sample covers nearly all
     chunks_ = static_cast<double>(error.chunks);
     measured_ = chunks_ * times;
     return;

@@ -10,7 +10,7 @@ namespace binosplat {
 
 namespace {
 
-/// From the nearest eye; 1 without eyes.
+/// Returns the distance to the nearest eye; 1 without eyes.
 double distance_to(const LodChunk& chunk, const std::vector<glm::dvec3>& eyes) {
   if (eyes.empty()) return 1.0;
   double nearest = INFINITY;
@@ -41,7 +41,7 @@ std::vector<std::size_t> choose_apart(const std::vector<LodChunk>& chunks,
                                       const std::vector<glm::dvec3>& eyes, std::size_t most, double enough,
                                       std::span<const std::size_t> before) {
   struct Coarse {
-    double apart;  // of its Gaussians, as seen, radians
+    double apart;  // spacing of its Gaussians, radians
     std::size_t chunk;
     bool operator<(const Coarse& other) const { return apart < other.apart; }
   };

@@ -1,6 +1,6 @@
 #pragma once
-// Which level of detail each chunk of a model gets: functions of the chunks, of what views show of them, and
-// of how many Gaussians and how much error are allowed. The same arguments give the same levels.
+// Choosing the level of detail of each chunk: pure functions of the chunks, of what views show of them, and
+// of the allowed Gaussians and error. The same arguments give the same levels.
 
 #include <array>
 #include <cstddef>
@@ -17,37 +17,36 @@
 namespace binosplat {
 
 /// In models of up to this many Gaussians, coarser levels save less of a moving head's frames (0.1 to 0.3 ms
-/// on an H200) than visibility passes take (0.3 in the mean).
+/// on an H200) than visibility passes cost (0.3 ms in the mean).
 inline constexpr std::size_t few_gaussians = 1 << 19;
 
 inline constexpr std::size_t any_number = std::numeric_limits<std::size_t>::max();
 
-/// What is asked of the levels of a frame.
+/// The request for a frame's levels.
 struct DetailRequest {
-  double apart_px = 0.0;  // a chunk is fine enough whose Gaussians are seen no farther apart; 0: none is
-  std::size_t most = any_number;      // Gaussians that the model may have
-  std::optional<double> db = {};      // instead of apart_px: each view's PSNR against the finest levels
-  bool heads_turn = true;             // by dB: refine what is out of view, too, since heads turn
-  double calibration = 1.0;           // by dB: what levels lose, as a multiple of what is predicted
-  std::size_t most_new = any_number;  // by dB: Gaussians that may have to be read; one chunk always may
+  double apart_px = 0.0;  // a chunk is fine enough if its Gaussians are at most this far apart; 0: never
+  std::size_t most = any_number;      // Gaussians of the model
+  std::optional<double> db = {};      // replaces apart_px: each view's PSNR against the finest levels
+  bool heads_turn = true;             // with db: also refine chunks out of view
+  double calibration = 1.0;           // with db: the loss of levels over the predicted loss
+  std::size_t most_new = any_number;  // with db: Gaussians to read; one chunk always may be read
 };
 
-// Levels and what a frame leaves out of them (FrameSettings::quality) share a budget where their squared
-// errors are known, which add up.
+// Levels and frames (FrameSettings::quality) share a budget: their squared errors add up.
 
-/// The dB that levels must keep where levels and frame together must keep `together_db`: levels may lose half
-/// of the squared error.
+/// Returns the dB that levels must reach so that levels and frame together reach `together_db`: levels may
+/// use half of the squared error.
 double levels_share(double together_db);
-/// The dB that the frame must then keep where levels keep `levels_db`: it may lose the rest of the squared
-/// error, and a tenth of it at least.
+/// Returns the dB that the frame must reach if levels reach `levels_db`: it may use the rest of the squared
+/// error. That rest counts as at least a tenth of the whole.
 double left_of(double together_db, double levels_db);
-/// The PSNR of two errors together, of which each alone has these PSNR, dB.
+/// Returns the PSNR of two errors together, each given by its PSNR alone, dB.
 double psnr_of_both(double a_db, double b_db);
-/// The PSNR in dB of a squared error of colours up to 1; and the other way round.
+/// Convert between a squared error of colours up to 1 and its PSNR in dB.
 double psnr_of_error(double squared);
 double error_of_psnr(double db);
 
-/// The unit vector of direction `d` of detail_directions.
+/// Returns the unit vector of direction `d` of detail_directions.
 glm::dvec3 detail_direction(std::size_t d);
 
 /// A view, in the model's frame.
@@ -57,50 +56,50 @@ struct DetailView {
   /// points straight ahead. All 0: the view sees all around.
   std::array<glm::dvec3, 5> inward{};
   double focal = 1.0;   // px
-  double pixels = 1.0;  // how many the picture has
+  double pixels = 1.0;  // of the picture
 };
 std::vector<DetailView> detail_views(std::span<const shared::View> views);
 
-/// What a view shows of a chunk: alpha T^2, summed over its Gaussians and the view's pixels, and how far away
-/// that is, world units. One T is for the light that comes from it, the other since an error behind others is
-/// seen less. The sum is small where all of the chunk is hidden, and 0 only where none of its Gaussians is in
-/// the picture.
+/// Visibility of a chunk in a view: the sum of alpha T^2 over its Gaussians and the view's pixels, and their
+/// distance, world units. One T is the transmittance before each Gaussian; the second weighs errors, which
+/// are less visible behind others. The sum is small if the chunk is hidden, and 0 only if none of its
+/// Gaussians is in the picture.
 struct ChunkVisibility {
   double area = 0.0;  // px
   double distance = 0.0;
 };
 
-/// What a visibility pass measured, maybe a moment ago. Empty where nothing was measured.
+/// The result of a visibility pass, perhaps of an earlier frame; empty without one.
 struct VisibleChunks {
   std::vector<std::vector<ChunkVisibility>> by_view;
-  std::vector<std::size_t> drawn;  // by chunk, the level that the pass drew, as its place in LodChunk::levels
+  std::vector<std::size_t> drawn;  // by chunk, the level in the pass, as its index in LodChunk::levels
 };
 
-/// The level chosen for each chunk, as its place in LodChunk::levels, and what any other levels would lose.
+/// The level chosen for each chunk, as its index in LodChunk::levels, and the errors of all other levels.
 struct LevelChoice {
   std::vector<std::size_t> levels;
-  bool is_limited = false;  // more is needed than may be read (DetailRequest::most_new)
-  // Filled where levels are chosen by dB:
-  std::vector<double> pixels;  // how many each view has
-  double sphere_pixels = 0.0;  // how many the sphere around the views has
-  /// Squared errors summed over pixels, by chunk, then view (the sphere comes last), then level, in one list.
-  /// `first` has the place where each chunk's errors begin, and at its end the length of the list.
+  bool is_limited = false;  // more Gaussians are needed than may be read (DetailRequest::most_new)
+  // Set if levels are chosen by dB:
+  std::vector<double> pixels;  // of each view
+  double sphere_pixels = 0.0;  // of the sphere around the views
+  /// Squared errors summed over pixels, by chunk, then view (the sphere is last), then level, in one list.
+  /// `first` has the index of each chunk's first error and, at its end, the length of the list.
   std::vector<double> errors;
   std::vector<std::size_t> first;
 
   bool knows_errors() const { return !first.empty(); }
-  /// The error of the view that loses most with any levels of the chunks: squared, meaned over pixels and
+  /// Returns the error of the worst view if the chunks have these levels: squared, mean over pixels and
   /// channels.
   double error_of(std::span<const std::size_t> any_levels) const;
   double error() const { return error_of(levels); }
-  /// The same of one view.
+  /// The same for one view.
   double error_of_view(std::size_t view, std::span<const std::size_t> any_levels) const;
-  /// The part of it that one chunk at a level causes.
+  /// Returns the part of it that one chunk at a level causes.
   double lost(std::size_t view, std::size_t chunk, std::size_t level) const {
     return errors[first[chunk] + view * levels_of(chunk) + level] / pixels[view];
   }
-  /// The error that a chunk saves at level `to` instead of `from`, in the view, or the sphere, where that is
-  /// most: squared, meaned over pixels and channels.
+  /// Returns the error that a chunk saves at level `to` instead of `from`, in the view (or the sphere) that
+  /// gains most. It is squared, mean over pixels and channels.
   double saved(std::size_t chunk, std::size_t from, std::size_t to) const;
 
   std::size_t levels_of(std::size_t chunk) const {
@@ -108,64 +107,64 @@ struct LevelChoice {
   }
 };
 
-/// Chooses levels for the views of one frame, given in the model's frame of reference: by choose_within()
-/// where dB are asked for, else by choose_apart() with the longest focal length; without views the coarsest.
-/// `before` is the choice before it.
+/// Chooses levels for the views of one frame, in the model's frame: by choose_within() if dB are requested,
+/// otherwise by choose_apart() with the longest focal length. Without views it chooses the coarsest levels.
+/// `before` is the previous choice.
 LevelChoice choose_levels(const std::vector<LodChunk>& chunks, std::span<const shared::View> views,
                           const DetailRequest& request, const VisibleChunks& visible = {},
                           std::span<const std::size_t> before = {});
 
-/// All chunks begin with their coarsest level. Then, as long as there is room, the chunk whose Gaussians lie
-/// farthest apart, as the nearest eye sees them, gets its next finer level. How far that is, in radians, is
-/// the box's diagonal by the root of the count of Gaussians, over the distance to the box; a chunk where it
-/// is no more than `enough` stays as it is. The choice is one for all eyes. It has more than `most` Gaussians
-/// only if the coarsest levels have. To keep levels steady while eyes move little, spacings count as a tenth
-/// larger for steps to levels no finer than the chunk's in `before` (a choice for the same chunks), and as a
-/// tenth smaller for steps to finer ones.
+/// Chooses levels by the spacing of Gaussians. All chunks begin with their coarsest level. While there is
+/// room, the chunk with the largest spacing for its nearest eye gets its next finer level. The spacing in
+/// radians is the box's diagonal by the root of the count of Gaussians, over the distance to the box. A chunk
+/// whose spacing is at most `enough` stays as it is. The choice is shared by all eyes. It exceeds `most`
+/// Gaussians only if the coarsest levels do. Hysteresis keeps levels steady. Spacings count as a tenth larger
+/// for steps to levels no finer than the chunk's in `before` (a choice for the same chunks). For steps to
+/// finer levels they count as a tenth smaller.
 std::vector<std::size_t> choose_apart(const std::vector<LodChunk>& chunks,
                                       const std::vector<glm::dvec3>& eyes, std::size_t most,
                                       double enough = 0.0, std::span<const std::size_t> before = {});
 
 struct ErrorBudget {
-  double error = 0.0;  // that each view may have: squared, meaned over pixels and channels
-  // As DetailRequest has them:
+  double error = 0.0;  // allowed in each view: squared, mean over pixels and channels
+  // As in DetailRequest:
   std::size_t most = any_number;
   bool heads_turn = true;
   std::size_t most_new = any_number;
 };
 
-/// Chooses few Gaussians with which each view loses no more than budget.error. All chunks begin with their
-/// coarsest level. Then, as long as a view loses more, the step that saves the most error per Gaussian is
-/// taken: a chunk gets a finer level. The choice is one for all views.
+/// Chooses few Gaussians such that no view loses more than budget.error. All chunks begin with their coarsest
+/// level. While a view loses more, it takes the step to a finer level that saves the most error per Gaussian.
+/// The choice is shared by all views.
 ///
-/// Where nothing was measured, no chunk is taken to hide another. Chunks that no view sees are refined, too,
-/// if heads turn, until all of them together lose no more than budget.error on the pixels of a whole sphere;
-/// each is taken to be as hidden as the seen chunks are in the mean. If heads do not turn they keep their
-/// coarsest level. A chunk for which the file has no errors gets the finest level that fits.
+/// Without a measurement, no chunk is assumed to hide another. If heads turn, unseen chunks are refined, too,
+/// until together they lose at most budget.error on the pixels of a whole sphere. Each is assumed to be as
+/// hidden as seen chunks are in the mean. If heads do not turn, unseen chunks keep their coarsest level. A
+/// chunk without errors in the file gets the finest level that fits.
 ///
-/// There are more than budget.most Gaussians only if the coarsest levels have more, and there is more error
-/// only where less does not fit, or needs more to be read than budget.most_new; a last thousandth of the
-/// Gaussians may stay unused. To keep levels steady, errors count as a tenth larger for steps to levels no
-/// finer than the chunk's in `before`, and as a tenth smaller for steps to finer ones.
+/// The choice exceeds budget.most Gaussians only if the coarsest levels do. It exceeds the error only if less
+/// does not fit, or if more than budget.most_new must be read; the last thousandth of the Gaussians may stay
+/// unused. Hysteresis keeps levels steady. Errors count as a tenth larger for steps to levels no finer than
+/// the chunk's in `before`. For steps to finer levels they count as a tenth smaller.
 LevelChoice choose_within(const std::vector<LodChunk>& chunks, const std::vector<DetailView>& views,
                           const ErrorBudget& budget, const VisibleChunks& visible = {},
                           std::span<const std::size_t> before = {});
 
-/// A level's squared error over the area that is seen of the chunk (ChunkVisibility::area), for an eye that
-/// looks `along`, a vector of any length, where a pixel covers `width` world units. Between the widths that
-/// the file has, its logarithm is interpolated linearly; for wider pixels it is the error at the widest, and
-/// for narrower ones it grows by a power law.
+/// Returns a level's squared error over the visible area of its chunk (ChunkVisibility::area). The eye looks
+/// `along` a vector of any length, and a pixel covers `width` world units. Between the file's widths,
+/// logarithms are interpolated linearly. Wider pixels use the widest one's error; for narrower pixels the
+/// error grows by a power law.
 double relative_error(const LodChunk& chunk, std::size_t level, double width, const glm::dvec3& along);
 
-/// What views lose with levels of which a few change at a time, kept up to date by the changes: a frame has
-/// no time to sum up all chunks.
+/// The error of views while a few levels change at a time. It is updated by the changes, since a frame has no
+/// time to sum over all chunks.
 class RunningError {
  public:
-  /// Sums up all chunks once. The choice must know errors.
+  /// Sums over all chunks once. The choice must know errors.
   RunningError(std::shared_ptr<const LevelChoice> choice, std::vector<std::size_t> levels);
-  /// From now on the chunks have these levels.
+  /// Sets the chunks' levels.
   void follow(std::span<const std::size_t> levels);
-  /// The error of the worst view of [begin, end) (LevelChoice::error_of), but for rounding.
+  /// Returns the error of the worst view of [begin, end) (LevelChoice::error_of), up to rounding.
   double error(std::size_t begin, std::size_t end) const;
   std::size_t views() const { return lost_.size(); }
 

@@ -1,4 +1,4 @@
-// Levels of detail by what views lose.
+// Chooses levels of detail by the error of views.
 
 #include <algorithm>
 #include <cmath>
@@ -19,10 +19,10 @@ namespace binosplat {
 
 namespace {
 
-/// Of the Gaussians that are allowed, what is too little to search for a step that fits.
+/// A rest below 1 / `little` of the allowed Gaussians is not worth a search for a step that fits.
 constexpr std::size_t little = 1024;
 
-/// What choose_within() does.
+/// The implementation of choose_within().
 class ErrorChooser {
  public:
   ErrorChooser(const std::vector<LodChunk>& chunks, const std::vector<DetailView>& views,
@@ -62,8 +62,8 @@ class ErrorChooser {
       }
     }
     const std::vector<Step> steps = steps_of_all();
-    std::vector<bool> left(chunks_.size(), false);  // its steps: one was refused
-    std::priority_queue<Step> others;               // of such chunks
+    std::vector<bool> left(chunks_.size(), false);  // a step of this chunk was refused
+    std::priority_queue<Step> others;               // steps of such chunks
     auto next = steps.begin();
     while (loses_more_than(before_.empty() ? 1.0 : 1.0 / inertia) && has_room()) {
       while (next != steps.end() && left[next->chunk]) ++next;
@@ -78,7 +78,7 @@ class ErrorChooser {
     return chosen_;
   }
 
-  /// Whether more is needed than may be read.
+  /// Returns whether more is needed than may be read.
   bool is_limited() const { return is_limited_ && loses_more_than(1.0); }
   void give_errors(LevelChoice& choice) {
     choice.sphere_pixels = sphere_pixels_;
@@ -105,7 +105,7 @@ class ErrorChooser {
     return errors_[first_[c] + view * chunks_[c].levels.size() + level];
   }
 
-  /// What a chunk does by itself, as long as nothing is refused; worth no more than what comes before.
+  /// Adds the steps that a chunk takes if none is refused; each is worth at most the previous one.
   void add_steps(std::size_t c, std::vector<Step>& steps) const {
     double most = std::numeric_limits<double>::infinity();
     for (Step step = best_step(c, chosen_[c]); step.worth > 0.0; step = best_step(c, step.level)) {
@@ -114,7 +114,8 @@ class ErrorChooser {
     }
   }
 
-  /// That of all chunks, in the order in which they are taken: what others lose does not change it.
+  /// Returns the steps of all chunks in the order in which they are taken. Other chunks' losses do not change
+  /// it.
   std::vector<Step> steps_of_all() const {
     std::vector<Step> all;
     std::mutex adding;
@@ -129,7 +130,7 @@ class ErrorChooser {
     return all;
   }
 
-  /// Takes it if it is needed and fits; else tells which steps of the chunk are left.
+  /// Takes a step if it is needed and fits; otherwise limits the chunk's further steps.
   bool try_step(const Step& step) {
     const auto [worth, c, level] = step;
     if (!fits(c, level)) {
@@ -146,7 +147,7 @@ class ErrorChooser {
     return false;
   }
 
-  /// Gaussians that have to be read for it.
+  /// Returns the Gaussians that must be read for a step.
   std::size_t new_for(std::size_t c, std::size_t level) const {
     return drawn_.empty() || level >= drawn_[c] ? 0 : count(c, level);
   }
@@ -155,13 +156,13 @@ class ErrorChooser {
     return more == 0 || others == 0 || (others <= most_new_ && more <= most_new_ - others);
   }
 
-  /// Whether any view loses more than so many times what is allowed.
+  /// Returns whether any view loses more than `times` its budget.
   bool loses_more_than(double times) const {
     for (std::size_t v = 0; v < allowed_.size(); ++v)
       if (lost_[v] > times * allowed_[v]) return true;
     return false;
   }
-  /// For more than a little.
+  /// Returns whether more than a little room is left.
   bool has_room() const { return most_ > total_ && most_ - total_ > most_ / little; }
 
   void take(std::size_t c, std::size_t level) {
@@ -172,7 +173,7 @@ class ErrorChooser {
     chosen_[c] = level;
   }
 
-  /// Whether a view that sees the chunk loses too much; any, where none sees it.
+  /// Returns whether a view that sees the chunk loses too much; for an unseen chunk, whether any view does.
   bool needed(std::size_t c, std::size_t level) const {
     const bool is_seen = error_of(allowed_.size() - 1, c, chosen_[c]) == 0.0;
     for (std::size_t v = 0; v < allowed_.size(); ++v) {
@@ -182,12 +183,13 @@ class ErrorChooser {
     return false;
   }
 
-  /// The finest level that may be needed where this one is not: that of before counts more.
+  /// Returns the finest level that may still be needed if this one is not: steps up to the previous level
+  /// count more.
   std::size_t next_needed(std::size_t c, std::size_t level) const {
     return before_.empty() || level >= before_[c] ? chosen_[c] : before_[c];
   }
 
-  /// That of a chunk which saves the most error per Gaussian; worth nothing where none does.
+  /// Returns the chunk's step that saves the most error per Gaussian; its worth is 0 if none saves any.
   Step best_step(std::size_t c) const { return best_step(c, chosen_[c]); }
   Step best_step(std::size_t c, std::size_t from) const {
     Step best{0.0, c, 0};
@@ -207,10 +209,10 @@ class ErrorChooser {
   std::size_t most_new_, most_;
   std::span<const std::size_t> before_;
   double sphere_pixels_ = 0.0;
-  std::vector<double> allowed_, lost_;        // squared error, by view, the sphere's last
-  std::vector<double> errors_;                // by chunk: by view, of each level
-  std::vector<std::size_t> first_ = {0};      // of a chunk's
-  std::vector<std::size_t> chosen_, finest_;  // the finest that may be taken
+  std::vector<double> allowed_, lost_;        // squared error, by view, the sphere last
+  std::vector<double> errors_;                // by chunk, then view, then level
+  std::vector<std::size_t> first_ = {0};      // index of each chunk's first error
+  std::vector<std::size_t> chosen_, finest_;  // finest_: the finest level that may be taken
   std::size_t total_ = 0, new_ = 0;           // Gaussians
   bool is_limited_ = false;
 };
@@ -265,7 +267,7 @@ void RunningError::follow(std::span<const std::size_t> levels) {
   }
 }
 
-// Rounding may leave a little less than nothing.
+// Rounding may leave a slightly negative sum.
 double RunningError::error(std::size_t begin, std::size_t end) const {
   double most = 0.0;
   for (std::size_t v = begin; v < end; ++v) most = std::max(most, lost_[v]);

@@ -1,5 +1,5 @@
 #pragma once
-// Choices of levels that follow one another.
+// Successive choices of levels.
 
 #include <span>
 #include <string>
@@ -10,15 +10,15 @@
 
 namespace binosplat {
 
-/// Gives each choice the one before it (choose_levels), and warns where even the coarsest levels do not fit.
+/// Passes each choice the previous one (choose_levels), and warns if even the coarsest levels do not fit.
 class Chooser {
  public:
-  /// The files must outlive it.
+  /// The files must outlive this object.
   explicit Chooser(const LodFiles& files) : files_(files) {}
 
   LevelChoice choose(std::span<const shared::View> views, const DetailRequest& request,
                      const VisibleChunks& visible);
-  /// The next choice is made as a first one.
+  /// Makes the next choice independent of earlier ones.
   void forget() { before_.clear(); }
 
  private:
@@ -27,7 +27,7 @@ class Chooser {
   bool warned_ = false;
 };
 
-/// Warns that the coarsest levels have `total` Gaussians and only `most` fit.
+/// Warns that the coarsest levels have `total` Gaussians while only `most` fit.
 void warn_of_no_room(const std::string& name, std::size_t total, std::size_t most);
 
 }  // namespace binosplat

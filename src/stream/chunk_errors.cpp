@@ -13,15 +13,15 @@ namespace binosplat {
 
 namespace {
 
-/// In pixels narrower than those that are known errors grow by this power of how much narrower, at most so
-/// many times.
+/// In pixels narrower than the file's, errors grow by this power of the ratio of widths, at most to
+/// growth_most.
 constexpr double growth = 0.3, growth_most = 8.0;
 
-/// So many times the distance between the Gaussians of a level it reaches out from behind what hides it.
+/// A level extends from behind its occluders by this factor times the spacing of its Gaussians.
 constexpr double reach = 0.5;
 
-/// How far the box lies beside the picture at least, world units; 0 where it may lie in it, or in some of the
-/// pixels beside it that Gaussians are blurred to.
+/// Returns the least distance of the box from the picture's side, world units. It is 0 if the box may be in
+/// the picture, or in the pixels beside it into which Gaussians are blurred.
 double distance_beside(const DetailView& view, const LodChunk& chunk, double pixel) {
   constexpr double blurred_px = 4.0;
   const glm::dvec3 to = 0.5 * (chunk.low + chunk.high) - view.eye, half = 0.5 * (chunk.high - chunk.low);
@@ -31,13 +31,13 @@ double distance_beside(const DetailView& view, const LodChunk& chunk, double pix
   return std::max(0.0, -inside - blurred_px * pixel);
 }
 
-/// How far a level of so many Gaussians reaches out of what its chunk shows, world units.
+/// Returns how far a level of `count` Gaussians extends beyond its chunk's visible part, world units.
 double reach_of(const LodChunk& chunk, std::size_t count) {
   const double box = glm::distance(chunk.low, chunk.high);
   return reach * box / std::sqrt(static_cast<double>(std::max<std::size_t>(count, 1)));
 }
 
-/// What relative_error says of each level of one chunk, seen from one place.
+/// Evaluates relative_error() for the levels of one chunk, seen from one place.
 class SeenFrom {
  public:
   SeenFrom(const LodChunk& chunk, double width, const glm::dvec3& along)
@@ -60,8 +60,7 @@ class SeenFrom {
   }
 
  private:
-  /// Of a list by directions and widths: its mean over directions, and between widths by lines between the
-  /// logarithms.
+  /// Interpolates a list by directions and widths: the mean over directions, log-log between widths.
   double of(const std::vector<double>& list) const {
     double sum = 0.0;
     for (glm::length_t axis = 0; axis < 3; ++axis) {
@@ -79,11 +78,11 @@ class SeenFrom {
   const LodChunk& chunk_;
   glm::dvec3 squares_;
   std::array<std::size_t, 3> direction_{};  // by axis
-  std::size_t narrower_ = 0, wider_ = 0;    // of the widths that are known
+  std::size_t narrower_ = 0, wider_ = 0;    // of the file's widths
   double share_ = 0.0, seen_ = 0.0, grown_;
 };
 
-/// What a view would show of a chunk that nothing hides.
+/// Returns the visibility of a chunk that nothing hides.
 ChunkVisibility unhidden(const LodChunk& chunk, const DetailView& view) {
   const double distance = distance_to(chunk, view.eye);
   if (chunk.pixels.empty()) return {0.0, distance};
@@ -105,7 +104,7 @@ ChunkErrors::ChunkErrors(const std::vector<LodChunk>& chunks, const std::vector<
     eye_.push_back(view.eye);
   }
   std::vector<std::uint8_t> is_seen(chunks.size(), 0);
-  std::vector<glm::dvec2> areas(chunks.size(), glm::dvec2(0.0));  // that is shown, and that would be, px
+  std::vector<glm::dvec2> areas(chunks.size(), glm::dvec2(0.0));  // visible, and unhidden, px
   const auto see = [&](std::size_t c) {
     for (std::size_t v = 0; v < views.size(); ++v) {
       const ChunkVisibility open = unhidden(chunks[c], views[v]);
@@ -130,7 +129,7 @@ ChunkErrors::ChunkErrors(const std::vector<LodChunk>& chunks, const std::vector<
     all += of_chunk.y;
   }
   const double share = all > 0.0 ? std::min(1.0, shown / all) : 1.0;
-  focal_.push_back(0.0);  // the sphere's: the longest
+  focal_.push_back(0.0);  // the sphere's is the longest
   for (const DetailView& view : views) focal_.back() = std::max(focal_.back(), view.focal);
   eye_.push_back(views.empty() ? glm::dvec3(0.0) : views.front().eye);
   if (views.empty() || !heads_turn) return;
@@ -154,8 +153,8 @@ void ChunkErrors::find_errors(std::size_t view, std::size_t c, double* errors) c
     errors[level] = area(view, c, level) * seen_from.error(level);
 }
 
-// What is seen of a chunk at a level, px. Where a finer one was drawn, it is more; and of what lies beside
-// the picture no more than was seen, but by levels that reach into it.
+// Returns the visible area of a chunk at a level, px. It is larger if a finer level was measured. Beside the
+// picture it is the measured area, unless the level extends into the picture.
 double ChunkErrors::area(std::size_t view, std::size_t c, std::size_t level) const {
   const Seen& seen = seen_[view][c];
   const LodChunk& chunk = chunks_[c];

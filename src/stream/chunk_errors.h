@@ -1,5 +1,5 @@
 #pragma once
-// What views see of chunks, and what levels of detail lose of that, for choose_within().
+// The visibility of chunks in views and the errors of their levels of detail, for choose_within().
 
 #include <cstddef>
 #include <glm/glm.hpp>
@@ -10,23 +10,23 @@
 
 namespace binosplat {
 
-/// What each view sees of all chunks, and what the sphere around them does, which comes last and sees the
+/// The visibility of all chunks in each view and, as the last view, in the sphere around them, which sees the
 /// chunks that no view sees.
 class ChunkErrors {
  public:
-  /// `chunks` and `visible` must outlive it.
+  /// `chunks` and `visible` must outlive this object.
   ChunkErrors(const std::vector<LodChunk>& chunks, const std::vector<DetailView>& views,
               const VisibleChunks& visible, bool heads_turn);
 
-  /// Writes the squared error of each level of chunk `c`, summed over px; writes nothing where the view does
-  /// not see the chunk or its errors are not known.
+  /// Writes the squared error of each level of chunk `c`, summed over px. Writes nothing if the view does not
+  /// see the chunk or its errors are unknown.
   void find_errors(std::size_t view, std::size_t c, double* errors) const;
 
   double longest_focal() const { return focal_.back(); }
 
  private:
   struct Seen : ChunkVisibility {
-    double outside = 0.0;  // how far beside the picture the chunk lies, world units
+    double outside = 0.0;  // distance of the chunk from the picture's side, world units; 0 inside
   };
   double area(std::size_t view, std::size_t c, std::size_t level) const;
 

@@ -9,8 +9,8 @@ namespace binosplat {
 
 namespace {
 
-constexpr double apart_s = 0.05;       // of poses, at least
-constexpr double apart_most_s = 0.25;  // beyond it nothing is known
+constexpr double apart_s = 0.05;       // least time between poses
+constexpr double apart_most_s = 0.25;  // with longer gaps the motion is unknown
 
 glm::dmat3 axes_of_view(const shared::View& view) {
   return {glm::dvec3(view.row_x), glm::dvec3(view.row_y), glm::dvec3(view.row_z)};
@@ -20,7 +20,7 @@ glm::dvec3 eye_of(const shared::View& view) { return glm::dvec3(view.anchor) + g
 
 struct HeadVelocity {
   glm::dvec3 along{0.0};   // world units a second
-  glm::dvec3 around{0.0};  // its length: radians a second
+  glm::dvec3 around{0.0};  // rotation axis times radians a second
 };
 
 HeadVelocity motion_of(const shared::View& from, const shared::View& to, double seconds) {
@@ -33,7 +33,8 @@ HeadVelocity motion_of(const shared::View& from, const shared::View& to, double 
   return motion;
 }
 
-/// None where it changes by more than it was: a jump, or the first moment.
+/// Returns `now`, or zero if the velocity changed by more than its former size: a jump, or the start of a
+/// motion.
 glm::dvec3 steady(const glm::dvec3& before, const glm::dvec3& now) {
   return glm::distance(before, now) <= glm::length(before) ? now : glm::dvec3(0.0);
 }

@@ -1,5 +1,5 @@
 #pragma once
-// Where a head that moves will be in a moment.
+// Predicts the pose of a moving head.
 
 #include <array>
 #include <span>
@@ -10,16 +10,14 @@
 
 namespace binosplat {
 
-/// Predicts from the views of the last tenth of a second or two that eyes go on along a straight line, and go
-/// on turning. Views that jump from one place to another have no motion, nor have views that are noted too
-/// rarely.
+/// Extrapolates the eyes' motion along a straight line and their rotation, from the views of the last tenth
+/// of a second or two. Jumps count as no motion, and so do views that are noted too rarely.
 class HeadMotion {
  public:
-  /// Takes the views of a frame, in one frame of reference. It begins anew where there are more or fewer than
-  /// before.
+  /// Adds the views of a frame, all in one frame of reference. It restarts if their number changes.
   void note(std::span<const shared::View> views, Clock::time_point now = Clock::now());
 
-  /// The views noted last, as they will be in `seconds`; the same bits where nothing moves.
+  /// Returns the views noted last, extrapolated by `seconds`; the same bits if nothing moves.
   std::vector<shared::View> ahead(double seconds) const;
 
  private:
@@ -28,7 +26,7 @@ class HeadMotion {
     Clock::time_point at;
   };
   std::vector<shared::View> views_;
-  std::array<Pose, 3> poses_;  // the latest first, far enough apart in time to tell a speed
+  std::array<Pose, 3> poses_;  // the latest first, far enough apart in time to measure a speed
 };
 
 }  // namespace binosplat

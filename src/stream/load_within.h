@@ -1,5 +1,5 @@
 #pragma once
-// A model with levels of detail that is read once, at levels for which there is room.
+// Reads a model with levels of detail once, at levels that fit into memory.
 
 #include <cstddef>
 #include <filesystem>
@@ -11,15 +11,14 @@
 
 namespace binosplat {
 
-/// How much of a model with levels of detail may be there, and from where it is looked at.
+/// How much of a model with levels of detail fits, and the eyes for which levels are chosen.
 struct DetailBudget {
-  std::function<std::size_t(int degree)> gaussians;  // how many at most, with harmonics of a degree
-  std::vector<glm::dvec3> eyes;                      // in the model's frame; empty: as if from far away
+  std::function<std::size_t(int degree)> gaussians;  // the most that fit, by degree of harmonics
+  std::vector<glm::dvec3> eyes;                      // in the model's frame; empty: from far away
 };
 
-/// Reads each leaf of a streamed SOG at a level of its own (choose_apart), among those whose files are
-/// there. `path`: a lod-meta.json or the folder of one. Throws Error as load_streamed_sog() does, and where
-/// it is anything else.
+/// Reads each chunk of a streamed SOG at its own level (choose_apart), from existing files. `path` is a
+/// lod-meta.json or its folder. Throws Error as load_streamed_sog() does, and for other files.
 Model load_within(const std::filesystem::path& path, const DetailBudget& budget);
 
 }  // namespace binosplat

@@ -19,13 +19,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t files_at_a_time = 16;  // each by several threads, and whole in memory meanwhile
-// Bytes of decoded files that are kept: of some 80 million Gaussians, without which a head that moves through
-// 20 million has files of 131,072 decoded again and again for a few chunks each, eight cores long.
+constexpr std::size_t files_at_a_time = 16;  // each decoded by several threads and held in memory
+// Bytes of decoded files in the cache, about 80 million Gaussians. Without it, a head that moves through 20
+// million decodes files of 131,072 repeatedly for a few chunks each, on eight cores.
 std::size_t cached_most() {
   return static_cast<std::size_t>(std::min(std::exp2(31.0), memory_bytes() / 8.0));
 }
-// Decoding so many of a file takes as long as one takes to reach the GPU.
+// Decoding this many Gaussians of a file takes as long as moving one to the GPU.
 constexpr std::size_t decoded_for_one = 8;
 
 nlohmann::json levels_json(const fs::path& path, const fs::path& asked) {
@@ -36,7 +36,7 @@ nlohmann::json levels_json(const fs::path& path, const fs::path& asked) {
   return std::move(*json);
 }
 
-/// Gaussians of that which has most.
+/// Returns the Gaussians of the largest chunk.
 std::size_t largest_of(const std::vector<LodChunk>& chunks) {
   std::size_t most = 0;
   for (const LodChunk& chunk : chunks)
@@ -46,14 +46,14 @@ std::size_t largest_of(const std::vector<LodChunk>& chunks) {
 
 }  // namespace
 
-/// What lod-meta.json says, and the SOGs that are there; none of another file.
+/// The contents of lod-meta.json, and the SOGs that exist; empty for missing files.
 struct LodFiles::Source {
   fs::path path;
   SogLevels levels;
   std::vector<std::optional<SogSource>> files;
   std::optional<SogSource> environment;
-  std::uint64_t bytes = 0;        // of them (SogSource::bytes)
-  SogCache cache{cached_most()};  // by the number of the file
+  std::uint64_t bytes = 0;        // sum of SogSource::bytes
+  SogCache cache{cached_most()};  // by file number
 
   Source(const fs::path& lod_meta, const nlohmann::json& json) : path(lod_meta), levels(path, json) {
     files.resize(levels.files().size());
@@ -72,7 +72,7 @@ struct LodFiles::Reading {
   const std::function<bool()>& goes_on;
 
   std::size_t level(std::size_t chunk) const { return choice.levels[chunk]; }
-  /// In no hurry the order is the same whatever was read before.
+  /// With `goes_on` the order depends on the cached files; without, it is always the same.
   bool is_in_a_hurry() const { return goes_on != nullptr; }
   bool ends() const { return goes_on && !goes_on(); }
 };
@@ -94,7 +94,7 @@ LodFiles::LodFiles(const fs::path& path) {
     chunk.high -= like_.axes.origin;
   }
   for (int level = 0; level < source_->levels.count(); ++level)
-    static_cast<void>(source_->levels.taken(level));  // throws where leaves share Gaussians
+    static_cast<void>(source_->levels.taken(level));  // throws if leaves share Gaussians
   spare_ = (chunks_.size() + 1) * ModelChunks::block;
   if (has_errors()) spare_ += std::min(sample_room * largest_of(chunks_), finest() / 8);
   like_.name = source_->path.filename().string();
@@ -164,12 +164,13 @@ void LodFiles::read(std::span<const std::size_t> from, const LevelChoice& choice
   if (!reading.ends()) read_some(reading, growing, take);
 }
 
-// One file that takes long holds up no other: of those that are in no hurry only what follows it.
+// A slow file does not delay decoding of others. Without `goes_on` it only delays passing on the files after
+// it.
 void LodFiles::read_some(const Reading& reading, const TakenOfAll& taken, const Take& take) const {
   std::vector<std::size_t> files;
   for (std::size_t i = 0; i < taken.size(); ++i)
     if (!taken[i].empty()) files.push_back(i);
-  // Few Gaussians that mend much come before many that mend little.
+  // Few Gaussians that save much error come before many that save little.
   std::vector<double> first(taken.size());
   for (const std::size_t i : files) first[i] = worth(reading, i, taken[i]);
   std::ranges::stable_sort(files, std::greater<>(), [&](std::size_t i) { return first[i]; });

@@ -16,38 +16,38 @@
 
 namespace binosplat {
 
-/// The constructor opens the files; several threads may call all else at a time.
+/// The constructor opens the files; the other functions are thread-safe.
 class LodFiles {
  public:
-  /// Stands for the level of a chunk that was not read.
+  /// The level of a chunk that was not read.
   static constexpr std::size_t not_read = any_number;
 
-  /// `path`: a lod-meta.json or the folder of one. Opens what is there of its SOGs. Throws Error as
-  /// load_streamed_sog() does, and where it is anything else.
+  /// `path` is a lod-meta.json or its folder. Opens the existing SOGs that it names. Throws Error as
+  /// load_streamed_sog() does, and for other files.
   explicit LodFiles(const std::filesystem::path& path);
   ~LodFiles();
 
   /// The path of lod-meta.json, for messages.
   std::string name() const;
-  /// The model without its Gaussians.
+  /// The model's properties, without Gaussians.
   const Model& like() const { return like_; }
-  /// The leaves of the file's tree, their boxes from the model's origin.
+  /// The leaves of the file's tree, with boxes relative to the model's origin.
   const std::vector<LodChunk>& chunks() const { return chunks_; }
-  /// The Gaussians that belong to every level.
+  /// Returns the Gaussians that are part of every level.
   Model environment() const;
   std::size_t environment_count() const;
 
-  /// The Gaussians of the environment and of all chunks at these levels.
+  /// Returns the number of Gaussians of the environment and of all chunks at these levels.
   std::size_t count(std::span<const std::size_t> levels) const;
   /// The same at the finest levels.
   std::size_t finest() const;
-  /// The Gaussians for which a model needs room beside those of its levels: for blocks that are half empty
-  /// and, where the files have errors, for a calibration sample at its finest levels, an eighth of all
-  /// Gaussians at most.
+  /// Gaussians for which a model needs room beside those of its levels. They fill up half empty blocks and,
+  /// if the files have errors, hold a calibration sample at its finest levels (at most an eighth of all
+  /// Gaussians).
   std::size_t spare() const { return spare_; }
-  /// Whether the files say what their levels lose, so that levels can be chosen by dB.
+  /// Returns whether the files have the errors of their levels, so that levels can be chosen by dB.
   bool has_errors() const;
-  /// Throws Error where dB are asked for of a file that has no errors.
+  /// Throws Error if dB are requested and the file has no errors.
   void check(const DetailRequest& request) const;
 
   /// The Gaussians of a chunk at a level.
@@ -57,14 +57,14 @@ class LodFiles {
   };
   using Take = std::function<void(Piece piece)>;
 
-  /// Reads the chunks whose level in `from` differs from the choice's, and hands them to `take`, one at a
+  /// Reads the chunks whose level in `from` differs from the choice's, and passes them to `take`, one at a
   /// time, on any thread. The order is:
-  /// - chunks that get fewer Gaussians come first, so that there are never more than before or after;
-  /// - then files that save the most error per Gaussian, where the choice is by dB; else coarse levels before
-  ///   fine.
+  /// - first chunks that get fewer Gaussians, so that the model never has more than before or after;
+  /// - then, for a choice by dB, files that save the most error per Gaussian; otherwise coarse levels before
+  ///   fine ones.
   ///
-  /// With `goes_on`, a file is handed over as soon as it is decoded, and no other file is begun once
-  /// `goes_on` returns false. Throws Error where a file has become unreadable.
+  /// With `goes_on`, each file is passed on as soon as it is decoded, and no further file is begun after
+  /// `goes_on` returned false. Throws Error if a file has become unreadable.
   void read(std::span<const std::size_t> from, const LevelChoice& choice, const Take& take,
             const std::function<bool()>& goes_on = {}) const;
   /// Reads the finest levels of some chunks.
@@ -73,7 +73,7 @@ class LodFiles {
  private:
   struct Source;
   struct Reading;
-  /// What is taken of each file, by the file's number.
+  /// The ranges to read from each file, by the file's number.
   using TakenOfAll = std::vector<SogLevels::TakenOfFile>;
   std::vector<Piece> read_file(std::size_t file, const SogLevels::TakenOfFile& taken,
                                std::span<const std::size_t> levels) const;

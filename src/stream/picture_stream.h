@@ -1,5 +1,5 @@
 #pragma once
-// Levels of detail for pictures that may wait for them.
+// Levels of detail for pictures, which may wait for them.
 
 #include "stream/streamed_model.h"
 
@@ -10,15 +10,15 @@ class PictureStream : public StreamedModel {
   PictureStream(const std::filesystem::path& path, StreamSettings settings)
       : StreamedModel(path, std::move(settings)) {}
 
-  /// Chooses, reads and uploads what the views need before it returns; by dB up
-  /// to eleven times, with a calibration for these views. With DetailRequest::heads_turn the choice starts
-  /// from the levels of the views before; without, it does not depend on them. Returns whether levels have
-  /// changed; calls `before_change` before they do. Throws Error where a file has become unreadable.
+  /// Chooses, reads and uploads the levels for these views before it returns. By dB it chooses up to eleven
+  /// times, with a calibration for these views. With DetailRequest::heads_turn the choice starts from the
+  /// previous views' levels; without, it does not depend on them. Returns whether levels have changed; calls
+  /// `before_change` before the first change. Throws Error if a file has become unreadable.
   bool settle(std::span<const shared::View> views, const render::FrameSettings& settings,
               const std::function<void()>& before_change = {});
 
-  /// The calibrated prediction of the last picture's PSNR against the finest levels, in dB. None where levels
-  /// are not chosen by dB, or nothing was measured yet.
+  /// Returns the calibrated prediction of the last picture's PSNR against the finest levels, in dB. None if
+  /// levels are not chosen by dB, or before the first measurement.
   std::optional<double> reported_db() const;
 
  private:

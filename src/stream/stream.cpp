@@ -10,19 +10,19 @@ namespace binosplat {
 
 namespace {
 
-constexpr double between_passes_ms = 100.0;  // in which the worker reads what was chosen by the last one
-constexpr int passes_most = 3;               // at the same views: after them a choice hardly changes any more
-constexpr double lead_s = 0.5;               // ahead of a head that moves: until what is requested is drawn
-constexpr std::size_t put_least = 1 << 14;   // Gaussians: fewer do not tell how long more would take
-constexpr double put_share = 0.75;  // of a frame's ms that uploading is expected to take: it may take longer
-// A request goes on while the next one is made, which takes as long as from one to the next; and it has so
-// many Gaussians, however few frames there were.
+constexpr double between_passes_ms = 100.0;  // meanwhile the worker reads the levels of the last pass
+constexpr int passes_most = 3;               // at the same views: later choices hardly change
+constexpr double lead_s = 0.5;  // prediction for a moving head: the time from a request to its drawing
+constexpr std::size_t put_least = 1 << 14;  // Gaussians: fewer do not measure the rate
+constexpr double put_share = 0.75;  // share of a frame's ms for uploads, which may take longer than estimated
+// A request stays active while the next one is made, which takes as long as the time between requests. It has
+// at least requested_least Gaussians.
 constexpr double requests_at_once = 2.0, requested_least = 1 << 14;
-// What levels lose is measured where the views rest. Where a head has moved on, they count as losing so many
-// times as much (README.md has what other factors do): along walks it was 0.7 to 1.6 times, and less than
-// what was asked for is worse than more.
+// The loss of levels is measured while the views rest. When a head has moved on, this factor multiplies it
+// (README.md lists other factors). Along walks the true factor was 0.7 to 1.6, and missing the request is
+// worse than exceeding it.
 constexpr double lost_elsewhere = 1.3;
-// Of a frame's time, ms: what is neither drawing nor levels.
+// ms of a frame that are neither drawing nor levels
 constexpr double apart_ms = 1.2;
 
 }  // namespace
@@ -37,13 +37,13 @@ std::optional<double> Stream::reported_db() const {
   chosen.error->follow(drawn_);
   const double here = chosen.error->error(0, chosen.here);
   if (chosen.here == chosen.error->views()) return reported(here, lost_now());
-  // What comes nearer loses the more the nearer it is.
+  // The loss of approaching chunks grows faster when they are near.
   const double share = std::min(1e-3 * ms_since(chosen.at) / lead_s, 1.0);
   const double ahead = chosen.error->error(chosen.here, chosen.error->views());
   return reported(std::lerp(here, ahead, share * share), lost_now());
 }
 
-// The factor for views that what levels lose was not measured for.
+// The factor for views at which the loss was not measured.
 double Stream::lost_now() const { return is_calibrated_ ? 1.0 : lost_elsewhere; }
 
 bool Stream::begin_frame(std::span<const shared::View> views, const render::FrameSettings& settings,
@@ -66,7 +66,7 @@ bool Stream::begin_frame(std::span<const shared::View> views, const render::Fram
   }
   could_put_ += put_share * ms * put_a_ms_;
   const bool made_pass = std::exchange(made_pass_, false), is_due = pass_is_due();
-  // For both no frame has time: they take turns.
+  // A frame has no time for both, so they alternate.
   if ((!is_due || made_pass) && put_some(ms)) return true;
   if (is_due) {
     make_pass(settings);
@@ -77,10 +77,11 @@ bool Stream::begin_frame(std::span<const shared::View> views, const render::Fram
 }
 
 void Stream::prepare(std::span<const shared::View> views, const render::FrameSettings& settings) {
-  gpu_model_->reload({.filled = {{0, 1}}, .emptied = {}});  // a Gaussian as it is, by the shader for levels
+  // Reloads one Gaussian unchanged, with the shader for levels.
+  gpu_model_->reload({.filled = {{0, 1}}, .emptied = {}});
   if (!db_for(settings.quality)) return;
-  measure(views.first(1), settings);  // as in a pass,
-  measure(views, settings);           // and as where views rest
+  measure(views.first(1), settings);  // as in a pass
+  measure(views, settings);           // as in calibration at rest
   visibility_->keep_picture(views.front(), settings);
   visibility_->picture_error(views.front(), settings);
 }
@@ -91,7 +92,7 @@ bool Stream::has_all() const {
   return worker_.is_idle() && !is_due_ && pass_.views.empty() && !needs_another_pass();
 }
 
-// Coarse chunks hide what fine ones do not.
+// Coarse chunks hide more than fine ones, so visibility changes with the levels.
 bool Stream::needs_another_pass() const {
   return db_for(quality_) && worker_.is_idle() &&
          (worker_.chosen().is_limited || (pass_.is_outdated && passes_ < passes_most));
@@ -103,7 +104,7 @@ bool Stream::pass_is_due() const {
   return is_due_ && !worker_.is_choosing() && ms_since(worker_.chosen().made_at) >= between_passes_ms;
 }
 
-// At one more of the views, each as it is by then.
+// Measures one more view, current or predicted, as it is now.
 void Stream::make_pass(const render::FrameSettings& settings) {
   const TimedSpan span("visibility pass");
   const std::vector<shared::View> ahead = motion_.ahead(lead_s);
@@ -127,8 +128,8 @@ void Stream::make_pass(const render::FrameSettings& settings) {
   ++passes_;
 }
 
-// While a head moves no more is requested than frames can take in time: then all that is seen gets better by
-// a little, before some of it has all that it needs.
+// While a head moves, a request is limited to what frames can upload in time. Then all visible chunks improve
+// a little before some are complete.
 void Stream::request(StreamWorker::Request request) {
   request.detail = request_for(views_, lost_now());
   const double in_time = requests_at_once * std::exchange(could_put_, 0.0);
@@ -148,14 +149,14 @@ bool Stream::put_some(double ms) {
   std::size_t gaussians = 0;
   for (const LodFiles::Piece& piece : pieces) gaussians += piece.model.count();
   times_.put += gaussians;
-  pieces.clear();  // which takes time, too
+  pieces.clear();  // destruction takes time, too
   if (gaussians >= put_least)
     put_a_ms_ = std::lerp(put_a_ms_, static_cast<double>(gaussians) / std::max(ms_since(start), 1e-3), 0.2);
   pass_.is_outdated = true;
   return true;
 }
 
-// What is drawn then is chosen anew by it.
+// Calibrates the levels; a new choice for these views follows.
 void Stream::calibrate_at_rest(const render::FrameSettings& settings) {
   const TimedSpan span("calibrate levels");
   is_calibrated_ = is_due_ = true;

@@ -1,5 +1,5 @@
 #pragma once
-// Levels of detail for frames that must not wait for them.
+// Levels of detail for frames, which must not wait for them.
 
 #include "base/clock.h"
 #include "stream/head_motion.h"
@@ -8,31 +8,31 @@
 
 namespace binosplat {
 
-/// Whoever draws its model calls begin_frame() before each frame.
+/// A caller that draws its model calls begin_frame() before each frame.
 class Stream : public StreamedModel {
  public:
   Stream(const std::filesystem::path& path, StreamSettings settings)
       : StreamedModel(path, std::move(settings)), worker_(files_, drawn_) {}
 
-  /// Within about `ms` it puts what the worker thread has
-  /// read into the model and onto the GPU, or draws one view of a visibility pass (where levels are chosen by
-  /// dB). The worker chooses and reads what the views need. While the views move, the second half of them is
-  /// measured where they will be by the time that levels are read. Once the views rest and the model has what
-  /// they need, one call takes longer than `ms`: it calibrates what levels lose. The views are those of one
-  /// frame, in the model's frame of reference. It uses the settings `quality` and what Visibility::measure()
-  /// uses. Returns whether the model has changed. Throws what the worker threw, which then reads nothing
-  /// more.
+  /// Does one of two things within about `ms`. It moves chunks that the worker thread has read into the model
+  /// and onto the GPU. Or, if levels are chosen by dB, it draws one view of a visibility pass. The worker
+  /// chooses and reads levels for the views. While the views move, the second half of a pass measures the
+  /// views predicted for the time when their levels arrive. When the views rest and their levels are
+  /// complete, one call takes longer than `ms`, to calibrate the loss of levels. The views are those of one
+  /// frame, in the model's frame of reference. Uses the settings `quality` and those of
+  /// Visibility::measure(). Returns whether the model has changed. Rethrows an error of the worker, which
+  /// then stops reading.
   bool begin_frame(std::span<const shared::View> views, const render::FrameSettings& settings, double ms);
-  /// Compiles the shaders that begin_frame() needs for such views, by drawing what it would draw. The model
-  /// stays as it is.
+  /// Compiles the shaders of begin_frame() for such views, by drawing what it draws. The model does not
+  /// change.
   void prepare(std::span<const shared::View> views, const render::FrameSettings& settings);
-  /// Whether the model has what the views of the last begin_frame() need, and nothing is to be measured
-  /// again.
+  /// Returns whether the model has the levels for the views of the last begin_frame(), and no measurement is
+  /// due.
   bool settled() const;
 
-  /// The calibrated prediction of the views' PSNR against the finest levels, in dB, with the levels that the
-  /// model has now. It is of the views that were measured last, and changes from those where the eyes were to
-  /// those ahead as time goes by. None where levels are not chosen by dB, or nothing was measured yet.
+  /// Returns the calibrated prediction of the views' PSNR against the finest levels, in dB, for the model's
+  /// present levels. It uses the views of the last measurement, and interpolates from the current to the
+  /// predicted views as time passes. None if levels are not chosen by dB, or before the first measurement.
   std::optional<double> reported_db() const;
 
  private:
@@ -46,28 +46,28 @@ class Stream : public StreamedModel {
   double lost_now() const;
 
   struct Pass {
-    std::vector<shared::View> views;  // measured so far: first those where the eyes are, then those ahead
-    std::size_t here = 0, all = 0;    // how many views of the first kind, and in all, the pass measures
-    VisibleChunks visible;            // what `views` show
+    std::vector<shared::View> views;  // measured so far: current views, then predicted ones
+    std::size_t here = 0, all = 0;    // number of current views in the pass, and of all
+    VisibleChunks visible;            // visibility in `views`
     Clock::time_point began = {};
-    bool is_outdated = false;  // the model has changed since
+    bool is_outdated = false;  // the model has changed since then
   };
   HeadMotion motion_;
-  Pass pass_;                   // the last one, or that under way
-  int passes_ = 0;              // whole passes at views_
-  bool is_due_ = false;         // whether a request for views_ is still to be made
+  Pass pass_;                   // the last one, or the present one
+  int passes_ = 0;              // complete passes at views_
+  bool is_due_ = false;         // whether a request for views_ is due
   bool is_calibrated_ = false;  // for views_
   bool made_pass_ = false;      // whether the last frame drew a view of a pass
-  double could_put_ = 0.0;      // Gaussians that there was time to put into the model since the last request
-  double put_a_ms_ = 1 << 14;   // Gaussians put in a millisecond, as the last frames show
+  double could_put_ = 0.0;      // Gaussians for which there was time since the last request
+  double put_a_ms_ = 1 << 14;   // Gaussians uploaded per ms, measured in the last frames
   StreamWorker worker_;
 };
 
-/// The most that begin_frame() is given of a frame.
+/// The most ms of a frame for begin_frame().
 inline constexpr double levels_ms_most = 6.0;
 
-/// The ms for begin_frame() where frames are due every `frame_ms` and drawing takes `drawn_ms`: 2.5 at least,
-/// or a head would wait for levels forever, and levels_ms_most at most.
+/// Returns the ms for begin_frame() if a frame is due every `frame_ms` and drawing takes `drawn_ms`. It is at
+/// least 2.5, since levels would otherwise never arrive, and at most levels_ms_most.
 double time_for_levels(double frame_ms, double drawn_ms);
 
 }  // namespace binosplat

@@ -9,11 +9,11 @@ namespace binosplat {
 
 namespace {
 
-// Gaussians at whose finest levels it is measured what levels lose: of a picture, or of each of a turning
+// Gaussians of a calibration sample at their finest levels: for one picture, and for each of a turning
 // head's.
 constexpr std::size_t sample_of_one = 1 << 17, sample_of_many = 1 << 14;
 
-/// Takes of `other` what shows more than `visible` does.
+/// Takes from `other` the chunks that are more visible there.
 void show_more(VisibleChunks& visible, const VisibleChunks& other) {
   for (std::size_t v = 0; v < visible.by_view.size(); ++v) {
     for (std::size_t c = 0; c < visible.by_view[v].size(); ++c)
@@ -34,7 +34,8 @@ StreamedModel::StreamedModel(const std::filesystem::path& path, StreamSettings s
   shows_all_ = finest <= std::min(settings_.all_up_to, most);
   if (settings_.reserve > 0) {
     model_.room = std::min(finest, most < finest ? most : settings_.reserve) + files_.spare();
-    // Touched now: the system gives memory a page at a time, and slowly while others decode (10 ms a frame).
+    // Touched now: the system provides memory page by page, slowly while other threads decode (10 ms a
+    // frame).
     model_.reserve(model_.room);
     model_.resize(std::min(model_.room, settings_.reserve));
   }
@@ -86,10 +87,10 @@ void StreamedModel::put(std::span<const LodFiles::Piece> pieces) {
   chunks_.replace(model_, replacements);
 }
 
-// Where the sample is all that is not at its finest, a chunk counts as seen as much as in the
-// picture that shows more of it: it may hide others, or reach into the picture, at one of both levels only,
-// and what is lost there would be predicted to be nothing. Of fewer chunks that would be reported too often
-// of those in the sample.
+// Adds a sample to the calibration. If the sample contains all chunks that are not at their finest level,
+// each chunk's visibility is the larger one of both pictures. A chunk may hide others, or extend into the
+// picture, at only one of both levels; its loss would be predicted as 0. With fewer chunks in the sample,
+// this would overrate those in it.
 VisibleChunks StreamedModel::calibrate(std::span<const shared::View> views,
                                        const render::FrameSettings& settings, LevelChoice& choice) {
   const std::size_t gaussians = settings_.detail.heads_turn ? sample_of_many : sample_of_one;
@@ -125,7 +126,7 @@ void StreamedModel::start_over() {
   chunks_ = ModelChunks(chunks_.size());
   drawn_.clear();
   for (const LodChunk& chunk : files_.chunks())
-    drawn_.push_back(chunk.levels.empty() ? 0 : LodFiles::not_read);  // there is nothing to read of some
+    drawn_.push_back(chunk.levels.empty() ? 0 : LodFiles::not_read);  // some have nothing to read
   chunks_.replace(model_, files_.chunks().size(), files_.environment());
 }
 

@@ -10,9 +10,9 @@ namespace binosplat {
 
 namespace {
 
-// Gaussians that may wait to be taken: a quarter of a GB with all their harmonics.
+// Gaussians that may wait to be taken: a quarter of a GB with all harmonics.
 constexpr std::size_t waiting_most = 1 << 20;
-constexpr double cores_share = 0.5;  // the rest is for frames
+constexpr double cores_share = 0.5;  // the others draw frames
 
 }  // namespace
 
@@ -91,7 +91,7 @@ void StreamWorker::work(const Request& request, const std::stop_token& stop) {
   chosen.made_at = Clock::now();
   {
     const std::lock_guard lock(mutex_);
-    std::swap(chosen_, chosen);  // the one before is freed when no frame waits for the lock any more
+    std::swap(chosen_, chosen);  // frees the previous choice outside the lock, so that no frame waits
     is_choosing_ = false;
   }
   const TimedSpan span("read levels");
@@ -103,7 +103,7 @@ void StreamWorker::work(const Request& request, const std::stop_token& stop) {
       });
 }
 
-// Drops pieces that another choice was for; with the others the chunks are at the levels that it returns.
+// Drops chunks that were read for another choice. Returns the chunks' levels once the others are taken.
 std::vector<std::size_t> StreamWorker::keep_wanted(const LevelChoice& choice) {
   const std::lock_guard lock(mutex_);
   std::erase_if(pieces_, [&](const LodFiles::Piece& piece) {

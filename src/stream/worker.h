@@ -1,5 +1,5 @@
 #pragma once
-// The thread that chooses levels of detail and reads them while frames are drawn.
+// The thread that chooses and reads levels of detail while frames are drawn.
 
 #include <condition_variable>
 #include <deque>
@@ -18,42 +18,42 @@
 
 namespace binosplat {
 
-/// Chooses levels for the last request and reads their pieces, one after another, until another request
-/// comes. Its loops use up to half of the cores; the others are for frames.
+/// Chooses levels for the last request and reads their chunks, until another request arrives. Its loops use
+/// up to half of the cores; the others draw frames.
 class StreamWorker {
  public:
-  /// A choice that is to be made, for views of one frame in the model's frame of reference.
+  /// A request for levels, for views of one frame in the model's frame of reference.
   struct Request {
     std::vector<shared::View> views;
     DetailRequest detail;
     VisibleChunks visible;
-    std::size_t here = 0;       // views where the eyes were; they come first, and others lie ahead
-    Clock::time_point at = {};  // when the eyes were there
+    std::size_t here = 0;       // number of current views; they come first, predicted ones follow
+    Clock::time_point at = {};  // time of the current views
   };
   /// The last choice.
   struct Chosen {
-    std::shared_ptr<RunningError> error;  // what its views lose; none where levels are not chosen by dB
-    bool is_limited = false;              // more is needed than the request allowed to read
-    std::size_t here = 0;                 // as in the request, like `at`
+    std::shared_ptr<RunningError> error;  // of its views; null if levels are not chosen by dB
+    bool is_limited = false;              // the request needs more than it allows to read
+    std::size_t here = 0;                 // as in the request, also `at`
     Clock::time_point at = {};
     Clock::time_point made_at = {};
   };
 
-  /// The files must outlive it. `there` has the level of each chunk that the model has already.
+  /// The files must outlive this object. `there` has the level of each chunk in the model.
   StreamWorker(const LodFiles& files, std::vector<std::size_t> there);
   StreamWorker(const StreamWorker&) = delete;
   StreamWorker& operator=(const StreamWorker&) = delete;
 
-  /// Replaces the request before. Does nothing once choosing or reading has thrown.
+  /// Replaces the previous request. Does nothing after an error.
   void request(Request request);
-  /// Takes pieces that were read, until they have `gaussians` Gaussians; none where none were read.
+  /// Returns chunks that were read, until they have `gaussians` Gaussians; empty if none are ready.
   std::vector<LodFiles::Piece> take(std::size_t gaussians);
-  /// Whether all that was requested has been taken.
+  /// Returns whether all requested chunks have been taken.
   bool is_idle() const;
   Chosen chosen() const;
-  /// Whether the choice that was requested last is still to be made.
+  /// Returns whether the last request still waits for its choice.
   bool is_choosing() const;
-  /// Throws what choosing or reading threw.
+  /// Rethrows an error of choosing or reading.
   void check() const;
 
  private:
@@ -65,16 +65,16 @@ class StreamWorker {
   const LodFiles& files_;
   Chooser chooser_;
 
-  mutable std::mutex mutex_;  // guards what follows
+  mutable std::mutex mutex_;  // guards the following members
   std::condition_variable_any changed_;
-  std::vector<std::size_t> there_;  // the chunks' levels in the model, by what was taken
+  std::vector<std::size_t> there_;  // levels of the chunks taken so far
   std::optional<Request> request_;
   bool is_at_work_ = false, is_choosing_ = false;
   std::deque<LodFiles::Piece> pieces_;
-  std::size_t waiting_ = 0;  // their Gaussians
+  std::size_t waiting_ = 0;  // Gaussians of pieces_
   Chosen chosen_;
   std::exception_ptr trouble_;
-  std::jthread thread_;  // last: it ends first
+  std::jthread thread_;  // last, so that it ends first
 };
 
 }  // namespace binosplat
