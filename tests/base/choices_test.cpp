@@ -10,8 +10,8 @@ namespace {
 TEST(Choices, AreFoundByTheirNames) {
   for (int k = 0; k < std::ssize(tiles_choices); ++k)
     EXPECT_EQ(find_choice("--tiles", tiles_choices[k].name, tiles_choices), k);
-  EXPECT_TRUE(test::fails_saying([] { find_choice("--precision", "hal", precision_choices); },
-                                 {"--precision: 'hal' is not one of full, half"}));
+  EXPECT_ERROR(find_choice("--precision", "hal", precision_choices),
+               "--precision: 'hal' is not one of full, half");
 }
 
 }  // namespace

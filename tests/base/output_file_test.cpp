@@ -172,8 +172,7 @@ TEST(OutputFile, NeedsPermission) {
   const test::TempFolder folder;
   fs::create_directory(folder / "locked");
   fs::permissions(folder / "locked", fs::perms::owner_read | fs::perms::owner_exec);
-  EXPECT_TRUE(fails_saying([&] { const OutputFile file(folder / "locked/out.txt"); },
-                           {"out.txt", "Permission denied"}));
+  EXPECT_ERROR(const OutputFile file(folder / "locked/out.txt"), "out.txt", "Permission denied");
   fs::permissions(folder / "locked", fs::perms::owner_all);
 }
 
@@ -187,7 +186,7 @@ TEST(OutputFile, SaysThatTheDiskIsFull) {
   // Less than the buffer (found when closing), and more (found when writing).
   for (const std::size_t room : {1000u, 100000u}) {
     const test::FullDisk disk(room);
-    EXPECT_TRUE(fails_saying([&] { write(room + 1); }, {"cannot write", "out: File too large"}));
+    EXPECT_ERROR(write(room + 1), "cannot write", "out: File too large");
     EXPECT_EQ(folder.names(), Names{});
     write(room);
     EXPECT_EQ(fs::file_size(folder / "out"), room);

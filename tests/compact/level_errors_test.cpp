@@ -95,15 +95,6 @@ TEST(LevelErrors, WhatAPartOfOneColourNoLongerCoversIsLost) {
   EXPECT_LT(level_errors(test::gl_context(), parts)[0].of_level[1][0][0], 0.01 * expected);
 }
 
-TEST(LevelErrors, FaultsAreNoticed) {
-  const std::vector<std::vector<Model>> parts = {
-      {test::random_model(1, 300, 1), test::random_model(2, 150, 1)}};
-  const auto right = level_errors(test::gl_context(), parts);
-  EXPECT_EQ(level_errors(test::gl_context(), parts)[0].of_level, right[0].of_level) << "the same again";
-  const test::FaultyShaders faulty("pixels.glsl", "inside ? float(TRANSMITTANCE_MIN)", "inside ? 0.05");
-  EXPECT_NE(level_errors(test::gl_context(), parts)[0].of_level, right[0].of_level);
-}
-
 TEST(LevelErrors, OfManyPartsAreThoseOfEachAlone) {
   std::vector<std::vector<Model>> parts;
   for (unsigned seed = 0; seed < 30; ++seed)

@@ -35,7 +35,7 @@ TEST(Context, TwoLiveOnesKeepTheirOwnPrograms) {
 }
 
 TEST(Context, ADeviceThatIsNotThereIsNamed) {
-  EXPECT_TRUE(test::fails_saying([] { Context::open(Backend::device, 99); }, {"--device 99"}));
+  EXPECT_ERROR(Context::open(Backend::device, 99), "--device 99");
 }
 
 TEST(Context, ABackendThatCannotBeSaysWhatWasTried) {

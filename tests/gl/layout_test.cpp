@@ -58,144 +58,62 @@ std::map<std::string, int> driver_offsets(const std::string& type, Block block =
 }
 
 using Offsets = std::map<std::string, int>;
+
+// The offsets that C++ has: AT for each member of a list, however long it is.
 #define AT(type, member) \
   { #member, static_cast < int>(offsetof(shared::type, member)) }
-#define STRIDE(type) \
-  { "", static_cast<int>(sizeof(shared::type)) }
+#define AGAIN_4(...) AGAIN_3(AGAIN_3(AGAIN_3(AGAIN_3(__VA_ARGS__))))
+#define AGAIN_3(...) AGAIN_2(AGAIN_2(AGAIN_2(AGAIN_2(__VA_ARGS__))))
+#define AGAIN_2(...) AGAIN_1(AGAIN_1(AGAIN_1(AGAIN_1(__VA_ARGS__))))
+#define AGAIN_1(...) __VA_ARGS__
+#define NO_ARGUMENTS ()
+#define EACH_AT(type, member, ...) AT(type, member) __VA_OPT__(, NEXT_AT NO_ARGUMENTS(type, __VA_ARGS__))
+#define NEXT_AT() EACH_AT
+#define OFFSETS_OF(type, ...)                                                           \
+  Offsets {                                                                             \
+    AGAIN_4(EACH_AT(type, __VA_ARGS__)), { "", static_cast<int>(sizeof(shared::type)) } \
+  }
 
-TEST(Layout, ViewIsWhereTheDriverPutsIt) {
-  const Offsets expected = {AT(View, row_x),
-                            AT(View, row_y),
-                            AT(View, row_z),
-                            AT(View, anchor),
-                            AT(View, eye),
-                            AT(View, lens),
-                            AT(View, slopes),
-                            AT(View, centre),
-                            AT(View, width),
-                            AT(View, height),
-                            AT(View, tiles_x),
-                            AT(View, tiles_y),
-                            AT(View, supertile_offset),
-                            AT(View, pixel_offset),
-                            AT(View, order_group),
-                            AT(View, pitch),
-                            AT(View, shift_x),
-                            AT(View, shift_y),
-                            AT(View, is_probe),
-                            AT(View, left),
-                            AT(View, top),
-                            AT(View, first_row),
-                            AT(View, tolerance_share),
-                            AT(View, low_pass_share),
-                            AT(View, lists_shift),
-                            AT(View, unused_1),
-                            AT(View, unused_2),
-                            AT(View, unused_3),
-                            STRIDE(View)};
-  EXPECT_EQ(driver_offsets("View"), expected);
-}
-
-TEST(Layout, FrameParametersAreWhereTheDriverPutsThem) {
-  const Offsets expected = {AT(FrameParameters, background),
-                            AT(FrameParameters, tolerance),
-                            AT(FrameParameters, far),
-                            AT(FrameParameters, depth_bins),
-                            AT(FrameParameters, has_bounds),
-                            AT(FrameParameters, view_count),
-                            AT(FrameParameters, asked),
-                            AT(FrameParameters, probed),
-                            AT(FrameParameters, gaussian_count),
-                            AT(FrameParameters, slots),
-                            AT(FrameParameters, tile_count),
-                            AT(FrameParameters, list_per_view),
-                            AT(FrameParameters, has_regions),
-                            AT(FrameParameters, offset_count),
-                            AT(FrameParameters, views_per_decoding),
-                            AT(FrameParameters, decoding_of_probe),
-                            AT(FrameParameters, anchor_cull),
-                            AT(FrameParameters, depth_slack),
-                            AT(FrameParameters, unused_1),
-                            AT(FrameParameters, unused_2),
-                            AT(FrameParameters, unused_3),
-                            STRIDE(FrameParameters)};
-  EXPECT_EQ(driver_offsets("FrameParameters"), expected);
-  Offsets in_block = expected;  // of a frame there is one
-  in_block[""] = 0;
-  EXPECT_EQ(driver_offsets("FrameParameters", Block::uniform), in_block);
-}
-
-TEST(Layout, GaussianAndSplatAreWhereTheDriverPutsThem) {
-  const Offsets gaussian = {AT(Gaussian, position), AT(Gaussian, rotation), AT(Gaussian, scale),
-                            STRIDE(Gaussian)};
-  EXPECT_EQ(driver_offsets("Gaussian"), gaussian);
-  const Offsets splat = {AT(Splat, mean),  AT(Splat, depth),  AT(Splat, opacity),
-                         AT(Splat, conic), AT(Splat, colour), STRIDE(Splat)};
-  EXPECT_EQ(driver_offsets("Splat"), splat);
-}
-
-TEST(Layout, PlacedRayIsWhereTheDriverPutsIt) {
-  const Offsets ray = {AT(PlacedRay, pixel), AT(PlacedRay, place), AT(PlacedRay, unused), STRIDE(PlacedRay)};
-  EXPECT_EQ(driver_offsets("PlacedRay"), ray);
-}
-
-TEST(Layout, MeshSourceIsWhereTheDriverPutsIt) {
-  const Offsets source = {AT(MeshSource, step),     AT(MeshSource, left),       AT(MeshSource, top),
-                          AT(MeshSource, level),    AT(MeshSource, is_inverse), AT(MeshSource, scale),
-                          AT(MeshSource, offset),   AT(MeshSource, nothing),    AT(MeshSource, unused_1),
-                          AT(MeshSource, unused_2), AT(MeshSource, unused_3),   STRIDE(MeshSource)};
-  EXPECT_EQ(driver_offsets("MeshSource"), source);
-}
-
-TEST(Layout, AnchorIsWhereTheDriverPutsIt) {
-  const Offsets anchor = {AT(Anchor, position), AT(Anchor, rotation), AT(Anchor, offset_scale),
-                          AT(Anchor, scale), STRIDE(Anchor)};
-  EXPECT_EQ(driver_offsets("Anchor"), anchor);
-}
-
-TEST(Layout, CountersAndDispatchArgumentsAreWhereTheDriverPutsThem) {
-  Offsets counters = {AT(Counters, visible),
-                      AT(Counters, order_wanted),
-                      AT(Counters, pairs),
-                      AT(Counters, tile_pairs),
-                      AT(Counters, overflow),
-                      AT(Counters, truncated_lists),
-                      AT(Counters, depths_low),
-                      AT(Counters, depths_high),
-                      AT(Counters, probe_low),
-                      AT(Counters, probe_high),
-                      AT(Counters, probe_squares_low),
-                      AT(Counters, probe_squares_high),
-                      AT(Counters, long_lists),
-                      AT(Counters, long_x),
-                      AT(Counters, long_y),
-                      AT(Counters, long_z),
-                      AT(Counters, large),
-                      AT(Counters, large_x),
-                      AT(Counters, large_y),
-                      AT(Counters, large_z),
-                      AT(Counters, large_entries),
-                      AT(Counters, fill_x),
-                      AT(Counters, fill_y),
-                      AT(Counters, fill_z),
-                      AT(Counters, slabs),
-                      AT(Counters, unused_1),
-                      AT(Counters, unused_2),
-                      AT(Counters, unused_3),
-                      STRIDE(Counters)};
+Offsets offsets_of_counters() {
+  Offsets counters = OFFSETS_OF(
+      Counters, visible, order_wanted, pairs, tile_pairs, overflow, truncated_lists, depths_low, depths_high,
+      probe_low, probe_high, probe_squares_low, probe_squares_high, long_lists, long_x, long_y, long_z, large,
+      large_x, large_y, large_z, large_entries, fill_x, fill_y, fill_z, slabs, unused_1, unused_2, unused_3);
   for (std::size_t kind = 0; kind < SORT_KINDS; ++kind) {
     const int at = static_cast<int>(offsetof(shared::Counters, lists) + kind * sizeof(shared::ListCount));
     const std::string name = fmt::format("lists[{}].", kind);
     for (int n = 0; const char* member : {"count", "groups_x", "groups_y", "groups_z"})
       counters[name + member] = at + 4 * n++;
   }
-  EXPECT_EQ(driver_offsets("Counters"), counters);
-  const Offsets arguments = {
-      AT(DispatchArguments, count),     AT(DispatchArguments, threads_x), AT(DispatchArguments, threads_y),
-      AT(DispatchArguments, threads_z), AT(DispatchArguments, bin_x),     AT(DispatchArguments, bin_y),
-      AT(DispatchArguments, bin_z),     AT(DispatchArguments, unused),    STRIDE(DispatchArguments)};
-  EXPECT_EQ(driver_offsets("DispatchArguments"), arguments);
-  Offsets wrong = arguments;  // the comparison sees a member out of place
+  return counters;
+}
+
+const std::map<std::string, Offsets> shared_structs = {
+    {"View",
+     OFFSETS_OF(View, row_x, row_y, row_z, anchor, eye, lens, slopes, centre, width, height, tiles_x, tiles_y,
+                supertile_offset, pixel_offset, order_group, pitch, shift_x, shift_y, is_probe, left, top,
+                first_row, tolerance_share, low_pass_share, lists_shift, unused_1, unused_2, unused_3)},
+    {"FrameParameters",
+     OFFSETS_OF(FrameParameters, background, tolerance, far, depth_bins, has_bounds, view_count, asked,
+                probed, gaussian_count, slots, tile_count, list_per_view, has_regions, offset_count,
+                views_per_decoding, decoding_of_probe, anchor_cull, depth_slack, unused_1, unused_2,
+                unused_3)},
+    {"Gaussian", OFFSETS_OF(Gaussian, position, rotation, scale)},
+    {"Splat", OFFSETS_OF(Splat, mean, depth, opacity, conic, colour)},
+    {"PlacedRay", OFFSETS_OF(PlacedRay, pixel, place, unused)},
+    {"MeshSource", OFFSETS_OF(MeshSource, step, left, top, level, is_inverse, scale, offset, nothing,
+                              unused_1, unused_2, unused_3)},
+    {"Anchor", OFFSETS_OF(Anchor, position, rotation, offset_scale, scale)},
+    {"DispatchArguments",
+     OFFSETS_OF(DispatchArguments, count, threads_x, threads_y, threads_z, bin_x, bin_y, bin_z, unused)},
+    {"Counters", offsets_of_counters()}};
+
+TEST(Layout, MembersAreWhereTheDriverPutsThem) {
+  for (const auto& [type, offsets] : shared_structs) EXPECT_EQ(driver_offsets(type), offsets) << type;
+  Offsets in_block = shared_structs.at("FrameParameters");  // of a frame there is one
+  in_block[""] = 0;
+  EXPECT_EQ(driver_offsets("FrameParameters", Block::uniform), in_block);
+  Offsets wrong = shared_structs.at("DispatchArguments");  // planted: a member out of place
   wrong["bin_x"] += 4;
   EXPECT_NE(driver_offsets("DispatchArguments"), wrong);
 }

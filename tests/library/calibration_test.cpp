@@ -106,20 +106,17 @@ TEST_F(CalibrationTest, RefusesWhatItIsNotFor) {
   const Calibration read = calibration();
   Settings asked = adagscale;
   asked.transmittance = Transmittance::all;
-  EXPECT_TRUE(test::fails_saying([&] { read.settings(views(), placement, asked); },
-                                 {"c.json", "no entry for threshold peripheral"}));
+  EXPECT_ERROR(read.settings(views(), placement, asked), "c.json", "no entry for threshold peripheral");
   asked = adagscale;
   asked.projection = Projection::tangent;
-  EXPECT_TRUE(test::fails_saying([&] { read.settings(views(), placement, asked); }, {"tangent"}));
-  EXPECT_TRUE(test::fails_saying([&] { read.settings({}, placement); }, {"views"}));
+  EXPECT_ERROR(read.settings(views(), placement, asked), "tangent");
+  EXPECT_ERROR(read.settings({}, placement), "views");
   model.opacity[0] *= 0.5f;
-  EXPECT_TRUE(
-      test::fails_saying([&] { Calibration(folder / "c.json", in_memory(model)); }, {"another model"}));
+  EXPECT_ERROR(Calibration(folder / "c.json", in_memory(model)), "another model");
   Renderer renderer(caller.get_proc_address(), in_memory(model));
   asked = adagscale;
   asked.tolerance = 1.0f;
-  EXPECT_TRUE(
-      test::fails_saying([&] { renderer.draw(views(), placement, asked); }, {"needs settings.depth_table"}));
+  EXPECT_ERROR(renderer.draw(views(), placement, asked), "needs settings.depth_table");
 }
 
 }  // namespace

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <functional>
 #include <limits>
 
@@ -96,9 +95,8 @@ struct Meshes : Library {
     } else {
       caller.TextureSubImage3D(id, 0, 0, 0, layer, size.x, size.y, 1, layout, type, data);
     }
-    caller.GetTextureSubImage(id, 0, 0, 0, std::max(layer, 0), size.x, size.y, 1,
-                              kept.format == GL_R32F ? GL_RED : GL_DEPTH_COMPONENT, GL_FLOAT,
-                              static_cast<GLsizei>(4 * plain.size()), plain.data());
+    plain = caller.read<float>(id, size.x, size.y, std::max(layer, 0),
+                               kept.format == GL_R32F ? GL_RED : GL_DEPTH_COMPONENT);
     read.clear();
     for (int y = size.y - 1; y >= 0; --y) {
       for (int x = 0; x < size.x; ++x) read.push_back(kept.depth_of(plain[place(x, y)]));
@@ -177,13 +175,6 @@ TEST_F(Meshes, HideWhatIsBehindThem) {
     std::rotate(depths.begin(), depths.begin() + 1, depths.end());
   };
   EXPECT_LT(against_twin(renderer, views(), {}, kept, -1, one_pixel_off), floor_db);
-  const auto otherwise_coded = [](std::vector<double>& depths) {
-    for (double& z : depths)
-      z = Kept{.coding = planes(0.1, 100.0)}.depth_of(Kept{.coding = planes(0.1, inf)}.number_of(z));
-  };
-  EXPECT_LT(against_twin(renderer, views(), {}, kept, -1, otherwise_coded), floor_db);
-  const auto none = [](std::vector<double>& depths) { std::fill(depths.begin(), depths.end(), inf); };
-  EXPECT_LT(against_twin(renderer, views(), {}, kept, -1, none), floor_db);
 }
 
 TEST_F(Meshes, OfEveryCodingAndFormat) {
@@ -217,12 +208,7 @@ TEST_F(Meshes, WhereverPicturesGo) {
   for (View& view : copied) view.target.in_place = false;
   EXPECT_GT(against_twin(renderer, copied, {}, kept), floor_db);
   std::vector<View> framed = views();
-  for (std::size_t k = 0; k < 2; ++k) {
-    std::uint32_t framebuffer = 0;
-    caller.gl.CreateFramebuffers(1, &framebuffer);
-    caller.gl.NamedFramebufferTexture(framebuffer, GL_COLOR_ATTACHMENT0, textures[k], 0);
-    framed[k].target = {.framebuffer = framebuffer};
-  }
+  for (std::size_t k = 0; k < 2; ++k) framed[k].target = {.framebuffer = caller.framebuffer(textures[k])};
   EXPECT_GT(against_twin(renderer, framed, {}, kept), floor_db);
   // By a quality: frames that measure their error, and others.
   for (int n = 0; n < 3; ++n) EXPECT_GT(against_twin(renderer, views(), {.quality = 45.0f}, kept), 42.0);
@@ -268,9 +254,7 @@ TEST_F(Meshes, DepthsThatAreWrittenAreTheNearer) {
       reference::Settings of{.perspective = Perspective{ORDER_DEPTH, static_cast<int>(projection)},
                              .mesh_depths = {depths[0].begin(), depths[0].end()}};
       const Picture picture = reference::render(model, drawn[0], of);
-      std::vector<float> written(depths[0].size());
-      caller.GetTextureSubImage(pair[0].depth->texture, 0, 0, 0, 0, size.x, size.y, 1, GL_DEPTH_COMPONENT,
-                                GL_FLOAT, static_cast<GLsizei>(4 * written.size()), written.data());
+      const std::vector<float> written = read_depths(pair[0].depth->texture);
       int wrong = 0, of_meshes = 0;
       for (int y = 0; y < size.y; ++y) {
         for (int x = 0; x < size.x; ++x) {
@@ -311,7 +295,7 @@ TEST_F(Meshes, ThatCannotBeReadAreRefused) {
   EXPECT_TRUE(refused(sound, "measured", {.tolerance = 1.0f, .transmittance = Transmittance::measured}));
   std::vector<View> pair = views();
   pair[0].mesh_depth = sound;
-  EXPECT_TRUE(test::fails_saying([&] { renderer.draw(pair, placement); }, {"1 of 2 views"}));
+  EXPECT_ERROR(renderer.draw(pair, placement), "1 of 2 views");
   pair[1].mesh_depth = pair[0].mesh_depth;
   EXPECT_GT(renderer.draw(pair, placement).pairs, 0u) << "the good one is refused, too";
 }

@@ -166,7 +166,7 @@ TEST_F(Contexts, WithADefaultFramebuffer) {
   EXPECT_GT(renderer.draw(one, placement, over_black).pairs, 0u);
   EXPECT_TRUE(renderer.draw(one, placement, over_black).callers_errors.empty());
   one[0].target.x = -1;
-  EXPECT_TRUE(test::fails_saying([&] { renderer.draw(one, placement); }, {"views[0].target", "-1, 0"}));
+  EXPECT_ERROR(renderer.draw(one, placement), "views[0].target", "-1, 0");
   make_current(display, nullptr, nullptr, context);
   function<unsigned(void*, void*)>("eglDestroySurface")(display, surface);
 }

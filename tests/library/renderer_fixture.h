@@ -52,6 +52,10 @@ struct Library : testing::Test {
   }
   std::vector<float> read(std::size_t eye) const { return caller.read<float>(textures[eye], size.x, size.y); }
 
+  std::vector<float> read_depths(std::uint32_t id, int layer = 0) const {
+    return caller.read_depths(id, size.x, size.y, layer);
+  }
+
   /// A function of the driver's.
   template <typename F>
   F* function(const char* name) const {

@@ -257,22 +257,13 @@ struct Textures {
       : colours{caller.texture(GL_RGBA32F, 40, 32), caller.texture(GL_RGB8, 40, 32)},
         depths{caller.texture(GL_DEPTH_COMPONENT32F, 40, 32), caller.texture(GL_DEPTH_COMPONENT24, 20, 16)} {
     targets[0].texture = colours[0];
-    caller.gl.CreateFramebuffers(1, &targets[1].framebuffer);
-    caller.gl.NamedFramebufferTexture(targets[1].framebuffer, GL_COLOR_ATTACHMENT0, colours[1], 0);
+    targets[1].framebuffer = caller.framebuffer(colours[1]);
   }
   std::array<View, 2> views() const { return views_into(targets); }
   std::array<View, 2> views_with_depths() const {
     std::array<View, 2> both = views();
     for (std::size_t k = 0; k < 2; ++k) both[k].depth = {.texture = depths[k]};
     return both;
-  }
-  static std::vector<float> read_depths(const test::Caller& caller, std::uint32_t id) {
-    std::vector<float> all(40 * 32);
-    caller.gl.BindBuffer(GL_PIXEL_PACK_BUFFER, 0);
-    caller.PixelStorei(GL_PACK_ALIGNMENT, 4);
-    caller.GetTextureSubImage(id, 0, 0, 0, 0, 40, 32, 1, GL_DEPTH_COMPONENT, GL_FLOAT, 4 * 40 * 32,
-                              all.data());
-    return all;
   }
 };
 
@@ -285,7 +276,7 @@ TEST_F(State, IsTheSameAfterAFrame) {
   const Textures odd(caller);
   const auto drawn = changed_by([&] { renderer->draw(odd.views_with_depths(), {}, over_black); });
   EXPECT_EQ(drawn, Names());
-  const std::vector<float> depths = Textures::read_depths(caller, odd.depths[0]);
+  const std::vector<float> depths = caller.read_depths(odd.depths[0], 40, 32);
   auto in_place = odd.views_with_depths();
   in_place[1].target = {.texture = caller.texture(GL_SRGB8_ALPHA8, 40, 32)};
   EXPECT_EQ(changed_by([&] { EXPECT_TRUE(renderer->draw(in_place, {}).in_place); }), Names());
@@ -310,7 +301,7 @@ TEST_F(State, IsTheSameAfterAFrame) {
   Renderer other(plain_caller.get_proc_address(), model);
   const Textures plain(plain_caller);
   other.draw(plain.views_with_depths(), {}, over_black);
-  EXPECT_EQ(Textures::read_depths(plain_caller, plain.depths[0]), depths);
+  EXPECT_EQ(plain_caller.read_depths(plain.depths[0], 40, 32), depths);
   EXPECT_LT(*std::min_element(depths.begin(), depths.end()), 0.9f) << "no depth was drawn";
   other.draw(plain.views(), {});
   EXPECT_EQ(plain_caller.read<float>(plain.colours[0], 40, 32), odd_picture);

@@ -84,8 +84,8 @@ TEST(FindTolerance, EndsAtItsLimits) {
 
 TEST(FindTolerance, SaysWhatCannotBe) {
   const auto bad = [](double) { return 30.0; };
-  EXPECT_TRUE(test::fails_saying([&] { find_tolerance(bad, 40.0); }, {"no tolerance reaches 40", "30"}));
-  EXPECT_TRUE(test::fails_saying([&] { find_tolerance(bad, 40.0, {.start = 0.0}); }, {"above 0"}));
+  EXPECT_ERROR(find_tolerance(bad, 40.0), "no tolerance reaches 40", "30");
+  EXPECT_ERROR(find_tolerance(bad, 40.0, {.start = 0.0}), "above 0");
 }
 
 }  // namespace

@@ -189,13 +189,13 @@ TEST(KeyPath, KeysAreNoFrames) {
 
 TEST(KeyPath, WhatIsNoPathIsRefused) {
   const Cameras set = keys();
-  EXPECT_TRUE(test::fails_saying([&] { frames_of(KeyPath(std::span<const Camera>(set).first(1)), 30.0); },
-                                 {"two keys or more, and there is 1: set another"}));
-  EXPECT_TRUE(test::fails_saying([&] { KeyPath path(set, 0.0); }, {"expected more than 0"}));
+  EXPECT_ERROR(frames_of(KeyPath(std::span<const Camera>(set).first(1)), 30.0),
+               "two keys or more, and there is 1: set another");
+  EXPECT_ERROR(KeyPath path(set, 0.0), "expected more than 0");
   Cameras back = set;
   std::swap(back[1].time, back[2].time);
-  EXPECT_TRUE(test::fails_saying([&] { KeyPath path(back); }, {"say in how many seconds"}));
-  EXPECT_TRUE(test::fails_saying([&] { frames_of(KeyPath(set), 1e9); }, {"too many"}));
+  EXPECT_ERROR(KeyPath path(back), "say in how many seconds");
+  EXPECT_ERROR(frames_of(KeyPath(set), 1e9), "too many");
 }
 
 }  // namespace

@@ -43,23 +43,14 @@ TEST(Comfort, DisparityIsTheMethods) {
     EXPECT_NEAR(range->far_degrees, glm::degrees(comfort_ipd * (1.0 / 8.0 - inverse)), 0.1);
     EXPECT_GT(range->near_degrees, range->far_degrees);
   }
+  // A headset's optics focus somewhere, whatever the eyes' convergence.
+  const auto focused = disparity_range(rig_for_comfort(3.0).cameras, walls(), 2.5);
+  EXPECT_NEAR(focused->near_px, comfort_focal * comfort_ipd * (1.0 / 2.0 - 1.0 / 2.5), 1e-5);
+  EXPECT_TRUE(focused->near_degrees > 0.0 && focused->far_degrees < 0.0);
   // Swapped eyes turn the sign.
   EyePair pair = rig_for_comfort({});
   std::swap(pair.cameras[0], pair.cameras[1]);
   EXPECT_LT(disparity_range(pair.cameras, walls(), {})->near_px, 0.0);
-}
-
-TEST(Comfort, PixelsAndDegreesAgreeWhateverIsFocusedOn) {
-  for (const double focus : {1.0, 2.5, 4.0, 9.0}) {
-    // A headset's optics focus somewhere, whatever the eyes' convergence.
-    for (const std::optional<double> convergence : {std::optional<double>(), std::optional<double>(3.0)}) {
-      const auto range = disparity_range(rig_for_comfort(convergence).cameras, walls(), focus);
-      ASSERT_TRUE(range);
-      EXPECT_NEAR(range->near_px, comfort_focal * comfort_ipd * (1.0 / 2.0 - 1.0 / focus), 1e-5);
-      EXPECT_EQ(range->near_px > 0.0, range->near_degrees > 0.0) << focus;
-      EXPECT_EQ(range->far_px > 0.0, range->far_degrees > 0.0) << focus;
-    }
-  }
 }
 
 TEST(Comfort, CantedEyesHaveVerticalDisparity) {

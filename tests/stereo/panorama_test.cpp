@@ -97,16 +97,9 @@ TEST(Panoramas, ShowAlongEachRayWhatAnyCameraShowsThere) {
   const Picture wanted = expected_panorama(model, eyes_of_head()[1]);
   EXPECT_GE(psnr(drawn(model, {eyes_of_head()[1]})[0], wanted), 100.0);
   EXPECT_LE(psnr(drawn(model, {eyes_of_head()[0]})[0], wanted), 40.0) << "the other eye's place";
-  {
-    const test::FaultyShaders faulty("tiles/tiles.glsl", "#define REACH 0.5", "#define REACH 0.0");
-    EXPECT_LE(psnr(drawn(model, {eyes_of_head()[1]})[0], wanted), 80.0)
-        << "what lies between pixels' centres is lost";
-  }
-  {
-    const test::FaultyShaders faulty("blend_rays.comp", "nearness = 1.0 / (1.0 + dot(slope, slope))",
-                                     "nearness = 1.0");
-    EXPECT_LE(psnr(drawn(model, {eyes_of_head()[1]})[0], wanted), 40.0) << "projected otherwise";
-  }
+  const test::FaultyShaders faulty("tiles/tiles.glsl", "#define REACH 0.5", "#define REACH 0.0");
+  EXPECT_LE(psnr(drawn(model, {eyes_of_head()[1]})[0], wanted), 80.0)
+      << "what lies between pixels' centres is lost";
 }
 
 TEST(Panoramas, HaveAWholeSphereOfRaysAhead) {
@@ -170,8 +163,8 @@ TEST(Panoramas, TellDistances) {
 TEST(Panoramas, RefuseSizesThatAreNone) {
   const Model few = around(9, 10);
   const auto model = std::make_shared<render::GpuModel>(test::gl_context(), few);
-  EXPECT_TRUE(test::fails_saying([&] { Panorama(model, 41); }, {"41 x 41", "even"}));
-  EXPECT_TRUE(test::fails_saying([&] { Panorama(model, 0); }, {"from 2 to"}));
+  EXPECT_ERROR(Panorama(model, 41), "41 x 41", "even");
+  EXPECT_ERROR(Panorama(model, 0), "from 2 to");
 }
 
 }  // namespace

@@ -160,10 +160,8 @@ TEST_F(Present, ArraysAndRectanglesOfFramebuffers) {
   for (const auto& [format, bound] : {std::pair{GL_RGBA32F, 1e-6}, {GL_RGB8, 0.51 / 255}}) {
     const std::uint32_t texture =
         caller.texture(static_cast<GLenum>(format), 2 * present_width + 3, present_height + 5);
-    std::uint32_t framebuffer = 0;
-    caller.gl.CreateFramebuffers(1, &framebuffer);
-    caller.gl.NamedFramebufferTexture(framebuffer, GL_COLOR_ATTACHMENT0, texture, 0);
-    presenter.draw(frame, 0, LAYOUT_PARALLEL, {.framebuffer = framebuffer, .x = 2, .y = 4}, blue);
+    presenter.draw(frame, 0, LAYOUT_PARALLEL, {.framebuffer = caller.framebuffer(texture), .x = 2, .y = 4},
+                   blue);
     const auto pixels = caller.read<float>(texture, 2 * present_width + 3, present_height + 5);
     const Image expected = composite(lay_out(LAYOUT_PARALLEL, eyes[0], eyes[1], blue), blue);
     for (int y = 0; y < present_height + 5; ++y) {

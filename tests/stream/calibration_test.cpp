@@ -8,7 +8,6 @@
 #include <cmath>
 #include <set>
 
-#include "base/random.h"
 #include "scene/reduce.h"
 #include "support/models.h"
 

@@ -135,16 +135,7 @@ TEST(Visibility, IsWhatTheReferenceSees) {
     return count;
   };
   for (const std::uint32_t page : {0u, 10000u}) EXPECT_LE(differing(page), model.count() / 500);
-  {
-    const test::FaultyShaders faulty("blend_measure.glsl", "weight * transmittance[p] : 0.0", "weight : 0.0");
-    EXPECT_GT(differing(0), model.count() / 10);
-  }
-  {
-    const test::FaultyShaders faulty("blend_measure.glsl", "transmittance[p] >= float(VISIBILITY_LEAST)",
-                                     "transmittance[p] >= 0.2");
-    EXPECT_GT(differing(0), model.count() / 10);
-  }
-  const test::FaultyShaders faulty("parts_seen.comp", "views[v].anchor.xyz +", "0.5 +");
+  const test::FaultyShaders faulty("blend_measure.glsl", "weight * transmittance[p] : 0.0", "weight : 0.0");
   EXPECT_GT(differing(0), model.count() / 10);
 }
 
@@ -170,19 +161,6 @@ TEST(Visibility, IsTheSameWhateverSummedItUp) {
   context.use_subgroups(false);
   EXPECT_TRUE(is_usual(TILE_SIZE_DEFAULT));
   context.use_subgroups(true);
-  const auto misses = [&](const std::string& shader, const std::string& what, const std::string& instead) {
-    const test::FaultyShaders faulty(shader, what, instead);
-    return !is_usual(TILE_SIZE_DEFAULT);
-  };
-  if (context.software()) {
-    EXPECT_TRUE(misses("blend_blocks.comp", "clear_measured(i);", ""));
-    EXPECT_TRUE(
-        misses("blend_blocks.comp", "pass_on(values[batch + i], i)", "pass_on(values[begin + i], i)"));
-  } else if (context.limits().subgroups_of_32) {
-    EXPECT_TRUE(misses("blend_subgroups.comp", "clear_measured(self);\n#if", "\n#if"));
-    EXPECT_TRUE(misses("blend_subgroups.comp", "at_hand = value_at(batch + self)",
-                       "at_hand = value_at(begin + self)"));
-  }
   const test::FaultyShaders faulty("blend_measure.glsl", "atomicAdd(measured[2u * splat + 1u], high)",
                                    "high");
   EXPECT_FALSE(is_usual(32));

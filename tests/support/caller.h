@@ -94,16 +94,29 @@ struct Caller {
     return id;
   }
 
-  /// RGBA of a layer, rows from OpenGL's bottom.
+  /// One that draws into a texture.
+  std::uint32_t framebuffer(std::uint32_t of_texture) const {
+    std::uint32_t id = 0;
+    gl.CreateFramebuffers(1, &id);
+    gl.NamedFramebufferTexture(id, GL_COLOR_ATTACHMENT0, of_texture, 0);
+    return id;
+  }
+
+  /// RGBA of a layer, rows from OpenGL's bottom; or one number a pixel.
   template <typename T>
-  std::vector<T> read(std::uint32_t id, int width, int height, int layer = 0) const {
-    std::vector<T> pixels(4 * static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+  std::vector<T> read(std::uint32_t id, int width, int height, int layer = 0, GLenum what = GL_RGBA) const {
+    std::vector<T> pixels((what == GL_RGBA ? 4 : 1) * static_cast<std::size_t>(width) *
+                          static_cast<std::size_t>(height));
     gl.BindBuffer(GL_PIXEL_PACK_BUFFER, 0);
     PixelStorei(GL_PACK_ALIGNMENT, 1);
-    GetTextureSubImage(id, 0, 0, 0, layer, width, height, 1, GL_RGBA,
+    GetTextureSubImage(id, 0, 0, 0, layer, width, height, 1, what,
                        sizeof(T) == 4 ? GL_FLOAT : GL_UNSIGNED_BYTE,
                        static_cast<GLsizei>(pixels.size() * sizeof(T)), pixels.data());
     return pixels;
+  }
+
+  std::vector<float> read_depths(std::uint32_t id, int width, int height, int layer = 0) const {
+    return read<float>(id, width, height, layer, GL_DEPTH_COMPONENT);
   }
 
   CurrentAgain before;

@@ -32,3 +32,7 @@ testing::AssertionResult fails_saying(Action action, const std::vector<std::stri
 }
 
 }  // namespace binosplat::test
+
+/// Expects that a statement throws an Error, of bad input, whose text holds all of the parts behind it.
+#define EXPECT_ERROR(statement, ...) \
+  EXPECT_TRUE(::binosplat::test::fails_saying([&] { statement; }, {__VA_ARGS__}))
