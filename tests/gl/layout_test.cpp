@@ -89,15 +89,14 @@ Offsets offsets_of_counters() {
 }
 
 const std::map<std::string, Offsets> shared_structs = {
-    {"View",
-     OFFSETS_OF(View, row_x, row_y, row_z, anchor, eye, lens, slopes, centre, width, height, tiles_x, tiles_y,
-                supertile_offset, pixel_offset, order_group, pitch, shift_x, shift_y, is_probe, left, top,
-                first_row, tolerance_share, low_pass_share, lists_shift, unused_1, unused_2, unused_3)},
+    {"View", OFFSETS_OF(View, row_x, row_y, row_z, anchor, eye, lens, slopes, centre, width, height, tiles_x,
+                        tiles_y, supertile_offset, pixel_offset, order_group, pitch, shift_x, shift_y,
+                        is_probe, left, top, first_row, tolerance_share, low_pass_share, lists_shift, opacity,
+                        table_far, table_first, table_bins, unused_1, unused_2, unused_3)},
     {"FrameParameters",
-     OFFSETS_OF(FrameParameters, background, tolerance, far, depth_bins, has_bounds, view_count, asked,
-                probed, gaussian_count, slots, tile_count, list_per_view, has_regions, offset_count,
-                views_per_decoding, decoding_of_probe, anchor_cull, depth_slack, unused_1, unused_2,
-                unused_3)},
+     OFFSETS_OF(FrameParameters, background, tolerance, has_bounds, view_count, asked, probed, gaussian_count,
+                slots, tile_count, list_per_view, has_regions, offset_count, views_per_decoding,
+                decoding_of_probe, anchor_cull, depth_slack, unused)},
     {"Gaussian", OFFSETS_OF(Gaussian, position, rotation, scale)},
     {"Splat", OFFSETS_OF(Splat, mean, depth, opacity, conic, colour)},
     {"PlacedRay", OFFSETS_OF(PlacedRay, pixel, place, unused)},
