@@ -111,8 +111,7 @@ TEST(Cameras, ErrorsOfTheWholeFile) {
       {wide + "]", {"camera 0", "expected an object"}},
   };
   test::expect_no_cameras("cameras.json", refusals);
-  EXPECT_TRUE(
-      test::fails_saying([] { load_cameras("/nowhere/cameras.json"); }, {"/nowhere", "No such file"}));
+  EXPECT_ERROR(load_cameras("/nowhere/cameras.json"), "/nowhere", "No such file");
 }
 
 TEST(Cameras, AreFoundBesideTheModel) {

@@ -70,8 +70,8 @@ TEST(Colmap, LensesAgreeWithAnIndependentReader) {
     copy.write(images.substr(at, images.find('\n', at) + 1 - at) + "\n", "images.txt");
     const int model = expected["model_id"];
     if (is_fisheye(model)) {
-      EXPECT_TRUE(test::fails_saying([&] { load_cameras(copy.path()); },
-                                     {"cameras.txt: camera", "is no pinhole's", "colmap image_undistorter"}));
+      EXPECT_ERROR(load_cameras(copy.path()), "cameras.txt: camera", "is no pinhole's",
+                   "colmap image_undistorter");
       continue;
     }
     testing::internal::CaptureStderr();
@@ -99,8 +99,7 @@ TEST(Colmap, IsFoundBesideTheModel) {
   fs::create_directories(temporary / "scene/sparse/0");
   fs::create_directories(temporary / "scene/images");
   EXPECT_FALSE(find_cameras(temporary / "scene/model.ply").has_value());
-  EXPECT_TRUE(
-      test::fails_saying([&] { load_cameras(temporary / "scene"); }, {"is a folder without cameras.json"}));
+  EXPECT_ERROR(load_cameras(temporary / "scene"), "is a folder without cameras.json");
   for (const char* name : {"cameras.bin", "images.bin"})
     fs::copy(folder / "cameras/colmap-real/bin" / name, temporary / "scene/sparse/0");
   EXPECT_EQ(find_cameras(temporary / "scene/model.ply"), temporary / "scene/sparse/0");

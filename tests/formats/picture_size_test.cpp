@@ -4,7 +4,6 @@
 
 #include "formats/exr.h"
 #include "formats/image_file.h"
-#include "support/broken.h"
 #include "support/errors.h"
 #include "support/jpeg.h"
 #include "support/models.h"
@@ -67,7 +66,7 @@ TEST_F(PictureSize, WhatIsCutShortIsFound) {
   for (const std::string& good : files) {
     for (std::size_t left = 4; left + 2 < good.size(); left += left < 200 ? 3 : 211) {
       const std::string cut = good.substr(0, left);
-      EXPECT_TRUE(test::fails_saying([&] { size_of(cut); }, {"picture"})) << left << " of " << good.size();
+      EXPECT_ERROR(size_of(cut), "picture") << left << " of " << good.size();
       // What is cut between its scans libjpeg may show, with a warning.
       if (&good == &files[2]) continue;
       EXPECT_TRUE(refused(cut, {"picture"})) << left << " of " << good.size();
@@ -82,7 +81,7 @@ TEST_F(PictureSize, WhatIsCutShortIsFound) {
   const std::string both = jpeg.substr(0, 2) + note + jpeg.substr(2);
   EXPECT_EQ(size_of(both), glm::ivec2(40, 30));
   EXPECT_EQ(size_of(both + "what some cameras write behind it"), glm::ivec2(40, 30));
-  EXPECT_TRUE(test::fails_saying([&] { size_of(both.substr(0, both.size() - 100)); }, {"cut short"}));
+  EXPECT_ERROR(size_of(both.substr(0, both.size() - 100)), "cut short");
 }
 
 TEST_F(PictureSize, WhatIsNoPictureIsNamed) {
@@ -94,8 +93,8 @@ TEST_F(PictureSize, WhatIsNoPictureIsNamed) {
   EXPECT_TRUE(refused("\x89PNG\r\n\x1a\n", {"broken PNG"}));
   EXPECT_TRUE(refused("\xff\xd8\xff\xe0", {"broken JPEG"}));
   EXPECT_TRUE(refused("\x76\x2f\x31\x01", {"broken OpenEXR"}));
-  EXPECT_TRUE(test::fails_saying([&] { picture_size(folder / "missing.png"); }, {"missing.png"}));
-  EXPECT_TRUE(test::fails_saying([] { load_image("/nowhere/a.png"); }, {"/nowhere/a.png", "No such file"}));
+  EXPECT_ERROR(picture_size(folder / "missing.png"), "missing.png");
+  EXPECT_ERROR(load_image("/nowhere/a.png"), "/nowhere/a.png", "No such file");
 }
 
 }  // namespace

@@ -21,9 +21,8 @@ using test::replaced;
 
 TEST(PlyErrors, TheFileItself) {
   const test::TempFolder folder;
-  EXPECT_TRUE(test::fails_saying([&] { load_model(folder / "none.ply"); }, {"none.ply", "No such file"}));
-  EXPECT_TRUE(test::fails_saying([&] { load_model(folder.path()); },
-                                 {"is a folder without a model", "lod-meta.json", "point_cloud.ply"}));
+  EXPECT_ERROR(load_model(folder / "none.ply"), "none.ply", "No such file");
+  EXPECT_ERROR(load_model(folder.path()), "is a folder without a model", "lod-meta.json", "point_cloud.ply");
 }
 
 TEST(PlyErrors, CutShort) {

@@ -64,20 +64,10 @@ TEST(ScaffoldFile, EveryKindIsReadBack) {
     const Scaffold written = test::random_scaffold(3, kind);
     test::write_scaffold(folder.path(), written);
     EXPECT_TRUE(same(*load_scaffold(folder / "point_cloud.ply"), written)) << kind.offsets;
+    Scaffold fault = written;
+    fault.scale.swap(fault.offset_scale);
+    EXPECT_FALSE(same(fault, written)) << kind.offsets;
   }
-}
-
-TEST(ScaffoldFile, PlantedFaultsAreSeen) {
-  const Scaffold written = test::random_scaffold(3);
-  Scaffold fault = written;
-  std::swap(fault.offset[0], fault.offset[1]);
-  EXPECT_FALSE(same(fault, written));
-  fault = written;
-  fault.scale.swap(fault.offset_scale);
-  EXPECT_FALSE(same(fault, written));
-  fault = written;
-  std::swap(fault.colour.first, fault.opacity.first);
-  EXPECT_FALSE(same(fault, written));
 }
 
 TEST(ScaffoldFile, ColumnsAreFoundByNameAndEntriesMayBeCompressed) {
@@ -106,9 +96,9 @@ TEST(ScaffoldFile, AppearancesAreChosenByRow) {
   Scaffold scaffold = test::random_scaffold(1, {.appearances = 3});
   choose_appearance(scaffold, 2);
   EXPECT_EQ(scaffold.appearance, 2u);
-  EXPECT_TRUE(test::fails_saying([&] { choose_appearance(scaffold, 3); }, {"appearance 3", "0 to 2"}));
+  EXPECT_ERROR(choose_appearance(scaffold, 3), "appearance 3", "0 to 2");
   Scaffold without = test::random_scaffold(1);
-  EXPECT_TRUE(test::fails_saying([&] { choose_appearance(without, 0); }, {"without appearances"}));
+  EXPECT_ERROR(choose_appearance(without, 0), "without appearances");
 }
 
 TEST(ScaffoldFile, TheTrainersOwnFiles) {

@@ -39,10 +39,8 @@ TEST(Sog, LevelsOfDetail) {
   const Model level = load_model(lod, {.lod = 1});
   ASSERT_EQ(level.count(), 250u);
   EXPECT_TRUE(equal_from(level, 0, coarse));
-  EXPECT_TRUE(test::fails_saying([&] { load_model(lod, {.lod = 2}); },
-                                 {"level of detail 2", "lod-meta.json", "0 to 1"}));
-  EXPECT_TRUE(test::fails_saying([&] { load_model(lod / "0_0", {.lod = 0}); },
-                                 {"level of detail 0", "no levels of detail"}));
+  EXPECT_ERROR(load_model(lod, {.lod = 2}), "level of detail 2", "lod-meta.json", "0 to 1");
+  EXPECT_ERROR(load_model(lod / "0_0", {.lod = 0}), "level of detail 0", "no levels of detail");
 }
 
 TEST(Sog, PartsOfLevelsAndTheEnvironment) {
@@ -107,13 +105,11 @@ TEST(Sog, LevelsThatAreNotThere) {
   const std::string said = testing::internal::GetCapturedStderr();
   EXPECT_NE(said.find("0_0/meta.json is missing); level 5 is drawn"), std::string::npos) << said;
   EXPECT_EQ(load_model(copy.path(), {.lod = 6}).count(), 1873u);
-  EXPECT_TRUE(test::fails_saying(
-      [&] { load_model(copy.path(), {.lod = 3}); },
-      {"level of detail 3", "3_0/meta.json is missing", "finest level that is there is 5"}));
+  EXPECT_ERROR(load_model(copy.path(), {.lod = 3}), "level of detail 3", "3_0/meta.json is missing",
+               "finest level that is there is 5");
   fs::remove_all(copy.path() / "5_0");
   fs::remove_all(copy.path() / "6_0");
-  EXPECT_TRUE(test::fails_saying([&] { load_model(copy.path()); },
-                                 {"lod-meta.json", "no level of detail is complete"}));
+  EXPECT_ERROR(load_model(copy.path()), "lod-meta.json", "no level of detail is complete");
 }
 
 /// Expects that a copy of a folder is refused with other bytes in the place of a file's.
@@ -210,7 +206,7 @@ TEST(SogErrors, Pictures) {
     expect_refused_with(sog, name,
                         {{bytes.substr(0, bytes.size() / 2), {"meta.json", "damaged or cut short"}}});
     fs::remove(copy.path() / name);
-    EXPECT_TRUE(test::fails_saying([&] { load_model(copy.path()); }, {"meta.json", name, "is missing"}));
+    EXPECT_ERROR(load_model(copy.path()), "meta.json", name, "is missing");
   }
 }
 

@@ -55,8 +55,7 @@ TEST(Transforms, SizesComeFromThePictureBeside) {
   const test::TempFolder temporary;
   const fs::path file = temporary / "transforms_train.json";
   fs::copy(folder / "cameras/blender-lego-transforms_train.json", file);
-  EXPECT_TRUE(test::fails_saying([&] { load_cameras(file); },
-                                 {"key 'frames[0]'", "no w and h, and no picture", "train/r_0"}));
+  EXPECT_ERROR(load_cameras(file), "key 'frames[0]'", "no w and h, and no picture", "train/r_0");
   save_png((fs::create_directories(temporary / "train"), temporary / "train/r_0.png"), Image(80, 60, 3));
   const Camera camera = load_cameras(file)[0];
   EXPECT_EQ(camera.width, 80);

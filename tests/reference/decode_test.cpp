@@ -4,21 +4,60 @@
 #include "reference/decode.h"
 
 #include <gtest/gtest.h>
+#include <zip.h>
 
+#include <cstring>
 #include <fstream>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <stdexcept>
 
 #include "formats/scaffold_file.h"
 #include "reference/trained.h"
 #include "support/fixtures.h"
 #include "support/models.h"
-#include "support/npz.h"
 #include "support/scaffold.h"
 
 namespace binosplat::reference {
 namespace {
 
 namespace fs = std::filesystem;
+
+// NumPy's .npz archives, as far as the fixture needs them: arrays of float32 or bool.
+
+/// An array's elements, flat, in C order.
+std::vector<float> parse_npy(const std::string& bytes) {
+  if (bytes.size() < 10 || bytes.substr(1, 5) != "NUMPY") throw std::runtime_error("no .npy");
+  const std::size_t header =
+      static_cast<unsigned char>(bytes[8]) + 256u * static_cast<unsigned char>(bytes[9]);
+  const bool bools = bytes.substr(10, header).find("'|b1'") != std::string::npos;
+  const std::string data = bytes.substr(10 + header);
+  if (bools) return {data.begin(), data.end()};
+  if (bytes.substr(10, header).find("'<f4'") == std::string::npos)
+    throw std::runtime_error("neither f4 nor b1");
+  std::vector<float> values(data.size() / 4);
+  std::memcpy(values.data(), data.data(), 4 * values.size());
+  return values;
+}
+
+std::map<std::string, std::vector<float>> load_npz(const std::filesystem::path& path) {
+  int error = 0;
+  zip_t* archive = zip_open(path.c_str(), ZIP_RDONLY, &error);
+  if (archive == nullptr) throw std::runtime_error("cannot read " + path.string());
+  std::map<std::string, std::vector<float>> arrays;
+  for (zip_int64_t i = 0; i < zip_get_num_entries(archive, 0); ++i) {
+    zip_stat_t status;
+    zip_stat_index(archive, static_cast<zip_uint64_t>(i), 0, &status);
+    std::string bytes(status.size, '\0');
+    zip_file_t* file = zip_fopen_index(archive, static_cast<zip_uint64_t>(i), 0);
+    zip_fread(file, bytes.data(), bytes.size());
+    zip_fclose(file);
+    const std::string name = status.name;
+    arrays[name.substr(0, name.find(".npy"))] = parse_npy(bytes);
+  }
+  zip_discard(archive);
+  return arrays;
+}
 
 shared::View view_from(const glm::dvec3& eye) {
   Camera camera = test::front_camera(64, 64, 64.0);
@@ -79,7 +118,7 @@ double error_on(const Expected& expected, const Scaffold& scaffold) {
 TEST(Decode, MatchesTheTrainerOnTheFixture) {
   REQUIRE_FIXTURES(formats);
   const fs::path folder = formats.parent_path() / "scaffold" / "fixture";
-  const Expected expected{test::load_npz(folder / "expected.npz")};
+  const Expected expected{load_npz(folder / "expected.npz")};
   ASSERT_EQ(expected.ids().size(), 336u);
   const auto scaffold = load_scaffold(folder / "point_cloud.ply");
   EXPECT_LT(error_on(expected, *scaffold), 1e-5);

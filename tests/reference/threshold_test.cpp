@@ -50,12 +50,12 @@ TEST(Threshold, OneNearSplatInEachEye) {
 TEST(Threshold, RefusesWhatWouldMakeAHole) {
   const Splat splat = make_splat({8, 8}, {4, 0, 4}, 1.0);
   for (const double bound : {0.0, -1.0, std::nan("")}) {
-    EXPECT_TRUE(test::fails_saying([&] { threshold(TH_PERIPHERAL, 1.0, splat, bound); }, {"more than 0"}));
+    EXPECT_ERROR(threshold(TH_PERIPHERAL, 1.0, splat, bound), "more than 0");
   }
-  EXPECT_TRUE(test::fails_saying([&] { threshold(9, 1.0, splat, 1.0); }, {"threshold 9"}));
+  EXPECT_ERROR(threshold(9, 1.0, splat, 1.0), "threshold 9");
   std::vector<Splat> splats = {splat};
   const std::vector<double> two = {1.0, 1.0};
-  EXPECT_TRUE(test::fails_saying([&] { set_thresholds(splats, TH_PERIPHERAL, 1.0, two); }, {"2", "1"}));
+  EXPECT_ERROR(set_thresholds(splats, TH_PERIPHERAL, 1.0, two), "2", "1");
 }
 
 TEST(Threshold, AboveTheOpacityLeavesTheViewWhateverTheTiles) {
