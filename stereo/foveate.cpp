@@ -16,7 +16,7 @@ constexpr double inset_least = 1.0, inset_most = 120.0;  // degrees
 constexpr double gaze_most = 80.0;
 constexpr double scale_least = 0.05;
 
-// Neighbours on each side from which a pixel of the context is interpolated.
+// A resampled pixel depends on this many of the context's pixels on each side.
 constexpr std::uint32_t inset_reach = 2;
 
 glm::dvec3 direction_of(const glm::dvec2& gaze) {
@@ -102,7 +102,7 @@ FoveatedEye foveate(const shared::View& eye, const Foveation& foveation, std::si
     out.context.lens[k] = static_cast<float>(eye.lens[k] * scale);
     out.context.lens[k + 2] = static_cast<float>(eye.lens[k + 2] * scale);
     out.context_part.low_pass_share *= static_cast<float>(scale);
-    // The hole: no pixel outside the inset is interpolated from it.
+    // The hole is the part of the context that is never drawn. No pixel outside the inset depends on it.
     const auto begin = static_cast<std::uint32_t>(std::ceil(out.inset_begin[k] * scale)) + inset_reach;
     const auto end = static_cast<std::uint32_t>(std::floor(out.inset_end[k] * scale));
     const bool at_begin = out.inset_begin[k] == 0, at_end = out.inset_end[k] == size[k];
@@ -131,7 +131,7 @@ FoveatedViews foveated_views(std::span<const shared::View> eyes, const Foveation
   return out;
 }
 
-// Passes the parts to `to`, a function of the frame that draws them.
+// Passes the parts to `to`, the member function of render::Frame that draws them.
 void FoveatedFrame::hand_over(std::span<const shared::View> eyes, const Foveation& foveation,
                               const render::FrameSettings& settings, const render::Workings& workings,
                               const render::CallersTextures& textures, decltype(&render::Frame::submit) to) {

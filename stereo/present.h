@@ -25,7 +25,7 @@ struct Canvases {
   std::vector<std::unique_ptr<gl::Texture>> views;  // of targets that are sRGB textures, or are also read
 };
 
-/// The CallersTextures::depth_rows with which a frame on canvases stores enough depths for these targets.
+/// Returns the value of CallersTextures::depth_rows that these targets need of a frame on canvases.
 int depth_rows(const gl::Context& context, std::span<const shared::View> views,
                std::span<const DepthTarget> targets);
 
@@ -71,8 +71,8 @@ class Presenter {
   void draw(const gl::Buffer& colours, std::span<const shared::View> views, std::size_t first, int layout,
             const Target& target, const Backdrop& backdrop);
 
-  /// Compiles the programs of draw(), over a colour or the target's colours. If `with_depths`, also those of
-  /// draw_depth().
+  /// Compiles the programs of draw() for both kinds of background, a colour and the target's own colours. If
+  /// `with_depths`, also compiles the programs of draw_depth().
   void prepare(const render::Frame& frame, bool with_depths);
 
   /// The canvases through which a frame's own blend can draw into these targets, one per view
@@ -82,7 +82,7 @@ class Presenter {
 
   /// Fills a whole target with the depths of view `v` of the last frame. The context's state is restored.
   /// Throws Error(bad_input) for a view that does not exist, a frame without depth, a target of another kind,
-  /// and planes that bound nothing.
+  /// and near and far planes that enclose no depth range.
   void draw_depth(const render::Frame& frame, std::size_t v, const DepthTarget& target);
 
  private:

@@ -14,7 +14,7 @@ namespace {
 constexpr double grain_of_rows = 5.0;
 constexpr double grain_of_openings = 0.25;  // with a finer grain windows are deep
 constexpr double row_depth = 11.0;
-constexpr double hidden = 1.6;    // coarseness of parts that streets hardly show
+constexpr double hidden = 1.6;    // coarseness of parts that are hardly visible from streets
 constexpr double overhang = 0.3;  // of roofs
 
 struct House {
@@ -269,7 +269,7 @@ void add_row(Stage& stage, Random& random, const dvec3& start, const dvec3& to_r
   stage.frame = {};
   if (stage.grain(start + 0.5 * length * to_right) > grain_of_rows) {
     houses.resize(1);
-    houses[0].left = houses[0].right = 1e9;  // its ends are not visible either
+    houses[0].left = houses[0].right = 1e9;  // taller neighbours hide its ends
     sum = houses[0].width;
   }
   for (std::size_t k = 0; k < houses.size(); ++k) {

@@ -70,7 +70,8 @@ struct FlatYaml {
   }
 };
 
-/// Returns the end of a Namespace's value: the comma or the end, outside quotes and brackets.
+/// Returns where a value in a printed argparse.Namespace ends: at the next comma or closing bracket outside
+/// quotes and brackets, or at the end of the text.
 std::size_t end_of_value(std::string_view text) {
   int depth = 0;
   char quote = '\0';

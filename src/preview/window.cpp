@@ -108,7 +108,7 @@ void Window::run() {
     context_->check_alive();
   }
   if (loading_.loaded.valid() || levels_move()) {
-    // The model would not be seen, and reading it has only taken memory: quit without waiting.
+    // Nobody will see the model, and the reading thread holds nothing but memory: quit without waiting for it.
     log_info("left while {} was being read", loading_.loaded.valid() ? loading_.scene.name : scene_.name);
     std::quick_exit(0);
   }
@@ -169,7 +169,7 @@ void Window::show_model(const Opened& scene, Loaded loaded, bool is_same) {
     head = session_->head;
     keys = session_->keys;
     choices = session_->choices;
-    choices.seeks_screen = choices.seeks_screen && !choices.rig.convergence;  // a found screen stays
+    choices.seeks_screen = choices.seeks_screen && !choices.rig.convergence;  // keeps a chosen convergence
   }
   session_.reset();  // frees its memory first
   levels_ = {loaded.stream != nullptr, false, loaded.gaussians()};

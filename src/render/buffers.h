@@ -54,10 +54,10 @@ struct FrameBuffers {
     return plan.instances.empty() ? views : instance_views;
   }
 
-  std::uint32_t slots = 0;  // room: Gaussians of one order group
+  std::uint32_t slots = 0;  // capacity: Gaussians of one order group
 
   gl::Buffer parameters;      // FrameParameters
-  gl::Buffer views;           // View, the probe's last
+  gl::Buffer views;           // View; the error sample's is the last
   gl::Buffer instance_views;  // View by (instance, view); used if the plan has instances
   gl::Buffer region_rows;     // uvec2 by row of tiles of a view; used if a view has a region
   gl::Buffer counters;        // Counters
@@ -70,7 +70,8 @@ struct FrameBuffers {
     gl::Buffer measured;                              // uint by splat: the bits of the largest T as a float
   } transmittance;
 
-  // For Scaffold-GS, by page of the model: uint (decoding, anchor); bit k is set if Gaussian k exists.
+  // For Scaffold-GS, one buffer per page of the model: uint by (decoding, anchor). Bit k is set if the anchor's
+  // Gaussian k exists.
   std::vector<std::unique_ptr<gl::Buffer>> kept;
 
   std::vector<std::unique_ptr<DrawnBuffers>> drawn;  // by order group
@@ -78,7 +79,7 @@ struct FrameBuffers {
   /// The result of the cull over all Gaussians of the model; each order group overwrites it.
   struct Culled {
     gl::Buffer depth_keys;    // uint by Gaussian
-    gl::Buffer block_counts;  // uint, Gaussians drawn by block of COMPACT_BLOCK
+    gl::Buffer block_counts;  // uint by block of COMPACT_BLOCK Gaussians: how many of them are drawn
   } culled;
 
   /// The results of `project` for the drawn Gaussians of all views.
@@ -91,16 +92,16 @@ struct FrameBuffers {
 
   /// The lists of supertiles and tiles.
   struct Lists {
-    std::uint32_t first_large = 0;  // the first entry of large splats: the room for all others
+    std::uint32_t first_large = 0;  // index of the first entry of large splats, after all others
     gl::Buffer entries;  // uvec2 (depth, entry) by supertile; then (supertile, entry) of large splats
     gl::Buffer supertile_counts;  // uint; 0 between frames
     gl::Buffer supertile_ends;    // uint: the place of each list's next entry
-    std::uint32_t item_room = 0;  // room for items of each kind
+    std::uint32_t item_room = 0;  // capacity for items of each kind
     gl::Buffer items;             // uvec4 by kind: sort_items.glsl
     gl::Buffer slab_tiles;        // uint by slab and tile of its list: sort_split.comp
 
     // The lists that the blend reads:
-    gl::Buffer tile_ranges;  // begin and end by tile; with --tiles all by the first tile of a view
+    gl::Buffer tile_ranges;  // begin and end by tile; with --tiles all, a view's list is at its first tile
     gl::Buffer tile_values;  // splats
     gl::Buffer long_lists;   // tiles with more than LONG_LIST pairs
   } lists;
