@@ -264,7 +264,12 @@ void Renderer::Impl::hand_over(std::span<const View> views, const Placement& pla
          settings.background ? "background" : "layout other than separate");
   }
   checked->check(views, settings);
-  const render::FrameSettings over = library::frame_settings(settings, views, precision);
+  Settings with_table = settings;
+  const auto lacks_table = [](const render::Instance& one) { return one.place.depth_table.bounds.empty(); };
+  if (settings.depth_table.bounds.empty() && !scene.instances.empty() &&
+      std::ranges::none_of(scene.instances, lacks_table))
+    with_table.depth_table = scene.instances.front().place.depth_table;  // which no instance uses
+  const render::FrameSettings over = library::frame_settings(with_table, views, precision);
   const auto is_decoded = [](const render::Instance& one) { return one.model->model().scaffold != nullptr; };
   if (settings.cyclopean && std::ranges::none_of(scene.instances, is_decoded))
     fail("settings.cyclopean has no effect on this model, which is no Scaffold-GS model: leave it out");
