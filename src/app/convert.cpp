@@ -203,6 +203,7 @@ void add_convert(CLI::App& program, Command& command) {
   add_harmonic_bits_option(*sub, o->harmonic_bits);
   add_lod_option(*sub, o->scene);
   add_axes_option(*sub, o->scene);
+  add_place_option(*sub, o->scene);
   sub->add_option("--report", o->report,
                   "Draw N views of the original and of what was written, and print their\nPSNR")
       ->check(range(1, 10000))

@@ -14,6 +14,7 @@
 #include "app/command.h"
 #include "app/context_options.h"
 #include "app/load_scene.h"
+#include "app/placed.h"
 #include "app/shots.h"
 #include "base/text.h"
 #include "compact/weights.h"
@@ -290,6 +291,7 @@ ExitCode info(const InfoOptions& options) {
   const bool named = !options.camera.file.empty();
   settle_axes(options.scene,
               named ? listed_cameras(options.scene, options.camera).cameras : std::vector<Camera>{}, model);
+  if (!options.scene.place.empty() && !is_built_in(options.scene.name)) append_placed(options.scene, model);
   const ModelSummary summary = summarise(model);
   const render::MemoryNeeds needs = headset_needs(model);
   const std::optional<SeenOfViews> seen = see(options, model);
@@ -314,6 +316,7 @@ void add_info(CLI::App& program, Command& command) {
   sub->add_option("MODEL", options->scene.name, "A model file or folder, or demo:room or demo:city")
       ->required();
   add_lod_option(*sub, options->scene);
+  add_place_option(*sub, options->scene);
   sub->add_option("--cameras", options->camera.file,
                   "Draw the views of these cameras, and say how many Gaussians they show")
       ->type_name("FILE");

@@ -47,9 +47,7 @@ void add_scene_options(CLI::App& sub, SceneOptions& o) {
   add_seed_option(sub, o);
   add_count_option(sub, o, "Gaussians of demo:city, 10000 to 100000000 (1000000)");
   add_repeat_options(sub, o);
-  add_value(sub, "--place", "FILE", o.place, CLI::ExistingFile,
-            "Other models in the scene's world: JSON, a list of {\"model\": PATH,\n\"matrix\": 16 numbers as "
-            "in a node of glTF}");
+  add_place_option(sub, o);
 }
 
 CLI::Option* add_lod_option(CLI::App& sub, SceneOptions& o, const char* help) {
@@ -67,6 +65,12 @@ CLI::Option* add_axes_option(CLI::App& sub, SceneOptions& o) {
       "Where the model's x, y and z point in the cameras' world, by Right\nor Left, Up or Down, "
       "Forward or Back, as in rdf, rub (the format's;\nof an spz that does not say: by its "
       "cameras)");
+}
+
+void add_place_option(CLI::App& sub, SceneOptions& o) {
+  add_value(sub, "--place", "FILE", o.place, CLI::ExistingFile,
+            "Other models in the scene's world: JSON, a list of {\"model\": PATH,\n\"matrix\": 16 numbers as "
+            "in a node of glTF}");
 }
 
 void add_repeat_options(CLI::App& sub, SceneOptions& o) {
