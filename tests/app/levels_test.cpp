@@ -3,6 +3,7 @@
 #include "app/scene.h"
 #include "formats/model_file.h"
 #include "support/scaffold_files.h"
+#include "support/scenes.h"
 
 namespace binosplat {
 namespace {
@@ -75,6 +76,25 @@ TEST_F(LevelsTest, TakeNoFolderOfOthers) {
   EXPECT_TRUE(ended(levels(model), 2, "is a file where a folder is needed"));
   EXPECT_TRUE(ended(run_program({"levels", out, "-o", out}), 2, ""));
   EXPECT_EQ(contents_of(out), before);
+}
+
+// 35.4 and 30.7 dB; where areas leave the low-pass out 32.5 and less.
+TEST(LevelsScenes, LookLikeFox) {
+  if (!test::switched_on("BINOSPLAT_LONG"))
+    GTEST_SKIP() << "140,000 Gaussians take long on llvmpipe: BINOSPLAT_LONG=1";
+  REQUIRE_SCENE("fox", scene);
+  const TempFolder folder;
+  ASSERT_TRUE(good(run_program({"levels", scene / "fox.ply", "-o", folder / "fox", "--levels", "3"})));
+  const auto picture = [&](const std::string& model, const char* lod) {
+    Words line = {"render", model,     "--cameras", scene / "cameras.json", "--view", "0001", "--mono",
+                  "--size", "176x320", "-o",        folder / "p.png"};
+    if (lod != nullptr) line.insert(line.end(), {"--lod", lod});
+    EXPECT_TRUE(good(run_program(line)));
+    return load_image(folder / "p.png");
+  };
+  const Image exact = picture(scene / "fox.ply", nullptr);
+  EXPECT_GT(measure::psnr(exact, picture(folder / "fox", "1")), 35.0);
+  EXPECT_GT(measure::psnr(exact, picture(folder / "fox", "2")), 30.3);
 }
 
 TEST_F(LevelsTest, HaveTheCamerasOfTheModelBesideThem) {
