@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "app/scene.h"
-#include "support/models.h"
 
 namespace binosplat {
 namespace {

@@ -83,25 +83,6 @@ TEST_F(Compare, FlipAndItsViewer) {
   EXPECT_NE(flip_at("67"), flip_at("30"));
 }
 
-// One picture as PNG of 8 bits and as OpenEXR in both encodings: apart by rounding only.
-TEST_F(Compare, PngAndExrOfOnePictureAreEqualToRounding) {
-  Picture picture(24, 16);
-  for (std::size_t k = 0; k < picture.colour.size(); ++k) {
-    const float v = static_cast<float>(k) / static_cast<float>(picture.colour.size());
-    picture.colour[k] = {v, 0.5f * v, 0.25f + 0.5f * v, 0.0f};
-    picture.z_sum[k] = 2.0f;
-  }
-  const Background black = glm::vec3(0.0f);
-  const std::string a = png("a.png", composite(picture, black));
-  for (const bool display : {false, true}) {
-    save_exr(folder / "b.exr", picture, {false, display, black, {}});
-    EXPECT_TRUE(good(compare(a, folder / "b.exr")));
-    EXPECT_LE(said()["largest_error"]["value"].get<double>(), 0.501 / 255.0);
-    // And it is no comparison of a picture with itself.
-    EXPECT_GT(said()["largest_error"]["value"].get<double>(), 0.3 / 255.0);
-  }
-}
-
 TEST_F(Compare, AValueThatIsNoNumberLeavesEverythingUndefinedAndIsNamed) {
   Picture picture(24, 16);
   const std::string plain_exr = folder / "plain.exr", broken = folder / "broken.exr";

@@ -5,7 +5,6 @@
 #include "app/scene.h"
 #include "base/image.h"
 #include "formats/exposures.h"
-#include "support/models.h"
 
 namespace binosplat {
 namespace {

@@ -1,7 +1,6 @@
 // What is said where memory does not suffice.
 
 #include "app/scene.h"
-#include "support/models.h"
 #include "support/scenes.h"
 
 namespace binosplat {

@@ -2,7 +2,6 @@
 
 #include "app/scene.h"
 #include "formats/model_file.h"
-#include "support/models.h"
 
 namespace binosplat {
 namespace {

@@ -3,7 +3,6 @@
 #include <array>
 
 #include "app/scene.h"
-#include "support/models.h"
 #include "support/scenes.h"
 
 namespace binosplat {

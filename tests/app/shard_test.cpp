@@ -94,9 +94,7 @@ TEST_F(Resume, DrawsPairsOfWhichAFileIsMissing) {
   EXPECT_EQ(contents_of(out), whole);
 
   // The same options and cameras, but a pose was saved beside the model, with eyes that are farther apart.
-  json pose = camera_json("saved", 0.5);
-  pose.update({{"up", {0, -1, 0}}, {"units_per_metre", 1.0}, {"ipd_metres", 0.1}, {"near", 0.1}});
-  save("model.binosplat.json", json::array({pose}));
+  save_pose(1.0, 0.1);
   EXPECT_TRUE(ended(draw(out, pairs), 2, "says other views."));
 }
 

@@ -162,8 +162,18 @@ TEST_F(TrainingRunTest, OfGsplatSaysWhatIsDrawnOtherwise) {
     EXPECT_TRUE(says(run->otherwise[0], part)) << run->otherwise[0];
   }
   EXPECT_EQ(found(gsplat_ply, "run/cfg.yml", gsplat_with("antialiased: true\n"))->antialiased, true);
-  EXPECT_EQ(found(gsplat_ply, "run/cfg.yml", gsplat_with("antialiased: 'true'\n"))->antialiased,
-            std::nullopt);
+}
+
+TEST_F(TrainingRunTest, TextIsNoTruthValue) {
+  const auto said = [&](const std::string& line) {
+    const auto run = found(gsplat_ply, "run/cfg.yml", gsplat_with(line));
+    return run ? run->antialiased : std::optional<bool>();
+  };
+  EXPECT_EQ(said("antialiased: yes\n"), true);
+  EXPECT_EQ(said("antialiased:\n  false\n"), false);
+  for (const char* text : {"|\n  true\n", "'true'\n", "99999999999999999999\n", "\n", "[true]\n"})
+    EXPECT_EQ(said(std::string("antialiased: ") + text), std::nullopt) << text;
+  EXPECT_FALSE(found(gsplat_ply, "run/cfg.yml", gsplat_with("x: [y\n"))) << "with a warning";
 }
 
 TEST_F(TrainingRunTest, OfNerfstudioIsNested) {
