@@ -162,9 +162,9 @@ TEST_F(CalibrateTest, GoesWithItsOrderAndProjection) {
   EXPECT_EQ(load_json(file)["projection"], "tangent");
   const Words by = {"--mono",        "--view", "front", "--size",   "36x24",
                     "--calibration", file,     "--th",  "adagscale"};
-  EXPECT_TRUE(ended(render(by), 2,
-                    "is for order distance and projection tangent, and this is drawn with order depth and "
-                    "projection affine"));
+  EXPECT_TRUE(ended(
+      render(by), 2,
+      "is for order distance and projection tangent, but the frame uses order depth and projection affine"));
   const Words same = joined(by, {"--order", "distance", "--projection", "tangent"});
   const json settings = reported(same)["settings"];
   EXPECT_EQ(settings["th"], "peripheral");
