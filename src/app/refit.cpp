@@ -154,7 +154,7 @@ ExitCode refit(const RefitOptions& o) {
   Judge judge(*context, model, views, o.photos.empty() ? TargetKind::quality : TargetKind::drop);
   std::vector<Step> steps;
   if (fitted.perspective != model.perspective)
-    steps.push_back(judge.step("as it was: " + name_of(model.perspective), model));
+    steps.push_back(judge.step("original: " + name_of(model.perspective), model));
   steps.push_back(judge.step("before: " + name_of(fitted.perspective), fitted));
   const double before = steps.back().held_back, before_own = steps.back().held_back_own;
 
