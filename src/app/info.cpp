@@ -55,7 +55,7 @@ struct SeenOfViews {
 std::optional<SeenOfViews> see(const InfoOptions& o, const Model& model) {
   if (o.camera.file.empty()) return std::nullopt;
   if (model.scaffold)
-    fail("--cameras: {} is a Scaffold-GS model, which makes its Gaussians anew for each eye", o.scene.name);
+    fail("--cameras: {} is a Scaffold-GS model, which decodes Gaussians for each eye", o.scene.name);
   const CameraList list = listed_cameras(o.scene, o.camera);
   const std::vector<Camera> cameras = chosen_cameras({}, {}, list);
   const auto context = open_context({});

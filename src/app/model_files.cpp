@@ -28,9 +28,8 @@ fs::path model_file(const std::string& scene) {
 
 void refuse_scaffold(const Model& model, const std::string& scene) {
   if (model.scaffold) {
-    fail(
-        "{} is a Scaffold-GS model, which makes its Gaussians anew for each eye: no other format can hold it",
-        scene);
+    fail("{} is a Scaffold-GS model, which decodes Gaussians for each eye: no other format can hold it",
+         scene);
   }
 }
 

@@ -136,13 +136,13 @@ TEST_F(LevelsTest, OfACityAndOfCopies) {
 TEST_F(LevelsTest, SayWhatTheyCannotTake) {
   fs::create_directories(folder / "scaffold");
   test::write_scaffold(folder / "scaffold", test::random_scaffold(1, {.anchors = 10}));
-  expect_refused_after({"levels"}, {{{model, "--levels", "0"}, "--levels"},
-                                    {{model, "--leaf", "1"}, "--leaf"},
-                                    {{model, "--lod", "1"}, "level of detail 1: "},
-                                    {{model, "--count", "10000"}, "--count is for demo:city"},
-                                    {{folder / "none.ply"}, "none.ply"},
-                                    {{folder / "scaffold"},
-                                     "is a Scaffold-GS model, which makes its Gaussians anew for each eye"}});
+  expect_refused_after(
+      {"levels"}, {{{model, "--levels", "0"}, "--levels"},
+                   {{model, "--leaf", "1"}, "--leaf"},
+                   {{model, "--lod", "1"}, "level of detail 1: "},
+                   {{model, "--count", "10000"}, "--count is for demo:city"},
+                   {{folder / "none.ply"}, "none.ply"},
+                   {{folder / "scaffold"}, "is a Scaffold-GS model, which decodes Gaussians for each eye"}});
   write_text(model, to_bytes(test::inria_file(0, 0)));
   expect_refused_after({"levels"}, {{{model}, "holds no Gaussians"}});
   PlyFile none = small_model();

@@ -163,7 +163,7 @@ TEST_F(Refusals, ToursAndPaths) {
       {{"--keys"}, "--keys needs --path"},
   });
   write_text(cameras, json({camera_json("lonely", 0.0)}).dump());
-  expect_refused({{{"--tour", "walk"}, "there is 1: name a file of more with --cameras"}});
+  expect_refused({{{"--tour", "walk"}, "there is 1: name a file with more by --cameras"}});
   fs::remove(cameras);
   expect_refused(
       {{{"--tour", "walk"}, "--tour goes through cameras: no cameras beside " + model + "; name their"}});
@@ -193,7 +193,7 @@ TEST_F(Refusals, Scenes) {
       {{"--repeat", "0x2", "--spacing", "1"}, "NXxNZ, for one 4x4"},
       {{"--repeat", "65536x65536", "--spacing", "1"}, "--repeat 65536x65536 of 300 Gaussians"},
       {{"--repeat", "2x2", "--spacing", "1e300"}, "--spacing: 1e300: expected a number above zero"},
-      {{"--appearance", "0"}, "no Scaffold-GS"},
+      {{"--appearance", "0"}, "only Scaffold-GS models have appearances"},
   });
   expect_refused_after(
       {"render"},
