@@ -266,7 +266,7 @@ void Renderer::Impl::hand_over(std::span<const View> views, const Placement& pla
   const render::FrameSettings over = library::frame_settings(settings, views, precision);
   const auto is_decoded = [](const render::Instance& one) { return one.model->model().scaffold != nullptr; };
   if (settings.cyclopean && std::ranges::none_of(scene.instances, is_decoded))
-    fail("settings.cyclopean has no effect on this model, which is no Scaffold-GS model: leave it out");
+    fail("settings.cyclopean only affects Scaffold-GS models, and this is another one: leave it out");
   to.is_foveated = settings.foveation.has_value();
   const std::size_t gazes = to.is_foveated ? settings.foveation->gaze.size() : 0;
   if (gazes > 1 && gazes != views.size())

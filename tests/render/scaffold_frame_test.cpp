@@ -116,7 +116,7 @@ TEST(ScaffoldFrame, ReferenceUntilAnyStageGivesTheSamePicture) {
   }
   const Model plain = test::random_model(1, 10, 0);
   EXPECT_TRUE(test::fails_saying([&] { draw(plain, views, {}, test::given(Stage::decode)); },
-                                 {"--reference-until decode", "no Scaffold-GS"}));
+                                 {"--reference-until decode", "is not a Scaffold-GS model"}));
 }
 
 TEST(ScaffoldFrame, FramesAfterOneAnotherAreDecodedAnew) {
