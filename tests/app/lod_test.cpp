@@ -148,7 +148,7 @@ TEST_F(RenderLevels, OfSinglePicturesGoByThemAlone) {
 TEST_F(RenderLevels, ShareAQuality) {
   const Words line = {"--cameras", save_path({-400}), "--quality", "40"};
   const auto render_with = [&](const Words& more) { return render(joined(line, more)); };
-  EXPECT_TRUE(ended(render_with({"--detail-report"}), 2, "does not say what its levels lose"));
+  EXPECT_TRUE(ended(render_with({"--detail-report"}), 2, "lacks the errors of its levels"));
   ASSERT_TRUE(good(render_with({})));
   EXPECT_FALSE(report()["views"][0].contains("levels_of_detail")) << "the finest";
   test::add_level_errors(*copy);
@@ -165,7 +165,7 @@ TEST_F(RenderLevels, ShareAQuality) {
   EXPECT_GE(view["told_psnr_db"], 39.5);
   EXPECT_GT(view["probed_psnr_db"], view["told_psnr_db"]) << "planted: the frame's alone";
   // What was asked for levels is theirs.
-  EXPECT_TRUE(ended(render_with({"--detail", "40dB"}), 2, "leaves nothing for what a frame leaves out"));
+  EXPECT_TRUE(ended(render_with({"--detail", "40dB"}), 2, "uses up the error that --quality"));
   ASSERT_TRUE(good(render_with({"--detail", "60dB"})));
   EXPECT_GT(levels()["gaussians"], of_view["gaussians"]);
 }
