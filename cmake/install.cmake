@@ -36,7 +36,7 @@ install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(DIRECTORY tests/bench/results DESTINATION ${CMAKE_INSTALL_DOCDIR}/tests/bench)
 install(FILES packages/Dockerfile DESTINATION ${CMAKE_INSTALL_DOCDIR}/packages)
 install(FILES src/render/README.md DESTINATION ${CMAKE_INSTALL_DOCDIR}/src/render)
-install(FILES examples/embed.cpp examples/mesh.cpp examples/openxr.cpp examples/CMakeLists.txt DESTINATION ${CMAKE_INSTALL_DOCDIR}/examples)
+install(FILES examples/embed.cpp examples/mesh.cpp examples/world.cpp examples/openxr.cpp examples/CMakeLists.txt DESTINATION ${CMAKE_INSTALL_DOCDIR}/examples)
 
 set(CPACK_GENERATOR "DEB;TGZ")
 set(CPACK_PACKAGE_NAME binosplat)

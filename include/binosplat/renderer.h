@@ -11,7 +11,7 @@
 //   // ... the program's own work on the CPU, while the GPU draws ...
 //   renderer.finish();
 //
-// examples/embed.cpp, examples/mesh.cpp and examples/openxr.cpp are complete programs.
+// The complete programs are examples/embed.cpp, mesh.cpp, world.cpp and openxr.cpp.
 
 #include <cstdint>
 #include <filesystem>

@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "app/placed.h"
 #include "app/shots.h"
 #include "base/error.h"
 #include "base/log.h"
@@ -109,8 +110,9 @@ Model load_scene(const SceneOptions& o, const std::optional<DetailBudget>& budge
   Model model = load_once(o, budget);
   set_as_asked(o, model);
   settle_axes(o, cameras, model);
-  if (!o.repeat) return model;
-  return repeat(std::move(model), o.repeat->x, o.repeat->y, *o.spacing);
+  if (o.repeat) model = repeat(std::move(model), o.repeat->x, o.repeat->y, *o.spacing);
+  if (!o.place.empty()) append_placed(o, model);
+  return model;
 }
 
 }  // namespace binosplat::app

@@ -173,8 +173,8 @@ void add_view_options(CLI::App& sub, RenderOptions& o) {
 }
 
 bool may_share(const RenderOptions& o) {
-  return o.drawing.quality && !o.scene.lod && !o.scene.repeat && !is_built_in(o.scene.name) &&
-         is_streamed_sog(o.scene.name);
+  return o.drawing.quality && !o.scene.lod && !o.scene.repeat && o.scene.place.empty() &&
+         !is_built_in(o.scene.name) && is_streamed_sog(o.scene.name);
 }
 
 void check_foveate(const RenderOptions& o) {

@@ -334,6 +334,7 @@ ordered_json scene_json(const RenderRun& run) {
   ordered_json json = object("name", o.name, "seed", given(city, city_settings(o).seed), "count",
                              given(city, city_settings(o).count));
   if (o.repeat) json["repeat"] = object("x", o.repeat->x, "z", o.repeat->y, "spacing", *o.spacing);
+  if (!o.place.empty()) json["place"] = o.place;
   const bool follows = run.drawn.back().levels.has_value();
   FieldWriter{json}("gaussians", follows ? run.drawn.back().levels->gaussians : model.count(), "left_out",
                     model.left_out, "degree", model.degree);

@@ -46,6 +46,9 @@ void add_scene_options(CLI::App& sub, SceneOptions& o) {
   add_seed_option(sub, o);
   add_count_option(sub, o, "Gaussians of demo:city, 10000 to 100000000 (1000000)");
   add_repeat_options(sub, o);
+  add_value(sub, "--place", "FILE", o.place, CLI::ExistingFile,
+            "Other models in the scene's world: JSON, a list of {\"model\": PATH,\n\"matrix\": 16 numbers as "
+            "in a node of glTF}");
 }
 
 CLI::Option* add_lod_option(CLI::App& sub, SceneOptions& o, const char* help) {

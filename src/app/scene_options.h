@@ -28,6 +28,7 @@ struct SceneOptions {
   std::optional<std::size_t> count;  // Gaussians
   std::optional<glm::ivec2> repeat;  // along x and z
   std::optional<double> spacing;     // world units
+  std::string place;                 // a list of other models and their places (placed.h); empty: none
 
   std::optional<bool> antialias;     // none: as the file says
   std::optional<double> kernel_px2;  // px^2; none: as the file says

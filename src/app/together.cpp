@@ -29,7 +29,7 @@ const struct {
     {"--mono", {"--only"}, "it draws the camera itself, and --only an eye beside it"},
     {"--mono", {"--ipd", "--convergence", "--cant"}, "it has no rig"},
     {"--lod", {"--gpu-memory", "--detail"}, "both choose the levels of detail"},
-    {"--detail", {"--repeat"}, "copies have one level of detail for all"},
+    {"--detail", {"--repeat", "--place"}, "copies and placed models have one level of detail for all"},
     {"--calibration", {"--quality"}, "each chooses the tolerance"},
     {"--calibration", {"--reference-until"}, "the reference uses no calibration"},
     {"--foveate",

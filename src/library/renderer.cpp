@@ -30,21 +30,21 @@ Impl& usable(const std::unique_ptr<Impl>& impl) {
 
 }  // namespace
 
-/// A model or a stream that a renderer holds.
-struct HeldModel {
-  std::shared_ptr<const Model> model;  // null with a stream
-  std::shared_ptr<SplatStream::Impl> stream;
-  std::shared_ptr<render::GpuModel> on_gpu;
-};
-
-/// What a frame draws.
-struct Scene {
-  std::vector<render::Instance> instances;
-  std::vector<SplatStream::Impl*> streams;  // of the instances
-  glm::dvec3 origin{0.0};                   // world units: the frame's positions are relative to it
-};
-
 struct Renderer::Impl {
+  /// A model or a stream that a renderer holds.
+  struct HeldModel {
+    std::shared_ptr<const Model> model;  // null with a stream
+    std::shared_ptr<SplatStream::Impl> stream;
+    std::shared_ptr<render::GpuModel> on_gpu;
+  };
+
+  /// What a frame draws.
+  struct Scene {
+    std::vector<render::Instance> instances;
+    std::vector<SplatStream::Impl*> streams;  // of the instances
+    glm::dvec3 origin{0.0};                   // world units: the frame's positions are relative to it
+  };
+
   Impl(GetProcAddress get_proc_address, Precision kept_in) : precision(library::precision_of(kept_in)) {
     context = gl::Context::adopt(get_proc_address);
   }

@@ -35,7 +35,7 @@ std::vector<std::vector<Model>> leaves_around(int count) {
 }
 
 TEST(LossTogether, GoesWithTheErrorsThatAreReportedAndWithWhatIsDrawn) {
-  const std::vector<std::vector<Model>> leaves = leaves_around(48);
+  const std::vector<std::vector<Model>> leaves = leaves_around(24);
   std::vector<LeafErrors> errors = level_errors(test::gl_context(), leaves);
   const auto losses = loss_together(test::gl_context(), leaves, errors, 2);
   ASSERT_EQ(losses.size(), 2u);

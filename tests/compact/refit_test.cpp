@@ -2,8 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
-
 #include "measure/metrics.h"
 #include "render/faulty_shaders.h"
 #include "render/frame.h"

@@ -163,6 +163,7 @@ TEST_F(Install, AnotherProgramDrawsWithIt) {
         << "swapped lenses go unnoticed";
   }
   EXPECT_FALSE(succeeds(leaks + build + "/embed /no/such.ply /tmp"));
+  ASSERT_TRUE(succeeds(leaks + build + "/world " + model + " " + (folder / "out").string() + " 1"));
   check_mesh_example(documents + "/examples");
 }
 

@@ -25,7 +25,7 @@ Model shell() {
 
 TEST(BenchTurns, TellWhatATurnChanges) {
   const Model model = shell();
-  const Camera camera = test::front_camera(400, 400, 170);  // 99 degrees
+  const Camera camera = test::front_camera(200, 200, 85);  // 99 degrees
   Bench bench(test::gl_context(), [&]() -> const Model& { return model; }, {.turned = camera}, {});
   const double rays = test::gl_context().software() ? 16 * 12 : 48 * 36;
   for (const bool steady : {false, true}) {

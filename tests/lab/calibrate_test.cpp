@@ -89,6 +89,7 @@ TEST_F(Calibrating, ReachesItsTarget) {
 }
 
 TEST_F(Calibrating, TheWholeFile) {
+  model = test::random_model(11, 300, 1);
   std::size_t done = 0;
   const ThresholdCalibration c =
       calibrate(test::gl_context(), model, views, near_default,

@@ -2,8 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
-
 #include "base/statistics.h"
 #include "lab/results.h"
 #include "support/models.h"

@@ -6,13 +6,10 @@
 
 #include <fstream>
 
-#include "base/error.h"
 #include "lab/chromium.h"
 #include "lab/csv.h"
 #include "lab/trace_rules.h"
 #include "support/errors.h"
-#include "support/models.h"
-#include "support/scenes.h"
 
 namespace binosplat::lab {
 namespace {
@@ -259,27 +256,24 @@ TEST(Profile, ThePageHasTheBudgetTheReasonsAndThePictures) {
   EXPECT_NE(page.sections[6].problem.find("nobody asked"), std::string::npos);
   EXPECT_FALSE(html(page, profile_point(profile, summary).row).empty());
   EXPECT_LE(lines_of(profile, summary).size(), 10u);
-  EXPECT_TRUE(test::fails_saying([&] { summary_of(Profile()); }, {"no frame was recorded"}));
+  EXPECT_ERROR(summary_of(Profile()), "no frame was recorded");
 }
 
-TEST(Profile, IsShownByChromium) {
-  if (!test::switched_on("BINOSPLAT_LONG")) GTEST_SKIP() << "BINOSPLAT_LONG=1 opens the page in Chromium";
-  ASSERT_TRUE(test::has_chromium()) << "install the package chromium (packages/long.txt)";
-  const test::TempFolder folder;
+using ShownProfile = test::InChromium;
+
+TEST_F(ShownProfile, HasLinesAreasAndPictures) {
   Profile profile = made_up();
   profile.pictures.assign(10, Image(4, 3, 3));
   const ProfileSummary summary = summary_of(profile);
-  save_page(folder / "report.html", profile_page(profile, summary, {}), profile_point(profile, summary).row);
-  const test::Chromium chromium;
-  const std::string found = chromium.ask(
-      folder / "report.html", 1280, false,
-      "return JSON.stringify({alerts: [...document.querySelectorAll('[role=alert]')].map((a) => "
-      "a.textContent),"
-      "lines: document.querySelectorAll('#frames figure svg g[aria-label=line] path').length,"
-      "areas: [...document.querySelectorAll('#stages figure svg g[aria-label=area] path')].map((a) =>"
-      "a.getBoundingClientRect().height),"
-      "pictures: document.querySelectorAll('#worst img').length,"
-      "first: document.querySelector('#worst tbody tr').textContent});");
+  save_page(file, profile_page(profile, summary, {}), profile_point(profile, summary).row);
+  const std::string found =
+      ask("return JSON.stringify({alerts: [...document.querySelectorAll('[role=alert]')].map((a) => "
+          "a.textContent),"
+          "lines: document.querySelectorAll('#frames figure svg g[aria-label=line] path').length,"
+          "areas: [...document.querySelectorAll('#stages figure svg g[aria-label=area] path')].map((a) =>"
+          "a.getBoundingClientRect().height),"
+          "pictures: document.querySelectorAll('#worst img').length,"
+          "first: document.querySelector('#worst tbody tr').textContent});");
   const json shown = json::parse(found, nullptr, false);
   ASSERT_TRUE(shown.is_object()) << found;
   EXPECT_EQ(shown["alerts"].size(), 1u) << "only the clock is unknown: " << found;

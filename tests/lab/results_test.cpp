@@ -5,11 +5,9 @@
 #include <cmath>
 #include <fstream>
 
-#include "base/error.h"
 #include "lab/axes.h"
 #include "lab/chromium.h"
 #include "support/errors.h"
-#include "support/scenes.h"
 
 namespace binosplat::lab {
 namespace {
@@ -133,8 +131,7 @@ TEST(Results, FilesAreReadAgainOrRefused) {
        {ordered_json({1, 2}), ordered_json({{"format", "binosplat bench"}, {"version", 1}}),
         ordered_json({{"format", "binosplat results"}, {"version", 2}}),
         ordered_json({{"format", "binosplat results"}, {"version", 2}, {"points", {1}}})})
-    EXPECT_TRUE(test::fails_saying([&] { rows_of(wrong, "old.json"); }, {"old.json: not the results.json"}))
-        << wrong;
+    EXPECT_ERROR(rows_of(wrong, "old.json"), "old.json: not the results.json") << wrong;
 }
 
 TEST(Results, ScenesAreJoinedByGeometricMeans) {
@@ -248,52 +245,36 @@ TEST(ResultsPage, ThePapersOwnNumbersStandBesideDropsAlone) {
   }
 }
 
-// Long: the whole page in a browser, its table against the JSON.
-TEST(ResultsPage, InChromiumHasTheJsonsNumbers) {
-  if (!test::switched_on("BINOSPLAT_LONG")) GTEST_SKIP() << "BINOSPLAT_LONG=1 opens the page in Chromium";
-  ASSERT_TRUE(test::has_chromium()) << "install the package chromium (packages/long.txt)";
-  const test::TempFolder folder;
-  save_page(folder / "report.html", results_page(some_results()), {});
-  const test::Chromium chromium;
-  const std::string cells =
-      chromium.ask(folder / "report.html", 400, false,
-                   "const table = document.querySelector('#chart-1-numbers table');"
-                   "const at = ['frame ms', 'PSNR dB', 'SSIM'].map((name) =>"
-                   "[...table.tHead.rows[0].cells].findIndex((cell) => cell.textContent === name));"
-                   "return [...table.tBodies[0].rows].map((row) =>"
-                   "at.map((k) => row.cells[k].dataset.value).join(' ')).join(';');");
-  EXPECT_EQ(cells, "3 38.25 0.987654321;4 45.5 0.987654321;5 41 0.987654321;8 100 0.987654321");
-  EXPECT_EQ(chromium.ask(folder / "report.html", 400, true,
-                         "return (document.documentElement.scrollWidth <= window.innerWidth) + ' ' +"
-                         "document.querySelectorAll('figure svg').length;"),
-            "true 4");
-}
-
-// Of the exact picture and the front; two lie on each other.
-TEST(ResultsPage, PicturesAreCompared) {
+/// Of the exact picture and the front; two lie on each other.
+Page results_with_pictures() {
   Results measured = some_results();
   for (Point& one : measured.points) one.picture = Image(8, 4, 3);
-  const Page page = results_page(measured);
+  return results_page(measured);
+}
+
+TEST(ResultsPage, PicturesAreCompared) {
+  const Page page = results_with_pictures();
   const Section& section = section_of(page, "chart-1-pictures");
   EXPECT_TRUE(section.compared);
   ASSERT_EQ(section.figures.size(), 3u);
-  if (!test::switched_on("BINOSPLAT_LONG")) GTEST_SKIP() << "BINOSPLAT_LONG=1 opens the page in Chromium";
-  ASSERT_TRUE(test::has_chromium()) << "install the package chromium (packages/long.txt)";
-  const test::TempFolder folder;
-  save_page(folder / "report.html", page, {});
-  const test::Chromium chromium;
-  const auto ask = [&](const std::string& script) {
-    return chromium.ask(folder / "report.html", 1300, false,
-                        "const at = document.querySelector('#chart-1-pictures');" + script);
+}
+
+using ShownResults = test::InChromium;
+
+TEST_F(ShownResults, PicturesAreCompared) {
+  const Page page = results_with_pictures();
+  save_page(file, page, {});
+  const auto ask_at = [&](const std::string& script) {
+    return ask("const at = document.querySelector('#chart-1-pictures');" + script, 1300);
   };
-  EXPECT_EQ(ask("return at.querySelectorAll('.thumbnail').length;"), "3");
-  EXPECT_EQ(ask("const over = at.querySelector('.compared'), slider = over.querySelector('input');"
-                "slider.value = 20; slider.dispatchEvent(new window.Event('input'));"
-                "at.querySelectorAll('.thumbnail')[1].click();"
-                "return over.style.getPropertyValue('--border') + ' ' + "
-                "at.querySelectorAll('select')[1].value + ' ' +"
-                "over.querySelector('.over').alt;"),
-            "20% 1 " + section.figures[1].caption);
+  EXPECT_EQ(ask_at("return at.querySelectorAll('.thumbnail').length;"), "3");
+  EXPECT_EQ(ask_at("const over = at.querySelector('.compared'), slider = over.querySelector('input');"
+                   "slider.value = 20; slider.dispatchEvent(new window.Event('input'));"
+                   "at.querySelectorAll('.thumbnail')[1].click();"
+                   "return over.style.getPropertyValue('--border') + ' ' + "
+                   "at.querySelectorAll('select')[1].value + ' ' +"
+                   "over.querySelector('.over').alt;"),
+            "20% 1 " + section_of(page, "chart-1-pictures").figures[1].caption);
 }
 
 }  // namespace

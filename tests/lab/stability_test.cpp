@@ -6,25 +6,233 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <map>
+#include <memory>
+#include <numeric>
 #include <set>
+#include <stdexcept>
+#include <tuple>
 
+#include "base/random.h"
 #include "base/statistics.h"
 #include "formats/cameras_file.h"
 #include "formats/model_file.h"
 #include "lab/rule.h"
-#include "lab/stability_cases.h"
 #include "measure/depth_table.h"
 #include "measure/metrics.h"
 #include "render/frame.h"
 #include "stereo/disagreement.h"
+#include "stereo/rig.h"
 #include "support/gl.h"
 #include "support/models.h"
 #include "support/scenes.h"
 
 namespace binosplat::lab {
 namespace {
+
+/// Where thresholds that go by the last frame can fail (docs/method.md 7): a small scene and a path.
+struct StabilityCase {
+  std::string name;
+  std::shared_ptr<const Model> model;
+  std::vector<stereo::EyePair> frames;
+  std::size_t event = 0;  // the frame from which settling is counted: 0, or the one after a jump
+};
+
+namespace stability {
+
+constexpr int width = 128, height = 96;
+constexpr double focal = 96.0;
+constexpr std::size_t sway_frames = 24, still_frames = 90, turn_frames = 30;
+
+// Gaussians side by side at depth z, beyond the picture's edges: `step` px apart, `size` steps wide,
+// coloured by their place in px.
+void add_wall(Model& model, double z, double step, double size, float opacity,
+              const std::function<glm::vec3(double x, double y)>& colour, double from_x = -0.75 * width) {
+  const double unit = z / focal;  // of a px at that depth
+  for (double y = -0.75 * height; y <= 0.75 * height; y += step) {
+    for (double x = from_x; x <= 0.75 * width; x += step) {
+      test::add(model, glm::dvec3(x * unit, y * unit, z), glm::vec3(static_cast<float>(size * step * unit)),
+                opacity, colour(x, y));
+    }
+  }
+}
+
+glm::vec3 random_colour(Random& random) {
+  const double r = random.uniform(), g = random.uniform(), b = random.uniform();
+  return {r, g, b};
+}
+
+glm::vec3 checks(double x, double y) {
+  const bool light = (static_cast<int>(std::floor(x / 24)) + static_cast<int>(std::floor(y / 24))) % 2 == 0;
+  return light ? glm::vec3(0.8f, 0.7f, 0.5f) : glm::vec3(0.3f, 0.4f, 0.5f);
+}
+
+Camera turned_head(const glm::dvec3& position, double yaw_degrees) {
+  Camera camera = test::front_camera(width, height, focal);
+  camera.position = position;
+  const double a = glm::radians(yaw_degrees), c = std::cos(a), s = std::sin(a);
+  camera.rotation = glm::dmat3(c, 0, -s, 0, 1, 0, s, 0, c);
+  return camera;
+}
+
+using Path = std::function<Camera(std::size_t frame)>;
+
+std::vector<stereo::EyePair> along(const Path& path, std::size_t count,
+                                   const stereo::RigSettings& rig = {.ipd = 0.063}) {
+  std::vector<stereo::EyePair> frames;
+  for (std::size_t n = 0; n < count; ++n) frames.push_back(stereo::make_rig(path(n), rig));
+  return frames;
+}
+
+// A head that looks about: a third of a degree and 3 mm a frame.
+Camera sway(std::size_t frame) {
+  const double n = static_cast<double>(frame);
+  return turned_head({0.003 * n, 0.0, 0.0}, 0.33 * n);
+}
+
+Camera still(std::size_t) { return turned_head(glm::dvec3(0.0), 0.0); }
+
+StabilityCase make(const char* name, Model model, const Path& path, std::size_t count = sway_frames) {
+  return {name, std::make_shared<const Model>(std::move(model)), along(path, count), 0};
+}
+
+// Half opaque Gaussians of all sizes, many deep.
+Model clutter() {
+  Random random(21);
+  Model model;
+  for (int i = 0; i < 3000; ++i) {
+    const double z = random.uniform(0.8, 6.0);
+    const double x = random.uniform(-0.9, 0.9) * z, y = random.uniform(-0.7, 0.7) * z;
+    const double a = std::exp(random.uniform(-5.5, -2.2)), b = std::exp(random.uniform(-5.5, -2.2));
+    const double opacity = random.uniform(0.1, 1.0);
+    test::add(model, glm::dvec3(x, y, z), glm::dvec3(a, b, a), static_cast<float>(opacity),
+              random_colour(random));
+  }
+  add_wall(model, 8.0, 6.0, 0.7, 0.95f, checks);
+  return model;
+}
+
+Model far_wall() {
+  Random random(22);
+  Model model;
+  add_wall(model, 60.0, 1.0, 0.5, 0.4f,
+           [&](double x, double y) { return 0.7f * checks(x, y) + 0.3f * random_colour(random); });
+  return model;
+}
+
+Model thin_occluder() {
+  Model model;
+  add_wall(model, 6.0, 5.0, 0.7, 0.9f,
+           [](double x, double y) { return glm::vec3(0.6f) + 0.4f * checks(x, y); });
+  for (double x = -1.2; x <= 1.2; x += 0.12) {  // dark bars, 1.5 px wide
+    for (double y = -1.0; y <= 1.0; y += 0.04)
+      test::add(model, glm::dvec3(x, y, 1.5), {0.008f, 0.03f, 0.008f}, 0.95f, glm::vec3(0.05f));
+  }
+  return model;
+}
+
+Model board() {
+  Model model;
+  add_wall(model, 5.0, 5.0, 0.7, 0.95f, checks);
+  add_wall(
+      model, 0.8, 5.0, 0.7, 0.97f, [](double, double) { return glm::vec3(0.2f, 0.5f, 0.2f); }, 0.0);
+  return model;
+}
+
+Model mist() {
+  Random random(23);
+  Model model;
+  for (int i = 0; i < 6000; ++i) {
+    const double z = random.uniform(1.0, 8.0);
+    const double x = random.uniform(-0.8, 0.8) * z, y = random.uniform(-0.6, 0.6) * z;
+    test::add(model, glm::dvec3(x, y, z), glm::vec3(static_cast<float>(0.05 * z)), 0.03f,
+              random_colour(random));
+  }
+  return model;
+}
+
+Model soft_discs() {
+  Random random(24);
+  Model model;
+  for (int i = 0; i < 60; ++i) {
+    const double z = random.uniform(2.0, 5.0);
+    const double x = random.uniform(-0.6, 0.6) * z, y = random.uniform(-0.45, 0.45) * z;
+    test::add(model, glm::dvec3(x, y, z), glm::vec3(static_cast<float>(0.12 * z)), 0.6f,
+              random_colour(random));
+  }
+  return model;
+}
+
+Model near_cloud() {
+  Random random(25);
+  Model model;
+  for (int i = 0; i < 500; ++i) {
+    const double x = random.uniform(-0.6, 0.6), y = random.uniform(-0.5, 0.5), z = random.uniform(0.1, 1.2);
+    test::add(model, glm::dvec3(x, y, z), {0.05f, 0.05f, 0.15f}, 0.5f, random_colour(random));
+  }
+  add_wall(model, 4.0, 6.0, 0.7, 0.95f, checks);
+  return model;
+}
+
+Model veil() {
+  Model model;
+  add_wall(model, 4.0, 4.0, 0.7, 0.9f, checks);
+  test::add(model, {0.0f, 0.0f, 1.0f}, glm::vec3(3.0f), 0.3f, {0.9f, 0.4f, 0.3f});
+  test::add(model, {0.2f, 0.1f, 1.2f}, glm::vec3(4.0f), 0.015f, {0.1f, 0.9f, 0.9f});
+  return model;
+}
+
+}  // namespace stability
+
+/// The built-in cases; each is 128 x 96 px an eye.
+std::vector<StabilityCase> built_in_cases() {
+  using namespace stability;
+  const auto at_speed = [](const glm::dvec3& units_a_frame) -> Path {
+    return
+        [units_a_frame](std::size_t n) { return turned_head(static_cast<double>(n) * units_a_frame, 0.0); };
+  };
+  return {// Tiny far Gaussians, each below Th and together a wall (trap 1).
+          make("far-wall", far_wall(), sway),
+          // Bars that uncover a bright field as the head moves (trap 4).
+          make("thin-occluder", thin_occluder(), at_speed({0.008, 0.0, 0.0})),
+          // A board that hides from one eye what the other sees (trap 4).
+          make("one-eye", board(), at_speed({0.004, 0.0, 0.0})),
+          // A camera that does not move: the loop must settle and not drift (trap 3).
+          make("still", clutter(), still, still_frames),
+          // A mostly transparent model: nothing hides anything.
+          make("mist", mist(), sway),
+          // Soft discs whose tails end at a tile's edge (trap 5).
+          make("tile-edges", soft_discs(), sway),
+          // A cloud that the head moves through (trap 6).
+          make("near-plane", near_cloud(), at_speed({0.0, 0.0, 0.01})),
+          // One Gaussian over all tiles, before a wall (trap 7).
+          make("all-tiles", veil(), sway)};
+}
+
+/// A 30 degree jump and a fast turn of 200 degrees/s at 90 Hz, there and back, in any scene (trap 4).
+std::vector<StabilityCase> cases_in(const std::shared_ptr<const Model>& scene, const Camera& head,
+                                    const stereo::RigSettings& rig) {
+  using namespace stability;
+  const auto turned = [&head](double degrees) {
+    Camera camera = head;
+    const double a = glm::radians(degrees), c = std::cos(a), s = std::sin(a);
+    camera.rotation[0] = c * head.rotation[0] - s * head.rotation[2];
+    camera.rotation[2] = s * head.rotation[0] + c * head.rotation[2];
+    return camera;
+  };
+  constexpr double a_frame_at_90_hz = 200.0 / 90.0;
+  constexpr std::size_t jump = turn_frames / 2;
+  const auto jumping = [&](std::size_t n) {
+    return turned(0.1 * static_cast<double>(n) + (n < jump ? 0 : 30));
+  };
+  const auto turning = [&](std::size_t n) {
+    return turned(a_frame_at_90_hz * static_cast<double>(std::min(n, turn_frames - n)));
+  };
+  return {{"jump", scene, along(jumping, turn_frames, rig), jump},
+          {"fast-turn", scene, along(turning, turn_frames, rig), 0}};
+}
 
 /// A case holds if none of these is broken.
 struct StabilityBounds {
@@ -101,28 +309,46 @@ std::string verdict_of(const StabilityResult& r, const StabilityBounds& bounds) 
   return broken.empty() ? "holds" : fmt::format("{}", fmt::join(broken, ", "));
 }
 
+/// What so many frames of a case show: after its path the last one again and again.
+struct Shown {
+  std::vector<double> db, pairs;
+};
+
+using See = std::function<void(std::size_t frame, const std::vector<Picture>& drawn)>;
+
+Shown show(
+    render::Frame& frame, const StabilityCase& one, const ExactCase& exact,
+    const render::FrameSettings& settings, std::size_t count, const See& see = [](auto, const auto&) {}) {
+  frame.forget();
+  Shown shown;
+  for (std::size_t n = 0; n < count; ++n) {
+    const std::size_t at = std::min(n, one.frames.size() - 1);
+    shown.pairs.push_back(static_cast<double>(frame.draw(one.frames[at].views, settings).pairs));
+    const std::vector<Picture> drawn = frame.read_pictures();
+    shown.db.push_back(measure::psnr(drawn, exact.of(at), glm::vec3(0.0f)));
+    see(at, drawn);
+  }
+  return shown;
+}
+
 StabilityResult run_rule(render::Frame& frame, const StabilityCase& one, const ExactCase& exact,
                          const Rule& rule, const StabilityBounds& bounds) {
   render::FrameSettings settings = rule.settings();
   settings.depth_table = exact.table;
   // Of a still camera the frames that do not measure show what the next one shows: nothing new.
   if (is_still(one)) settings.measure_every = 1;
-  frame.forget();
   StabilityResult r;
-  std::vector<double> db;
-  double pairs = 0.0, exact_pairs = 0.0;
-  for (std::size_t n = 0; n < one.frames.size(); ++n) {
-    pairs += static_cast<double>(frame.draw(one.frames[n].views, settings).pairs);
-    exact_pairs += exact.pairs[n];
-    const std::vector<Picture> drawn = frame.read_pictures();
-    db.push_back(measure::psnr(drawn, exact.of(n), glm::vec3(0.0f)));
+  const auto see = [&](std::size_t n, const std::vector<Picture>& drawn) {
     const double signed_mean = mean_signed(drawn, exact.of(n));
     if (std::abs(signed_mean) > std::abs(r.signed_mean)) r.signed_mean = signed_mean;
     // Not a number where the eyes have no depth in common.
     const double apart = stereo::disagreement(one.frames[n].views, exact.of(n), drawn).db;
     if (apart < r.disagreement_db) r.disagreement_db = apart;
-  }
-  r.removed = 1.0 - pairs / exact_pairs;
+  };
+  const auto [db, pairs] = show(frame, one, exact, settings, one.frames.size(), see);
+  double exact_pairs = 0.0;
+  for (const double of_frame : exact.pairs) exact_pairs += of_frame;
+  r.removed = 1.0 - std::accumulate(pairs.begin(), pairs.end(), 0.0) / exact_pairs;
   r.worst_db = *std::min_element(db.begin(), db.end());
   const std::size_t third = std::max<std::size_t>(1, db.size() / 3);
   r.settled_db = median(db, db.size() - third, db.size());
@@ -159,49 +385,25 @@ TEST(Stability, EveryRuleIsThereOnce) {
   EXPECT_EQ(all_rules().front().th, TH_TAU);
 }
 
-TEST(Stability, ExactFramesHoldWhateverTheBounds) {
-  const StabilityResult r = run_one(small_case(4), {.th = TH_TAU});
-  EXPECT_EQ(r.verdict, "holds");
-  EXPECT_TRUE(std::isinf(r.worst_db));
-  EXPECT_EQ(r.removed, 0.0);
-  EXPECT_EQ(r.drift_db, 0.0);
-}
-
 TEST(Stability, VerdictsFollowFromTheirBounds) {
   const StabilityCase one = small_case(6);
-  const Rule rough{.th = TH_SQUARED, .transmittance = TRANSMITTANCE_LAST, .tolerance = 2.0f};
-  const StabilityResult r = run_one(one, rough);
+  EXPECT_EQ(run_one(one, {.th = TH_TAU}).verdict, "holds") << "exact frames";
+  const StabilityResult r =
+      run_one(one, {.th = TH_SQUARED, .transmittance = TRANSMITTANCE_LAST, .tolerance = 2.0f});
   EXPECT_GT(r.removed, 0.1);
   EXPECT_LT(r.signed_mean, 0.0);
   // Bounds on either side of what was measured, one at a time.
   const StabilityBounds wide{0.0, 0.0, 1.0, 100.0, 100, 0.0};
   EXPECT_EQ(verdict_of(r, wide), "holds");
-  StabilityBounds tight = wide;
-  tight.worst_db = r.worst_db + 0.1;
-  EXPECT_EQ(verdict_of(r, tight), "dip");
-  tight = wide;
-  tight.settled_db = r.settled_db + 0.1;
-  EXPECT_EQ(verdict_of(r, tight), "wrong");
-  tight = wide;
-  tight.darkening = -0.9 * r.signed_mean;
-  EXPECT_EQ(verdict_of(r, tight), "dark");
-  tight = wide;
-  tight.disagreement_db = r.disagreement_db + 0.1;
-  EXPECT_EQ(verdict_of(r, tight), "rivalry");
-}
-
-TEST(Stability, AJumpIsWhereSettlingIsCountedFrom) {
-  // Frames of another place at the end: what is settled to is theirs, and the ones before the jump do not
-  // count.
-  StabilityCase one = small_case(9);
-  Camera there = test::front_camera(64, 48, 60);
-  there.position.z = 1.5;
-  for (std::size_t n = 3; n < 9; ++n) one.frames[n] = stereo::make_rig(there, {.ipd = 0.05});
-  one.event = 3;
-  const StabilityResult r =
-      run_one(one, {.th = TH_SQUARED, .transmittance = TRANSMITTANCE_LAST, .tolerance = 0.5f});
-  EXPECT_LE(r.settling, 5u);
-  EXPECT_NEAR(r.drift_db, 0.0, 1.5);
+  for (const auto& [bound, tight, verdict] :
+       {std::tuple{&StabilityBounds::worst_db, r.worst_db + 0.1, "dip"},
+        {&StabilityBounds::settled_db, r.settled_db + 0.1, "wrong"},
+        {&StabilityBounds::darkening, -0.9 * r.signed_mean, "dark"},
+        {&StabilityBounds::disagreement_db, r.disagreement_db + 0.1, "rivalry"}}) {
+    StabilityBounds bounds = wide;
+    bounds.*bound = tight;
+    EXPECT_EQ(verdict_of(r, bounds), verdict);
+  }
 }
 
 TEST(Stability, TheCasesShowSomething) {
@@ -263,6 +465,53 @@ TEST(Stability, EveryRuleOnEveryCaseIsAsTheTableSays) {
   for (const StabilityCase& one : cases) fmt::print(" {} |", one.name);
   for (const Rule& rule : all_rules()) fmt::print("\n| {} |{}", rule.name(), rows[rule.name()]);
   fmt::print("\n");
+}
+
+// Of the squared rule by measured transmittance: what comes to these dB on the first pair of the case
+// "still".
+constexpr float tolerance_of_34_db = 0.25f, tolerance_of_40_db = 0.07f;
+
+StabilityCase case_named(const std::string& name) {
+  for (StabilityCase& one : built_in_cases()) {
+    if (one.name == name) return std::move(one);
+  }
+  throw std::runtime_error("no case " + name);
+}
+
+// Traps of docs/method.md 7 that need frames in a row; docs/measuring.md names the tests of the others.
+struct Traps : testing::Test {
+  static Shown frames_of(const std::string& name, const render::FrameSettings& settings, std::size_t count) {
+    const StabilityCase one = case_named(name);
+    render::Frame frame(test::gl_context(), *one.model);
+    return show(frame, one, exact_case(frame, one), settings, count);
+  }
+
+  static render::FrameSettings squared_last(float tolerance) {
+    return Rule{.th = TH_SQUARED, .transmittance = TRANSMITTANCE_LAST, .tolerance = tolerance}.settings();
+  }
+};
+
+TEST_F(Traps, AFarWallOfTinyGaussiansGoesAtAToleranceThatIsFineElsewhere) {
+  if (!test::switched_on("BINOSPLAT_LONG") && test::gl_context().software())
+    GTEST_SKIP() << "most of a minute on llvmpipe: set BINOSPLAT_LONG=1";
+  // Trap 1. A tolerance that is chosen on something else takes the wall away by and by; --quality sees it.
+  render::FrameSettings settings = squared_last(tolerance_of_34_db);
+  EXPECT_LT(median(frames_of("far-wall", settings, 8).db, 4, 8), 30.0);
+  settings.tolerance = 0;
+  settings.quality = 40;
+  for (const double db : frames_of("far-wall", settings, 60).db) EXPECT_GT(db, 37.0);
+}
+
+TEST_F(Traps, AStillCameraSettlesAndDoesNotDrift) {
+  // Trap 3: what pruned frames measure of themselves, round and round.
+  render::FrameSettings settings = squared_last(tolerance_of_40_db);
+  settings.measure_every = 1;  // frames that do not measure show what the next one shows
+  const auto [db, pairs] = frames_of("still", settings, 40);
+  EXPECT_NEAR(median(db, 25, 40), median(db, 5, 20), 0.5);
+  // Single frames swing by some percent, as what was left out comes back to be measured.
+  const double early_pairs = median(pairs, 5, 20);
+  EXPECT_NEAR(median(pairs, 25, 40), early_pairs, 0.03 * early_pairs);
+  for (std::size_t n = 3; n < db.size(); ++n) EXPECT_GT(db[n], 37.0) << n;
 }
 
 }  // namespace

@@ -226,7 +226,7 @@ def test_pools_of_processes(scene, tmp_path, method, said):
 
 LONG = """
 import sys, time, binosplat
-camera = binosplat.Camera(4500, 4500, 4000)
+camera = binosplat.Camera(2500, 2500, 2200)
 renderer = binosplat.Renderer(binosplat.load_model(sys.argv[1]), backend="surfaceless")
 def small():
     begin = time.monotonic()

@@ -323,7 +323,7 @@ void walk_to(XrSessionState state) {
   while (now > state) set_state(static_cast<XrSessionState>(now - 1));
 }
 
-// Words of the script, of which an event may change some, and what else an event may have.
+// Words of the script, and what an event may have beside those of them that it changes.
 const std::set<std::string> script_words = {
     "folder",     "frames", "heads",   "recentre",     "spaces",    "views",          "masks",
     "extensions", "period", "formats", "sleep",        "late",      "pixels",         "profile",
@@ -331,18 +331,18 @@ const std::set<std::string> script_words = {
 const std::set<std::string> event_words = {"frame",         "state", "then",   "input",
                                            "instance_loss", "fail",  "result", "times"};
 
+void check_words(const Json& json, bool is_event) {
+  for (const auto& [word, value] : json.items()) {
+    if (!script_words.contains(word) && !(is_event && event_words.contains(word)))
+      throw std::runtime_error("there is no word " + word);
+  }
+}
+
 void read_script(const std::string& path) {
   std::ifstream in(path);
   runtime.script = Json::parse(in);
-  for (const auto& [word, value] : runtime.script.items()) {
-    if (!script_words.contains(word)) throw std::runtime_error(path + ": there is no word " + word);
-  }
-  for (const Json& event : runtime.script.value("events", Json::array())) {
-    for (const auto& [word, value] : event.items()) {
-      if (!script_words.contains(word) && !event_words.contains(word))
-        throw std::runtime_error(path + ": an event has no word " + word);
-    }
-  }
+  check_words(runtime.script, false);
+  for (const Json& event : runtime.script.value("events", Json::array())) check_words(event, true);
   runtime.folder = runtime.script.value("folder", "");
   if (!runtime.folder.empty()) runtime.log_file.open(runtime.folder / "log.jsonl", std::ios::app);
 }

@@ -7,7 +7,6 @@
 #include <cstring>
 #include <nlohmann/json.hpp>
 
-#include "base/error.h"
 #include "formats/calibration_file.h"
 #include "formats/model_file.h"
 #include "formats/model_output.h"
@@ -481,13 +480,15 @@ TEST_F(XrView, SaysInOneLineWhatIsMissing) {
   write_text(folder / "libopenxr_loader.so.1", "no library");
   ends(view({}, {{"LD_LIBRARY_PATH", folder.path().string()}}), 3, "apt install libopenxr-loader1");
   ends(view({}, {{"XR_RUNTIME_JSON", (folder / "none.json").string()}}), 3, "no OpenXR runtime");
-  const Json no_headset = {{"fail", "xrGetSystem"}, {"result", "XR_ERROR_FORM_FACTOR_UNAVAILABLE"}};
-  stage.script = {{"events", {no_headset}}};
-  ends(view(), 3, "has no headset");
-  stage.script = {{"events", {{{"fail", "xrGetSystem"}, {"result", "XR_ERROR_INSTANCE_LOST"}}}}};
-  ends(view(), 3, "runtime ended");
-  stage.script = {{"extensions", {"XR_KHR_composition_layer_depth"}}};
-  ends(view(), 3, "takes no OpenGL");
+  const auto failing = [](const char* with) { return Json{{{"fail", "xrGetSystem"}, {"result", with}}}; };
+  const std::pair<Json, const char*> scripts[] = {
+      {{{"events", failing("XR_ERROR_FORM_FACTOR_UNAVAILABLE")}}, "has no headset"},
+      {{{"events", failing("XR_ERROR_INSTANCE_LOST")}}, "runtime ended"},
+      {{{"extensions", {"XR_KHR_composition_layer_depth"}}}, "takes no OpenGL"}};
+  for (const auto& [script, said] : scripts) {
+    stage.script = script;
+    ends(view(), 3, said);
+  }
   stage.script = {{"formats", {"GL_RGBA8"}}};
   const Outcome no_srgb = view();
   EXPECT_EQ(no_srgb.code, 3);

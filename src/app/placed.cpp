@@ -1,0 +1,76 @@
+#include "app/placed.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <glm/gtc/matrix_transform.hpp>
+
+#include "app/load_scene.h"
+#include "base/log.h"
+#include "base/mapped_file.h"
+#include "formats/content.h"
+#include "formats/join.h"
+#include "formats/json_file.h"
+#include "formats/model_file.h"
+#include "scene/axes.h"
+#include "scene/transform.h"
+
+namespace binosplat::app {
+
+namespace {
+
+glm::dmat4 matrix_of(const JsonValue& entry) {
+  glm::dmat4 matrix(1.0);
+  const std::optional<JsonValue> listed = entry.find("matrix");
+  if (!listed) return matrix;
+  const JsonValue numbers = listed->list_of(16);
+  for (std::size_t i = 0; i < 16; ++i)
+    matrix[static_cast<int>(i / 4)][static_cast<int>(i % 4)] = numbers.at(i).number();
+  if (glm::dvec4(matrix[0].w, matrix[1].w, matrix[2].w, matrix[3].w) != glm::dvec4(0, 0, 0, 1))
+    listed->fail_here("expected 16 numbers column by column, as in glTF, with 0, 0, 0, 1 as the last row");
+  return matrix;
+}
+
+void check_trained_alike(const JsonValue& entry, const Model& model, const Model& scene) {
+  if (model.scaffold || scene.scaffold) entry.fail_here("a Scaffold-GS model cannot be placed among others");
+  if (model.antialiased != scene.antialiased || model.kernel_px2 != scene.kernel_px2) {
+    entry.fail_here(
+        "trained {} anti-aliasing and for a low-pass of {} px^2, the scene {} and for {}: one setting draws "
+        "all; "
+        "name it by --antialias or --no-antialias and --kernel-px2",
+        model.antialiased ? "with" : "without", model.kernel_px2, scene.antialiased ? "with" : "without",
+        scene.kernel_px2);
+  }
+}
+
+}  // namespace
+
+void append_placed(const SceneOptions& o, Model& model) {
+  const MappedFile file(o.place);
+  const nlohmann::json list = parse_json(o.place, as_text(file.bytes()));
+  const JsonValue root(o.place, list);
+  SceneOptions asked = o;
+  asked.axes.clear();  // the scene's
+  const glm::dmat4 into_scene(glm::transpose(world_from_axes(model.axes.letters)));
+  for (std::size_t k = 0; k < root.size(); ++k) {
+    const JsonValue entry = root.at(k);
+    const std::string path =
+        (std::filesystem::path(o.place).parent_path() / entry.at("model").text()).lexically_normal().string();
+    const glm::dmat4 matrix = matrix_of(entry);
+    Model placed = load_model(path);
+    set_as_asked(asked, placed);
+    check_trained_alike(entry, placed, model);
+    // From the model's frame into the scene's.
+    const glm::dmat4 turned(world_from_axes(placed.axes.letters));
+    const glm::dmat4 map = glm::translate(glm::dmat4(1.0), -model.axes.origin) * into_scene * matrix *
+                           glm::translate(turned, placed.axes.origin);
+    placed.axes = model.axes;
+    std::vector<glm::dvec3> places;
+    if (!transform(placed, map, places))
+      entry.fail_here("its matrix moves {} beyond the largest number", path);
+    std::ranges::copy(places, placed.position.begin());
+    log_info("{}: {} Gaussians of {}", o.place, placed.count(), path);
+    join(model, std::move(placed));
+  }
+}
+
+}  // namespace binosplat::app

@@ -1,0 +1,17 @@
+#pragma once
+// `--place FILE`: other models in the world of a scene.
+
+#include "app/scene_options.h"
+#include "scene/model.h"
+
+namespace binosplat::app {
+
+/// Appends the models that the JSON file of --place lists, each at its place: a list of objects with
+/// - "model": a path, relative to the file;
+/// - "matrix": 16 numbers, column by column as in a node of glTF, that bring the model into the world of the
+///   cameras (x right, y down, z forward); the identity without it.
+/// The result has the highest degree of them all. Throws Error for Scaffold-GS models, and for models that
+/// were trained with another low-pass or anti-aliasing than `model`, because one setting draws them all.
+void append_placed(const SceneOptions& options, Model& model);
+
+}  // namespace binosplat::app
