@@ -76,7 +76,7 @@ TEST_F(CameraFiles, TwoViewsOfOnePhotoStopAllThatMeasuresByPhotos) {
   const std::string photos = folder / "images";
   ASSERT_TRUE(good(mono({"--view", "all", "-o", photos})));
   save_colmap(pinhole, {"a.png", "b.png", "c.png", "a.jpg"});
-  const std::string said = "a.png would be the photo of both views 'a.jpg' and 'a.png'";
+  const std::string said = "a.png matches both views 'a.jpg' and 'a.png'";
   expect_refused({{{"--view", "all", "--photos", "beside"}, said},
                   {{"--view", "a.jpg", "--photos", photos}, said}},  // though only one is drawn
                  {"--mono"});
@@ -132,7 +132,7 @@ TEST_F(CameraFiles, CamerasThatNobodyNamedStopNoPicture) {
 
 TEST_F(CameraFiles, LensesThatCannotBeDrawnAreAWarningWhereOthersWillDo) {
   save_colmap(fisheye, {"a.jpg", "b.jpg"});
-  const char* what = "lens of the model OPENCV_FISHEYE, which is no pinhole's";
+  const char* what = "lens of the model OPENCV_FISHEYE, which is not a pinhole";
   EXPECT_TRUE(ended(mono({"--size", "36x24"}), 0, what));
   EXPECT_TRUE(ended(mono({"--size", "36x24", "--eye", "0,0,0", "--at", "0,0,4"}), 0, what));
   save("other.json", json{camera_json("front", 0.0)});
@@ -154,7 +154,7 @@ TEST_F(CameraFiles, PosesTakeTheLensThatIsAskedFor) {
   const std::string fov = fmt::format("{}", 2 * 180 / M_PI * std::atan(0.4));
   EXPECT_TRUE(picture({"--cameras", file, "--fov", fov, "--size", "72x48"}) == expected);
   EXPECT_TRUE(picture({"--cameras", file, "--size", "72x48"}) != expected) << "60 degrees";
-  EXPECT_TRUE(ended(mono({"--cameras", file, "--size", "72x48"}), 0, "tells poses and no lenses"));
+  EXPECT_TRUE(ended(mono({"--cameras", file, "--size", "72x48"}), 0, "has poses but no lenses"));
   EXPECT_TRUE(
       ended(mono({"--cameras", folder / "front.json", "--fov", "50"}), 2, "--up and --fov are for cameras"));
 }

@@ -127,9 +127,9 @@ TEST_F(Compare, PicturesBeyondAllMemoryAreRefusedBeforeTheyAreRead) {
   // Rows of one colour take hardly any bytes. Neither is read to its end, where each is cut short.
   const std::string small = png("small.png", Image(1000, 1000, 1)), text = read_text(small);
   write_text(small, text.substr(0, text.size() - 20));
-  EXPECT_TRUE(ended(compare(small, small, {"--max-memory", "100"}), 4,
-                    "small.png: 1000 x 1000 px take 170 MB of memory here, and 100 may be taken; "
-                    "--max-memory allows more"));
+  EXPECT_TRUE(ended(
+      compare(small, small, {"--max-memory", "100"}), 4,
+      "small.png: 1000 x 1000 px need 170 MB of memory, and 100 MB are allowed; --max-memory allows more"));
   EXPECT_TRUE(ended(compare(small, small, {"--max-memory", "171"}), 2, "broken PNG"));
   for (const char* name : {"alpha_float.exr", "grey.jpg"}) {
     const std::string file = std::string(BINOSPLAT_SOURCE_DIR) + "/tests/fuzz/corpus/image/" + name;

@@ -114,7 +114,7 @@ TEST(ScaffoldFrame, ReferenceUntilAnyStageGivesTheSamePicture) {
   }
   const Model plain = test::random_model(1, 10, 0);
   EXPECT_ERROR(draw(plain, views, {}, test::given(Stage::decode)), "--reference-until decode",
-               "no Scaffold-GS");
+               "is not a Scaffold-GS model");
 }
 
 TEST(ScaffoldFrame, FramesAfterOneAnotherAreDecodedAnew) {

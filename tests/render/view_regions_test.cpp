@@ -312,7 +312,7 @@ TEST(Parts, WrongOnesAreNamed) {
   EXPECT_TRUE(test::fails_saying(said({.tolerance_share = -1.0f}), {"-1 of the frame's tolerance"}));
   EXPECT_TRUE(test::fails_saying(said({.low_pass_share = 0.0f}), {"share of 0 of the low-pass"}));
   EXPECT_TRUE(test::fails_saying(said({.tolerance_share = 2.0f}, {.th = TH_SQUARED, .quality = 40}),
-                                 {"a quality is found for whole pictures"}));
+                                 {"a quality needs whole views"}));
   EXPECT_TRUE(test::fails_saying(
       [&] {
         draw(model, view_of_centre(100), with({}, {{.corner = {32, 0}}}),

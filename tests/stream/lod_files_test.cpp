@@ -154,7 +154,7 @@ TEST(LodFiles, SaysWhatItCannotOpen) {
   fs::remove_all(copy.path() / "0_0");
   EXPECT_EQ(read_anew(copy.path(), beside_first, {0.0}).count(), 250u);
   fs::remove_all(copy.path() / "1_0");
-  EXPECT_ERROR(LodFiles files(copy.path()), "lod-meta.json", "none of its levels of detail is there");
+  EXPECT_ERROR(LodFiles files(copy.path()), "lod-meta.json", "all its levels of detail are missing");
 }
 
 /// The tree's leaves, and what their level 1 loses in pixels 0.02 and 0.04 wide, from everywhere.
@@ -329,7 +329,7 @@ TEST(LodFiles, SaysWhatIsWrongWithErrors) {
   EXPECT_NO_THROW(LodFiles(copy.path()).check({.db = 40.0}));
   const LodFiles none(folder / "sog/st-lod");
   EXPECT_ERROR(none.check({.db = 40.0}), "--detail 40dB",
-               "st-lod/lod-meta.json has no errors of its levels to go by", "`binosplat levels` writes them",
+               "st-lod/lod-meta.json lacks the errors of its levels", "`binosplat levels` writes them",
                "--detail PX");
 }
 
