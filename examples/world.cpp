@@ -70,18 +70,20 @@ int main(int argc, char** argv) try {
   }
   binosplat::Renderer renderer(eglGetProcAddress);
   const binosplat::ModelId room = renderer.add(binosplat::SplatModel(argv[1])), ring = renderer.add(knot());
+  // A head that stands in the room, 1.3 world units above its floor.
+  const binosplat::Placement head = {.origin = {0.0, -1.3, -1.4}};
   std::vector<binosplat::Instance> instances = {
       {.model = room},
-      {.model = ring, .translation = {-0.35, -0.25, 2.2}, .scale = 0.9},
-      {.model = ring, .translation = {0.75, 0.1, 1.6}, .scale = 0.35},  // small, as in a hand
-      {.model = ring, .translation = {0.55, -0.55, 2.8}, .scale = 0.7, .opacity = 0.3f}};
+      {.model = ring, .translation = {-0.55, -1.35, 0.5}, .scale = 0.8},
+      {.model = ring, .translation = {0.3, -1.15, -0.3}, .scale = 0.25},  // small, as in a hand
+      {.model = ring, .translation = {0.1, -0.75, 0.4}, .scale = 0.7, .opacity = 0.1f}};
   double turn = 0.4;  // radians
   for (int frame = argc > 3 ? std::stoi(argv[3]) : 3; frame > 0; --frame) {
     for (std::size_t k = 1; k < instances.size(); ++k) {
       instances[k].rotation =
           glm::dmat3(glm::rotate(glm::dmat4(1), turn * static_cast<double>(k), {0.2, 1, 0}));
     }
-    renderer.submit(views, binosplat::World{{}, instances}, {.background = glm::vec3(0.0f)});
+    renderer.submit(views, binosplat::World{head, instances}, {.background = glm::vec3(0.0f)});
     turn += 0.05;  // for the next frame, while the GPU draws
     renderer.finish();
   }

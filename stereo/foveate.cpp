@@ -71,7 +71,7 @@ void check(const Foveation& f, std::string_view prefix) {
 FoveatedEye foveate(const shared::View& eye, const Foveation& foveation, std::size_t nth) {
   check(foveation);
   if (foveation.gaze.size() > 1 && nth >= foveation.gaze.size())
-    fail("{} gazes: there is none for eye {}", foveation.gaze.size(), nth);
+    fail("{} gazes: expected one for eye {}", foveation.gaze.size(), nth);
   const glm::dvec2 gaze =
       foveation.gaze.empty() ? glm::dvec2(0.0) : foveation.gaze[std::min(nth, foveation.gaze.size() - 1)];
   const glm::dvec3 direction = direction_of(gaze);
@@ -119,9 +119,9 @@ FoveatedViews foveated_views(std::span<const shared::View> eyes, const Foveation
                              const render::FrameSettings& settings) {
   if (eyes.empty() || eyes.size() > MAX_VIEWS / 2)
     fail("foveation of {} eyes: expected 1 to {}", eyes.size(), MAX_VIEWS / 2);
-  if (!settings.regions.empty()) fail("foveation of views of which only regions are drawn");
+  if (!settings.regions.empty()) fail("foveation with view regions: expected whole views");
   if (settings.depth == Depth::median)
-    fail("foveation with the median depth: between inset and context only means are mixed");
+    fail("foveation with the median depth: expected the mean depth, which the seam can mix");
   FoveatedViews out{.settings = settings};
   for (std::size_t k = 0; k < eyes.size(); ++k) {
     const FoveatedEye& eye = out.eyes.emplace_back(foveate(eyes[k], foveation, k));
@@ -223,7 +223,7 @@ void FoveatedFrame::compose_eye(gl::Dispatcher& dispatcher, std::size_t k) {
 }
 
 std::vector<Picture> FoveatedFrame::read_pictures() const {
-  if (!to_.empty()) fail("the pictures went onto canvases, and are whose those are");
+  if (!to_.empty()) fail("the pictures are on the caller's canvases: read them there");
   std::vector<Picture> pictures;
   for (const shared::View& eye : eyes_) {
     Picture& picture = pictures.emplace_back(static_cast<int>(eye.width), static_cast<int>(eye.height));

@@ -30,7 +30,7 @@ glm::ivec2 layout_size(int layout, const glm::ivec2& eye) {
 }
 
 Picture lay_out(int layout, const Picture& left, const Picture& right, const Background& background) {
-  if (layout < LAYOUT_PARALLEL) throw std::logic_error("this layout is no single picture");
+  if (layout < LAYOUT_PARALLEL) throw std::logic_error("this layout has no single picture");
   if (left.width != right.width || left.height != right.height) {
     fail("--layout {}: the eyes' pictures differ in size, {} x {} and {} x {} px: use separate",
          layout_choices[layout].name, left.width, left.height, right.width, right.height);

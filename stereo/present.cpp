@@ -126,8 +126,10 @@ void Presenter::copy(const glm::ivec2& size, std::uint32_t to, const glm::ivec2&
                           corner.x + size.x, corner.y + size.y, GL_COLOR_BUFFER_BIT, GL_NEAREST);
   const GLenum error = gl.GetError();
   if (error != GL_NO_ERROR) {
-    fail("framebuffer {} cannot be drawn into (OpenGL error 0x{:04x}): expected a complete one of colours",
-         to, error);
+    fail(
+        "framebuffer {} cannot be drawn into (OpenGL error 0x{:04x}): expected a complete framebuffer with "
+        "colours",
+        to, error);
   }
 }
 
@@ -139,8 +141,8 @@ void Presenter::copy_back(const glm::ivec2& size, std::uint32_t from, const glm:
   const GLenum error = gl.GetError();
   if (error != GL_NO_ERROR) {
     fail(
-        "framebuffer {} cannot be read (OpenGL error 0x{:04x}): expected a complete one of colours, without "
-        "samples",
+        "framebuffer {} cannot be read (OpenGL error 0x{:04x}): expected a complete framebuffer with "
+        "colours, without samples",
         from, error);
   }
 }
@@ -160,7 +162,7 @@ void Presenter::draw(const gl::Buffer& colours, std::span<const shared::View> vi
   const Background& background = backdrop.background;
   const bool over_target = backdrop.is_in_target;
   if (over_target && layout != LAYOUT_SEPARATE)
-    fail("layout {} over what is in the target: expected separate", layout_choices[layout].name);
+    fail("layout {} over the target's content: expected separate", layout_choices[layout].name);
   const std::size_t second = layout == LAYOUT_SEPARATE ? first : first + 1;
   if (second >= views.size()) fail("view {} of a frame of {} views", second, views.size());
   const shared::View &left = views[first], &right = views[second];
@@ -275,7 +277,8 @@ int depth_rows(const gl::Context& context, std::span<const shared::View> views,
 
 void Presenter::draw_depth(const render::Frame& frame, std::size_t v, const DepthTarget& target) {
   if (v >= frame.plan().asked) fail("view {} of a frame of {} views", v, frame.plan().asked);
-  if (frame.plan().depth() == DEPTH_NONE) fail("the depth of a frame drawn without");
+  if (frame.plan().depth() == DEPTH_NONE)
+    fail("the frame was drawn without depths: choose one in its settings");
   const double near = target.near_plane, far = target.far_plane;
   if (!(near > 0.0 && far > 0.0 && near != far))
     fail("depths from {} to {}: expected two distances above zero, one of which may be infinite", near, far);

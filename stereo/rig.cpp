@@ -20,8 +20,7 @@ void check_rig(const RigSettings& s) {
     fail("--units-per-metre {}: expected a number above zero", s.units_per_metre);
   }
   if (s.convergence && !(*s.convergence > 0.0 && std::isfinite(*s.convergence))) {
-    fail("--convergence {}: expected metres above zero; leave it out for eyes that look infinitely far",
-         *s.convergence);
+    fail("--convergence {}: expected metres above zero; leave it out for parallel eyes", *s.convergence);
   }
   if (!(std::abs(s.cant_degrees) < 45.0))
     fail("--cant {}: expected degrees between -45 and 45", s.cant_degrees);

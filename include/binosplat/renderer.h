@@ -93,8 +93,10 @@ struct Instance {
 /// They cast no shadows on each other. The first instance's model sets the order and the projection, unless
 /// the settings do.
 struct World {
-  Placement placement = {};
-  std::span<const Instance> instances = {};
+  World(const Placement& of_eyes, std::span<const Instance> drawn) : placement(of_eyes), instances(drawn) {}
+
+  Placement placement;
+  std::span<const Instance> instances;
 };
 
 /// Models on the GPU, with the programs and buffers that draw them.

@@ -80,56 +80,56 @@ struct Choice {
 };
 
 inline constexpr Choice tiles_choices[] = {
-    {"aabb", "3D-GS's square of three standard deviations; clips tails that can be seen"},
+    {"aabb", "3D-GS's square of three standard deviations; clips visible tails"},
     {"ellipse", "exact: where alpha reaches the threshold (FlashGS, AdR-Gaussian)"},
     {"all", "every Gaussian to every tile: slow, for tests"},
-    {"obb", "GSCore's oriented box of three standard deviations; clips tails, too"},
+    {"obb", "GSCore's oriented box of three standard deviations; clips visible tails, too"},
     {"snug", "exact: the box around where alpha reaches the threshold (Speedy-Splat)"},
 };
 
 inline constexpr Choice th_choices[] = {
     {"tau", "1/255: exact"},
-    {"peripheral", "AdaGScale: the alpha * px^2 that a Gaussian may lose beyond its tiles"},
+    {"peripheral", "AdaGScale: the alpha * px^2 that a Gaussian may lose outside its tiles"},
     {"squared", "the squared error that a pair may cost, in px * squared colour"},
 };
 
 inline constexpr Choice transmittance_choices[] = {
-    {"one", "all of it"},
-    {"depth", "AdaGScale's table: the most that reaches each depth of the scene"},
-    {"last", "as an earlier frame measured it: for heads that stand still"},
+    {"one", "1 for every Gaussian"},
+    {"depth", "AdaGScale's table: the largest transmittance at each depth"},
+    {"last", "as an earlier frame measured it: for heads at rest"},
 };
 
 inline constexpr Choice decode_choices[] = {
-    {"eyes", "each eye its own: exact"},
-    {"cyclopean", "both eyes of a pair share those of an eye between them"},
+    {"eyes", "each eye: exact"},
+    {"cyclopean", "the midpoint of a pair's eyes"},
 };
 
 inline constexpr Choice order_choices[] = {
     {"depth", "along the view's axis, as 3D-GS is trained; turns with the head"},
-    {"distance", "from the eye, of a pair from between the eyes"},
+    {"distance", "distance from the eye; of a pair, from the midpoint of its eyes"},
 };
 
 inline constexpr Choice projection_choices[] = {
-    {"affine", "3D-GS's, which stretches what is off the view's axis"},
-    {"tangent", "onto the plane that touches the unit sphere: the same however the head is turned"},
+    {"affine", "3D-GS's, which stretches Gaussians off the view's axis"},
+    {"tangent", "onto the plane that touches the unit sphere: independent of the head's rotation"},
 };
 
 inline constexpr Choice precision_choices[] = {
     {"full", "fp32: 68 dB and more against float64"},
-    {"half", "fp16 where it can be had for 60 dB: less memory, faster"},
+    {"half", "mostly fp16, at 60 dB or more: less memory, faster"},
 };
 
 inline constexpr Choice layout_choices[] = {
     {"separate", "a file for each eye"},
     {"multi-view", "both eyes as the views of one OpenEXR file"},
-    {"quad-buffer", "a framebuffer for each eye: `view`, where the driver has stereo windows"},
+    {"quad-buffer", "a framebuffer for each eye: `view`, if the driver has stereo windows"},
     {"parallel", "side by side, the left eye's picture on the left"},
-    {"cross-eyed", "side by side, swapped: for eyes that cross"},
+    {"cross-eyed", "side by side, swapped: for crossed eyes"},
     {"half-width", "parallel, each squeezed to half its width: 3D televisions"},
     {"over-under", "the left eye's picture above the right one's"},
     {"half-height", "over-under, each squeezed to half its height: 3D televisions"},
     {"rows", "left and right row by row, the left eye's first: polarised screens"},
-    {"columns", "the same column by column"},
+    {"columns", "left and right column by column, the left eye's first"},
     {"anaglyph", "for red-cyan glasses, by Dubois's least squares"},
     {"half-colour", "for red-cyan glasses: grey in the left eye, colour in the right"},
     {"grey", "for red-cyan glasses: grey in both eyes"},
@@ -138,15 +138,15 @@ inline constexpr Choice layout_choices[] = {
 inline constexpr Choice show_choices[] = {
     {"picture", "the picture"},
     {"split", "the picture on the left, the exact one on the right"},
-    {"difference", "from the exact picture, of the channel that differs most, in 255ths"},
-    {"disagreement", "the difference that the eyes do not share, in 255ths"},
+    {"difference", "from the exact picture, in the channel that differs most, in 255ths"},
+    {"disagreement", "the part of the difference that the eyes do not share, in 255ths"},
     {"depth", "view depth, world units"},
     {"alphas", "alphas that a pixel evaluates until it ends"},
-    {"visible", "those of them that it blends"},
+    {"visible", "alphas that a pixel blends"},
     {"pairs", "Gaussians in the list of the pixel's tile"},
-    {"light", "max(T), the most light that reaches a Gaussian: the mean of those seen"},
-    {"median-depth", "view depth by which half of the light is gone, world units"},
-    {"left-out", "Gaussians that the threshold leaves out of the pixel's tile"},
+    {"light", "max(T), the largest transmittance of a Gaussian: the mean over the visible ones"},
+    {"median-depth", "view depth at which transmittance falls below a half, world units"},
+    {"left-out", "Gaussians that the threshold drops from the pixel's tile"},
 };
 
 }  // namespace binosplat

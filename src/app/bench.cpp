@@ -31,9 +31,9 @@ void tell_work(double seconds) {
   constexpr double worth_telling_s = 60.0;
   if (seconds < worth_telling_s) return;
   log_info(
-      "without a GPU this takes about {}. For less, give --axes a file such as {{\"views\": 1, \"frames\": "
-      "3, "
-      "\"repeats\": 2, \"sizes\": [\"240x135\"], \"settings\": [{{\"tiles\": [\"obb\", \"ellipse\"]}}]}}",
+      "without a GPU this takes about {}. A smaller --axes file is faster, such as {{\"views\": 1, "
+      "\"frames\": 3, \"repeats\": 2, \"sizes\": [\"240x135\"], \"settings\": [{{\"tiles\": [\"obb\", "
+      "\"ellipse\"]}}]}}",
       spoken_time(seconds));
 }
 
@@ -193,25 +193,26 @@ void add_bench(CLI::App& program, Command& command) {
   sub->add_option("-o,--output", o->output,
                   "Folder for report.html, results.csv, details.csv and results.json\n(out/bench)")
       ->type_name("DIR");
-  sub->add_option(
-         "--axes", o->axes,
-         fmt::format("What is measured: {}, or a\nfile like those in src/lab/presets (quick; of the next "
-                     "options motion, turn or levels)",
-                     fmt::join(lab::axes_presets(), ", ")))
+  sub->add_option("--axes", o->axes,
+                  fmt::format("Measurement: {}, or a file like those in src/lab/presets (quick;\nmotion, "
+                              "turn or levels with the options below)",
+                              fmt::join(lab::axes_presets(), ", ")))
       ->type_name("NAME|FILE");
   add_names_option(*sub, "--motion", o->motions,
-                   "Along frames of a moving head, 90 a second: still, calm, walk, fast or\nsideways",
+                   "Measure along frames of a moving head, 90 a second: still, calm, walk,\nfast or sideways",
                    "NAME,...");
-  sub->add_option("--path", o->camera.path, "Along the cameras of this file, through keys 90 frames a second")
+  sub->add_option("--path", o->camera.path,
+                  "Measure along the cameras of this file, through keys 90 frames a second")
       ->type_name("FILE");
   add_tour_option(*sub, o->camera)
       ->description(
-          "Along all cameras, as a head goes through them, 90 frames a second, or at so\nmany metres and "
+          "Measure along a tour of all cameras, 90 frames a second; M,DEG sets its\nspeed in metres and "
           "degrees a second");
-  sub->add_flag("--turn", o->turn,
-                "What turning the head changes along the same rays, by order and projection");
+  sub->add_flag(
+      "--turn", o->turn,
+      "Measure by how much colours along fixed rays change when the head\nturns, by order and projection");
   sub->add_option("--detail", o->details,
-                  "What these levels of detail lose and take, as `render --detail` names them")
+                  "Measure loss and time of these levels of detail; values as for `render\n--detail`")
       ->delimiter(',')
       ->allow_extra_args(false)
       ->type_name("PX|DB,...");
@@ -219,14 +220,14 @@ void add_bench(CLI::App& program, Command& command) {
   sub->add_option("--calibration", o->calibration,
                   "Measure the settings of a file of binosplat calibrate, too")
       ->type_name("FILE");
-  sub->add_option("--cameras", o->camera.file, "Cameras, where they are not beside the model")
-      ->type_name("FILE");
+  sub->add_option("--cameras", o->camera.file, "Cameras, if not beside the model")->type_name("FILE");
   add_names_option(*sub, "--view", o->camera.views, "Views by name, instead of the axes' number of them");
-  add_names_option(*sub, "--test", o->test, "Where others are for training: views to measure, by name");
+  add_names_option(*sub, "--test", o->test, "Views to measure, by name, if others are for training");
   add_hold_out_option(*sub, o->hold_out);
   add_photos_options(*sub, *o, "Compare with DIR/NAME.jpg or .png as well", true);
-  add_value(*sub, "--frames", "N", o->frames, range(1, 100000),
-            "Timed of a view and repeat; of a motion's stretch those that move\n(the axes')");
+  add_value(
+      *sub, "--frames", "N", o->frames, range(1, 100000),
+      "Timed frames of each view and repeat; for a motion, the moving frames\nof a stretch (the axes')");
   sub->add_option("--size", o->size, "Pixels of a view, or preview, headset or own (the axes')")
       ->type_name("WxH|NAME");
   sub->add_flag("--mono", o->rig.mono, "The cameras themselves, no pair (the axes')");
@@ -236,13 +237,13 @@ void add_bench(CLI::App& program, Command& command) {
   add_value(*sub, "--ppd", "N", o->ppd, between(1.0, 1000.0, "a number from 1 to 1000"),
             "For FLIP: pixels per degree that the viewer has (67)");
   sub->add_flag("--floors", o->floors,
-                "Set each stage beside what it must move and compute at least, at this GPU's best rates");
+                "Compare each stage with the least time that this GPU needs for its\nbytes and operations");
   add_measured_options(*sub, *o);
   add_shard_option(*sub, o->shard, "Measure every Nth point from the Ith on: one job of N");
   add_names_option(*sub, "--merge", o->merge, "Join the folders of shards in -o", "DIR");
   add_compare_options(*sub, o->compare, o->fail_if_slower);
   sub->footer(
-      "A run that was ended goes on where it was when it is started again with the same options.\n"
+      "To resume an interrupted run, start it again with the same options.\n"
       "Examples:\n"
       "  binosplat bench fox.ply garden.ply -o out/chart\n"
       "  binosplat bench garden.ply --axes paper --photos images         # AdaGScale's figures and tables\n"

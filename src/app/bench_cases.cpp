@@ -86,9 +86,8 @@ void check_cases(const BenchPlan& plan, const BenchOptions& options) {
     if (levels) {
       if (!is_streamed_sog(scene.options.name))
         fail(
-            "'detail': {} is no folder with levels of detail (a lod-meta.json): `binosplat levels MODEL -o "
-            "DIR` "
-            "makes one",
+            "'detail': {} is not a folder with levels of detail (a lod-meta.json): `binosplat levels MODEL "
+            "-o DIR` makes one",
             scene.options.name);
       const LodFiles files(scene.options.name);
       for (const lab::BenchSettings& settings : plan.axes.settings) {
@@ -193,7 +192,7 @@ void MeasuredScene::open_views(const CasePlan& which, const CameraList& list, la
   opened.training = photographed_views(chosen.training, source, lens, list);
   leave_out_blind("bench", context_, some_model(), opened.near_plane, opened.training);
   if (opened.training.empty()) {
-    log_warning("there are no other views than those to test on: tolerances are found on them, too");
+    log_warning("no training views are left: tolerances are found on the test views, too");
     opened.training = opened.tested;
   }
   log_info("{} views for tests{}; {} others for training", opened.views.size(),

@@ -102,7 +102,7 @@ lab::Axes axes_of(const BenchOptions& o) {
     return drops ? s.min_psnr.has_value() : s.max_drop.has_value();
   });
   if (axes.settings.empty() && erased > 0)
-    fail("{}: 'max_drop' is lost against photos: name them with --photos", axes.name);
+    fail("{}: 'max_drop' needs photos: name them with --photos", axes.name);
   return axes;
 }
 
@@ -199,7 +199,7 @@ lab::Point BenchFolder::load(std::size_t point) const {
   const ordered_json json = load_json(file(point));
   const bool good = json.is_object() && json.contains("row") && json["row"].is_object() &&
                     json["row"].contains("device") && json.contains("details") && json["details"].is_array();
-  if (!good) fail("{}: not a point of bench: remove it, and it is measured again", file(point).string());
+  if (!good) fail("{}: not a result of bench: remove the file to measure it again", file(point).string());
   lab::Point measured{json["row"], json["details"]};
   const fs::path picture = fs::path(file(point)).replace_extension(".png");
   if (fs::exists(picture)) measured.picture = load_image(picture);

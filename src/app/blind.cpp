@@ -44,13 +44,12 @@ std::string some_of(std::vector<std::string> names) {
 }
 
 void warn(const Blind& blind, std::size_t of) {
-  log_warning("{} of {} views see nothing of the model and are left out ({}): {}", blind.names.size(), of,
-              some_of(blind.names), blind.why);
+  log_warning("the model is not visible in {} of {} views, which are skipped ({}): {}", blind.names.size(),
+              of, some_of(blind.names), blind.why);
 }
 
 [[noreturn]] void fail_blind(const std::string& command, const Blind& blind) {
-  fail("{}: none of its views sees anything of the model, so that all would look equal: {}", command,
-       blind.why);
+  fail("{}: the model is visible in none of its views, so all would look equal: {}", command, blind.why);
 }
 
 template <typename View>
@@ -117,10 +116,8 @@ void leave_out_blind(const std::string& command, gl::Context& context, const Mod
   keep_those(sees, held_back, views.held_back);
   keep_those(sees, test, views.test);
   if (views.held_back.empty())
-    fail("{}: none of the views held back to judge by sees anything of the model: name others by --held-back",
-         command);
-  if (views.training.empty())
-    fail("{}: none of the views to learn from sees anything of the model: give it more cameras", command);
+    fail("{}: the model is visible in none of the held-back views: name others with --held-back", command);
+  if (views.training.empty()) fail("{}: the model is visible in no training view: add cameras", command);
 }
 
 }  // namespace binosplat::app

@@ -67,7 +67,7 @@ ExitCode calibrate(const CalibrateOptions& o) {
     log_info("calibrating on {} training views; for tests are {}", views.size(),
              hold_out(scene.list, o.hold_out).how);
   } else if (o.camera.views.empty()) {
-    log_warning("there are no other views than those for tests: tolerances are found on them");
+    log_warning("no training views are left: tolerances are found on the test views");
   }
   const auto context = open_context(o.context);
   leave_out_blind("calibrate", *context, scene.model, scene.near_plane, views);
@@ -83,8 +83,8 @@ ExitCode calibrate(const CalibrateOptions& o) {
   // A tolerance fits one picture size. render warns if the size differs.
   if (o.camera.lens.size)
     log_info(
-        "these tolerances are for pictures of {} x {} px: in larger ones they cost less than they may, "
-        "in smaller ones more",
+        "these tolerances are for pictures of {} x {} px: larger ones lose less than the target, smaller "
+        "ones more",
         found.width, found.height);
   return ExitCode::done;
 }
@@ -102,24 +102,24 @@ void add_calibrate(CLI::App& program, Command& command) {
   add_value(*sub, "--max-drop", "DB", o->target.max_drop, positive,
             "Target: dB lost against the photos, mean over the views");
   add_photos_options(*sub, *o);
-  sub->add_option("--cameras", o->camera.file, "Cameras, where they are not beside the model")
-      ->type_name("FILE");
+  sub->add_option("--cameras", o->camera.file, "Cameras, if not beside the model")->type_name("FILE");
   add_names_option(*sub, "--view", o->camera.views, "Views by name, instead of --views");
   add_value(*sub, "--views", "N", o->views, range(1, 10000),
-            "So many views, spread evenly over the cameras (16)");
+            "Number of views, spread evenly over the cameras (16)");
   add_hold_out_option(*sub, o->hold_out);
   add_size_option(*sub, o->camera.lens);
-  choose_explained(*sub, "--order", o->table.order, "What Gaussians are sorted by (as the model was trained)",
+  choose_explained(*sub, "--order", o->table.order, "How Gaussians are sorted (as the model was trained)",
                    order_choices);
   choose_explained(*sub, "--projection", o->table.projection,
-                   "What a ray sees of a Gaussian (as the model was trained)", projection_choices);
-  add_value(*sub, "--bins", "N", o->table.bins, range(1, 10000), "Of the transmittance by depth (20)");
+                   "How Gaussians are projected (as the model was trained)", projection_choices);
+  add_value(*sub, "--bins", "N", o->table.bins, range(1, 10000),
+            "Bins of the table of transmittance by depth (20)");
   add_value(*sub, "--far", "DEPTH", o->table.far, positive,
-            "Where its bins end, in world units; AdaGScale's is 100 (fits the scene)");
+            "End of the bins, in world units; AdaGScale's is 100 (fits the scene)");
   add_rule_option(*sub, o->rules);
   add_measured_options(*sub, *o);
   sub->footer(
-      "A run that was ended goes on where it was when it is started again with the same options.\n"
+      "To resume an interrupted run, start it again with the same options.\n"
       "Examples:\n"
       "  binosplat calibrate garden.ply --photos images --max-drop 0.3 -o garden.json\n"
       "  binosplat calibrate garden.ply --quality 40 --far 100 -o garden.json\n"

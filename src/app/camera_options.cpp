@@ -13,28 +13,26 @@ void add_camera_options(CLI::App& sub, CameraOptions& o) {
   sub.option_defaults()->group("Cameras");
   sub.add_option("--cameras", o.file,
                  "cameras.json, transforms.json, camera_path.json or the folder of a\nCOLMAP reconstruction; "
-                 "default: what lies beside the model")
+                 "default: the cameras beside the model")
       ->type_name("FILE|DIR");
   add_names_option(sub, "--view", o.views,
-                   "A camera to draw by name, or all (the first); may be given again, or as\nA,B where no "
-                   "camera is called so. NAME also means the pair NAME_left,\nNAME_right");
-  sub.add_option(
-         "--path", o.path,
-         "cameras.json, or nerfstudio's or LichtFeld Studio's JSON of one path: of\nkeys, as `view` saves "
-         "them, or of its frames; each frame goes by what the last\none measured")
+                   "A camera by name, or all (the first); repeat it for more, or give A,B\nunless a camera "
+                   "has that name. NAME also selects the pair NAME_left,\nNAME_right");
+  sub.add_option("--path", o.path,
+                 "One path: cameras.json, or nerfstudio's or LichtFeld Studio's JSON,\nwith its keys (as "
+                 "`view` saves them) or its frames; each frame uses the\nmeasurements of the last one")
       ->type_name("FILE");
   three("--eye", o.eye, "Camera position instead, in world units");
-  three("--at", o.at, "What it looks at");
+  three("--at", o.at, "Point that it looks at");
   three("--up", o.up,
-        "What is up in the picture (as the cameras stand, or else found in\nthe model); for --eye, --orbit "
-        "and models without cameras");
+        "Up direction of --eye, --orbit and models without cameras (from the\ncameras, or else from the "
+        "model)");
   add_value(sub, "--fov", "DEGREES", o.fov, between(1e-6, 179.999999, "degrees between 0 and 180"),
             "Vertical field of view of such cameras (60)");
   add_value(sub, "--orbit", "N", o.orbit, range(1, 10000), "N cameras around the model instead");
   add_size_option(sub, o.lens, "Pixels of each eye; keeps the vertical field of view");
   add_preset_option(sub, o.lens, "preview: 1280 x 720 an eye; headset: 3660 x 3200 an eye,\n100 degrees");
-  add_near_option(sub, o,
-                  "Nothing nearer is drawn, in world units (0.2; less for tiny\nmodels without cameras)");
+  add_near_option(sub, o, "Near plane, in world units (0.2; less for tiny models without cameras)");
 }
 
 CLI::Option* add_size_option(CLI::App& sub, Lens& lens, const char* help) {

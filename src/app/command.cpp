@@ -142,7 +142,7 @@ void check_same_run(const fs::path& file, const nlohmann::ordered_json& run, con
   }
   if (others.empty() && saved.size() == run.size()) return;
   fail(
-      "{} holds {} of another run: {} says other {}. Name another folder with -o, or remove the {} and that "
+      "{} has {} of another run: {} differs in {}. Name another folder with -o, or remove the {} and that "
       "file",
       file.parent_path().string(), results, file.string(), fmt::join(others, ", "), results);
 }

@@ -78,7 +78,7 @@ void check_outputs(const CLI::App& command) {
     if (option == nullptr || option->count() == 0) continue;
     const std::string file = option->results().back();
     const auto [at, is_new] = outputs.try_emplace(place_of(file), name);
-    if (!is_new) fail("{} {}: it is what {} writes, too; name another file", name, file, at->second);
+    if (!is_new) fail("{} {}: {} writes the same file; name another one", name, file, at->second);
   }
 }
 
@@ -168,7 +168,7 @@ std::string explain(const CLI::App& command, const std::string& name, const CLI:
 
 void add_quiet(CLI::App& sub) {
   sub.add_flag_callback(
-      "--quiet", [] { set_quiet(true); }, "Say nothing but results, warnings and errors");
+      "--quiet", [] { set_quiet(true); }, "Print only results, warnings and errors");
 }
 
 void settle_shader_caches() {
@@ -183,7 +183,7 @@ void settle_shader_caches() {
   setenv("MESA_SHADER_CACHE_DISABLE", "1", 0);
   setenv("MESA_GLSL_CACHE_DISABLE", "1", 0);
   setenv("__GL_SHADER_DISK_CACHE", "0", 0);
-  log_warning("{}: {}; drivers keep no shaders there in this run", folder.string(),
+  log_warning("{}: {}; drivers cache no shaders there in this run", folder.string(),
               writable ? "the disk is full" : "nothing can be written there");
 }
 
@@ -194,8 +194,7 @@ void add_max_memory(CLI::App& sub) {
            gaussians_allowed = static_cast<std::uint64_t>(1e6 * megabytes / gaussian_bytes);
            picture_memory_allowed = 1e6 * megabytes;
          },
-         "Believe a small file that its model takes so much memory (0.4 GB,\nor more where the file is "
-         "larger)")
+         "Memory that a model may take (0.4 GB, or more for larger files): a\nlimit against damaged files")
       ->check(between(1.0, 1e9, "megabytes from 1 to 1e9"))
       ->type_name("MB");
 }

@@ -138,7 +138,7 @@ ExitCode compare_files(const CompareOptions& options) {
   const bool before_background = measure::make_shown(a, b, options.background);
   const glm::dvec3 background(options.background.value_or(glm::vec3(0.0f)));
   if (before_background) {
-    log_info("alpha: what is seen through is compared before the background {:g},{:g},{:g}{}", background.r,
+    log_info("alpha: transparent pixels are compared over the background {:g},{:g},{:g}{}", background.r,
              background.g, background.b, options.background ? "" : " (--background for another)");
   }
   const Comparison found = measure::compare(a, b, options.pixels_per_degree);
@@ -171,22 +171,20 @@ ExitCode compare_files(const CompareOptions& options) {
 }  // namespace
 
 void add_compare(CLI::App& program, Command& command) {
-  CLI::App* sub = program.add_subcommand("compare", "Say by how much two pictures differ, and where");
+  CLI::App* sub = program.add_subcommand("compare", "Report by how much two pictures differ, and where");
   const auto options = std::make_shared<CompareOptions>();
   sub->add_option("A", options->a, "Picture: PNG, JPEG or OpenEXR")->required();
   sub->add_option("B", options->b, "Picture of the same size")->required();
   add_value(*sub, "--min-psnr", "DB", options->min_psnr, between(-INFINITY, INFINITY, "decibels"),
             "Exit code 1 if PSNR is below this");
-  add_parsed(
-      *sub, "--background", "R,G,B|none", options->background, parse_background,
-      "Colour from 0 to 1 before which pictures with alpha are compared;\nby default alpha counts where "
-      "both have some, and is before black\nwhere one has (0,0,0)");
+  add_parsed(*sub, "--background", "R,G,B|none", options->background, parse_background,
+             "Colour from 0 to 1 behind pictures with alpha; by default alpha is\ncompared if both have it, "
+             "else it is over black (0,0,0)");
   add_value(*sub, "--ppd", "N", options->pixels_per_degree, between(1.0, 1000.0, "a number from 1 to 1000"),
             "For FLIP: pixels per degree that the viewer has (67)");
-  add_parsed(
-      *sub, "--foveate-at", "X,Y,FOV", options->gaze, parse_gaze,
-      "What an eye sees of it that looks at pixel X,Y of a picture FOV degrees\nacross: PSNR by degrees "
-      "from there, and the share of the pixels whose\ndifference can be seen");
+  add_parsed(*sub, "--foveate-at", "X,Y,FOV", options->gaze, parse_gaze,
+             "Compare for an eye that looks at pixel X,Y of a picture FOV degrees\nacross: PSNR by degrees "
+             "from there, and the share of pixels that differ\nvisibly");
   add_value(*sub, "--max-memory", "MB", options->max_memory, positive,
             "Refuse pictures that take more than so many MB to compare\n(three quarters of the machine's)");
   sub->add_option(

@@ -10,14 +10,13 @@ using gl::Backend;
 
 void add_context_options(CLI::App& sub, ContextOptions& o) {
   sub.option_defaults()->group("Drawing");
-  choose<Backend>(
-      sub, "--backend", o.backend,
-      "Where OpenGL comes from: a GPU through EGL's devices, Mesa without\na GPU, Mesa without EGL, "
-      "or the first that works (auto)",
-      {{"auto", Backend::automatic},
-       {"device", Backend::device},
-       {"surfaceless", Backend::surfaceless},
-       {"osmesa", Backend::osmesa}});
+  choose<Backend>(sub, "--backend", o.backend,
+                  "Source of OpenGL: a GPU by EGL's devices, Mesa without a GPU, Mesa\nwithout EGL, or the "
+                  "first that works (auto)",
+                  {{"auto", Backend::automatic},
+                   {"device", Backend::device},
+                   {"surfaceless", Backend::surfaceless},
+                   {"osmesa", Backend::osmesa}});
   add_device_option(sub, o);
   sub.add_option("--shader-dir", o.shader_dir, "Read shaders from this folder, not the built-in ones")
       ->type_name("DIR")
@@ -46,7 +45,7 @@ std::unique_ptr<gl::Context> open_context_for_all(const std::string& command, bo
                                                   const ContextOptions& options) {
   auto context = open_context(options);
   if (on_gpus || context->software())
-    log_info("{} may take long and keeps nothing until it is done: if it is ended, it begins anew", command);
+    log_info("{} may take long and stores no partial results: an interrupted run begins anew", command);
   return context;
 }
 

@@ -199,22 +199,23 @@ void add_convert(CLI::App& program, Command& command) {
       ->required();
   Words<ModelFormat> formats;
   for (const ModelFormat format : written_formats()) formats.emplace_back(word_of(format), format);
-  choose(*sub, "--to", o->to, "The format, where FILE's ending does not say it", formats);
+  choose(*sub, "--to", o->to, "The format, if FILE's ending does not determine it", formats);
   add_harmonic_bits_option(*sub, o->harmonic_bits);
   add_lod_option(*sub, o->scene);
   add_axes_option(*sub, o->scene);
+  add_place_option(*sub, o->scene);
   sub->add_option("--report", o->report,
                   "Draw N views of the original and of what was written, and print their\nPSNR")
       ->check(range(1, 10000))
       ->type_name("N");
-  sub->add_option("--cameras", o->camera.file, "Of the views, where they are not beside the model")
+  sub->add_option("--cameras", o->camera.file, "Cameras of the views, if not beside the model")
       ->type_name("FILE");
   add_names_option(*sub, "--view", o->camera.views, "Views by name, instead of N");
   add_size_option(*sub, o->camera.lens);
   sub->add_option("--json", o->json, "Write everything printed as JSON")->type_name("FILE");
   add_measured_options(*sub, *o);
   sub->footer(
-      "What a format cannot keep is said on standard error. Cameras are those beside MODEL, or around it.\n"
+      "Warnings name what the format cannot store. Cameras are those beside MODEL, or around it.\n"
       "Examples:\n"
       "  binosplat convert garden.ply -o garden.spz --report 3\n"
       "  binosplat convert scan.spz --axes rdf -o scan.ply");

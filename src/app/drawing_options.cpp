@@ -8,9 +8,9 @@ namespace binosplat::app {
 
 void add_drawing_options(CLI::App& sub, DrawingOptions& o) {
   sub.option_defaults()->group("Drawing");
-  choose_explained(sub, "--tiles", o.tiles, "Which tiles a Gaussian is drawn in (ellipse)", tiles_choices);
+  choose_explained(sub, "--tiles", o.tiles, "Tiles in which a Gaussian is drawn (ellipse)", tiles_choices);
   std::string rules_help =
-      "The alpha below which a Gaussian is left out of a tile (tau;\nwith --tolerance: squared)";
+      "Alpha below which a Gaussian is dropped from a tile (tau; with\n--tolerance: squared)";
   Words<int> rules = words_of(th_choices);
   for (const Choice& rule : th_choices) rules_help += fmt::format("\n  {}: {}", rule.name, rule.help);
   rules.emplace_back("adagscale", TH_PERIPHERAL);
@@ -20,32 +20,31 @@ void add_drawing_options(CLI::App& sub, DrawingOptions& o) {
     if (o.adagscale) o.transmittance = TRANSMITTANCE_DEPTH;
   });
   add_value(sub, "--tolerance", "X", o.tolerance, not_negative,
-            "How much that may cost, in the unit of --th");
+            "Accepted loss of a dropped Gaussian in a tile, in the unit of --th");
   add_value(sub, "--quality", "DB", o.quality, quality_range,
-            "Choose the tolerance so that pictures come to about DB against the exact\nones, from the first "
-            "frame on: one in four draws some tiles exactly, too");
+            "Choose the tolerance for a PSNR of about DB against the exact pictures,\nfrom the first frame "
+            "on: one frame in four also draws some tiles\nexactly");
   sub.add_option("--calibration", o.calibration, "Take the tolerance from a file of binosplat calibrate")
       ->type_name("FILE");
   choose_explained(sub, "--transmittance", o.transmittance,
-                   "The light that reaches a Gaussian, for --th (one)", transmittance_choices);
-  choose_explained(sub, "--decode", o.decode, "For which eye a Scaffold-GS model makes its Gaussians (eyes)",
-                   decode_choices);
-  choose_explained(sub, "--order", o.order, "What Gaussians are sorted by (as the model was trained: depth)",
+                   "Upper bound of a Gaussian's transmittance, for --th (one)", transmittance_choices);
+  choose_explained(sub, "--decode", o.decode,
+                   "Eye for which a Scaffold-GS model decodes its Gaussians (eyes)", decode_choices);
+  choose_explained(sub, "--order", o.order, "How Gaussians are sorted (as the model was trained: depth)",
                    order_choices);
   choose_explained(sub, "--projection", o.projection,
-                   "What a ray sees of a Gaussian (as the model was trained: affine)", projection_choices);
+                   "How Gaussians are projected (as the model was trained: affine)", projection_choices);
   choose<std::optional<int>>(sub, "--tile", o.tile, "Side of a tile in px (auto: 16)",
                              {{"auto", std::nullopt}, {"8", 8}, {"16", 16}, {"32", 32}});
-  choose_explained(sub, "--precision", o.precision, "What is kept of the model and of a frame (full)",
+  choose_explained(sub, "--precision", o.precision, "Precision of the stored model and splats (full)",
                    precision_choices);
   Words<render::Stage> stages;
   for (int k = 0; k < render::stages_with_twins; ++k)
     stages.emplace_back(render::name_of(static_cast<render::Stage>(k)), static_cast<render::Stage>(k));
-  choose(
-      sub, "--reference-until", o.reference_until,
-      fmt::format("Take the stages up to this one from the float64 reference:\n{} (decode: of Scaffold-GS)",
-                  fmt::join(std::span(render::stage_names).first(render::stages_with_twins), ", ")),
-      stages)
+  choose(sub, "--reference-until", o.reference_until,
+         fmt::format("Compute the stages up to this one by the float64 reference:\n{} (decode: Scaffold-GS)",
+                     fmt::join(std::span(render::stage_names).first(render::stages_with_twins), ", ")),
+         stages)
       ->type_name("STAGE");
   add_value(sub, "--frames", "N", o.frames, range(1, 100000),
             "Draw each view N times, for the table of times (1)");
@@ -57,14 +56,14 @@ void check(const DrawingOptions& o) {
   const bool exact = render::is_exact(settings.th);
   const bool given = o.tolerance || o.quality, calibrated = !o.calibration.empty();
   if (o.adagscale && o.transmittance != TRANSMITTANCE_DEPTH) {
-    fail("--th adagscale goes by its table by depth: for --transmittance {} take --th peripheral",
+    fail("--th adagscale uses its table by depth: for --transmittance {} give --th peripheral",
          transmittance_choices[o.transmittance].name);
   }
   // --tolerance is allowed beside a calibrated depth table, which it does not replace.
   if (o.tolerance && calibrated && o.transmittance != TRANSMITTANCE_DEPTH)
     fail("--tolerance with --calibration: each chooses the tolerance: leave one of them out");
   if (!exact && !given && !calibrated)
-    fail("--th {} needs --tolerance, --quality or --calibration: what it may cost", th);
+    fail("--th {} needs --tolerance, --quality or --calibration, which set the accepted loss", th);
   if (exact && calibrated) fail("--calibration has no effect with --th {}, which is exact", th);
   render::check_choice(settings, "--");
   render::check(workings_of(o), settings, "--");

@@ -35,19 +35,19 @@ std::string why_empty(const Model& model, const Shot& shot, double near_plane, s
   const Camera& eye = shot.eyes.front().camera;
   const MiddlesSeen seen = look(model, eye, near_plane);
   if (seen.inside > 0)
-    return "what lies in the picture has opacities below 1/255, or the threshold leaves it out (--th)";
+    return "the Gaussians in the picture have opacities below 1/255, or the threshold drops them (--th)";
   if (shot.ipd && shot.eyes.size() == 2) {
     Camera head = eye;
     head.position = 0.5 * (eye.position + shot.eyes[1].camera.position);
     if (look(model, head, near_plane).inside > 0) {
       return fmt::format(
           "the eyes are {:.4g} m apart, {:.4g} world units, and see past the model between them: --ipd is in "
-          "metres, --units-per-metre says how many world units make one",
+          "metres, --units-per-metre sets the world units of one",
           *shot.ipd, *shot.ipd * shot.units_per_metre);
     }
   }
   if (seen.ahead == 0 && seen.near > 0)
-    return fmt::format("all that lies ahead is nearer than --near {:.4g}", near_plane);
+    return fmt::format("everything ahead is nearer than --near {:.4g}", near_plane);
   const Bounds core = summarise(model).core;
   const glm::dvec3 middle = world_from_axes(model.axes.letters) * (0.5 * (core.low + core.high));
   return fmt::format("view {} looks {} the model, whose middle is at {},{},{}{}", shot.name,

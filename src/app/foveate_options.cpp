@@ -37,7 +37,7 @@ stereo::Foveation parse_foveation(const std::string& text) {
   for (std::string part; std::getline(in, part, ',');) {
     const std::size_t equals = part.find('=');
     if (equals == std::string::npos && word != "gaze")  // the only word with several numbers
-      fail("--foveate {}: '{}' is no WORD=NUMBER, as in inset=20deg,context=0.4", text, part);
+      fail("--foveate {}: '{}': expected WORD=NUMBER, as in inset=20deg,context=0.4", text, part);
     if (equals != std::string::npos) {
       word = part.substr(0, equals);
       part.erase(0, equals + 1);
@@ -72,11 +72,11 @@ stereo::Foveation parse_foveation(const std::string& text) {
 }  // namespace
 
 void add_foveate_option(CLI::App& sub, std::optional<stereo::Foveation>& foveate) {
-  add_parsed(
-      sub, "--foveate", "inset=DEGREES,context=SHARE,...", foveate, parse_foveation,
-      "Draw exactly an inset of so many degrees across where the eyes look, and\naround it a share of the "
-      "pixels along each axis: inset=20deg,context=0.4;\ngaze=RIGHT,UP, degrees from straight ahead "
-      "(0,0), or those of both eyes;\nseam, of the inset (0.1). --tolerance is for what lies around")
+  add_parsed(sub, "--foveate", "inset=DEGREES,context=SHARE,...", foveate, parse_foveation,
+             "Draw exactly an inset about the gaze, in degrees across, and the\ncontext around it with a "
+             "share of the pixels along each axis:\ninset=20deg,context=0.4; gaze=RIGHT,UP: degrees from "
+             "straight ahead\n(0,0), or those of both eyes; seam: a share of the inset (0.1).\n--tolerance "
+             "is for the context")
       ->group("Drawing");
 }
 

@@ -14,6 +14,7 @@
 #include "app/command.h"
 #include "app/context_options.h"
 #include "app/load_scene.h"
+#include "app/placed.h"
 #include "app/shots.h"
 #include "base/text.h"
 #include "compact/weights.h"
@@ -55,7 +56,7 @@ struct SeenOfViews {
 std::optional<SeenOfViews> see(const InfoOptions& o, const Model& model) {
   if (o.camera.file.empty()) return std::nullopt;
   if (model.scaffold)
-    fail("--cameras: {} is a Scaffold-GS model, which makes its Gaussians anew for each eye", o.scene.name);
+    fail("--cameras: {} is a Scaffold-GS model, which decodes Gaussians for each eye", o.scene.name);
   const CameraList list = listed_cameras(o.scene, o.camera);
   const std::vector<Camera> cameras = chosen_cameras({}, {}, list);
   const auto context = open_context({});
@@ -113,8 +114,8 @@ void print_info(const SeenOfViews& seen, std::size_t all) {
     return 100.0 * static_cast<double>(count) / static_cast<double>(all);
   };
   fmt::print(
-      "\n{:.0f} % of the Gaussians ({}) never touch a pixel in these {} views; {:.0f} % ({}) make up 99 % of "
-      "the pictures\n{}\n",
+      "\n{:.0f} % of the Gaussians ({}) touch no pixel in these {} views; {:.0f} % ({}) have 99 % of the "
+      "blending weight\n{}\n",
       share(seen.unseen), seen.unseen, seen.views, share(seen.most_of), seen.most_of,
       "`binosplat trim` writes the smallest model that keeps them");
 }
@@ -147,8 +148,8 @@ void print_info(const Trained& trained) {
       said += fmt::format("{}{} {}", said.empty() ? "" : ", ", key, value);
     if (!said.empty()) fmt::print("{:<14} {}\n", "", said);
     for (const std::string& sentence : trained.run->otherwise)
-      fmt::print("{:<14} {}\n", "  not drawn so", sentence);
-    for (const std::string& sentence : trained.run->advice) fmt::print("{:<14} {}\n", "  to know", sentence);
+      fmt::print("{:<14} {}\n", "  differs", sentence);
+    for (const std::string& sentence : trained.run->advice) fmt::print("{:<14} {}\n", "  note", sentence);
   }
   if (trained.exposures) fmt::print("{:<14} {}\n", "exposures", in_words(*trained.exposures));
 }
@@ -196,12 +197,12 @@ void print_info(const Model& model, const Trained& trained, const ModelSummary& 
   print_bounds("bounds", s.all);
   print_bounds("98 % within", s.core);
   if (const glm::dvec3& o = model.axes.origin; o != glm::dvec3(0.0))
-    fmt::print("{:<14} {},{},{}: floats from there keep the digits that floats from zero would not\n",
-               "origin", coordinate(o.x), coordinate(o.y), coordinate(o.z));
+    fmt::print("{:<14} {},{},{}: positions are relative to it, to keep their precision\n", "origin",
+               coordinate(o.x), coordinate(o.y), coordinate(o.z));
   fmt::print("{:<14} {} for the model, at least {} for a frame of a headset's eyes\n", "GPU memory",
              megabytes(needs.model), megabytes(needs.frame));
   if (model.scaffold) {
-    fmt::print("\nopacities, scales and colours are made for each eye\n");
+    fmt::print("\nopacities, scales and colours are decoded for each eye\n");
     return;
   }
   print_sizes(model);
@@ -290,6 +291,7 @@ ExitCode info(const InfoOptions& options) {
   const bool named = !options.camera.file.empty();
   settle_axes(options.scene,
               named ? listed_cameras(options.scene, options.camera).cameras : std::vector<Camera>{}, model);
+  if (!options.scene.place.empty() && !is_built_in(options.scene.name)) append_placed(options.scene, model);
   const ModelSummary summary = summarise(model);
   const render::MemoryNeeds needs = headset_needs(model);
   const std::optional<SeenOfViews> seen = see(options, model);
@@ -314,8 +316,9 @@ void add_info(CLI::App& program, Command& command) {
   sub->add_option("MODEL", options->scene.name, "A model file or folder, or demo:room or demo:city")
       ->required();
   add_lod_option(*sub, options->scene);
+  add_place_option(*sub, options->scene);
   sub->add_option("--cameras", options->camera.file,
-                  "Draw the views of these cameras, and say how many Gaussians they show")
+                  "Draw the views of these cameras, and count the Gaussians that they show")
       ->type_name("FILE");
   sub->add_flag("--views", options->views, "List the views instead, by the names that --view takes");
   sub->add_option("--json", options->json, "Write everything printed as JSON")->type_name("FILE");

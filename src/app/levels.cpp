@@ -155,9 +155,9 @@ ExitCode levels(const LevelsOptions& o) {
        }});
   if (undrawn > 0)
     log_warning(
-        "there was no memory for {} of the pictures that tell what parts lose together, by which levels are "
-        "chosen: --detail and --quality may cost more or less than they say. Start it again where there is "
-        "more, and it draws these",
+        "out of memory for {} of the pictures that measure what chunks lose together, by which levels are "
+        "chosen: --detail and --quality may lose more or less than they report. Run it again with more "
+        "memory to draw these",
         undrawn);
   for (const std::string& loss : written.losses) log_warning("{}", loss);
   for (const std::string& loss : kernel_loss(model, ModelFormat::sog)) log_warning("{}", loss);
@@ -186,7 +186,7 @@ void add_levels(CLI::App& program, Command& command) {
       ->check(range(1, 16));
   sub->add_option(
          "--leaf", o->settings.leaf,
-         "Gaussians of the finest level, at most, in a part that is seen at a\nlevel of its own (2048)")
+         "Largest chunk, in Gaussians of the finest level; each chunk has a level\nof its own (2048)")
       ->type_name("N")
       ->check(range(64, 131072));
   add_lod_option(*sub, o->scene);
@@ -196,7 +196,7 @@ void add_levels(CLI::App& program, Command& command) {
   add_repeat_options(*sub, o->scene);
   add_context_options(*sub, o->context);
   sub->footer(
-      "A run that was interrupted goes on where it ended when it is started again.\n"
+      "To resume an interrupted run, start it again with the same options.\n"
       "Examples:\n"
       "  binosplat levels garden.ply -o garden\n"
       "  binosplat render garden --detail 40dB");

@@ -85,8 +85,8 @@ void settle_axes(const SceneOptions& o, std::span<const Camera> cameras, Model& 
     return;
   if (!detected) {
     log_info(
-        "{}: its file does not say where its axes point, and nothing else tells: taken as {}, as the format "
-        "says (--axes {} if it lies upside down or out of view)",
+        "{}: its axes are unknown: taken as {}, the default of the format (--axes {} if it lies upside down "
+        "or out of view)",
         o.name, usual, lowered(other));
     return;
   }

@@ -28,16 +28,15 @@ fs::path model_file(const std::string& scene) {
 
 void refuse_scaffold(const Model& model, const std::string& scene) {
   if (model.scaffold) {
-    fail(
-        "{} is a Scaffold-GS model, which makes its Gaussians anew for each eye: no other format can hold it",
-        scene);
+    fail("{} is a Scaffold-GS model, which decodes Gaussians for each eye: no other format can store it",
+         scene);
   }
 }
 
 void add_harmonic_bits_option(CLI::App& sub, std::optional<int>& bits) {
   sub.add_option("--sh-bits", bits,
-                 "Of spz: bits of a harmonic (8); 4, as other writers take, saves a third of the\nfile and "
-                 "costs some 15 dB")
+                 "Bits of a harmonic in spz (8); 4, as other writers use, saves a third\nof the file and "
+                 "costs about 15 dB")
       ->check(range(1, 8))
       ->type_name("N");
 }

@@ -271,8 +271,8 @@ void place_files(const Outputs& outputs, const std::string& json, std::vector<Sh
       names.emplace_back("...");
     }
     fail(
-        "-o {} is one file, and {} views are to be drawn ({}): name a folder, as -o {}, and each view's "
-        "pictures are called after it there; or draw one of them, as --view {}",
+        "-o {} is one file for {} views ({}): name a folder, as -o {}, for a file named after each view, or "
+        "draw one view, as --view {}",
         outputs.file.string(), shots.size(), fmt::join(names, ", "),
         (outputs.file.parent_path() / outputs.file.stem()).string(), names[0]);
   }

@@ -69,7 +69,7 @@ Image load_view_photo(const fs::path& file, const Camera& camera, const glm::vec
   check_size(file, {photo.width, photo.height}, camera);
   static std::atomic<bool> said = false;
   if (measure::is_see_through(photo) && !said.exchange(true)) {
-    log_info("photo {} has alpha: it is compared before the background {:g},{:g},{:g}, as others like it are",
+    log_info("photo {} has alpha: photos with alpha are compared over the background {:g},{:g},{:g}",
              file.string(), background.r, background.g, background.b);
   }
   return photo.channels == 3 ? photo : measure::before(background, photo);
@@ -97,8 +97,8 @@ compact::PhotoOf photo_finder(const PhotoSource& photos) {
     const auto back = inverse_exposure(exposure_of(photos.exposures, camera.name));
     if (!back)
       fail(
-          "{}: the exposure of {} mixes its colours into fewer than three, so nothing can be fitted to "
-          "its photo; take it out, or give --exposure none",
+          "{}: the exposure of {} is singular (it mixes its colours into fewer than three), so nothing can "
+          "be fitted to its photo; remove it, or give --exposure none",
           photos.exposures.file().string(), camera.name);
     return exposed(load_view_photo(*file, camera), *back);
   };
@@ -115,7 +115,7 @@ void check_target(const std::string& command, const std::string& what, const Tar
     fail("{} needs {}: --photos DIR --max-drop DB, or --quality DB against the exact pictures", command,
          what);
   if (target.max_drop.has_value() != !options.photos.empty())
-    fail("--max-drop and --photos go together: a drop in dB is against photos");
+    fail("--max-drop and --photos go together: a drop in dB needs photos");
   if (options.camera.lens.size && target.max_drop)
     fail("--size with --photos: a drop is measured in the photos' own size");
 }

@@ -66,7 +66,7 @@ void append_placed(const SceneOptions& o, Model& model) {
     placed.axes = model.axes;
     std::vector<glm::dvec3> places;
     if (!transform(placed, map, places))
-      entry.fail_here("its matrix moves {} beyond the largest number", path);
+      entry.fail_here("its matrix moves {} beyond the range of floats", path);
     std::ranges::copy(places, placed.position.begin());
     log_info("{}: {} Gaussians of {}", o.place, placed.count(), path);
     join(model, std::move(placed));

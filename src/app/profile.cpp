@@ -121,7 +121,7 @@ Profiled open_profiled(ProfileOptions o) {
   CameraList list = listed_cameras(o.scene, o.camera, o.rig);
   check_views(o.camera.views, o.rig.mono, list);
   if (o.camera.views == all_views || view_names(o.camera.views, list).size() > 1)
-    fail("profile: --view stands at one camera: name one");
+    fail("profile: --view takes a single camera: name one");
   Profiled all;
   std::string along = choose_path(o, list);
   all.context = open_context(o.context);
@@ -199,7 +199,7 @@ ExitCode profile(const ProfileOptions& o) {
 
 void add_profile(CLI::App& program, Command& command) {
   CLI::App* sub =
-      program.add_subcommand("profile", "Time every frame along a path, and say why some are slow");
+      program.add_subcommand("profile", "Time every frame along a path, and report why some are slow");
   const auto options = std::make_shared<ProfileOptions>();
   ProfileOptions& o = *options;
   add_picture_options(*sub, o);
@@ -208,25 +208,23 @@ void add_profile(CLI::App& program, Command& command) {
   sub->option_defaults()->group("Options");
   sub->get_option("--view")->description("Stand at this camera")->type_name("NAME");
   sub->get_option("--tour")->description(
-      "Go through all cameras as a head does (walk, where nothing else is\nasked for), or at so many metres "
-      "and degrees a second");
+      "Move through all cameras as a head does (walk, without another motion);\nM,DEG sets metres and "
+      "degrees a second");
   sub->get_option("--seconds")
-      ->description(
-          "So much of the tour, or so long at a view (10); or go through the\nkeys of --path in S seconds");
+      ->description("Seconds of the tour, or at a view (10), or of the path through the keys\nof --path");
   sub->get_option("--preset")
       ->description(
           "preview: 1280 x 720 an eye; headset: 3660 x 3200 an eye,\n100 degrees (headset, without --size)");
-  add_value(*sub, "--fps", "N", o.fps, between(0.0, 1000.0, "frames a second from 0 to 1000"),
-            "Frames begin so often a second, as in a headset of 72, 90 or 120;\n0: as soon as the last "
-            "one is drawn (90)");
+  add_value(
+      *sub, "--fps", "N", o.fps, between(0.0, 1000.0, "frames a second from 0 to 1000"),
+      "Frames begun a second, as in a headset of 72, 90 or 120; 0: as soon as\nthe last one is drawn (90)");
   sub->add_option(
          "-o,--output", o.folder,
          "Folder for report.html, trace.json, frames.csv, results.json and\nresults.csv (out/profile)")
       ->type_name("DIR");
   add_compare_options(*sub, o.compare, o.fail_if_slower);
   sub->add_flag_callback(
-      "--no-clock", [&o] { o.asks_clock = false; },
-      "Do not ask the driver for the GPU's clock meanwhile, which it may take\ntime for");
+      "--no-clock", [&o] { o.asks_clock = false; }, "Do not read the GPU's clock, which may slow the driver");
   for (const char* name : not_profiled) sub->remove_option(sub->get_option(name));
   sub->footer(
       "trace.json opens in ui.perfetto.dev and chrome://tracing.\n"

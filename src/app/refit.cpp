@@ -145,7 +145,7 @@ ExitCode refit(const RefitOptions& o) {
       views.training.begin(), views.training.end(),
       [&](const Camera& camera) { return !o.photos.empty() && find_view_photo(o.photos, camera); }));
   if (!o.photos.empty() && photos == 0)
-    fail("--photos {}: the only photo of a view is held back to judge by; add photos, or use --against exact",
+    fail("--photos {}: the held-back views have the only photo; add photos, or use --against exact",
          o.photos);
   Model fitted = model;
   fitted.perspective = {o.order.value_or(model.perspective.order),
@@ -154,7 +154,7 @@ ExitCode refit(const RefitOptions& o) {
   Judge judge(*context, model, views, o.photos.empty() ? TargetKind::quality : TargetKind::drop);
   std::vector<Step> steps;
   if (fitted.perspective != model.perspective)
-    steps.push_back(judge.step("as it was: " + name_of(model.perspective), model));
+    steps.push_back(judge.step("original: " + name_of(model.perspective), model));
   steps.push_back(judge.step("before: " + name_of(fitted.perspective), fitted));
   const double before = steps.back().held_back, before_own = steps.back().held_back_own;
 
@@ -171,8 +171,8 @@ ExitCode refit(const RefitOptions& o) {
   if (!o.json.empty()) save_json(o.json, refit_json(steps, o, views, photos, found.best_round, nearer));
   if (!nearer) {
     log_warning(
-        "{} is not written: the views held back would be no nearer than before, {:.3f} dB{}; others held "
-        "back (--views, --held-back) or more cameras may help",
+        "{} is not written: the held-back views would not improve on {:.3f} dB{}; others (--views, "
+        "--held-back) or more cameras may help",
         o.output, before,
         views.held_back_own.empty() ? "" : fmt::format(" and {:.3f} in the cameras' own size", before_own));
     return ExitCode::fell_short;
@@ -200,21 +200,22 @@ void add_refit(CLI::App& program, Command& command) {
                "Instead of photos: the model's own exact pictures, in the order and\nprojection that it was "
                "trained with",
                {{"exact", true}});
-  choose_explained(*sub, "--order", o->order, "What Gaussians are sorted by from then on (as before)",
+  choose_explained(*sub, "--order", o->order, "How Gaussians are sorted from then on (as before)",
                    order_choices);
   choose_explained(*sub, "--projection", o->projection,
-                   "What a ray sees of a Gaussian from then on (as before)", projection_choices);
-  sub->add_option("--rounds", o->rounds, fmt::format("Of conjugate gradients, at most ({})", o->rounds))
+                   "How Gaussians are projected from then on (as before)", projection_choices);
+  sub->add_option("--rounds", o->rounds,
+                  fmt::format("Rounds of conjugate gradients, at most ({})", o->rounds))
       ->type_name("N")
       ->check(range(1, 1000));
   add_harmonic_bits_option(*sub, o->harmonic_bits);
   add_split_options(*sub, *o, o->split,
-                    "So many views (that have a photo) are held back to judge by, spread\nevenly, at most a "
-                    "quarter of them (4); the others are fitted");
+                    "Number of held-back views (with a photo), spread evenly, at most a\nquarter of the "
+                    "views (4); they validate, and the others are fitted");
   sub->add_option("--json", o->json, "Write everything printed as JSON")->type_name("FILE");
   add_measured_options(*sub, *o);
   sub->footer(
-      "Shapes and opacities stay. Nothing is written where the views held back would get worse.\n"
+      "Shapes and opacities stay. Nothing is written if the held-back views would get worse.\n"
       "Takes about seven times the memory of the model's harmonics, whatever the number of views.\n"
       "Examples:\n"
       "  binosplat refit garden.ply --photos images --order distance --projection tangent -o steady.ply\n"

@@ -97,7 +97,7 @@ void log_model(const std::string& scene, const std::optional<int>& decode, const
   if (model.scaffold) {
     log_info("{}: {}", scene, describe(*model.scaffold));
   } else if (decode) {
-    fail("--decode {}: {} is no Scaffold-GS model, whose Gaussians are made for each eye",
+    fail("--decode {}: {} is not a Scaffold-GS model, which decodes Gaussians for each eye",
          decode_choices[*decode].name, scene);
   } else {
     log_info("{}: {} Gaussians{}, harmonics of degree {}", scene,
@@ -207,8 +207,10 @@ ExitCode render(const RenderOptions& asked) {
     if (!o.scene.detail && !run.stream->files().has_errors()) run.stream.reset();
   }
   if (!run.stream && o.output.detail_report)
-    fail("--detail-report: {} does not say what its levels lose, to share --quality with: give --detail PX",
-         o.scene.name);
+    fail(
+        "--detail-report: {} lacks the errors of its levels, so --quality cannot choose them: give --detail "
+        "PX",
+        o.scene.name);
   if (!run.stream) {
     std::optional<DetailBudget> budget;
     if (o.scene.gpu_memory) budget = detail_budget(o, run.list);

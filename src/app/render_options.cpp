@@ -24,19 +24,18 @@ void check_regions(const RenderOptions& o) {
   if (o.shard.all() && !o.resume) return;
   const char* const part = o.resume ? "--resume" : "--shard";
   if (o.scene.detail && (o.camera.along_path() || o.camera.lens.vr180())) {
-    fail("{} with --detail: a view's levels go by those of the view before it; take --lod or --gpu-memory",
-         part);
+    fail("{} with --detail: a view's levels depend on the view before it; give --lod or --gpu-memory", part);
   }
   if (o.camera.along_path() && o.drawing.quality) {
     fail(
-        "{} with --quality along a path: a frame's tolerance goes by the frames before it; draw the path "
+        "{} with --quality along a path: a frame's tolerance depends on the frames before it; draw the path "
         "in one run, or give --tolerance or --calibration instead",
         part);
   }
   if (o.camera.along_path() && render::measures(o.drawing.transmittance)) {
     fail(
-        "{} with --transmittance {} along a path: a frame goes by what those before it measured; draw "
-        "the path in one run, or take another --transmittance",
+        "{} with --transmittance {} along a path: a frame uses measurements of those before it; draw the "
+        "path in one run, or give another --transmittance",
         part, transmittance_choices[o.drawing.transmittance].name);
   }
 }
@@ -51,46 +50,45 @@ void check_vr180(const RenderOptions& o) {
     fail("--size {0}x{0} with --vr180: at most {1}x{1}", size->x, stereo::panorama_side_most);
   const int layout = o.output.layout.value_or(LAYOUT_PARALLEL);
   if (layout != LAYOUT_PARALLEL && layout != LAYOUT_OVER_UNDER && layout != LAYOUT_SEPARATE)
-    fail("--vr180 with --layout {}: players know parallel and over-under", layout_choices[layout].name);
+    fail("--vr180 with --layout {}: expected parallel, over-under or separate", layout_choices[layout].name);
   const std::string ending = lowered_ending(o.output.output);
   if (ending == ".mkv" || ending == ".webm")
-    fail("-o {}: only .mp4 and .mov can be told to be VR180 here", o.output.output);
+    fail("-o {}: expected .mp4 or .mov, which can be marked as VR180", o.output.output);
 }
 
 void add_headset_options(CLI::App& sub, HeadsetOptions& o) {
   sub.option_defaults()->group("Headset");
   sub.add_flag("--xr", o.xr,
-               "In the headset of an OpenXR runtime; sticks walk and turn, grips hold the\nworld");
+               "Draw in the headset of an OpenXR runtime; sticks walk and turn, grips\nhold the world");
   add_value(sub, "--scale", "FACTOR", o.scale, between(0.1, 4.0, "a factor from 0.1 to 4"),
-            "Of both sides of the pictures that the runtime recommends (1)");
+            "Scale of both sides of the recommended pictures (1)");
   const auto parse_budget = [](const std::string& text) {
     double ms = 0.0;
     const bool good = text == "auto" || (CLI::detail::lexical_cast(text, ms) && ms > 0.0 && ms <= 1000.0);
     if (!good) fail("--frame-budget {}: expected milliseconds above 0, at most 1000, or auto", text);
     return ms;
   };
-  add_parsed(
-      sub, "--frame-budget", "MS|auto", o.budget_ms, parse_budget,
-      "Quality, then size, as a frame's time allows: less where frames take\nlonger; auto: four fifths of "
-      "the time that the runtime has for one");
+  add_parsed(sub, "--frame-budget", "MS|auto", o.budget_ms, parse_budget,
+             "Reduce quality, then size, to keep frames within MS; auto: four fifths\nof the runtime's time "
+             "for a frame");
   add_value(sub, "--record", "S", o.record_s, between(1e-3, 3600.0, "seconds above zero, at most 3600"),
-            "Record the first S seconds as `profile` does; F8 in the window that\nmirrors records ten more");
+            "Record the first S seconds as `profile` does; F8 in the mirror window\nrecords ten more");
   sub.add_flag_callback(
-      "--no-mirror", [&o] { o.mirror = false; }, "No window that shows what the left eye sees");
+      "--no-mirror", [&o] { o.mirror = false; }, "No window with the left eye's picture");
 }
 
 // Options that conflict with a headset, and the reasons.
-constexpr const char* of_windows = "leave it out, a headset decides that itself";
-constexpr const char* of_studies = "leave it out, a headset's pictures have exact tiles of 16 px";
+constexpr const char* of_windows = "leave it out, the headset determines it";
+constexpr const char* of_studies = "leave it out, headsets use exact tiles of 16 px";
 constexpr std::pair<const char*, const char*> not_in_headsets[] = {
     {"--size", of_windows},        {"--layout", of_windows},    {"--ipd", of_windows},
     {"--convergence", of_windows}, {"--cant", of_windows},      {"--show", of_windows},
     {"--fov", of_windows},         {"--output", of_windows},    {"--tiles", of_studies},
     {"--tile", of_studies},        {"--shader-dir", of_studies}};
 constexpr std::pair<const char*, const char*> not_beside_a_budget[] = {
-    {"--foveate", "a quality is one for whole pictures: choose one of them"},
+    {"--foveate", "a quality needs whole pictures: choose one of them"},
     {"--quality", "choose one, the budget chooses the quality"},
-    {"--tolerance", "choose one, the budget chooses what is left out"}};
+    {"--tolerance", "choose one, the budget chooses the tolerance"}};
 
 // Throws Error for options that a headset decides itself, and for headset options without --xr.
 void check_headset(const HeadsetOptions& o, const CLI::App& sub) {
@@ -136,17 +134,15 @@ void add_options(CLI::App& sub, RenderOptions& o) {
   add_picture_options(sub, o);
   sub.add_flag_callback(
          "--vr180", [&o] { o.camera.lens.preset = "vr180"; },
-         "All that lies ahead of each eye, 180 degrees wide and high\n"
-         "(equirectangular, 2048 x 2048 px an eye, or --size), level, for players of\n"
-         "VR180: .png, or .vr.jpg, .mp4 and .mov that say so")
+         "Everything ahead of each eye, 180 degrees wide and high\n(equirectangular, 2048 x 2048 px an eye, "
+         "or --size), level, for players\nof VR180: .png, or .vr.jpg, .mp4 and .mov with VR180's metadata")
       ->group("Cameras");
   add_foveate_option(sub, o.foveate);
   add_tour_options(sub, o.camera);
   add_output_options(sub, o.output);
   add_shard_option(sub, o.shard, "Draw every Nth view from the Ith on: one job of N");
-  sub.add_flag(
-      "--resume", o.resume,
-      "Leave out the views whose pictures an earlier run with --resume and the\nsame options has left");
+  sub.add_flag("--resume", o.resume,
+               "Skip views whose pictures an earlier run with --resume and the same\noptions wrote");
   sub.option_defaults()->group("Options");
 }
 
@@ -155,9 +151,8 @@ void add_view_options(CLI::App& sub, RenderOptions& o) {
   add_look_options(sub, o.output, true);
   sub.add_option("-o,--output", o.output.output, "A folder for pictures and paths (out/SCENE)")
       ->type_name("DIR");
-  add_value(
-      sub, "--fps", "N", o.output.fps, fps_range,
-      "Of a folder with the models of a moving scene: show so many a second, or\nas many as can be read");
+  add_value(sub, "--fps", "N", o.output.fps, fps_range,
+            "Models a second of a moving scene's folder, or as many as can be read");
   add_headset_options(sub, o.headset);
   add_foveate_option(sub, o.foveate);
   sub.get_option("--foveate")->group("Headset");
@@ -185,11 +180,11 @@ bool may_share(const RenderOptions& o) {
 void check_foveate(const RenderOptions& o) {
   if (!o.foveate) return;
   if (o.output.show >= SHOW_ALPHAS) {
-    fail("--foveate with --show {}: it tells of the lists that one picture is blended by, and these are two",
+    fail("--foveate with --show {}: this debug view needs one picture, and a foveated one has two",
          show_choices[o.output.show].name);
   }
   if (o.output.exr_depth == Depth::median)
-    fail("--foveate with --exr-depth median: between inset and context only means are mixed");
+    fail("--foveate with --exr-depth median: the seam can only mix means");
   if (o.rig.one_picture() && o.foveate->gaze.size() > 1)
     fail("--foveate gaze: two are for both eyes: leave --mono and --only out, or give one");
 }
@@ -197,16 +192,16 @@ void check_foveate(const RenderOptions& o) {
 void check(const RenderOptions& o) {
   check(o.scene);
   if (o.output.detail_report && !o.scene.detail && !may_share(o))
-    fail("--detail-report tells what --detail costs, which is missing");
+    fail("--detail-report needs --detail, whose loss it reports");
   if (o.scene.detail && o.scene.detail->db && o.drawing.quality &&
       *o.scene.detail->db <= *o.drawing.quality) {
     fail(
-        "--detail {}dB with --quality {} leaves nothing for what a frame leaves out: leave --detail out, and "
-        "levels get half of what may be lost",
+        "--detail {}dB uses up the error that --quality {} allows: leave --detail out, and levels take half "
+        "of it",
         *o.scene.detail->db, *o.drawing.quality);
   }
   if (o.camera.seconds && !o.camera.along_path())
-    fail("--seconds is for --tour, how much of it is drawn, and for --path, how long its way takes");
+    fail("--seconds needs --tour, of which it is a part, or --path, whose duration it is");
   if (o.camera.fov && o.camera.lens.headset())
     fail("--fov with --preset headset: the preset's lens has 100 degrees across");
   check(o.drawing);
@@ -215,11 +210,11 @@ void check(const RenderOptions& o) {
   if (o.rig.one_picture() && o.output.show == SHOW_DISAGREEMENT)
     fail("--show disagreement is between both eyes: leave --mono and --only out");
   if (o.drawing.reference_until == render::Stage::blend && o.output.show >= SHOW_ALPHAS) {
-    fail("--show {}: the GPU's blend tells it, which --reference-until blend leaves out",
+    fail("--show {} needs the GPU's blend, which --reference-until blend replaces",
          show_choices[o.output.show].name);
   }
   if (o.drawing.reference_until == render::Stage::blend && o.output.exr_depth == Depth::median)
-    fail("--exr-depth median: the GPU's blend tells it, which --reference-until blend leaves out");
+    fail("--exr-depth median needs the GPU's blend, which --reference-until blend replaces");
   check_regions(o);
   check_vr180(o);
   check_foveate(o);

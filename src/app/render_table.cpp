@@ -189,8 +189,8 @@ void tell_whether_quality_pays(const RenderRun& run) {
   }
   if (run.exact_ms && ms > *run.exact_ms) {
     log_warning(
-        "--quality {:g} does not pay here: a frame took {:.3g} ms in the mean, the first one's search "
-        "included, and an exact one takes {:.3g} ms: leave it out",
+        "--quality {:g} is slower here than exact frames: a frame took {:.3g} ms in the mean, the first "
+        "one's search included, and an exact one takes {:.3g} ms: leave it out",
         *o.drawing.quality, ms, *run.exact_ms);
   } else if (!o.camera.along_path() && o.drawing.frames == 1) {
     log_info(

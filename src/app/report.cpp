@@ -72,11 +72,11 @@ void print_table(const lab::Table& table) {
 }
 
 void add_compare_options(CLI::App& sub, std::string& file, std::optional<double>& fail_if_slower) {
-  sub.add_option("--compare", file, "Print what changed beyond noise since an older results.json")
+  sub.add_option("--compare", file, "Print changes beyond noise since an older results.json")
       ->type_name("FILE");
   add_value(
       sub, "--fail-if-slower", "PERCENT", fail_if_slower, not_negative,
-      "With --compare: end with exit code 1 if a time has risen beyond noise,\nand by more than PERCENT");
+      "With --compare: end with exit code 1 if a time has risen beyond noise\nand by more than PERCENT");
 }
 
 std::vector<lab::Row> rows_to_compare(const std::string& file, const std::optional<double>& fail_if_slower) {

@@ -74,8 +74,8 @@ void leave_out_drawn(const fs::path& folder, const ordered_json& run, std::vecto
     if (picture == shot.files.end()) continue;
     if (fs::exists(file)) break;
     fail(
-        "{}: nothing says how it was drawn, so that --resume cannot go on from it. Name another folder with "
-        "-o, or remove it",
+        "{}: it belongs to no known run, so --resume cannot continue it. Name another folder with -o, or "
+        "remove it",
         picture->name);
   }
   claim_run(file, run, "pictures");

@@ -30,7 +30,8 @@ double parse_ipd(const std::string& text) {
   constexpr double most = 1.0;
   const double metres = parse_length("--ipd", text, "as in 0.064, 64mm or 3m");
   if (!text.ends_with("m") && std::abs(metres) > most)
-    fail("--ipd {0}: that is {0} metres, and eyes are 0.063 apart; say {0}mm, or {0}m if it is meant", text);
+    fail("--ipd {0}: these are {0} metres, and eyes are 0.063 apart; give {0}mm, or {0}m if it is meant",
+         text);
   return metres;
 }
 
@@ -54,10 +55,10 @@ void add_rig_options(CLI::App& sub, RigOptions& o) {
   choose<int>(sub, "--only", o.only, "Draw one eye of the pair", {{"left", 0}, {"right", 1}});
   add_ipd_option(sub, o);
   add_value(sub, "--units-per-metre", "N", o.units_per_metre, positive, "World units that make a metre (1)");
-  add_parsed(sub, "--convergence", "METRES|inf", o.convergence, parse_convergence,
-             "Distance without disparity, where the screen stands, in metres or with\na unit: 80cm; inf: "
-             "infinitely far (what suits the first view where one\npicture has both eyes, as for screens; "
-             "else inf)");
+  add_parsed(
+      sub, "--convergence", "METRES|inf", o.convergence, parse_convergence,
+      "Distance without disparity, where the screen stands, in metres or with\na unit: 80cm; inf: infinitely "
+      "far (comfortable for the first view if\none picture has both eyes, as for screens; else inf)");
   sub.add_option("--cant", o.cant, "Turn each eye outwards (0)")->type_name("DEGREES");
 }
 

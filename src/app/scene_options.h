@@ -42,6 +42,7 @@ CLI::Option* add_lod_option(CLI::App& sub, SceneOptions& options,
                             const char* help = "Level of detail of a streamed SOG, 0 the finest");
 CLI::Option* add_axes_option(CLI::App& sub, SceneOptions& options);
 void add_repeat_options(CLI::App& sub, SceneOptions& options);
+void add_place_option(CLI::App& sub, SceneOptions& options);
 CLI::Option* add_seed_option(CLI::App& sub, SceneOptions& options);
 CLI::Option* add_count_option(CLI::App& sub, SceneOptions& options,
                               const char* help = "Gaussians of demo:city (1000000)");

@@ -15,14 +15,13 @@ namespace binosplat::app {
 
 void add_split_options(CLI::App& sub, MeasuredOptions& measured, SplitOptions& split,
                        const char* views_help) {
-  sub.add_option("--cameras", measured.camera.file, "Cameras, where they are not beside the model")
-      ->type_name("FILE");
+  sub.add_option("--cameras", measured.camera.file, "Cameras, if not beside the model")->type_name("FILE");
   add_value(sub, "--views", "N", split.held_back, range(1, 10000), views_help);
   add_names_option(sub, "--held-back", split.judges,
                    "Views by name to hold back instead, as A,B: photos that the model was\nnot trained on "
                    "judge best")
       ->excludes("--views");
-  add_names_option(sub, "--test", split.tests, "Views by name that decide nothing: what they lose is stated");
+  add_names_option(sub, "--test", split.tests, "Views by name that are only measured");
   add_size_option(sub, measured.camera.lens);
   add_lod_option(sub, measured.scene);
   add_axes_option(sub, measured.scene);
@@ -51,7 +50,7 @@ lab::ViewSplit split_views(const std::string& command, const MeasuredOptions& o,
     for (const Camera& camera : chosen_cameras(names, o.camera.lens, list, option)) {
       into.push_back(with_photo(photos, camera));
       if (std::erase_if(cameras, [&](const Camera& other) { return other.name == camera.name; }) == 0)
-        fail("{} {}: named twice: a view has one task", option, camera.name);
+        fail("{} {}: the view is named twice: a view has one use", option, camera.name);
     }
   };
   take(split.tests, "--test", views.test);

@@ -45,20 +45,19 @@ std::string motions_help() {
 }  // namespace
 
 CLI::Option* add_tour_option(CLI::App& sub, CameraOptions& o) {
-  return add_parsed(
-      sub, "--tour", "calm|walk|fast|M,DEG", o.tour, parse_motion,
-      "Go through all of the cameras as a head does, --fps frames a second\n(90; videos: 30), in "
-      "metres of --units-per-metre; M,DEG: at other speeds" +
-          motions_help());
+  return add_parsed(sub, "--tour", "calm|walk|fast|M,DEG", o.tour, parse_motion,
+                    "Move through all cameras as a head does, --fps frames a second (90;\nvideos: 30), in "
+                    "metres of --units-per-metre; M,DEG: metres and degrees\na second" +
+                        motions_help());
 }
 
 void add_tour_options(CLI::App& sub, CameraOptions& o) {
   sub.option_defaults()->group("Cameras");
   add_tour_option(sub, o);
-  sub.add_flag("--keys", o.keys, "Draw the keys of --path alone, and not the way through them");
+  sub.add_flag("--keys", o.keys, "Draw only the keys of --path");
   add_value(sub, "--seconds", "S", o.seconds, seconds_range,
-            "The first S seconds of the tour (all); or go through the keys of\n--path in S seconds, at an "
-            "even pace (by their times)");
+            "The first S seconds of the tour (all); or the duration of the path\nthrough the keys of --path, "
+            "at an even pace (by their times)");
 }
 
 CameraList go_on_tour(const SceneOptions& scene, const CameraOptions& camera, const RigOptions& rig,

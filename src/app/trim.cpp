@@ -171,20 +171,18 @@ ExitCode trim(const TrimOptions& o) {
   if (no_smaller) found.less = false;
   print_trimmed(o, found, views, model.count());
   if (!found.fits && !original) {
-    fail(
-        "-o {}: the format alone costs more than the bound allows, {}; choose .ply, which keeps all, or "
-        "allow for more",
-        o.output, fmt::format("{:.3f} dB", last.worse_db()));
+    fail("-o {}: the format alone exceeds the bound, {}; choose .ply, which loses nothing, or a wider bound",
+         o.output, fmt::format("{:.3f} dB", last.worse_db()));
   }
   const std::vector<std::string> losses = write_trimmed(o, found, format, original);
   for (const std::string& loss : losses) log_warning("{}", loss);
   if (found.less) {
     fmt::print("\n{}\n", o.output);
   } else if (no_smaller) {
-    fmt::print("\n{}: the model as it was, {} bytes: with what can be left out gone it would take {}\n",
-               o.output, first.bytes, last.bytes);
+    fmt::print("\n{}: the unchanged model, {} bytes: the trimmed one would have {}\n", o.output, first.bytes,
+               last.bytes);
   } else {
-    fmt::print("\n{}: the model as it was: nothing can be left out within the bound\n", o.output);
+    fmt::print("\n{}: the unchanged model: nothing can be trimmed within the bound\n", o.output);
   }
   if (!o.json.empty()) save_json(o.json, trimmed_json(o, found, views, format, losses));
   return ExitCode::done;
@@ -200,17 +198,17 @@ void add_trim(CLI::App& program, Command& command) {
       ->type_name("FILE")
       ->required();
   sub->add_option("--max-drop", o->bound.max_drop,
-                  "Bound: dB lost against the photos, mean over the views held back")
+                  "Bound: dB lost against the photos, mean over the held-back views")
       ->type_name("DB")
       ->check(positive);
-  sub->add_option("--quality", o->bound.quality, "Bound: PSNR against the exact pictures, likewise")
+  sub->add_option("--quality", o->bound.quality,
+                  "Bound: PSNR against the exact pictures, mean over the held-back views")
       ->type_name("DB")
       ->check(quality_range);
   add_photos_options(*sub, *o);
-  add_split_options(
-      *sub, *o, o->split,
-      "So many views (that have a photo) are held back to judge by, spread\nevenly, at most half "
-      "of the cameras (16); the others say what each\nGaussian is worth");
+  add_split_options(*sub, *o, o->split,
+                    "Number of held-back views (with a photo), spread evenly, at most half\nof the cameras "
+                    "(16); they validate, and the others weigh Gaussians");
   sub->add_flag(
       "--refit", o->refit,
       "Fit the colours of every candidate to the pictures, as refit does: fewer\nGaussians, and many "
@@ -219,7 +217,7 @@ void add_trim(CLI::App& program, Command& command) {
   add_measured_options(*sub, *o);
   sub->footer(
       "Steps: fewer bits a harmonic (spz), lower harmonics, fewer Gaussians; each as far as the bound holds\n"
-      "for what is written. A model of which nothing can be left out is written as it was.\n"
+      "for what is written. A model from which nothing can be trimmed is written unchanged.\n"
       "Examples:\n"
       "  binosplat trim garden.ply --photos images --max-drop 0.1 -o garden.spz\n"
       "  binosplat trim garden.ply --quality 40 -o small.ply --json small.json");

@@ -26,7 +26,7 @@ ExitCode view(std::vector<std::string> arguments) {
     throw Error(
         ExitCode::no_gl,
         fmt::format(
-            "{} is not there: this binosplat was built without its preview. `./demo --view` builds it (on "
+            "{} is missing: this binosplat was built without its preview. `./demo --view` builds it (on "
             "another system than Debian, GLFW and Dear ImGui first); `binosplat render` needs no window",
             program.string()));
   }

@@ -64,8 +64,8 @@ class LevelDrawer {
       : context_(context),
         dispatcher_(context),
         finest_(context, "the finest level"),
-        behind_(context, "colours behind parts"),
-        sums_(context, "errors of parts") {}
+        behind_(context, "colours behind chunks"),
+        sums_(context, "errors of chunks") {}
 
   /// The next model to draw; its memory is reused.
   Model& model() { return model_; }

@@ -321,8 +321,8 @@ class LevelsWriter {
         return std::vector(bytes.begin(), bytes.end());
       });
       if (sog.count() != file.count) {
-        fail("{}: {} Gaussians, where {} were written: remove its folder, and start again", meta, sog.count(),
-             file.count);
+        fail("{}: it has {} Gaussians, but {} were written: remove its folder, and start again", meta,
+             sog.count(), file.count);
       }
       std::vector<SogSource::Range> ranges;
       std::size_t at = 0;

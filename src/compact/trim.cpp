@@ -47,7 +47,7 @@ class TrimJudge {
   double judged(const Model& model) {
     const std::size_t views = held_back_->views().size();
     Progress progress(
-        fmt::format("judging model {}, {} Gaussians of degree {}", ++judged_, model.count(), model.degree),
+        fmt::format("measuring model {}, {} Gaussians of degree {}", ++judged_, model.count(), model.degree),
         views + (held_back_own_ ? held_back_own_->views().size() : 0));
     const double db = held_back_->cost(model, 1, [&](std::size_t done) { progress.update(done); }).mean_db;
     if (!held_back_own_) return db;
@@ -147,7 +147,7 @@ class Trimmer {
         settings_(settings),
         original_(model),
         judge_(context, model, views, settings.target) {
-    add_step("as it was", model, 0);
+    add_step("original", model, 0);
   }
 
   Trimmed run() {

@@ -20,7 +20,7 @@ Weights weigh(gl::Context& context, const Model& model, const std::vector<Camera
   if (with_colours) weights.colours.resize(model.count());
   const auto values = 3 * static_cast<std::size_t>(sh_count(model.degree));
   render::LinearBlend blend(context, model);
-  Progress progress("weighing the Gaussians in every view", cameras.size());
+  Progress progress("summing the Gaussians' weights in every view", cameras.size());
   std::size_t done = 0;
   for (const Camera& in_world : cameras) {
     const Camera camera = into_axes(in_world, model.axes);

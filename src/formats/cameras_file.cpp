@@ -95,9 +95,8 @@ std::vector<Camera> load_any(const std::filesystem::path& named, const std::opti
   if (is_pose_list(root)) return load_pose_list(path, root, fov_degrees.value_or(default_fov_degrees));
   if (root.is_array()) return load_list(path, root);
   fail(
-      "{}: expected a list of cameras as INRIA's cameras.json, or an object with 'frames' as transforms.json "
-      "or 'camera_path' as nerfstudio's paths or 'keyframes' as LichtFeld Studio's, but its root is of type "
-      "{}",
+      "{}: expected a list as in INRIA's cameras.json, or an object with 'frames' (transforms.json), "
+      "'camera_path' (nerfstudio) or 'keyframes' (LichtFeld Studio), but its root is of type {}",
       path.string(), root.type_name());
 }
 
@@ -134,8 +133,8 @@ void tell_apart(const std::filesystem::path& path, std::vector<Camera>& cameras)
   }
   if (!renamed.empty())
     log_warning(
-        "{}: {} of its {} cameras have the name of one before them, and get numbers: of those called {}. A "
-        "photo of such a name counts for the first",
+        "{}: {} of its {} cameras repeat an earlier name and get numbers: those named {}. A photo of such a "
+        "name belongs to the first",
         path.string(), cameras.size() - met.size(), cameras.size(), renamed);
 }
 

@@ -122,13 +122,13 @@ std::vector<Camera> load_colmap(const fs::path& folder) {
   for (const ColmapImage& image : binary ? colmap_images(image_file) : colmap_images_text(image_file)) {
     const auto lens = lenses.find(image.lens);
     if (lens == lenses.end()) {
-      fail("{}: image {} was taken with camera {}, which {} does not have", image_file.string(), image.id,
+      fail("{}: image {} refers to camera {}, which {} does not have", image_file.string(), image.id,
            image.lens, lens_file.string());
     }
     const auto plane = plane_lens(lens->second);
     if (!plane) {
       drawn.leave_out(
-          fmt::format("{}: camera {} has a lens of the model {}, which is no pinhole's. Undistort pictures "
+          fmt::format("{}: camera {} has a lens of the model {}, which is not a pinhole. Undistort pictures "
                       "and cameras: {}",
                       lens_file.string(), lens->first, colmap_model_name(lens->second.model), undistorting));
       continue;

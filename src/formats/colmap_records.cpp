@@ -51,7 +51,7 @@ glm::dvec4 unit(const std::string& where, const glm::dvec4& q) {
   // Its squares may overflow or underflow a double; divided by the largest component they do not.
   const glm::dvec4 size = glm::abs(q), shrunk = q / std::max({size.x, size.y, size.z, size.w});
   const double length = glm::length(shrunk);
-  if (!std::isfinite(length)) fail("{}: the rotation is no quaternion (all zero, or not finite)", where);
+  if (!std::isfinite(length)) fail("{}: the rotation is not a quaternion (all zero, or not finite)", where);
   return shrunk / length;
 }
 
@@ -96,7 +96,7 @@ class Cursor {
  private:
   void need(std::size_t size) const {
     if (size > bytes_.size() - at_) {
-      fail("{} is cut short or damaged: {} goes on beyond the file's {} bytes", file_.string(), record_,
+      fail("{} is cut short or damaged: {} exceeds the file's {} bytes", file_.string(), record_,
            bytes_.size());
     }
   }
@@ -164,7 +164,7 @@ T parse_number(const Lines& lines, std::string_view word, const char* what) {
   const std::optional<double> value = number_in(word);
   const bool fits = !std::is_integral_v<T> || (value >= 0.0 && *value == std::floor(*value) &&
                                                *value < std::ldexp(1.0, std::numeric_limits<T>::digits));
-  if (!value || !fits) fail("{}: {} is no {}", lines.where(), quoted(word), what);
+  if (!value || !fits) fail("{}: {} is not a {}", lines.where(), quoted(word), what);
   return static_cast<T>(*value);
 }
 
@@ -211,8 +211,7 @@ std::map<std::uint32_t, ColmapLens> colmap_lenses(const std::filesystem::path& p
     lens.height = cursor.take<std::uint64_t>();
     // The number of its parameters is unknown, too.
     if (colmap_model_name(lens.model).empty())
-      fail("{}: camera {} has the model {}, which is not known (0 to 17 are)", path.string(), lens.id,
-           lens.model);
+      fail("{}: camera {} has the unknown model {}: expected 0 to 17", path.string(), lens.id, lens.model);
     for (std::size_t k = 0; k < parameters_of(lens.model); ++k)
       lens.parameters.push_back(cursor.take<double>());
     add(lenses, cursor.where(), std::move(lens));
@@ -228,12 +227,12 @@ std::map<std::uint32_t, ColmapLens> colmap_lenses_text(const std::filesystem::pa
     const std::vector<std::string_view> words = words_of(line);
     if (words.size() < 4) fail("{}: expected CAMERA_ID MODEL WIDTH HEIGHT PARAMS...", lines.where());
     ColmapLens lens;
-    lens.id = parse_number<std::uint32_t>(lines, words[0], "camera's number");
+    lens.id = parse_number<std::uint32_t>(lines, words[0], "number of a camera");
     lens.model = -1;
     for (int model = 0; model < std::ssize(colmap_models); ++model) {
       if (colmap_models[model].name == words[1]) lens.model = model;
     }
-    if (lens.model < 0) fail("{}: {} is no model of COLMAP's", lines.where(), quoted(words[1]));
+    if (lens.model < 0) fail("{}: {} is not a COLMAP camera model", lines.where(), quoted(words[1]));
     lens.width = parse_number<std::uint64_t>(lines, words[2], "number of pixels");
     lens.height = parse_number<std::uint64_t>(lines, words[3], "number of pixels");
     for (std::size_t k = 4; k < words.size(); ++k)
@@ -282,14 +281,14 @@ std::vector<ColmapImage> colmap_images_text(const std::filesystem::path& path) {
     const std::vector<std::string_view> words = fields_of_image(line);
     if (words.size() < 10) fail("{}: expected IMAGE_ID QW QX QY QZ TX TY TZ CAMERA_ID NAME", lines.where());
     ColmapImage& image = images.emplace_back();
-    image.id = parse_number<std::uint32_t>(lines, words[0], "image's number");
+    image.id = parse_number<std::uint32_t>(lines, words[0], "number of an image");
     for (std::size_t c = 0; c < 4; ++c)
       image.rotation[static_cast<int>(c)] = parse_number<double>(lines, words[1 + c], "number");
     for (std::size_t c = 0; c < 3; ++c)
       image.translation[static_cast<int>(c)] = parse_number<double>(lines, words[5 + c], "number");
     image.rotation = unit(lines.where(), image.rotation);
     check_pose(lines.where(), image);
-    image.lens = parse_number<std::uint32_t>(lines, words[8], "camera's number");
+    image.lens = parse_number<std::uint32_t>(lines, words[8], "number of a camera");
     image.name = std::string(words[9]);
     may_be_points = true;
   }

@@ -56,13 +56,13 @@ void DrawnLenses::leave_out(std::string why) {
 void DrawnLenses::finish() const {
   if (left_out_ > 0 && drawn_ == 0) fail("{}", first_left_out_);
   if (left_out_ > 0)
-    log_warning("{}: {} of {} cameras are left out, since none of their pictures can be drawn. The first: {}",
+    log_warning("{}: {} of {} cameras are skipped, because their lenses cannot be drawn. The first: {}",
                 file_, left_out_, left_out_ + drawn_, first_left_out_);
   if (!farthest_) return;
   const std::string shift =
       std::isinf(*farthest_) ? "out of its reach" : fmt::format("by {:.3g} px", *farthest_);
   log_warning(
-      "{}: lenses are distorted, which is not drawn: pictures fit undistorted photos only. It moves the "
+      "{}: the lenses' distortion is not drawn: pictures match undistorted photos only. It moves the "
       "farthest corner of a picture {} ({}){}",
       file_, shift, farthest_camera_, remedy_);
 }

@@ -144,10 +144,8 @@ std::vector<std::string> wanted_channels(const std::filesystem::path& path,
   if (has("R") && has("G") && has("B")) {
     wanted = {"R", "G", "B"};
   } else if (has("Y") && (has("RY") || has("BY"))) {
-    fail(
-        "{}: its colours are stored beside its luminance (Y, RY, BY), which cannot be read; convert it to "
-        "RGB",
-        path.string());
+    fail("{}: it stores luminance and chroma (Y, RY, BY), which cannot be read; convert it to RGB",
+         path.string());
   } else if (has("Y") && !alpha) {
     wanted = {"Y"};
   } else if (has("Y")) {
@@ -317,13 +315,13 @@ Image load_exr(const std::filesystem::path& path, std::span<const std::byte> byt
     display = is_display(header);
     if (Imf::hasMultiView(header) && Imf::multiView(header).size() > 1) {
       const Imf::StringVector& views = Imf::multiView(header);
-      log_info("{} has {} views; this reads the default one, {}", path.string(), views.size(), views[0]);
+      log_info("{} has {} views; only the default one, {}, is read", path.string(), views.size(), views[0]);
     }
     Image stored = read_channels(file, wanted_channels(path, header.channels()));
     const Imath::Box2i &data = header.dataWindow(), &shown = header.displayWindow();
     if (data == shown) return stored;
     if (!data.intersects(shown))
-      log_warning("{}: none of its pixels lies in its display window, which is empty", path.string());
+      log_warning("{}: its pixels lie outside its display window: the picture is empty", path.string());
     return in_display_window(stored, data, shown);
   });
   const auto channels = static_cast<std::size_t>(image.channels);

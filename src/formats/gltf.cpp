@@ -52,14 +52,13 @@ void check_asset(const JsonValue& root) {
   // A reader of 2.0 can read all of 2.x, unless the file has a minVersion.
   const auto [major, minor] = version_in(version);
   if (major != 2 || (has_least && minor > 0))
-    version.fail_here("glTF of version {}.{} is not known; 2.0 is", major, minor);
+    version.fail_here("unknown glTF version {}.{}: expected 2.0", major, minor);
   if (!root.has("extensionsRequired")) return;
   const JsonValue required = root.at("extensionsRequired");
   for (std::size_t i = 0; i < required.size(); ++i) {
     const std::string name = required.at(i).text();
     if (!is_known(name)) {
-      required.at(i).fail_here(
-          "the file cannot be drawn without the extension '{}', which is not known; export it without", name);
+      required.at(i).fail_here("the file needs the unknown extension '{}'; export it without", name);
     }
   }
 }
@@ -112,11 +111,11 @@ class GltfReader {
     for (const GltfNode& node : nodes) ++meshes_[node.mesh].left;
     for (const GltfNode& node : nodes) show(node);
     if (model_.count() == 0 && model_.left_out == 0) {
-      fail("{} is a glTF scene without Gaussians ({}) that are to be seen: {} meshes, {} points",
-           path_.string(), splatting_extension, others_, points_);
+      fail("{} is a glTF scene without visible Gaussians ({}): {} meshes, {} points", path_.string(),
+           splatting_extension, others_, points_);
     }
     if (others_ + points_ > 0) {
-      log_warning("{}: only its Gaussians are drawn, and not {} meshes and {} points", path_.string(),
+      log_warning("{}: only its Gaussians are drawn; {} meshes and {} points are not", path_.string(),
                   others_, points_);
     }
     model_.format = packed_ ? "glTF with spz" : "glTF";
@@ -154,7 +153,7 @@ class GltfReader {
       const bool is_last = mesh.left == 0 && i + 1 == places.count();
       Model part = is_last ? std::move(mesh.model) : mesh.model;
       if (!transform(part, matrix, places_))
-        shown.node.fail_here("its transform, or one above it, moves Gaussians beyond the largest number");
+        shown.node.fail_here("its transform, or a parent's, moves Gaussians beyond the range of floats");
       join(model_, std::move(part));
     }
   }
@@ -202,7 +201,8 @@ class GltfReader {
     if (count == 0) return;
     if (copies > (most_here - std::min(most_here, read_)) / count) {
       node.fail_here(
-          "with it there are more than {} Gaussians in a file of {} bytes, the same ones shown many times{}",
+          "this node brings the scene above {} Gaussians, too many for a file of {} bytes: it repeats the "
+          "same ones{}",
           most_here, document_.size(), more_may_be_allowed);
     }
   }
@@ -214,14 +214,12 @@ class GltfReader {
     if (unknown_.empty()) {
       unknown_ = unknown_in(primitive);
     } else {
-      log_warning("{}: its Gaussians are drawn without the extension '{}', which is not known",
-                  path_.string(), unknown_);
+      log_warning("{}: its Gaussians are drawn without the unknown extension '{}'", path_.string(), unknown_);
     }
     if (splatting.has("kernel") && splatting.at("kernel").text() != "ellipse")
-      splatting.at("kernel").fail_here("'{}' is not known; 'ellipse' is", splatting.at("kernel").text());
+      splatting.at("kernel").fail_here("unknown '{}': expected 'ellipse'", splatting.at("kernel").text());
     if (splatting.has("colorSpace") && splatting.at("colorSpace").text().starts_with("lin")) {
-      log_warning("{}: its colours are linear light, which is drawn as if it were display values: too dark",
-                  path_.string());
+      log_warning("{}: its colours are linear light, and are drawn unconverted: too dark", path_.string());
     }
   }
 
@@ -229,8 +227,8 @@ class GltfReader {
                                std::size_t count) {
     const std::size_t accessor = attributes.at(name).whole(gltf_number_most);
     if (!unknown_.empty() && !document_.has_numbers(accessor)) {
-      attributes.at(name).fail_here(
-          "its numbers are in the extension '{}', which is not known; export it without", unknown_);
+      attributes.at(name).fail_here("its numbers are in the unknown extension '{}'; export it without",
+                                    unknown_);
     }
     return document_.read(accessor, components, count);
   }

@@ -43,7 +43,7 @@ const Component& component_of(const JsonValue& holder) {
   const auto* const found =
       std::ranges::find(gltf_components, static_cast<int>(type.whole(65535)), &Component::type);
   if (found == std::end(gltf_components))
-    type.fail_here("{} is none that can be read (floats, bytes and shorts are)", type.whole(65535));
+    type.fail_here("{} cannot be read: expected floats, bytes or shorts", type.whole(65535));
   return *found;
 }
 
@@ -82,7 +82,7 @@ void GltfDocument::open_binary(std::span<const std::byte> bytes) {
   if (bytes.size() < 20)
     fail("{} is cut short: a .glb begins with 20 bytes, and {} are there", name, bytes.size());
   const auto version = load_number<std::uint32_t>(&bytes[4]), length = load_number<std::uint32_t>(&bytes[8]);
-  if (version != 2) fail("{}: glTF of version {} is not known; 2 is", name, version);
+  if (version != 2) fail("{}: unknown glTF version {}: expected 2", name, version);
   if (length > bytes.size()) {
     fail("{} is cut short: its header says {} bytes, at byte 8, and {} are there; fetch or export it again",
          name, length, bytes.size());
@@ -92,7 +92,7 @@ void GltfDocument::open_binary(std::span<const std::byte> bytes) {
   const auto json_length = load_number<std::uint32_t>(&chunks[12]);
   if (load_number<std::uint32_t>(&chunks[16]) != json_chunk || json_length % 4 != 0 ||
       json_length > chunks.size() - 20) {
-    fail("{}: the first chunk, {} bytes at byte 12, is no JSON that fits the file", name, json_length);
+    fail("{}: the first chunk, {} bytes at byte 12, is not JSON, or exceeds the file", name, json_length);
   }
   // Some programs pad with zeros; the format has blanks.
   std::string_view json = as_text(chunks.subspan(20, json_length));
@@ -168,7 +168,7 @@ std::span<const std::byte> GltfDocument::view(std::size_t index) {
   const std::size_t offset = optional_size(view, "byteOffset"),
                     length = view.at("byteLength").whole(gltf_number_most);
   if (offset > bytes.size() || length > bytes.size() - offset) {
-    view.fail_here("{} bytes from byte {} on leave its buffer of {}", length, offset, bytes.size());
+    view.fail_here("{} bytes from byte {} on exceed its buffer of {}", length, offset, bytes.size());
   }
   return bytes.subspan(offset, length);
 }
@@ -216,7 +216,7 @@ std::vector<float> GltfDocument::read_dense(const JsonValue& accessor, std::size
   const std::size_t offset = optional_size(accessor, "byteOffset");
   if (stride < size || offset > bytes.size() || count > (bytes.size() - offset) / stride + 1 ||
       (count > 0 && (count - 1) * stride + size > bytes.size() - offset)) {
-    accessor.fail_here("{} elements of {} bytes, {} apart, from byte {} on leave their view of {} bytes",
+    accessor.fail_here("{} elements of {} bytes, {} apart, from byte {} on exceed their view of {} bytes",
                        count, size, stride, offset, bytes.size());
   }
   const bool normalized = is_normalized(accessor);
@@ -234,11 +234,11 @@ void GltfDocument::read_sparse(const JsonValue& accessor, std::size_t components
   const JsonValue sparse = accessor.at("sparse");
   const std::size_t count = sparse.at("count").whole(gltf_number_most);
   if (count > values.size() / components)
-    sparse.fail_here("{} elements are replaced, of {}", count, values.size() / components);
+    sparse.fail_here("it replaces {} elements of {}", count, values.size() / components);
   const JsonValue indices = sparse.at("indices"), replaced = sparse.at("values");
   const auto index_type = indices.at("componentType").whole(65535);
   const std::size_t index_size = index_type == 5125 ? 4 : index_type == 5123 ? 2 : index_type == 5121 ? 1 : 0;
-  if (index_size == 0) indices.at("componentType").fail_here("{} is no type of an index", index_type);
+  if (index_size == 0) indices.at("componentType").fail_here("{} is not a type of an index", index_type);
   const Component& component = component_of(accessor);
   const std::size_t element = components * component.bytes;
   const auto index_bytes = view(indices.at("bufferView").whole(gltf_number_most));
@@ -247,7 +247,7 @@ void GltfDocument::read_sparse(const JsonValue& accessor, std::size_t components
                     value_at = optional_size(replaced, "byteOffset");
   if (index_at > index_bytes.size() || count > (index_bytes.size() - index_at) / index_size ||
       value_at > value_bytes.size() || count > (value_bytes.size() - value_at) / element) {
-    sparse.fail_here("{} elements leave their views", count);
+    sparse.fail_here("{} elements exceed their views", count);
   }
   const bool normalized = is_normalized(accessor);
   for (std::size_t k = 0; k < count; ++k) {

@@ -36,7 +36,7 @@ glm::dmat4 transform_of(const JsonValue& node) {
     glm::dmat4 matrix(1.0);
     numbers("matrix", 16, glm::value_ptr(matrix));
     if (glm::transpose(matrix)[3] != glm::dvec4(0, 0, 0, 1))
-      node.at("matrix").fail_here("its last row is not 0 0 0 1, so that it is no place of a node");
+      node.at("matrix").fail_here("its last row is not 0 0 0 1, so it is not a node's transform");
     return matrix;
   }
   glm::dvec3 translation(0.0), scale(1.0);
@@ -69,7 +69,7 @@ std::vector<GltfNode> nodes_shown(const JsonValue& root) {
     for (std::size_t i = 0; i < list.size(); ++i) {
       const std::size_t index = list.at(i).whole(gltf_number_most);
       if (index >= seen.size() || seen[index])
-        list.at(i).fail_here("node {} is not there, or has two parents", index);
+        list.at(i).fail_here("node {} is missing, or has two parents", index);
       seen[index] = true;
       open.push_back({index, matrix, visible});
     }

@@ -62,7 +62,7 @@ void check_room(const std::filesystem::path& path, std::int64_t width, std::int6
   const std::uint64_t bytes = pixels * limit.bytes_per_pixel;
   if (bytes <= limit.bytes) return;
   throw Error(ExitCode::out_of_memory,
-              fmt::format("{}: {} x {} px take {} MB of memory here, and {} may be taken{}", path.string(),
+              fmt::format("{}: {} x {} px need {} MB of memory, and {} MB are allowed{}", path.string(),
                           width, height, bytes / 1'000'000, limit.bytes / 1'000'000, limit.advice));
 }
 

@@ -34,7 +34,7 @@ void join(Model& all, Model&& part) {
   all.lacks_degree_4 = all.lacks_degree_4 || part.lacks_degree_4;
   all.antialiased = all.antialiased || part.antialiased;
   if (all.perspective != part.perspective)
-    log_warning("{}: its parts are sorted or projected differently; all are drawn as the first is", all.name);
+    log_warning("{}: its parts differ in order or projection; all are drawn as the first", all.name);
 }
 
 }  // namespace binosplat

@@ -42,7 +42,7 @@ class KsplatReader {
     }
     const int major = std::to_integer<int>(bytes[0]), minor = std::to_integer<int>(bytes[1]);
     if (major != 0 || minor < 1)
-      fail("{}: .ksplat of version {}.{} is not known; 0.1 is", source, major, minor);
+      fail("{}: unknown .ksplat version {}.{}: expected 0.1", source, major, minor);
     level_ = load_number<std::uint16_t>(&bytes[20]);
     if (level_ >= std::size(storages)) {
       fail("{}: compression level {}, at byte 20; expected 0, 1 or 2", source, level_);

@@ -61,10 +61,9 @@ std::vector<Camera> load_lichtfeld_path(const std::filesystem::path& path, const
     *cameras[i].time -= start;
   }
   if (eases)
-    log_info("{}: its keys ease in and out, which is not followed: the way is as smooth as by other files",
-             path.string());
+    log_info("{}: easing of its keys is ignored: the path is as smooth as from other files", path.string());
   if (root.has("animation_clip"))
-    log_warning("{}: its animation_clip moves more than the camera, which is not drawn", path.string());
+    log_warning("{}: its animation_clip is ignored: only its keys move the camera", path.string());
   return cameras;
 }
 

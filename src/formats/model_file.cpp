@@ -87,7 +87,7 @@ Model load_content(const fs::path& path, const ModelOptions& options) {
   if (format != &row_of(ModelFormat::streamed_sog)) refuse_level(path, options);
   if (format != nullptr) return format->read(bytes, options);
   if (bytes.content == Content::json) {
-    fail("{} is a JSON file, but no glTF and not the meta.json or lod-meta.json of a SOG model{}",
+    fail("{} is a JSON file, but neither a glTF nor the meta.json or lod-meta.json of a SOG model{}",
          path.string(), bytes.json.is_array() ? "; it may hold cameras, which --cameras takes" : "");
   }
   fail("{} is not a model that can be read: expected {}, but it looks like {}", path.string(),
@@ -130,9 +130,9 @@ fs::path file_of(const fs::path& path) {
   if (found.size() == 1) return found[0];
   if (found.empty()) {
     fail(
-        "{} is a folder without a model: no file of one, no lod-meta.json or meta.json of a SOG, and no "
-        "point_cloud.ply, also not in point_cloud/ or point_cloud/iteration_N/, nor gsplat's "
-        "ply/point_cloud_N.ply or nerfstudio's exports/splat/splat.ply",
+        "{} is a folder without a model: expected one model file, lod-meta.json or meta.json of a SOG, "
+        "point_cloud.ply (also in point_cloud/ or point_cloud/iteration_N/), gsplat's ply/point_cloud_N.ply, "
+        "or nerfstudio's exports/splat/splat.ply",
         path.string());
   }
   std::string names;
@@ -149,7 +149,7 @@ Model load_model_alone(const fs::path& path, const ModelOptions& options) {
   const fs::path file = file_of(path);
   Model model = load_content(file, options);
   if (options.appearance && !model.scaffold) {
-    fail("appearance {}: {} is no Scaffold-GS model, whose colours have appearances", *options.appearance,
+    fail("appearance {}: {} has none; only Scaffold-GS models have appearances", *options.appearance,
          file.string());
   }
   model.name = file.filename().string();
@@ -189,7 +189,7 @@ void follow(const TrainingRun& run, const fs::path& file, Model& model) {
     model.antialiased = *run.antialiased;
     model.antialiased_by = run.file.string();
   } else if (model.antialiased != *run.antialiased) {
-    log_warning("{}: {} says that it was trained {} anti-aliasing, and {} {}: the former counts",
+    log_warning("{}: {} says that it was trained {} anti-aliasing, but {} says {}; the first one counts",
                 file.string(), model.antialiased_by, model.antialiased ? "with" : "without",
                 run.file.string(), *run.antialiased ? "with" : "without");
   }

@@ -50,7 +50,7 @@ std::uint64_t bytes_in(ModelFormat format, std::size_t count, int degree) {
 
 std::vector<std::string> kernel_loss(const Model& model, ModelFormat format) {
   if (model.kernel_px2 == KERNEL_PX2 || (format == ModelFormat::ply && is_mip_splatting(model))) return {};
-  return {fmt::format("{} does not tell the low-pass of {:.4g} px^2: draw it with --kernel-px2 {:.4g}",
+  return {fmt::format("{} does not store the low-pass of {:.4g} px^2: draw it with --kernel-px2 {:.4g}",
                       row_of(format).name, model.kernel_px2, model.kernel_px2)};
 }
 
@@ -58,13 +58,12 @@ std::vector<std::string> write_model(OutputFile& file, const Model& model, Model
                                      int harmonic_bits) {
   if (model.scaffold) {
     fail(
-        "{} is a Scaffold-GS model, which makes its Gaussians anew for each eye: no file of Gaussians can "
-        "hold "
+        "{} is a Scaffold-GS model, which decodes Gaussians for each eye: a file of Gaussians cannot store "
         "it",
         model.name);
   }
   if (model.axes.letters != row_of(format).axes) {
-    fail("{}: its axes are {}, and {} has {}", model.name, model.axes.letters, row_of(format).name,
+    fail("{}: its axes are {}, but {} requires {}", model.name, model.axes.letters, row_of(format).name,
          row_of(format).axes);
   }
   if (model.axes.origin != glm::dvec3(0.0) && format != ModelFormat::ply && format != ModelFormat::sog) {
@@ -79,9 +78,10 @@ std::vector<std::string> write_model(OutputFile& file, const Model& model, Model
   Losses losses = row_of(format).write(file, model, harmonic_bits);
   std::ranges::move(kernel_loss(model, format), std::back_inserter(losses));
   if (format == ModelFormat::spz && model.perspective != Perspective{}) {
-    losses.push_back(fmt::format("{} does not tell how it is seen: draw it with --order {} --projection {}",
-                                 row_of(format).name, order_choices[model.perspective.order].name,
-                                 projection_choices[model.perspective.projection].name));
+    losses.push_back(
+        fmt::format("{} does not store order and projection: draw it with --order {} --projection {}",
+                    row_of(format).name, order_choices[model.perspective.order].name,
+                    projection_choices[model.perspective.projection].name));
   }
   return losses;
 }

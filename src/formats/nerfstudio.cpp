@@ -104,7 +104,7 @@ std::vector<Camera> load_camera_path(const fs::path& path, const nlohmann::json&
   const bool by_keys =
       !root.has("camera_path") || (root.at("camera_path").size() == 0 && root.has("keyframes"));
   const JsonValue frames = root.at(by_keys ? "keyframes" : "camera_path");
-  if (frames.size() == 0) frames.fail_here("there are no cameras in it");
+  if (frames.size() == 0) frames.fail_here("no cameras: the list is empty");
   const std::optional<double> pace = by_keys ? std::nullopt : seconds_a_frame(root, frames.size());
   std::vector<Camera> cameras;
   std::optional<double> time = 0.0;
@@ -127,10 +127,8 @@ bool is_pose_list(const nlohmann::json& root) {
 std::vector<Camera> load_pose_list(const fs::path& path, const nlohmann::json& json, double fov_degrees) {
   const JsonValue root(path.string(), json);
   log_info(
-      "{}: tells poses and no lenses: views are {:.4g} degrees high (--fov), in the size of their photos or "
-      "{} x "
-      "{} px "
-      "(--size)",
+      "{}: has poses but no lenses: views are {:.4g} degrees high (--fov), in the size of their photos or {} "
+      "x {} px (--size)",
       path.string(), fov_degrees, pose_width, pose_height);
   std::vector<Camera> cameras(root.size());
   for (std::size_t i = 0; i < root.size(); ++i) cameras[i].name = root.at(i).at("file_path").text();

@@ -21,7 +21,7 @@ int number_of(const char* key, std::string_view word, const std::array<std::stri
   for (std::size_t k = 0; k < words.size(); ++k) {
     if (word == words[k]) return static_cast<int>(k);
   }
-  log_warning("{}: {} '{}' is not known and drawn as {}; {} and {} are", place, key, word,
+  log_warning("{}: unknown {} '{}' is drawn as {}; known are {} and {}", place, key, word,
               words[static_cast<std::size_t>(otherwise)], words[0], words[1]);
   return otherwise;
 }

@@ -76,7 +76,7 @@ class PlyText : public PlyLines {
     double value = 0;
     const auto [stop, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
     if (error != std::errc() || stop != digits.data() + digits.size()) {
-      fail("{}, line {}: {} is no number (property '{}' of element '{}' {})", path_.string(), number(),
+      fail("{}, line {}: {} is not a number (property '{}' of element '{}' {})", path_.string(), number(),
            quoted(word), property.name, element.name, row);
     }
     return value;
@@ -170,10 +170,8 @@ class PlyReader {
   }
 
   [[noreturn]] void fail_cut(const PlyElement& element, std::uint64_t row) const {
-    fail(
-        "{} is cut short: element '{}' {} of {} would go on beyond the file's {} bytes; fetch or export it "
-        "again",
-        path_.string(), element.name, row, element.count, bytes_.size());
+    fail("{} is cut short: element '{}' {} of {} exceeds the file's {} bytes; fetch or export it again",
+         path_.string(), element.name, row, element.count, bytes_.size());
   }
 
   /// Reads binary rows of one size.

@@ -85,7 +85,7 @@ class CameraRows {
 
 int pixels(const CameraRows& rows, const char* element, double value) {
   if (!(value >= 1.0 && value <= 2147483647.0) || value != std::floor(value))
-    rows.fail(element, fmt::format("{} is no number of pixels", value));
+    rows.fail(element, fmt::format("{} is not a number of pixels", value));
   return static_cast<int>(value);
 }
 
@@ -156,7 +156,7 @@ Camera load_ply_camera(const std::filesystem::path& path, std::span<const std::b
   const CameraRows rows(path, bytes, header);
   const auto intrinsic = rows.read("intrinsic");
   if (!intrinsic)
-    fail("{} is a model that tells no camera: it has no element 'intrinsic', as SHARP writes it",
+    fail("{} is a model without a camera: it lacks the element 'intrinsic', which SHARP writes",
          path.string());
   Camera camera;
   camera.name = ply_camera_name;

@@ -48,7 +48,7 @@ class HeaderReader {
       } else if (words[0] == "property") {
         add_property(words);
       } else {
-        fail_here("{} is no word of a ply header; is its 'end_header' line missing?", quoted(words[0]));
+        fail_here("{} is not a keyword of a ply header; is its 'end_header' line missing?", quoted(words[0]));
       }
     }
     if (!has_format) fail_here("the header ends without a 'format' line");
@@ -90,7 +90,7 @@ class HeaderReader {
     for (const TypeName& known : type_names) {
       if (known.name == word) return known.type;
     }
-    fail_here("{} is no type of a property (char, uchar, short, ushort, int, uint, half, float, double)",
+    fail_here("{} is not a type of a property (char, uchar, short, ushort, int, uint, half, float, double)",
               quoted(word));
   }
 
@@ -98,7 +98,7 @@ class HeaderReader {
   std::string read_name(std::string_view word) const {
     const auto control = [](char c) { return static_cast<unsigned char>(c) < ' ' || c == 127; };
     if (word.size() > 200 || std::any_of(word.begin(), word.end(), control))
-      fail_here("{} is no name", quoted(word));
+      fail_here("{} is not a name", quoted(word));
     return std::string(word);
   }
 
@@ -109,7 +109,7 @@ class HeaderReader {
     const char* end = words[2].data() + words[2].size();
     const auto [stop, error] = std::from_chars(words[2].data(), end, element.count);
     if (error != std::errc() || stop != end) {
-      fail_here("{} is no count of elements", quoted(words[2]));
+      fail_here("{} is not a number of elements", quoted(words[2]));
     }
     if (!element_names_.insert(element.name).second) fail_here("element '{}' occurs twice", element.name);
     property_names_.clear();

@@ -30,7 +30,7 @@ void refuse_relatives(const std::filesystem::path& path, const PlyHeader& header
         "point_cloud.ply that its trainer writes, too",
         name);
   if (vertices == nullptr)
-    fail("{}: the ply header has no element 'vertex'; it is no model of Gaussians", name);
+    fail("{}: the ply header has no element 'vertex'; it is not a model of Gaussians", name);
   const auto has = [&](std::string_view property) { return vertices->find(property) != nullptr; };
   if (has("f_anchor_feat_0")) fail("{} holds the anchors of Scaffold-GS, not Gaussians", name);
   if (!has("opacity") && !has("scale_0") && !has("rot_0")) {
@@ -45,14 +45,11 @@ void refuse_relatives(const std::filesystem::path& path, const PlyHeader& header
   }
   for (const auto& [property, kind] : other_kernels) {
     if (has(property))
-      fail("{} holds {}, told by its property '{}'; only Gaussians that stay as they are can be drawn", name,
-           kind, property);
+      fail("{} holds {} (property '{}'); only static Gaussians can be drawn", name, kind, property);
   }
   if (!has("f_dc_0") && !has("red")) {
-    fail(
-        "{}: its {} vertices have no colours that are known: neither f_dc_0 to f_dc_2 nor red, green and "
-        "blue",
-        name, vertices->count);
+    fail("{}: its {} vertices have no known colours: neither f_dc_0 to f_dc_2 nor red, green and blue", name,
+         vertices->count);
   }
   if (vertices->count == 0) fail("{} holds no Gaussians: its header says 'element vertex 0'", name);
 }
@@ -90,8 +87,10 @@ void find_rgb(const std::filesystem::path& path, PlyLayout& layout) {
     const PlyType type = property == nullptr ? PlyType::uint8 : property->type;
     if (type != PlyType::uint8) layout.rgb_bytes = false;
     if (type != PlyType::uint8 && size_of(type) < size_of(PlyType::float32))
-      fail("{}: property '{}' of element 'vertex' is of a type that no colour is read of: uchar or float",
-           path.string(), name);
+      fail(
+          "{}: property '{}' of element 'vertex' has an unsupported type for a colour: expected uchar or "
+          "float",
+          path.string(), name);
   }
 }
 

@@ -79,7 +79,7 @@ Losses write_ply(OutputFile& file, const Model& model) {
     for (int c = 0; c < 4; ++c) put(model.rotation[i][c]);
   });
   if (!is_far) return {};
-  return {"positions are so far from zero that they are written as doubles, which not every program reads"};
+  return {"positions are so far from zero that they are written as doubles, which some programs cannot read"};
 }
 
 }  // namespace binosplat

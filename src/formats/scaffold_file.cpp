@@ -34,7 +34,7 @@ Network load_network(const fs::path& path, std::size_t outputs) {
   network.hidden = network.first_bias.size();
   network.outputs = network.second_bias.size();
   if (network.hidden == 0 || network.first.empty() || network.first.size() % network.hidden != 0) {
-    fail("{}: {} weights and {} biases make no first layer; expected inputs x hidden and hidden",
+    fail("{}: {} weights and {} biases do not form a first layer; expected inputs x hidden and hidden",
          path.string(), network.first.size(), network.hidden);
   }
   network.inputs = network.first.size() / network.hidden;

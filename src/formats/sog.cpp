@@ -64,7 +64,7 @@ class Archive {
            path.string(), binosplat::quoted(name));
     }
     if (found.empty()) {
-      fail("{} is a zip archive without a meta.json, so it is no SOG model; it holds {}", path.string(),
+      fail("{} is a zip archive without a meta.json, so it is not a SOG model; it holds {}", path.string(),
            zip_.list());
     }
     const auto depth = [](const fs::path& meta) { return std::distance(meta.begin(), meta.end()); };

@@ -81,7 +81,7 @@ void walk(const JsonValue& root, const std::function<void(const JsonValue&)>& se
 SogLevels::SogLevels(const fs::path& path, const nlohmann::json& json) : path_(path) {
   const JsonValue root(path.string(), json);
   if (root.has("version") && root.at("version").number() != 1)
-    root.at("version").fail_here("streamed SOG of version {} is not known; 1 is",
+    root.at("version").fail_here("unknown version {} of a streamed SOG: expected 1",
                                  root.at("version").number());
   count_ = static_cast<int>(root.at("lodLevels").whole(most_levels));
   if (count_ == 0) root.at("lodLevels").fail_here("expected one level at least");
@@ -213,7 +213,7 @@ std::vector<SogSource::Range> ranges_of(const SogLevels::TakenOfFile& taken) {
 
 void check_leaves(const fs::path& path, const std::vector<LodChunk>& leaves) {
   if (std::ranges::all_of(leaves, [](const LodChunk& leaf) { return leaf.levels.empty(); }))
-    fail("{}: none of its levels of detail is there: fetch one", path.string());
+    fail("{}: the files of all its levels of detail are missing: fetch one", path.string());
 }
 
 std::string format_of_chosen(const SogLevels& levels) {
@@ -224,13 +224,13 @@ void check_taken(const std::filesystem::path& lod_meta, const std::filesystem::p
                  const SogSource& source, std::span<const SogLevels::Taken> taken) {
   const SogSource::Range& last = taken.back().range;
   if (last.first + last.count <= source.count()) return;
-  fail("{}: Gaussians {} to {} of {} are wanted, which has {}", lod_meta.string(), last.first,
+  fail("{}: it refers to Gaussians {} to {} of {}, which has {}", lod_meta.string(), last.first,
        last.first + last.count - 1, file.string(), source.count());
 }
 
 void check_total(const std::filesystem::path& lod_meta, std::size_t total, std::uint64_t bytes) {
   if (total <= most_gaussians_in(bytes)) return;
-  fail("{}: {} Gaussians are wanted of files whose positions take {} bytes, which cannot hold them{}",
+  fail("{}: it refers to {} Gaussians, but the positions in its files have {} bytes, too few to hold them{}",
        lod_meta.string(), total, bytes, more_may_be_allowed);
 }
 

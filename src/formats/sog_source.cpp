@@ -63,7 +63,7 @@ SogSource::SogSource(std::string source, const nlohmann::json& json, ReadFile re
     : source_(std::move(source)), read_(std::move(read)) {
   const JsonValue meta(source_, json);
   const std::uint64_t version = meta.has("version") ? meta.at("version").whole(1000) : 1;
-  if (version > 2) meta.at("version").fail_here("SOG of version {} is not known; 1 and 2 are", version);
+  if (version > 2) meta.at("version").fail_here("unknown SOG version {}: expected 1 or 2", version);
   if (version == 2) {
     count_ = meta.at("count").whole(std::uint64_t{webp_side_most} * webp_side_most);
   } else {
@@ -142,9 +142,8 @@ void SogSource::read_harmonics(const JsonValue& sh) {
   palette_ = sh.has("count") ? sh.at("count").whole(sog_palette_most) : std::min(room, sog_palette_most);
   if (static_cast<std::size_t>(size.width) != width || palette_ > room || room > 2 * sog_palette_most) {
     fail(
-        "{}: its {} x {} texels are no palette of {} entries for harmonics of degree {}, which is {} texels "
-        "wide "
-        "and {} or a few more high",
+        "{}: its {} x {} texels do not form a palette of {} entries for harmonics of degree {}, which is {} "
+        "texels wide and {} or a few more high",
         named(centroids), size.width, size.height, palette_, degree_, width,
         (palette_ + sog_palette_columns - 1) / sog_palette_columns);
   }

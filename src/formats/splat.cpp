@@ -47,7 +47,7 @@ Model load_splat(const std::string& source, std::span<const std::byte> bytes) {
          source, bytes.size(), record_bytes);
   }
   if (!is_splat(bytes)) {
-    fail("{} does not hold .splat's records: scales or quaternions are none that Gaussians have", source);
+    fail("{} is not a .splat file: its scales or quaternions are not plausible", source);
   }
   Model model;
   model.format = ".splat";

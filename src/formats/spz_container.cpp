@@ -43,7 +43,7 @@ Header read_spz_header(const std::string& source, std::span<const std::byte> byt
   SpzContents& contents = header.contents;
   contents.version = load_number<std::uint32_t>(&bytes[4]);
   if (contents.version < 1 || contents.version > 4)
-    fail("{}: spz of version {} is not known; 1 to 4 are", source, contents.version);
+    fail("{}: unknown spz version {}: expected 1 to 4", source, contents.version);
   contents.count = load_number<std::uint32_t>(&bytes[8]);
   contents.degree = std::to_integer<int>(bytes[12]);
   contents.fraction_bits = std::to_integer<int>(bytes[13]);
@@ -112,8 +112,7 @@ SpzContents unpack_attributes(const std::string& source, std::size_t packed,
                               const std::function<std::vector<std::byte>(std::size_t most)>& read) {
   Header header = read_spz_header(source, read(spz_header_bytes));
   SpzContents& contents = header.contents;
-  if (contents.version == 4)
-    fail("{}: spz of version 4 within gzip; that version has none around it", source);
+  if (contents.version == 4) fail("{}: spz version 4 within gzip: expected a file without gzip", source);
   const std::size_t all = spz_sizes(contents.version, contents.degree).sum();
   const std::size_t needed = attribute_bytes(source, contents, all, packed);
   contents.attributes = read(needed);

@@ -31,7 +31,7 @@ int fraction_bits(const Model& model) {
   while (bits < fraction_bits_most && std::ldexp(most, bits) < steps_least) ++bits;
   while (bits >= 0 && std::ldexp(most, bits) > position_most) --bits;
   if (bits < 0)
-    fail("{}: positions reach {:.4g}, and spz has room for {} only", model.name, most, position_most);
+    fail("{}: positions reach {:.4g}, and spz stores at most {}", model.name, most, position_most);
   return bits;
 }
 

@@ -48,7 +48,7 @@ int choose(const fs::path& path, const SogLevels& levels, std::optional<int> lod
     fail("{}: no level of detail is complete; {} is missing: fetch it", path.string(), missing->string());
   }
   if (lod && there.count(*lod) == 0) {
-    fail("level of detail {}: {} is missing; the finest level that is there is {}", *lod, missing->string(),
+    fail("level of detail {}: {} is missing; the finest complete level is {}", *lod, missing->string(),
          *there.begin());
   }
   const int level = lod.value_or(*there.begin());

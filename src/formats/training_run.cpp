@@ -27,19 +27,18 @@ struct Clue {
 
 constexpr const char* no_eval3d =
     "it was trained by 3DGUT, which evaluates Gaussians along each ray and has no low-pass. They are drawn "
-    "as splats with hardly any (--kernel-px2 0.001), which comes to some 45 dB: large ones near the eye look "
-    "otherwise";
+    "as splats with hardly any (--kernel-px2 0.001), at about 45 dB: large ones near the eye look different";
 /// The low-pass for such models (tests/bench/results/judges.md).
 constexpr double along_rays_kernel_px2 = 0.001;
 constexpr const char* no_sigma_points =
     "it was trained with the unscented transform, and is drawn by a linear projection: large Gaussians near "
-    "the eye or far from the middle of a wide picture look otherwise. Narrower views differ less";
+    "the eye or far from the middle of a wide picture look different. Narrower views differ less";
 constexpr const char* no_such_lens =
-    "it was trained on pictures of another lens than a pinhole's, which are all that is drawn: compare it "
-    "with undistorted photos";
+    "it was trained on pictures of another lens than a pinhole, and only pinholes are drawn: compare it with "
+    "undistorted photos";
 constexpr const char* no_embedding =
-    "it was trained with an appearance for each photo (app_opt), by a network that the file lacks: it has "
-    "the colours of no photo, the same from all sides. `refit --photos` fits them to the photos";
+    "it was trained with an appearance for each photo (app_opt), by a network that the file lacks: its "
+    "colours match no photo and are the same from all sides. `refit --photos` fits them to the photos";
 constexpr const char* no_grid =
     "it was trained with a colour correction for each photo (bilateral grid), which the file lacks: pictures "
     "have the colours before it, and are further from the photos. `refit --photos` fits them to the photos";
@@ -47,16 +46,16 @@ constexpr const char* no_isp =
     "it was trained with a camera's colours, exposure and vignetting for each photo (ppisp), which the file "
     "lacks: pictures have the colours before them. `refit --photos` fits them to the photos";
 constexpr const char* other_poses =
-    "its cameras were moved in training, and the file does not say where to: pictures of the cameras that it "
-    "began with are shifted against the photos. Give `--cameras` those that the trainer exports, as "
-    "`ns-export cameras` does";
+    "its cameras were optimised in training, and the file lacks the result: pictures of the original cameras "
+    "are shifted against the photos. Give `--cameras` those that the trainer exports, as `ns-export cameras` "
+    "does";
 constexpr const char* no_exposures =
-    "it was trained with an exposure for each photo (train_test_exp), and the exposure.json with them is not "
-    "there: pictures are further from the photos. `--exposure FILE` names it";
+    "it was trained with an exposure for each photo (train_test_exp), and their exposure.json is missing: "
+    "pictures are further from the photos. `--exposure FILE` names it";
 constexpr const char* moved_world =
     "its world was moved, turned and scaled before training (normalize_world_space): COLMAP's cameras of the "
     "photos do not fit it";
-constexpr const char* white = "it was trained before a white background: `--background 1,1,1` draws it so";
+constexpr const char* white = "it was trained on a white background: `--background 1,1,1` draws it so";
 
 constexpr Clue of_gsplat[] = {{"with_eval3d", "true", no_eval3d},
                               {"with_ut", "true", no_sigma_points},
@@ -83,7 +82,7 @@ constexpr Clue of_3dgrut[] = {
      "it was trained with Gaussians in the order of their distance: `--order distance` draws it so"},
     {"post_processing.method", "ppisp", no_isp},
     {"post_processing.method", "linear-to-srgb",
-     "it was trained in linear light, which was turned into sRGB at last; its colours are drawn as they are: "
+     "it was trained in linear light and converted to sRGB at the end; its colours are drawn unconverted: "
      "pictures look too dark"},
     {"model.background.color", "white", white}};
 
@@ -176,7 +175,7 @@ std::optional<TrainingRun> read_run(const fs::path& file, const RunKind& kind) {
     tell(values, kind, run);
     return run;
   } catch (const Error& error) {
-    log_warning("{}; what it says of the training is left aside", error.what());
+    log_warning("{}; its settings of the training are ignored", error.what());
     return std::nullopt;
   }
 }

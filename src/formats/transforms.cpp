@@ -51,7 +51,7 @@ class Frame {
     }
     const auto photo = find_view_photo(path_.parent_path(), camera);
     if (!photo)
-      frame_.fail_here("there are no w and h, and no picture {} that would tell",
+      frame_.fail_here("w and h are missing, and so is the picture {} that has this size",
                        (path_.parent_path() / camera.name).string());
     const glm::ivec2 size = picture_size(*photo);
     camera.width = size.x;
@@ -106,7 +106,7 @@ bool is_transforms(const nlohmann::json& root) { return root.is_object() && root
 std::vector<Camera> load_transforms(const fs::path& path, const nlohmann::json& json) {
   const JsonValue root(path.string(), json);
   const JsonValue frames = root.at("frames");
-  if (frames.size() == 0) frames.fail_here("there are no cameras in it");
+  if (frames.size() == 0) frames.fail_here("no cameras: the list is empty");
   std::vector<Camera> named(frames.size()), cameras;
   for (std::size_t i = 0; i < frames.size(); ++i) named[i].name = frames.at(i).at("file_path").text();
   set_short_names(named);

@@ -20,7 +20,7 @@ std::vector<std::byte> decode_base64(const JsonValue& uri, std::string_view text
   for (const char c : text) {
     constexpr std::string_view digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     const std::size_t digit = digits.find(c);
-    if (digit == std::string_view::npos) uri.fail_here("{} is no digit of base64", quoted({&c, 1}));
+    if (digit == std::string_view::npos) uri.fail_here("{} is not a digit of base64", quoted({&c, 1}));
     bits = bits << 6 | static_cast<std::uint32_t>(digit);
     filled += 6;
     if (filled < 8) continue;
@@ -50,7 +50,7 @@ bool has_data(const JsonValue& uri) { return lowered(uri.text().substr(0, 5)) ==
 std::vector<std::byte> data_in(const JsonValue& uri) {
   const std::string text = uri.text();
   const std::size_t comma = text.find(',');
-  if (comma == std::string::npos) uri.fail_here("a data: URI has a comma before its data, this one has none");
+  if (comma == std::string::npos) uri.fail_here("a data: URI without a comma: expected one before its data");
   const std::string data = percent_decoded(std::string_view(text).substr(comma + 1));
   if (lowered(text.substr(0, comma)).ends_with(";base64")) return decode_base64(uri, data);
   const auto bytes = std::as_bytes(std::span(data));
@@ -60,7 +60,7 @@ std::vector<std::byte> data_in(const JsonValue& uri) {
 std::filesystem::path file_named(const std::filesystem::path& folder, const JsonValue& uri) {
   const std::string text = uri.text(), decoded = percent_decoded(text);
   if (decoded.find("://") != std::string::npos)
-    uri.fail_here("'{}' is no file beside this one; fetch it, and name it by its path", text);
+    uri.fail_here("'{}' is not a file beside this one; fetch it, and name it by its path", text);
   if (!stays_below(decoded) || !stays_below(text))
     uri.fail_here("a buffer must lie beside the file or below; it is named '{}'", text);
   std::error_code ignored;

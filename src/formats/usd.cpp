@@ -62,8 +62,8 @@ class UsdReader {
       if (!has_render_) add_proxy();
     if (model_.count() == 0 && model_.left_out == 0) fail_without_gaussians();
     if (!elsewhere_.empty()) {
-      log_warning("{}: what its {} hold is not drawn; one file of all makes: {}", source_, elsewhere_,
-                  flatten_command(path_));
+      log_warning("{}: the contents of its {} are not drawn; merge them into one file with: {}", source_,
+                  elsewhere_, flatten_command(path_));
     }
     for (const char* type : {"Mesh", "PointInstancer", "Points", "Volume"}) {
       if (others_.contains(type)) log_warning("{}: only its Gaussians are drawn, and no {}", source_, type);
@@ -77,13 +77,13 @@ class UsdReader {
  private:
   [[noreturn]] void fail_without_gaussians() const {
     if (!elsewhere_.empty()) {
-      fail("{} has no Gaussians of its own, but {}: put them into one file with: {}", source_, elsewhere_,
+      fail("{} has no Gaussians of its own, but {}: merge them into one file with: {}", source_, elsewhere_,
            flatten_command(path_));
     }
     std::string names;
     for (const std::string& type : others_) names += (names.empty() ? ": " : ", ") + type;
-    fail("{} is an OpenUSD scene without Gaussians (ParticleField3DGaussianSplat) that are to be seen{}{}",
-         source_, names,
+    fail("{} is an OpenUSD scene without visible Gaussians (ParticleField3DGaussianSplat){}{}", source_,
+         names,
          nurec_ ? "; 3DGRUT's NuRec volumes are its own form: export them by its transcode as a ParticleField"
                 : "");
   }
@@ -113,8 +113,7 @@ class UsdReader {
     note_parts_elsewhere(prim);
     if (prim.specifier != "def" || token_of(prim, "visibility") == "invisible") return;
     if (prim.attribute("visibility.timeSamples") != nullptr)
-      log_warning("{}: '{}' comes and goes with time; it is drawn as if it were always there", source_,
-                  prim.name);
+      log_warning("{}: the visibility of '{}' changes with time; it is always drawn", source_, prim.name);
     inherited.matrix = usd_transform(prim, inherited.matrix);
     if (prim.attribute("colorSpace:name") != nullptr) inherited.colours = token_of(prim, "colorSpace:name");
     if (prim.attribute("purpose") != nullptr) inherited.purpose = token_of(prim, "purpose");
@@ -142,14 +141,13 @@ class UsdReader {
   void add(const UsdaPrim& prim, const Inherited& inherited, bool flat) {
     const auto& [matrix, colours, purpose] = inherited;
     if (colours.starts_with("lin")) {
-      log_warning("{}: its colours are linear light, which is drawn as if it were display values: too dark",
-                  source_);
+      log_warning("{}: its colours are linear light, and are drawn unconverted: too dark", source_);
     }
     // A scale of 0 hides a prim.
     if (glm::dmat3(matrix) == glm::dmat3(0.0)) return;
     Model part = gaussians_of(prim, flat);
     if (!transform(part, matrix, places_))
-      prim.where.fail_here("the transform of '{}' moves Gaussians beyond the largest number", prim.name);
+      prim.where.fail_here("the transform of '{}' moves Gaussians beyond the range of floats", prim.name);
     flat_ = flat_ || flat;
     join(model_, std::move(part));
   }
@@ -264,7 +262,7 @@ Model load_usdz(const fs::path& path, std::span<const std::byte> archive) {
   if (content_of(bytes) == Content::usda)
     return UsdReader(path, fmt::format("{}: its file {}", path.string(), first), as_text(bytes)).read();
   if (content_of(bytes) == Content::usdc) refuse_usd_crate(path);
-  fail("{}: its file {} is no OpenUSD scene, but looks like {}", path.string(), binosplat::quoted(first),
+  fail("{}: its file {} is not an OpenUSD scene, but looks like {}", path.string(), binosplat::quoted(first),
        describe(content_of(bytes)));
 }
 

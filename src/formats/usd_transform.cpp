@@ -28,7 +28,7 @@ glm::dmat4 matrix_in(UsdaText text) {
   text.take(',');
   text.expect(')');
   if (glm::transpose(matrix)[3] != glm::dvec4(0, 0, 0, 1))
-    text.fail_here("the last column of this matrix is not 0 0 0 1, so that it is no place of a prim");
+    text.fail_here("the last column of this matrix is not 0 0 0 1, so it is not a prim's transform");
   return matrix;
 }
 
@@ -49,7 +49,7 @@ glm::dmat4 operation(std::string_view kind, const UsdaText& value) {
   if (axes == "X" || axes == "Y" || axes == "Z") return turn_around(axes[0], value.numbers(1)[0]);
   std::string sorted(axes);
   std::ranges::sort(sorted);
-  if (sorted != "XYZ") value.fail_here("the transform xformOp:{} is not known", kind);
+  if (sorted != "XYZ") value.fail_here("unknown transform xformOp:{}", kind);
   // The first letter's rotation is applied first.
   const std::vector<double> angles = value.numbers(3);
   glm::dmat4 matrix(1.0);
@@ -76,7 +76,7 @@ glm::dmat4 usd_transform(const UsdaPrim& prim, const glm::dmat4& parent) {
     if (value == nullptr && moving != nullptr)
       moving->fail_here("{} moves with time; only a still model can be drawn", name);
     if (value == nullptr || !name.starts_with(operation_prefix))
-      order->fail_here("the transform '{}' of '{}' is not there", name, prim.name);
+      order->fail_here("the transform '{}' of '{}' is missing", name, prim.name);
     const std::string_view kind = std::string_view(name).substr(operation_prefix.size());
     const glm::dmat4 one = operation(kind.substr(0, kind.find(':')), *value);
     matrix *= inverse ? glm::inverse(one) : one;

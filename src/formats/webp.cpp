@@ -27,10 +27,8 @@ WebpSize webp_size(const std::string& source, std::span<const std::byte> bytes) 
   }
   if (features.has_animation != 0) fail("{}: expected a still WebP picture, but it is an animation", source);
   if (features.format != lossless) {
-    fail(
-        "{}: the WebP picture is compressed with losses, which destroys the values in it; export the model "
-        "again (cwebp -lossless -exact)",
-        source);
+    fail("{}: lossy compression of WebP destroys its values; export the model again (cwebp -lossless -exact)",
+         source);
   }
   return {features.width, features.height};
 }

@@ -45,7 +45,8 @@ std::string asked_of_mesa() {
   for (const char* name : {"GALLIUM_DRIVER", "MESA_LOADER_DRIVER_OVERRIDE", "MESA_GL_VERSION_OVERRIDE"}) {
     const char* const value = std::getenv(name);
     if (value != nullptr)
-      lines += fmt::format("\n{}={} is set, which Mesa goes by: try without it", name, value);
+      lines +=
+          fmt::format("\n{}={} is set and changes Mesa's driver or version: try without it", name, value);
   }
   return lines;
 }
@@ -82,7 +83,7 @@ void ignore_overrides() {
   for (const char* name : {"MESA_EXTENSION_OVERRIDE", "MESA_GLSL_VERSION_OVERRIDE"}) {
     const char* const value = std::getenv(name);
     if (value == nullptr) continue;
-    log_warning("{}={} makes Mesa report other than it has, and is ignored", name, value);
+    log_warning("{}={} makes Mesa report features that it lacks: ignored", name, value);
     unsetenv(name);
   }
 }
@@ -167,10 +168,8 @@ void Context::check_current() const {
   if (current_handle_ == nullptr ? functions_.GetString(GL_VERSION) != nullptr : current_handle_() == handle_)
     return;
   if (!another_is_current()) throw Error(ExitCode::no_gl, no_context);
-  throw Error(
-      ExitCode::no_gl,
-      "another OpenGL context is current on this thread than the one that the renderer was made in: make "
-      "that one current first");
+  throw Error(ExitCode::no_gl,
+              "another OpenGL context is current on this thread: make the renderer's context current first");
 }
 
 bool Context::another_is_current() const {
@@ -264,12 +263,12 @@ std::vector<GLenum> Context::take_errors() const {
 void Context::check_alive() const {
   const GLenum status = functions_.GetGraphicsResetStatus();
   if (status == GL_NO_ERROR) return;
-  const char* const whose = status == GL_GUILTY_CONTEXT_RESET     ? "by what this program drew"
+  const char* const whose = status == GL_GUILTY_CONTEXT_RESET     ? "by this program"
                             : status == GL_INNOCENT_CONTEXT_RESET ? "by another program"
-                                                                  : "for a reason that it does not know";
-  throw Error(ExitCode::no_gl,
-              fmt::format("{} was reset, the driver says {}: all that was on it is lost; start again",
-                          renderer_, whose));
+                                                                  : "for a reason unknown to the driver";
+  throw Error(
+      ExitCode::no_gl,
+      fmt::format("the GPU {} was reset {}: its memory is lost; start the program again", renderer_, whose));
 }
 
 void Context::check(const std::string& what) const {

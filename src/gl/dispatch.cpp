@@ -84,7 +84,7 @@ void Dispatcher::start(const Program& program, const DispatchSize& work,
   } else {
     const std::uint64_t rows = (work.groups + context_.limits().groups - 1) / context_.limits().groups;
     const std::uint64_t columns = (work.groups + rows - 1) / rows;
-    if (rows > 65535) throw std::logic_error(program.name() + ": more work groups than any driver takes");
+    if (rows > 65535) throw std::logic_error(program.name() + ": more work groups than any driver supports");
     gl.DispatchCompute(static_cast<std::uint32_t>(columns), static_cast<std::uint32_t>(rows), 1);
   }
   context_.check(program.name());

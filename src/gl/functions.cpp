@@ -9,15 +9,12 @@ namespace {
 // Checked first: older contexts lack functions, and the first missing one would not explain why.
 void check_version(GetProcAddress get_proc_address) {
   if (get_proc_address == nullptr)
-    fail(
-        "get_proc_address is null: expected what finds OpenGL's functions by name, as eglGetProcAddress "
-        "does");
+    fail("get_proc_address is null: expected a function such as eglGetProcAddress");
   const auto get_string = reinterpret_cast<PFNGLGETSTRINGPROC>(get_proc_address("glGetString"));
   if (get_string == nullptr) {
-    throw Error(
-        ExitCode::no_gl,
-        "get_proc_address finds no glGetString: expected what finds OpenGL's functions by name in the "
-        "context that is current, as eglGetProcAddress does");
+    throw Error(ExitCode::no_gl,
+                "get_proc_address finds no glGetString: expected a function such as eglGetProcAddress that "
+                "works in the current context");
   }
   const auto text = [&](GLenum name) {
     const auto* const found = reinterpret_cast<const char*>(get_string(name));
@@ -30,7 +27,7 @@ void check_version(GetProcAddress get_proc_address) {
   if (!is_es && version >= "4.5") return;
   throw Error(
       ExitCode::no_gl,
-      fmt::format("the context that is current is of {}{}, by {}: binosplat needs OpenGL 4.5 core or later{}",
+      fmt::format("the current context has {}{} ({}): binosplat needs OpenGL 4.5 core or later{}",
                   is_es ? "" : "OpenGL ", version, text(GL_RENDERER), is_es ? ", not OpenGL ES" : ""));
 }
 

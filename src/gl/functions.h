@@ -127,7 +127,7 @@ struct Functions {
 };
 
 constexpr const char* no_context =
-    "no OpenGL context is current on this thread: make the one that binosplat draws in current first";
+    "no OpenGL context is current on this thread: make binosplat's context current first";
 
 /// Loads the table of the current context. Throws Error(no_gl) without a current context, for one older than
 /// 4.5 or of OpenGL ES, and for a missing entry point, which it names. Throws Error(bad_input) for a null

@@ -84,7 +84,7 @@ void GpuClock::open(const char* library, const std::optional<Uuid>& uuid) {
   Library& nvml = *library_;
   nvml.handle = dlopen(library, RTLD_NOW | RTLD_LOCAL);
   if (nvml.handle == nullptr || !nvml.find()) {
-    problem_ = fmt::format("there is no {} to ask", library);
+    problem_ = fmt::format("{} cannot be loaded", library);
     return;
   }
   nvml.is_begun = nvml.begin() == 0;
@@ -103,7 +103,7 @@ void GpuClock::open(const char* library, const std::optional<Uuid>& uuid) {
   if (nvml.device == nullptr) {
     problem_ = fmt::format("{} does not know the GPU that draws", library);
   } else if (nvml.clock(nvml.device, Library::shader_clock, &mhz) != 0) {
-    problem_ = fmt::format("{} does not tell the clock of this GPU", library);
+    problem_ = fmt::format("{} does not report this GPU's clock", library);
   } else {
     mhz_ = mhz;
     thread_ = std::jthread([this](const std::stop_token& stop) {

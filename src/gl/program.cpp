@@ -121,7 +121,7 @@ void Program::check_linked() {
 
 void Program::refuse(const char* what, const std::string& log, const ShaderSource& source) {
   throw Error(ExitCode::no_gl,
-              fmt::format("shader {} does not {}:\n{}", name_, what, source.with_file_names(log)));
+              fmt::format("shader {} failed to {}:\n{}", name_, what, source.with_file_names(log)));
 }
 
 void Program::read_local_size() {

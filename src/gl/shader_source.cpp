@@ -22,13 +22,13 @@ ShaderSource::ShaderSource(const std::string& name, const Defines& defines,
 std::string ShaderSource::read(const std::string& name, const std::string& from) const {
   if (!folder_.empty()) {
     std::ifstream file(folder_ / name);
-    if (!file) fail("{}: no such shader, wanted by {}", (folder_ / name).string(), from);
+    if (!file) fail("{}: no such shader, required by {}", (folder_ / name).string(), from);
     std::ostringstream body;
     body << file.rdbuf();
     return body.str();
   }
   const auto found = embedded_shaders().find(name);
-  if (found == embedded_shaders().end()) fail("no shader named {}, wanted by {}", name, from);
+  if (found == embedded_shaders().end()) fail("no shader named {}, required by {}", name, from);
   return found->second;
 }
 

@@ -34,11 +34,11 @@ struct Fault {
 
 /// The faults that subgroups_check.comp detects, worst first.
 constexpr std::array subgroup_faults = {
-    Fault{"SUBGROUPS_OF_OTHER_SIZE", "are said to have 32 invocations, and have others"},
+    Fault{"SUBGROUPS_OF_OTHER_SIZE", "have another size than the 32 that the driver reports"},
     Fault{"SUBGROUPS_IN_OTHER_ORDER", "have their invocations in another order"},
-    Fault{"SUBGROUPS_VOTE_WITH_OTHERS", "vote with others than their 32 invocations"},
-    Fault{"SUBGROUPS_SHUFFLE_OTHERS", "shuffle with others than their 32 invocations"},
-    Fault{"SUBGROUPS_ADD_OTHERS", "add up others than their 32 invocations"}};
+    Fault{"SUBGROUPS_VOTE_WITH_OTHERS", "vote across invocations of other subgroups"},
+    Fault{"SUBGROUPS_SHUFFLE_OTHERS", "shuffle across invocations of other subgroups"},
+    Fault{"SUBGROUPS_ADD_OTHERS", "sum over invocations of other subgroups"}};
 
 std::vector<Number> numbers_of(const GroupShape& shape) {
   std::vector<Number> numbers = {{"COLUMNS", shape.columns, 1025}, {"ROWS", shape.rows, 1025}};

@@ -13,7 +13,7 @@ std::uint64_t key_of(std::span<const Number> numbers) {
   for (const Number& n : numbers) {
     if (n.value >= n.count || keys > std::numeric_limits<std::uint64_t>::max() / n.count)
       throw std::logic_error(
-          fmt::format("{} {} of a shader: expected less than {}", n.name, n.value, n.count));
+          fmt::format("shader define {} = {}: expected less than {}", n.name, n.value, n.count));
     key = key * n.count + n.value;
     keys *= n.count;
   }

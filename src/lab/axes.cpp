@@ -29,7 +29,7 @@ class Block {
       : place_(std::move(place)), object_(object) {
     if (!object_.is_object()) fail("{}: expected an object in braces", place_);
     for (const auto& [key, value] : object_.items()) {
-      if (known.count(key) == 0) fail("{}: there is no key '{}'", place_, key);
+      if (known.count(key) == 0) fail("{}: unknown key '{}'", place_, key);
     }
   }
 

@@ -60,8 +60,7 @@ Calibrator::Calibrator(gl::Context& context, const Model& model, const std::vect
     const bool drop = kind == CalibrationTarget::Kind::drop;
     if (drop && (!view.photo || view.photo->width != view.camera.width ||
                  view.photo->height != view.camera.height || view.photo->channels != 3))
-      fail("view {}: a drop in dB is against a photo in the view's size, and there is none",
-           view.camera.name);
+      fail("view {}: a drop in dB needs a photo in the view's size", view.camera.name);
     names_.push_back(view.camera.name);
     views_.push_back(make_view(into_axes(view.camera, model.axes), near_plane));
     const std::uint64_t pairs = frame_.draw(std::span(&views_.back(), 1), exact).pairs;

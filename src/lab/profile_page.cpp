@@ -60,9 +60,9 @@ Section frame_times(const Profile& profile, const ProfileSummary& summary) {
 
 Section stacked_stages(const Recording& recording, const ProfileSummary& summary) {
   Section section{"stages", "Stages on the GPU",
-                  "GPU time of each frame by its stages, those of drawings that were repeated included."};
+                  "GPU time of each frame by stage, including repeated drawings."};
   if (summary.gpu.most == 0.0) {
-    section.problem = "This driver does not tell when stages begin and end.";
+    section.problem = "This driver does not report when stages begin and end.";
     return section;
   }
   std::vector<std::pair<std::string, std::string>> named = {{"frame", "frame"}};
@@ -84,7 +84,7 @@ Section stacked_stages(const Recording& recording, const ProfileSummary& summary
 
 Section histogram(const Profile& profile, const ProfileSummary& summary) {
   Section section{"spread", "How frame times spread",
-                  "How many frames took so long, and the times that half, 90 % and 99 % of them keep."};
+                  "Histogram of frame times, with the times that half, 90 % and 99 % of the frames keep."};
   constexpr std::size_t bins_most = 24;
   std::vector<double> wall;
   for (const render::FrameRecord& frame : profile.recording.frames) wall.push_back(frame.wall_ms());
@@ -165,7 +165,7 @@ Section work(const Recording& recording) {
 Section clock_section(const Profile& profile, const ProfileSummary& summary) {
   Section section{"clock", "The GPU's clock", ""};
   if (!summary.mhz) {
-    section.problem = fmt::format("The clock is not told: {}.", profile.recording.no_clock);
+    section.problem = fmt::format("The clock is unknown: {}.", profile.recording.no_clock);
     return section;
   }
   section.sentence =

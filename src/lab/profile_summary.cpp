@@ -30,7 +30,7 @@ std::string line_of(const char* what, const Quantiles& q) {
 }
 
 std::string clock_of(const Profile& profile, const ProfileSummary& summary) {
-  if (!summary.mhz) return "not told: " + profile.recording.no_clock;
+  if (!summary.mhz) return "unknown: " + profile.recording.no_clock;
   return fmt::format("{:.0f} MHz (median), {} of {} frames below 95 % of {:.0f}", summary.mhz->median,
                      summary.slow_clock, profile.recording.frames.size(), summary.mhz->most);
 }
@@ -78,8 +78,8 @@ std::string advice_of(const Profile& profile, const ProfileSummary& summary) {
         "for the next one",
         summary.wall.p99, recording.budget_ms());
   if (!profile.facts.is_software && !is_gpu_bound(profile, summary))
-    return "fewer programs beside it and a CPU at its full clock: the GPU waits for the CPU, so that smaller "
-           "pictures and --quality save no time";
+    return "fewer other programs and a CPU at its full clock: the GPU waits for the CPU, so smaller pictures "
+           "and --quality save no time";
   if (profile.saving && profile.saving->share > 0.02)
     return fmt::format(
         "--quality {:g} would save {:.0f} % of a frame: binosplat bench {} --axes headset compares settings",

@@ -202,11 +202,11 @@ Section all_numbers(const ChartPoints& chart) {
 }
 
 Section floors(const ChartPoints& chart) {
-  return {chart.id + "-floors", chart.title + ": floors",
-          "What each stage must move and compute at least, over the rates that small programs reach on this "
-          "GPU.",
-          table_of(chart.details("floor", chosen(chart)),
-                   {"name", "stage", "frame_ms", "bytes", "operations", "floor_ms", "floor_share"})};
+  return {
+      chart.id + "-floors", chart.title + ": floors",
+      "The least bytes and operations of each stage, over the rates that small programs reach on this GPU.",
+      table_of(chart.details("floor", chosen(chart)),
+               {"name", "stage", "frame_ms", "bytes", "operations", "floor_ms", "floor_share"})};
 }
 
 void add_seen(const ChartPoints& chart, std::vector<Section>& sections) {
@@ -214,9 +214,8 @@ void add_seen(const ChartPoints& chart, std::vector<Section>& sections) {
   std::vector<Row> rows = chart.rows("seen");
   double least = INFINITY;
   std::string sentence =
-      "Against the exact picture, for eyes that look along their axes, by the contrast that Geisler and "
-      "Perry found to be needed at each distance from there. Filled points show less than all that are "
-      "quicker.";
+      "Visible differences from the exact picture for a gaze along the axis, with the contrast thresholds of "
+      "Geisler and Perry. Filled points show less than all that are quicker.";
   bool told = false;
   for (Row& row : rows) {
     const double seen = number(row, "seen");
@@ -350,7 +349,7 @@ void add_targets(const ChartPoints& chart, std::vector<Section>& sections) {
                               Chart{title_of(target), {"pairs removed %"}, "family"}));
       sections.push_back(plot(chart, "speed", "speed at equal error (figure 8)",
                               "Times as fast as the exact frame, over what the test views lose.", tuned,
-                              columns, Chart{title_of(lost), {"times exact"}, "family"}));
+                              columns, Chart{title_of(lost), {"speed vs exact"}, "family"}));
     }
     if (!trained.empty())
       sections.push_back(plot(chart, "real", "what is lost where nothing was calibrated (table III)",

@@ -15,7 +15,7 @@ struct Calibration::Impl {
 };
 
 Calibration::Calibration(const std::filesystem::path& path, const SplatModel& model) {
-  if (model.model_ == nullptr) fail("model: it was moved from: expected a SplatModel that holds one");
+  if (model.model_ == nullptr) fail("model was moved from: expected a valid SplatModel");
   impl_ = std::make_shared<const Impl>(
       Impl{model.model_, render::ThresholdPolicy(path.string(), load_calibration(path))});
   impl_->policy.check_model(*model.model_);
@@ -23,8 +23,8 @@ Calibration::Calibration(const std::filesystem::path& path, const SplatModel& mo
 
 Settings Calibration::settings(std::span<const View> views, const Placement& placement,
                                const Settings& asked) const {
-  if (impl_ == nullptr) fail("this Calibration was moved from: expected one that holds a file's numbers");
-  if (views.empty()) fail("a calibration's settings for no views: expected those of a frame");
+  if (impl_ == nullptr) fail("this Calibration was moved from: expected a valid one");
+  if (views.empty()) fail("no views: expected the views of a frame");
   library::check_numbers(views, placement);
   library::check_numbers(asked);
   render::FrameSettings frame{.th = library::rule_of(asked, TH_SQUARED),

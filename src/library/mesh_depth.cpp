@@ -27,7 +27,7 @@ std::uint32_t texture_of(gl::Context& context, const MeshDepth& mesh, const Argu
   GLint reads = GL_DEPTH_COMPONENT;
   gl.GetTextureParameteriv(mesh.texture, GL_DEPTH_STENCIL_TEXTURE_MODE, &reads);
   if (reads != GL_DEPTH_COMPONENT)
-    fail("{}: texture {} gives its stencil (GL_DEPTH_STENCIL_TEXTURE_MODE): set it to GL_DEPTH_COMPONENT",
+    fail("{}: texture {} returns its stencil (GL_DEPTH_STENCIL_TEXTURE_MODE): set it to GL_DEPTH_COMPONENT",
          argument.name(), mesh.texture);
   check_within(level.size, {mesh.x, mesh.y}, size, argument);
   if (mesh.layer < 0) return mesh.texture;
@@ -56,7 +56,7 @@ void add_mesh_depth(gl::Context& context, const View& view, const Argument& argu
     read.scale = static_cast<float>(mesh.units_per_number);
     read.nothing = 0.0f;
   } else if (mesh.coding != DepthCoding::planes) {
-    fail("{}: coding {}: there is none of this number", argument.name(), static_cast<int>(mesh.coding));
+    fail("{}: coding {}: unknown value", argument.name(), static_cast<int>(mesh.coding));
   } else {
     check_planes(near, far, argument);
     // 1 / z is linear in d: 1 / near at d = 0, and 1 / far at d = 1.

@@ -11,7 +11,7 @@ namespace binosplat {
 namespace {
 
 const Model& model_in(const std::shared_ptr<const Model>& model) {
-  if (model == nullptr) fail("this SplatModel was moved from: expected one that holds a model");
+  if (model == nullptr) fail("this SplatModel was moved from: expected a valid one");
   return *model;
 }
 
@@ -25,7 +25,7 @@ SplatModel::SplatModel(const std::filesystem::path& path, const ModelOptions& op
 SplatModel::SplatModel(const Gaussians& gaussians, const std::string& name) {
   const std::size_t count = gaussians.means.size();
   const auto check_length = [&](const char* array, std::size_t length) {
-    if (length != count) fail("{}: {} elements for {} means: expected as many", array, length, count);
+    if (length != count) fail("{}: {} elements for {} means: expected the same number", array, length, count);
   };
   check_length("quats", gaussians.quats.size());
   check_length("scales", gaussians.scales.size());

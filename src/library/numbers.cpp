@@ -33,8 +33,7 @@ bool are_directions(const glm::dmat3& axes) {
 template <typename Enum>
 void check_named(Enum value, Enum last, const char* argument) {
   const int number = static_cast<int>(value);
-  if (number < 0 || number > static_cast<int>(last))
-    fail("{} {}: there is none of this number", argument, number);
+  if (number < 0 || number > static_cast<int>(last)) fail("{} {}: unknown value", argument, number);
 }
 
 }  // namespace

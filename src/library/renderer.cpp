@@ -23,7 +23,7 @@ namespace {
 /// Throws Error if the object was moved from, or its context is not current.
 template <typename Impl>
 Impl& usable(const std::unique_ptr<Impl>& impl) {
-  if (impl == nullptr) fail("this Renderer was moved from: expected one that holds a model");
+  if (impl == nullptr) fail("this Renderer was moved from: expected a valid one");
   impl->context->check_current();
   return *impl;
 }
@@ -54,13 +54,13 @@ struct Renderer::Impl {
   }
 
   ModelId add(std::shared_ptr<const Model> model) {
-    if (model == nullptr) fail("model: it was moved from: expected a SplatModel that holds one");
+    if (model == nullptr) fail("model was moved from: expected a valid SplatModel");
     const gl::KeptState kept(*context);
     auto on_gpu = std::make_shared<render::GpuModel>(*context, *model, precision);
     return hold({.model = std::move(model), .on_gpu = std::move(on_gpu)});
   }
   ModelId add(std::shared_ptr<SplatStream::Impl> stream) {
-    if (stream == nullptr) fail("stream: it was moved from: expected a SplatStream that holds one");
+    if (stream == nullptr) fail("stream was moved from: expected a valid SplatStream");
     if (stream->context != nullptr) fail("a stream has one renderer at a time: destroy the other one first");
     const gl::KeptState kept(*context);
     auto on_gpu = stream->stream->gpu_model(*context, precision);
@@ -183,8 +183,7 @@ Renderer::Renderer(GetProcAddress get_proc_address, Precision precision)
 Renderer::~Renderer() {
   // In another context the same names may be other objects, which the renderer must not delete.
   if (impl_ == nullptr || !impl_->context->another_is_current()) return;
-  log_warning(
-      "a renderer ends where another OpenGL context than its own is current: its memory is not freed");
+  log_warning("a renderer is destroyed while its OpenGL context is not current: its memory is not freed");
   static_cast<void>(impl_.release());
 }
 Renderer::Renderer(Renderer&&) noexcept = default;
@@ -264,14 +263,20 @@ void Renderer::Impl::hand_over(std::span<const View> views, const Placement& pla
          settings.background ? "background" : "layout other than separate");
   }
   checked->check(views, settings);
-  const render::FrameSettings over = library::frame_settings(settings, views, precision);
+  Settings with_table = settings;
+  const auto lacks_table = [](const render::Instance& one) { return one.place.depth_table.bounds.empty(); };
+  if (settings.depth_table.bounds.empty() && !scene.instances.empty() &&
+      std::ranges::none_of(scene.instances, lacks_table))
+    with_table.depth_table = scene.instances.front().place.depth_table;  // which no instance uses
+  const render::FrameSettings over = library::frame_settings(with_table, views, precision);
   const auto is_decoded = [](const render::Instance& one) { return one.model->model().scaffold != nullptr; };
   if (settings.cyclopean && std::ranges::none_of(scene.instances, is_decoded))
-    fail("settings.cyclopean has no effect on this model, which is no Scaffold-GS model: leave it out");
+    fail("settings.cyclopean only affects Scaffold-GS models, and this is another one: leave it out");
   to.is_foveated = settings.foveation.has_value();
   const std::size_t gazes = to.is_foveated ? settings.foveation->gaze.size() : 0;
   if (gazes > 1 && gazes != views.size())
-    fail("settings.foveation.gaze: {} for {} views: expected none, one or one a view", gazes, views.size());
+    fail("settings.foveation.gaze: {} for {} views: expected none, one, or one for each view", gazes,
+         views.size());
   if (to.is_foveated && !to.depths.empty())
     fail("foveation with depth targets: composed pictures have no depths");
   const auto head = library::views_of(views, placement, scene.origin, settings);

@@ -30,7 +30,7 @@ int number_of(auto choice, const auto& choices) {
 /// Refuses illegal combinations, with the library's names; render::check_choice uses the program's.
 void check_choices(const Settings& s) {
   if (s.quality && s.tolerance)
-    fail("settings.tolerance with settings.quality, which finds one itself: leave one of them out");
+    fail("settings.tolerance with settings.quality: each chooses the tolerance: leave one of them out");
   if (s.threshold == Threshold::exact && (s.quality || s.tolerance)) {
     fail("settings.{0} has no effect with settings.threshold exact: leave one of them out",
          s.quality ? "quality" : "tolerance");
@@ -98,14 +98,14 @@ render::FrameSettings frame_settings(const Settings& from, std::span<const View>
 
 int precision_of(Precision precision) {
   const int number = static_cast<int>(precision);
-  if (number < 0 || number > PRECISION_HALF) fail("precision {}: there is none of this number", number);
+  if (number < 0 || number > PRECISION_HALF) fail("precision {}: unknown value", number);
   return number;
 }
 
 int layout_of(Layout layout) {
   const int number = static_cast<int>(layout);
   const bool named = number == LAYOUT_SEPARATE || (number >= LAYOUT_PARALLEL && number <= LAYOUT_GREY);
-  if (!named) fail("layout {}: there is none of this number", number);
+  if (!named) fail("layout {}: unknown value", number);
   return number;
 }
 

@@ -15,7 +15,7 @@ namespace {
 
 StreamSettings settings_of(const StreamOptions& options) {
   if (!(options.quality >= render::quality_least && options.quality <= render::quality_most))
-    fail("quality {} of levels: expected {} to {} dB", options.quality, render::quality_least,
+    fail("StreamOptions::quality {}: expected {} to {} dB", options.quality, render::quality_least,
          render::quality_most);
   StreamSettings settings{.all_up_to = few_gaussians};
   settings.detail.db = options.quality;
@@ -26,7 +26,7 @@ StreamSettings settings_of(const StreamOptions& options) {
 
 template <typename Impl>
 Stream& stream_in(const std::shared_ptr<Impl>& impl) {
-  if (impl == nullptr) fail("this SplatStream was moved from: expected one that holds a model");
+  if (impl == nullptr) fail("this SplatStream was moved from: expected a valid one");
   return *impl->stream;
 }
 

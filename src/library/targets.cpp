@@ -139,8 +139,8 @@ void Targets::check_framebuffer(std::uint32_t framebuffer, const Argument& argum
   gl.GetError();  // discards the error of drivers that report no samples of the default framebuffer
   if (samples > 0) {
     fail(
-        "{}: framebuffer {} has {} samples a pixel: expected one without, as those are that samples are "
-        "resolved into",
+        "{}: framebuffer {} has {} samples a pixel: expected one without multisampling, such as the one that "
+        "samples are resolved into",
         argument.name(), framebuffer, samples);
   }
 }
@@ -157,12 +157,12 @@ void Targets::check_attached(const Target& target, const glm::ivec2& size, const
     if (kind == GL_NONE) continue;
     has_colours = true;
     const glm::ivec2 there = size_attached(gl, framebuffer, place, kind);
-    if (there.x == 0)
-      fail("{}: what is attached to framebuffer {} was deleted", argument.name(), framebuffer);
+    if (there.x == 0) fail("{}: an attachment of framebuffer {} was deleted", argument.name(), framebuffer);
     check_within(there, {target.x, target.y}, size, argument);
     const GLint type = attached(gl, framebuffer, place, GL_FRAMEBUFFER_ATTACHMENT_COMPONENT_TYPE);
     if (type == GL_INT || type == GL_UNSIGNED_INT)
-      fail("{}: framebuffer {} is of integers: expected one of colours", argument.name(), framebuffer);
+      fail("{}: framebuffer {} has an integer format: expected a colour format", argument.name(),
+           framebuffer);
   }
   if (!has_colours) fail("{}: framebuffer {} has no colours", argument.name(), framebuffer);
 }

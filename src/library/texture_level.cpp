@@ -36,7 +36,7 @@ TextureLevel texture_level(const gl::Context& context, const Place& place, const
   const int layers = is_array ? of_level(GL_TEXTURE_DEPTH) : 0;
   if (is_array ? place.layer < 0 || place.layer >= layers : place.layer >= 0) {
     fail("{}: texture {} has no layer {}: it {}", argument.name(), texture, place.layer,
-         is_array ? fmt::format("is an array of {}", layers) : "is no array, whose layer is -1");
+         is_array ? fmt::format("is an array of {}", layers) : "is not an array: expected layer -1");
   }
   level.format = of_level(GL_TEXTURE_INTERNAL_FORMAT);
   level.immutable = of_texture(GL_TEXTURE_IMMUTABLE_FORMAT) != 0;

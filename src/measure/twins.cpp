@@ -94,7 +94,7 @@ void add(const reference::Decoded& decoded, std::size_t place, std::size_t offse
 
 void upload_decoded(const Model& model, const FramePlan& plan, ModelBuffers& model_buffers,
                     FrameBuffers& buffers) {
-  if (!model.scaffold) fail("--reference-until decode: {} is no Scaffold-GS model", model.name);
+  if (!model.scaffold) fail("--reference-until decode: {} is not a Scaffold-GS model", model.name);
   std::vector<std::vector<reference::Decoded>> decodings;
   for (std::uint32_t v = 0; v < plan.view_count(); v += plan.views_per_decoding) {
     const reference::Decoding decoding = decoding_for(plan, v);

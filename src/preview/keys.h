@@ -9,14 +9,14 @@ struct KeyHelp {
 };
 
 inline constexpr KeyHelp key_help[] = {
-    {"left button", "drag: go around what is looked at"},
+    {"left button", "drag: orbit the point that is looked at"},
     {"right button", "drag: turn the head"},
     {"middle button", "drag: move the head"},
     {"wheel", "nearer, farther"},
-    {"double click", "look at what lies there"},
-    {"W A S D Q E", "go; faster with Shift"},
+    {"double click", "look at that point"},
+    {"W A S D Q E", "move; faster with Shift"},
     {"G", "walk level with the ground, or fly"},
-    {"N, P", "next camera, the one before"},
+    {"N, P", "next camera, previous camera"},
     {"R", "back to the camera (reset view)"},
     {"L, V", "next layout, kind of picture; Shift: back"},
     {"B, C", "show or hide a grid on the ground, the cameras"},
@@ -28,8 +28,8 @@ inline constexpr KeyHelp key_help[] = {
     {"F8", "record ten seconds of frames, as `profile` does"},
     {"F9", "save the pose beside the model"},
     {"F11, F12", "save an OpenEXR of both eyes, a PNG"},
-    {"Tab, arrows", "to the next number in the panel, go about in it; Space presses"},
-    {"K, Space", "add a key to the path, play the path (of a moving scene: hold it, let it go on)"},
+    {"Tab, arrows", "next number in the panel, move in it; Space presses"},
+    {"K, Space", "add a key to the path, play the path (of a moving scene: pause, play)"},
     {"Escape", "leave full screen, or end"},
 };
 

@@ -235,10 +235,10 @@ void Window::measure_depth_table() {
     return tell(error.what(), true);
   }
   if (is_measuring_ && !was_under_way)
-    tell("measuring how much light reaches each depth, from the cameras: until then all of it counts");
+    tell("measuring the transmittance by depth from the cameras: until then it is 1");
   if (!session_->needs_depth_table()) {
-    tell("measured how much light reaches each depth");
-    log_info("{}: measured how much light reaches each depth", scene_.name);
+    tell("measured the transmittance by depth");
+    log_info("{}: measured the transmittance by depth", scene_.name);
   }
   ui_frames_ = std::max(ui_frames_, 1);
 }

@@ -76,7 +76,7 @@ py::array means_of(const Model& model) {
 
 /// A copy of one of the five arrays.
 py::array column_of(const Model& model, const std::string& name) {
-  if (model.scaffold) fail("{}: a Scaffold-GS model makes its Gaussians for each eye", name);
+  if (model.scaffold) fail("{}: a Scaffold-GS model decodes Gaussians for each eye", name);
   if (name == "means") return means_of(model);
   if (name == "quats") return array_of_rows(model.rotation);
   if (name == "scales") return array_of_rows(model.scale);

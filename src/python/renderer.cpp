@@ -39,7 +39,7 @@ void check(const Settings& settings, const Model& model, bool given) {
   }
   const bool calibrated = settings.policy.is_calibrated();
   if (!render::is_exact(s.th) && !given && !calibrated)
-    fail("th {} needs tolerance, quality or calibration: what it may cost", th_choices[s.th].name);
+    fail("th {} needs tolerance, quality or calibration, which set the accepted loss", th_choices[s.th].name);
   if (s.transmittance == TRANSMITTANCE_DEPTH && !calibrated)
     fail("transmittance depth: needs calibration, which has the table of the scene");
   if (calibrated && !render::is_exact(s.th)) {
@@ -47,12 +47,12 @@ void check(const Settings& settings, const Model& model, bool given) {
     settings.policy.check_perspective(s, model);
   }
   if (s.decode != DECODE_EYES && !model.scaffold) {
-    fail("decode {}: this is no Scaffold-GS model, whose Gaussians are made for each eye",
+    fail("decode {}: this is not a Scaffold-GS model, which decodes Gaussians for each eye",
          decode_choices[s.decode].name);
   }
   render::check_choice(s);
   if (s.transmittance == TRANSMITTANCE_LAST && !settings.follow)
-    fail("transmittance last: needs follow=True; it is the light that the frame before measured");
+    fail("transmittance last needs follow=True: the previous frame measures it");
 }
 
 /// The views of a camera, or of both eyes, in the model's frame.

@@ -63,7 +63,7 @@ const gl::Program& program(gl::Context& context, const FramePlan& plan, const Bl
   if (!v.is_legal()) v.large_splats = false;
   v.plain = !plan.probe && !plan.draws_regions();
   if (!v.is_legal()) v.plain = false;
-  if (!v.is_legal()) throw std::logic_error("a blend that no frame has: render/variants.cpp");
+  if (!v.is_legal()) throw std::logic_error("illegal variant of the blend (render/variants.cpp)");
   return context.program(v.shader(), v);
 }
 
@@ -150,8 +150,8 @@ void blend_visibility(gl::Dispatcher& dispatcher, const FramePlan& plan, FrameBu
 void refuse_truncated(const gl::Context& context, const shared::Counters& counters) {
   if (counters.truncated_lists == 0) return;
   throw Error(ExitCode::out_of_memory,
-              fmt::format("{} ended a tile's list early: too many Gaussians in one tile for this driver. "
-                          "Use smaller tiles (--tile, where a picture is drawn) or a smaller model.",
+              fmt::format("{} ended a tile's list early: too many Gaussians in one tile for this driver. Use "
+                          "smaller tiles (`render --tile`) or a smaller model.",
                           context.renderer()));
 }
 

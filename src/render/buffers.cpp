@@ -50,7 +50,7 @@ FrameBuffers::FrameBuffers(gl::Context& context)
             .supertile_counts = {context, "counts of supertiles"},
             .supertile_ends = {context, "ends of supertiles"},
             .items = {context, "lists to be sorted"},
-            .slab_tiles = {context, "tiles of parted lists"},
+            .slab_tiles = {context, "tiles of split lists"},
             .tile_ranges = {context, "ranges of tiles"},
             .tile_values = {context, "lists of tiles"},
             .long_lists = {context, "tiles with long lists"}},

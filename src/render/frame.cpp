@@ -20,10 +20,10 @@ void check(const CallersTextures& textures, std::size_t views, const FrameSettin
     fail("{} canvases for {} views: expected one each, at most {}", canvases, views, MAX_CANVASES);
   if (meshes == 0) return;
   if (meshes != views || meshes > MAX_CANVASES)
-    fail("depths of meshes in {} views of {}: expected all or none, at most {}", meshes, views, MAX_CANVASES);
+    fail("mesh depths for {} views of {}: expected all or none, at most {}", meshes, views, MAX_CANVASES);
   if (measures(settings.transmittance))
-    fail("depths of meshes with a measured transmittance: what a mesh hides is not met");
-  if (workings.stand_in) fail("depths of meshes with a stand-in: it knows nothing of them");
+    fail("mesh depths with a measured transmittance: Gaussians behind a mesh are not measured");
+  if (workings.stand_in) fail("mesh depths with a stand-in, which ignores meshes");
 }
 
 // Adds an earlier attempt's times to the last one, which is the frame.
@@ -221,7 +221,8 @@ void Frame::start_attempt() {
 FrameReport Frame::finish_attempt() {
   FrameReport report;
   for (;; ++report.redrawn) {
-    if (report.redrawn == drawings_max) throw std::logic_error("a frame overflowed again and again");
+    if (report.redrawn == drawings_max)
+      throw std::logic_error("a frame still overflowed after its buffers grew repeatedly");
     wait_and_read(report);
     if (counters_.overflow == 0) break;
     capacity_.grow(plan_, counters_);

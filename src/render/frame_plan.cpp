@@ -34,7 +34,7 @@ void check_table(const DepthTable& table) {
 // Throws Error if a setting lacks another one that it needs.
 void check_needs(const FrameSettings& s, std::size_t views, std::span<const InstancePlace> instances) {
   if (s.decode != DECODE_EYES && views % 2 != 0)
-    fail("decode {}: only for both eyes together", decode_choices[s.decode].name);
+    fail("decode {}: expected pairs of eyes", decode_choices[s.decode].name);
   if (s.transmittance != TRANSMITTANCE_DEPTH) return;
   if (instances.empty() || !s.depth_table.bounds.empty()) check_table(s.depth_table);
   for (const InstancePlace& place : instances) {
@@ -200,7 +200,7 @@ FramePlan make_plan(std::span<const shared::View> views, const FrameSettings& se
   for (std::size_t v = 0; v < views.size(); ++v) add_view(plan, views[v], region_of(v));
   plan.probe = request.probe;
   if (const auto& probe = plan.probe) {
-    if (region_of(probe->view).is_window()) fail("a probe of a window: only whole views have them");
+    if (region_of(probe->view).is_window()) fail("a probe of a window: expected a whole view");
     add_view(plan, views[probe->view], region_of(probe->view), probe);
   }
   return plan;

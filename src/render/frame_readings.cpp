@@ -11,7 +11,7 @@ namespace binosplat::render {
 
 std::vector<Picture> Frame::read_pictures() const {
   if (!pictures_stood_in_.empty()) return pictures_stood_in_;
-  if (!plan_.canvases.empty()) fail("the pictures went onto canvases, and are whose those are");
+  if (!plan_.canvases.empty()) fail("the pictures are on the caller's canvases: read them there");
   const auto pixels = static_cast<std::size_t>(plan_.pixel_count);
   const auto colours = buffers_.pictures.colours.read<glm::vec4>(pixels);
   const bool has_depth = plan_.depth() != DEPTH_NONE;
@@ -29,7 +29,7 @@ std::vector<Picture> Frame::read_pictures() const {
 
 std::vector<Image> Frame::read_debug_view(int what) {
   if (!pictures_stood_in_.empty())
-    fail("--show {}: the GPU does not walk the lists of --reference-until blend", show_choices[what].name);
+    fail("--show {} with --reference-until blend: the GPU lacks its lists", show_choices[what].name);
   blend_debug_view(dispatcher_, plan_, what, buffers_);
   const auto values = buffers_.pictures.debug_values.read<float>(static_cast<std::size_t>(plan_.pixel_count));
   std::vector<Image> images;

@@ -19,7 +19,7 @@ std::vector<FrameEvent> events_of(const FrameRecord& frame, const FrameRecord* b
     events.push_back({"drawn again", fmt::format("{}, until it kept its quality: {:.1f} dB",
                                                  times(report.attempts - 1), report.quality)});
   }
-  if (report.is_cut) events.push_back({"camera cut", "it goes by nothing that earlier frames measured"});
+  if (report.is_cut) events.push_back({"camera cut", "it uses no earlier measurement"});
   if (report.sampled_error) events.push_back({"measured its error", ""});
   if (report.programs_made > 0)
     events.push_back({"program compiled", fmt::format("{} or loaded", times(report.programs_made))});

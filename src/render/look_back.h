@@ -11,7 +11,7 @@ namespace binosplat::render {
 
 class LookBack {
  public:
-  explicit LookBack(gl::Context& context) : words_(context, "counts that are looked back at") {}
+  explicit LookBack(gl::Context& context) : words_(context, "look-back counts") {}
 
   /// Makes room for `groups` groups. No dispatch that uses the buffer may be under way.
   void reserve(std::int64_t groups) {

@@ -92,8 +92,8 @@ void Capacity::grow(const FramePlan& plan, const shared::Counters& counters) {
     tile_pairs = larger(counters.tile_pairs);
   }
   if (lacks(OVERFLOW_ROUNDS)) {
-    log_info("drawn again: a list of over {} Gaussians is parted once more", SORT_MOST);
-    if (++rounds > SORT_ROUNDS) throw std::logic_error("a list that cannot be parted: sort_split.comp");
+    log_info("drawn again: a list of over {} Gaussians is split once more", SORT_MOST);
+    if (++rounds > SORT_ROUNDS) throw std::logic_error("a list that cannot be split: sort_split.comp");
   }
 }
 

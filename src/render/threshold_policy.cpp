@@ -40,7 +40,7 @@ void ThresholdPolicy::check(const FrameSettings& asked) const {
 void ThresholdPolicy::check_perspective(const FrameSettings& asked, const Model& model) const {
   const Perspective drawn = perspective_of(asked, model);
   if (!calibration_ || calibration_->perspective == drawn) return;
-  fail("calibration {} is for {}, and this is drawn with {}: calibrate with these", name_,
+  fail("calibration {} is for {}, but the frame uses {}: calibrate with these settings", name_,
        text_of(calibration_->perspective), text_of(drawn));
 }
 

@@ -19,11 +19,11 @@ void check_regions(const FrameSettings& settings, std::size_t views, bool is_sca
     if (!(region.low_pass_share > 0.0f && region.low_pass_share <= 1.0f))
       fail("a share of {} of the low-pass: expected above zero, up to 1", region.low_pass_share);
     if (settings.quality > 0.0f && (region.is_window() || region.tolerance_share != 1.0f))
-      fail("a quality is found for whole pictures of one tolerance: give a tolerance in its place");
+      fail("a quality needs whole views of one tolerance: set a tolerance instead");
     if (is_scaffold && region.is_window()) {
       fail(
-          "a window of a Scaffold-GS model's picture: anchors are culled by the picture, as trained, and its "
-          "Gaussians would be others");
+          "a window of a Scaffold-GS model: its anchors are culled by the whole view, and a window would "
+          "decode other Gaussians");
     }
   }
 }

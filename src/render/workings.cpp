@@ -8,10 +8,8 @@ namespace binosplat::render {
 
 void check(const Workings& workings, const FrameSettings& settings, std::string_view prefix) {
   if (workings.stand_in && (settings.transmittance != TRANSMITTANCE_ONE || settings.quality > 0.0f)) {
-    fail(
-        "{0}reference-until: the reference goes by no earlier frame: leave {0}transmittance and {0}quality "
-        "out",
-        prefix);
+    fail("{0}reference-until: the reference uses no earlier frame: leave out {0}transmittance and {0}quality",
+         prefix);
   }
   const auto is_whole = [](const ViewRegion& region) { return region.is_whole(); };
   if (workings.between_pixels && !std::ranges::all_of(settings.regions, is_whole))

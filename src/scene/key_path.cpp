@@ -76,10 +76,9 @@ bool are_keys(std::span<const Camera> cameras) {
 }
 
 KeyPath::KeyPath(std::span<const Camera> keys, const std::optional<double>& seconds) {
-  if (keys.size() < 2)
-    fail("a path goes through two keys or more, and there is {}: set another", keys.size());
+  if (keys.size() < 2) fail("a path needs two keys or more, and there is {}: add another", keys.size());
   if (!seconds && !times_rise(keys))
-    fail("the keys of a path have no times that rise: say in how many seconds to go through them");
+    fail("the times of a path's keys do not rise: give the path's duration in seconds");
   if (seconds && !(*seconds > 0.0 && std::isfinite(*seconds)))
     fail("a path in {} seconds: expected more than 0", *seconds);
   first_ = keys[0];
@@ -172,8 +171,8 @@ std::vector<Camera> frames_of(const KeyPath& path, double frames_per_second, dou
                                 std::max(1.0, std::ceil(seconds * frames_per_second - rounded)));
   if (!(count <= key_path_frames_most)) {
     fail(
-        "a path of {:.4g} s at {} frames a second: {:.3g} frames are too many: {:.0e} fit, of fewer "
-        "--seconds, a lower --fps or a faster --tour",
+        "a path of {:.4g} s at {} frames a second has {:.3g} frames, more than {:.0e}: use fewer --seconds, "
+        "a lower --fps or a faster --tour",
         path.seconds(), frames_per_second, count, key_path_frames_most);
   }
   std::vector<Camera> frames;

@@ -23,7 +23,7 @@ void refuse_row(const GaussianValues& values, std::size_t row, int coefficients)
   const char* const not_finite = "expected finite numbers";
   if (!finite(&values.position.x, 3)) fail_at("means", row, not_finite);
   if (!finite(&values.rotation.x, 4)) fail_at("quats", row, not_finite);
-  if (values.rotation == glm::vec4(0.0f)) fail_at("quats", row, "a quaternion of zeros turns nothing");
+  if (values.rotation == glm::vec4(0.0f)) fail_at("quats", row, "a quaternion of zeros is not a rotation");
   if (!finite(&values.scale.x, 3)) fail_at("scales", row, not_finite);
   if (glm::any(glm::lessThan(values.scale, glm::vec3(0.0f))))
     fail_at("scales", row, "below 0: expected standard deviations, which are exp() of what trainers store");

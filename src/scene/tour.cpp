@@ -156,7 +156,7 @@ std::vector<Camera> keys_through(std::vector<Camera> stops, const Motion& motion
   constexpr double seconds_a_key = 0.5, keys_most = 8.0;
   const std::vector<double> seconds = seconds_between(stops, motion);
   if (const double all = std::accumulate(seconds.begin(), seconds.end(), 0.0); !(all < tour_seconds_most)) {
-    fail("a tour of {:.2g} s, and {:.0e} fit: go faster (--tour), or name another scale (--units-per-metre)",
+    fail("the tour takes {:.2g} s, more than {:.0e}: choose a faster --tour, or another --units-per-metre",
          all, tour_seconds_most);
   }
   stops[0].time = 0.0;
@@ -244,16 +244,15 @@ std::vector<Camera> tour(std::span<const Camera> cameras, const TourSettings& se
   const std::vector<Camera> heads = heads_of(cameras);
   if (heads.size() < 2) {
     fail(
-        "a tour goes through two cameras or more, and there is {}: name a file of more with --cameras, or go "
-        "around the model with --orbit",
+        "a tour needs two cameras or more, and there is {}: name a file with more by --cameras, or go around "
+        "the model with --orbit",
         heads.size());
   }
   std::vector<Camera> stops = stops_of(heads, settings.units_per_metre);
   if (stops.size() < 2) {
     fail(
-        "a tour goes through cameras that lie apart: all {} are within {} m and {} degrees, at {} world "
-        "units "
-        "a metre; name others with --cameras, or another scale with --units-per-metre",
+        "a tour needs cameras at different poses: all {} are within {} m and {} degrees, at {} world units a "
+        "metre; name others with --cameras, or another scale with --units-per-metre",
         heads.size(), same_metres, same_degrees, settings.units_per_metre);
   }
   shorten(stops);

@@ -19,8 +19,7 @@ LevelChoice Chooser::choose(std::span<const shared::View> views, const DetailReq
 }
 
 void warn_of_no_room(const std::string& name, std::size_t total, std::size_t most) {
-  log_warning("{}: even its coarsest levels of detail have {} Gaussians, and there is room for {}", name,
-              total, most);
+  log_warning("{}: its coarsest levels of detail have {} Gaussians, and only {} fit", name, total, most);
 }
 
 }  // namespace binosplat

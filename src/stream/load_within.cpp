@@ -17,8 +17,7 @@ Model load_within(const std::filesystem::path& path, const DetailBudget& budget)
   const std::filesystem::path lod_meta = lod_meta_of(path);
   const auto root = read_lod_meta(lod_meta);
   if (!root)
-    fail("--gpu-memory: {} has no levels of detail to choose from; a streamed SOG's lod-meta.json has",
-         path.string());
+    fail("--gpu-memory: {} has no levels of detail; name the lod-meta.json of a streamed SOG", path.string());
   const SogLevels levels(lod_meta, *root);
   const std::vector<LodChunk> leaves = levels.leaves(*root);
   check_leaves(lod_meta, leaves);

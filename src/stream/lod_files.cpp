@@ -31,8 +31,7 @@ constexpr std::size_t decoded_for_one = 8;
 nlohmann::json levels_json(const fs::path& path, const fs::path& asked) {
   auto json = read_lod_meta(path);
   if (!json)
-    fail("{} has no levels of detail to choose from; `binosplat levels` makes a streamed SOG that has",
-         asked.string());
+    fail("{} has no levels of detail; `binosplat levels` makes a streamed SOG that has them", asked.string());
   return std::move(*json);
 }
 
@@ -119,10 +118,8 @@ bool LodFiles::has_errors() const {
 
 void LodFiles::check(const DetailRequest& request) const {
   if (!request.db || has_errors()) return;
-  fail(
-      "--detail {}dB: {} has no errors of its levels to go by; `binosplat levels` writes them; or use "
-      "--detail PX",
-      *request.db, name());
+  fail("--detail {}dB: {} lacks the errors of its levels; `binosplat levels` writes them; or use --detail PX",
+       *request.db, name());
 }
 
 Model LodFiles::environment() const {

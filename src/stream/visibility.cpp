@@ -44,9 +44,9 @@ render::FrameSettings exact_in_precision(const render::FrameSettings& settings) 
 Visibility::Visibility(std::shared_ptr<render::GpuModel> model)
     : frame_(model),
       dispatcher_(model->context()),
-      sums_(model->context(), "how much is seen by splat"),
+      sums_(model->context(), "visibility by splat"),
       owners_(model->context(), "chunks by block"),
-      of_chunks_(model->context(), "how much is seen by chunk"),
+      of_chunks_(model->context(), "visibility by chunk"),
       kept_(model->context()) {}
 
 std::vector<std::vector<ChunkVisibility>> Visibility::measure(std::span<const shared::View> views,

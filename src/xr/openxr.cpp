@@ -54,7 +54,7 @@ std::set<std::string> offered_extensions() {
 PFN_xrVoidFunction find(const char* name) {
   static void* const library = open_loader();
   void* const function = dlsym(library, name);
-  if (function == nullptr) refuse("libopenxr_loader.so.1 has no {}: it is no OpenXR loader", name);
+  if (function == nullptr) refuse("libopenxr_loader.so.1 has no {}: it is not an OpenXR loader", name);
   return reinterpret_cast<PFN_xrVoidFunction>(function);
 }
 
@@ -90,7 +90,7 @@ Instance::Instance() {
   try {
     connect();
   } catch (const Lost&) {
-    refuse("the OpenXR runtime ended while it was asked: start it, and then this again");
+    refuse("the OpenXR runtime ended: start it, and then this again");
   }
 }
 
@@ -122,7 +122,7 @@ void Instance::connect() {
   if (has(XR_VARJO_QUAD_VIEWS_EXTENSION_NAME) && offers(XR_VIEW_CONFIGURATION_TYPE_PRIMARY_QUAD_VARJO))
     views = XR_VIEW_CONFIGURATION_TYPE_PRIMARY_QUAD_VARJO;
   else if (!offers(views))
-    refuse("{} shows no two eyes: it is no stereo headset", headset);
+    refuse("{} does not show two eyes: expected a stereo headset", headset);
 }
 
 XrResult Instance::find_headset() {

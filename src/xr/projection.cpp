@@ -155,7 +155,7 @@ Projection::Projection(const Session& session, double scale, bool composed)
     XR(EnumerateSwapchainFormats, session.handle(), room, count, all);
   });
   if (std::ranges::find(formats, GL_SRGB8_ALPHA8) == formats.end())
-    refuse("{} offers no textures of GL_SRGB8_ALPHA8, which is what models' colours are", instance.runtime);
+    refuse("{} offers no textures of GL_SRGB8_ALPHA8, which the models' colours need", instance.runtime);
   const auto* const depth_format = std::ranges::find_first_of(depth_formats, formats);
   const bool has_depths = !composed && depth_format != depth_formats.end() &&
                           instance.has(XR_KHR_COMPOSITION_LAYER_DEPTH_EXTENSION_NAME);

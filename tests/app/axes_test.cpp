@@ -90,7 +90,7 @@ TEST_F(AxesOption, CamerasTellThoseOfAnSpz) {
   // Nothing tells.
   fs::remove(folder / "cameras.json");
   EXPECT_TRUE(has(said_by({"info", folder / "rdf.spz"}),
-                  "nothing else tells: taken as RUB, as the format says (--axes rdf if it lies"));
+                  "its axes are unknown: taken as RUB, the default of the format (--axes rdf if it lies"));
 }
 
 }  // namespace

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "app/scene.h"
-#include "support/models.h"
 
 namespace binosplat {
 namespace {
@@ -52,7 +51,7 @@ TEST_F(BenchAlong, MotionsGoThroughTheCameras) {
   EXPECT_EQ(details_of(points[4], "moving"), 3u * 3);
   EXPECT_EQ(details_of(points[4], "stop"), 3u * 15);
   EXPECT_TRUE(points[4].contains("reported_minus_true_db"));
-  EXPECT_TRUE(points[4].contains("speed")) << "times exact";
+  EXPECT_TRUE(points[4].contains("speed")) << "speed vs exact";
   EXPECT_TRUE(has(printed, "model, both eyes, size 36x24, along walk"));
   EXPECT_TRUE(has(read_text(out + "/report.html"), "true and reported"));
   const std::string details = read_text(out + "/details.csv");
@@ -227,7 +226,7 @@ TEST_F(BenchLevelsCommand, WhatIsWrongIsNamed) {
   const std::string made = make_levels("made", false), beside = "no cameras beside " + made;
   add_cameras();
   expect_refused_after({"bench"},
-                       {{{model, "--detail", "30dB"}, model + " is no folder with levels of detail"},
+                       {{{model, "--detail", "30dB"}, model + " is not a folder with levels of detail"},
                         {{"demo:room", "--axes", "levels"}, "`binosplat levels MODEL -o DIR` makes"},
                         {{made, "--detail", "30dB"}, beside}});
   expect_refused_after({"bench", made, "--cameras", folder / "cameras.json", "--detail"},
@@ -255,7 +254,7 @@ TEST_F(BenchAlong, WhatMakesNoSenseIsNamed) {
        {{"--motion", "walk", "--axes", folder / "foveated.json"},
         "foveated pictures are measured along views"},
        {{"--axes", folder / "pair.json"}, "find tolerances in single views"},
-       {{"--axes", folder / "drop.json"}, "'max_drop' is lost against photos: name them with --photos"},
+       {{"--axes", folder / "drop.json"}, "'max_drop' needs photos: name them with --photos"},
        {{"--size", "big"}, "--size big: expected own, WxH"},
        {{"--tour", "crawl"}, "--tour crawl"},
        {{"--turn", "--view", "no-such"}, "--view no-such"}});

@@ -163,12 +163,12 @@ TEST_F(BenchTest, GoesOnWithTheSameContentOnly) {
   std::string other = bytes;
   ++other[other.size() - 100];  // of as many bytes
   write_text(model, other);
-  EXPECT_TRUE(ended(measure(out, {"--shard", "6/8"}), 2, "holds points of another run"));
+  EXPECT_TRUE(ended(measure(out, {"--shard", "6/8"}), 2, "has points of another run"));
   write_text(model, bytes);
   json moved = json::parse(cameras);
   moved[0]["position"][1] = 0.25;
   save("cameras.json", moved);  // the same names
-  EXPECT_TRUE(ended(measure(out, {"--shard", "6/8"}), 2, "holds points of another run"));
+  EXPECT_TRUE(ended(measure(out, {"--shard", "6/8"}), 2, "has points of another run"));
   write_text(folder / "cameras.json", cameras);
   EXPECT_TRUE(good(measure(out, {"--shard", "6/8"})));
 }
@@ -181,7 +181,7 @@ TEST_F(BenchTest, ErrorsSayWhatToDo) {
   write_text(list, "[1, 2]");
   write_text(text, "{\"points\"");
   expect_refused_after({"bench"},
-                       {{{model, "--axes", other, "-o", whole}, "holds points of another run"},
+                       {{{model, "--axes", other, "-o", whole}, "has points of another run"},
                         {{model, "--axes", folder / "none.json"}, "none.json"},
                         {{model, "--axes", list}, "list.json: expected an object"},
                         {{model, "--axes", axes, "--shard", "3/2"}, "--shard 3/2: expected I/N"},

@@ -23,27 +23,26 @@ TEST_F(CalibrateTest, ViewsThatSeeNothingHaveNoSay) {
   };
   turn(1);
   const Outcome outcome = calibrate({"--quality", "38", "--size", "36x24"});
-  ASSERT_TRUE(ended(outcome, 0, "1 of 3 views see nothing of the model and are left out (side)"));
+  ASSERT_TRUE(ended(outcome, 0, "the model is not visible in 1 of 3 views, which are skipped (side)"));
   const json found = load_json(file);
   EXPECT_EQ(found["views"].size(), 2);
   for (const auto& entry : found["entries"]) EXPECT_LT(entry["tolerance"], 1e3) << entry;
   fs::remove(file);
   for (const std::size_t k : {0u, 2u, 3u}) turn(k);
-  const char* const none = "none of its views sees anything of the model";
-  expect_refused_after({},
-                       {{line({"--quality", "38"}),
-                         "calibrate: none of its views sees anything of the model, so that all would look "
-                         "equal: view side looks away from the model"},
-                        {{"trim", model, "--quality", "25", "-o", folder / "t.ply"}, none},
-                        {{"refit", model, "--against", "exact", "-o", folder / "t.ply"}, none}});
+  const char* const none = "the model is visible in none of its views";
+  expect_refused_after({}, {{line({"--quality", "38"}),
+                             "calibrate: the model is visible in none of its views, so all would look equal: "
+                             "view side looks away from the model"},
+                            {{"trim", model, "--quality", "25", "-o", folder / "t.ply"}, none},
+                            {{"refit", model, "--against", "exact", "-o", folder / "t.ply"}, none}});
   for (const Words& axes : {Words{"--axes", "quick"}, {"--axes", "paper"}, {"--motion", "walk"}}) {
     EXPECT_TRUE(ended(run_into_out(joined({"bench", model, "--size", "36x24"}, axes)), 2,
-                      "sees anything of the model"))
+                      "the model is visible in none of its views"))
         << axes[1] << " into a folder in which the ones before left nothing";
   }
   // The file is what convert is for.
   const Outcome converted = run_program({"convert", model, "--report", "2", "-o", folder / "m.ply"});
-  EXPECT_TRUE(ended(converted, 0, "2 of 2 views see nothing of the model and are left out"));
+  EXPECT_TRUE(ended(converted, 0, "the model is not visible in 2 of 2 views, which are skipped"));
   EXPECT_FALSE(has(converted.out, "equal"));
 }
 
@@ -162,9 +161,9 @@ TEST_F(CalibrateTest, GoesWithItsOrderAndProjection) {
   EXPECT_EQ(load_json(file)["projection"], "tangent");
   const Words by = {"--mono",        "--view", "front", "--size",   "36x24",
                     "--calibration", file,     "--th",  "adagscale"};
-  EXPECT_TRUE(ended(render(by), 2,
-                    "is for order distance and projection tangent, and this is drawn with order depth and "
-                    "projection affine"));
+  EXPECT_TRUE(ended(
+      render(by), 2,
+      "is for order distance and projection tangent, but the frame uses order depth and projection affine"));
   const Words same = joined(by, {"--order", "distance", "--projection", "tangent"});
   const json settings = reported(same)["settings"];
   EXPECT_EQ(settings["th"], "peripheral");
@@ -173,7 +172,7 @@ TEST_F(CalibrateTest, GoesWithItsOrderAndProjection) {
   const Words by_tolerance = joined(same, {"--tolerance", "0.5"});
   EXPECT_EQ(reported(by_tolerance)["views"][0]["tolerance"], 0.5);
   EXPECT_TRUE(ended(render(joined(by_tolerance, {"--transmittance", "last"})), 2,
-                    "--th adagscale goes by its table by depth"));
+                    "--th adagscale uses its table by depth"));
 }
 
 TEST_F(CalibrateTest, ErrorsSayWhatToDo) {

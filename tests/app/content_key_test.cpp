@@ -4,7 +4,6 @@
 
 #include "app/scene.h"
 #include "support/gltf.h"
-#include "support/models.h"
 
 namespace binosplat {
 namespace {

@@ -53,7 +53,7 @@ TEST_F(Edges, InputsAreNeverOverwritten) {
   };
   const auto before = contents();
   for (const Words& words : cases) {
-    EXPECT_TRUE(ended(run_program(words), 2, "this run reads it, and it would be lost")) << words[0];
+    EXPECT_TRUE(ended(run_program(words), 2, "it is an input of this run")) << words[0];
     EXPECT_TRUE(contents() == before) << words[0];
   }
   // What a run wrote may be written again.
@@ -68,15 +68,15 @@ TEST_F(Edges, OutputsAreFilesOfTheirOwn) {
     return render(joined(joined(one, {"-o", output, "--json", json}), more));
   };
   for (const char* same : {"q.png", "./q.png", "here/q.png", "link.png", "photos/../q.png"})
-    EXPECT_TRUE(ended(one_view(q, folder / same), 2, "it is what --output writes, too")) << same;
+    EXPECT_TRUE(ended(one_view(q, folder / same), 2, "--output writes the same file")) << same;
   EXPECT_TRUE(ended(one_view(folder.path(), folder / "front.png"), 2, "it is the picture of front"));
   EXPECT_TRUE(ended(one_view(q, folder / "q.exr", {"--exr", "half"}), 2, "it is the picture of front"));
   EXPECT_TRUE(ended(run_program({"convert", model, "-o", folder / "a.sog", "--json", folder / "./a.sog"}), 2,
-                    "it is what --output writes, too"));
+                    "--output writes the same file"));
   EXPECT_FALSE(fs::exists(q));
   EXPECT_TRUE(good(one_view(q, folder / "q.json"))) << "planted: others are not one file";
   EXPECT_TRUE(ended(run_program({"compare", q, q, "--difference", folder / "d", "--json", folder / "./d"}), 2,
-                    "it is what --json writes, too"));
+                    "--json writes the same file"));
 }
 
 TEST_F(Edges, LinksInACircleAreNamed) {
@@ -126,12 +126,12 @@ TEST_F(Edges, FoldersOfCaches) {
           {{"MESA_SHADER_CACHE_DISABLE", "false"}, {"MESA_SHADER_CACHE_DIR", mesa.path().string()}});
     return well(render(one, {.folder = here.path(), .variables = variables})).err;
   };
-  const char* const full = "the disk is full; drivers keep no shaders there";
+  const char* const full = "the disk is full; drivers cache no shaders there";
   EXPECT_TRUE(has(draw("/proc"), full));
   // Nothing can be written below a file; that is said once, and by no driver.
   write_text(here / "file", "");
   const std::string said = draw(here / "file/caches", false);
-  EXPECT_TRUE(has(said, "file: nothing can be written there; drivers keep no shaders there in this run"));
+  EXPECT_TRUE(has(said, "file: nothing can be written there; drivers cache no shaders there in this run"));
   EXPECT_FALSE(has(said, "disabling"));
   fs::remove(here / "file");
   // What is no whole path is ignored.

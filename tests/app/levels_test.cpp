@@ -2,7 +2,6 @@
 
 #include "app/scene.h"
 #include "formats/model_file.h"
-#include "support/models.h"
 #include "support/scaffold_files.h"
 #include "support/scenes.h"
 
@@ -66,12 +65,12 @@ TEST_F(LevelsTest, GoOnAfterAnInterruption) {
 TEST_F(LevelsTest, TakeNoFolderOfOthers) {
   ASSERT_TRUE(good(levels(out)));
   const auto before = contents_of(out);
-  EXPECT_TRUE(ended(levels(out, {"--axes", "rub"}), 2, "says other axes"));
-  EXPECT_TRUE(ended(run_program({"levels", model, "-o", out}), 2, "says other leaf, levels"));
+  EXPECT_TRUE(ended(levels(out, {"--axes", "rub"}), 2, "differs in axes"));
+  EXPECT_TRUE(ended(run_program({"levels", model, "-o", out}), 2, "differs in leaf, levels"));
   std::string other = read_text(model);
   ++other[other.size() - 100];
   write_text(model, other);
-  EXPECT_TRUE(ended(levels(out), 2, "says other model"));
+  EXPECT_TRUE(ended(levels(out), 2, "differs in model"));
 
   EXPECT_TRUE(ended(levels(folder.path()), 2, "has other files"));
   EXPECT_TRUE(ended(levels(model), 2, "is a file where a folder is needed"));
@@ -126,23 +125,23 @@ TEST_F(LevelsTest, OfACityAndOfCopies) {
   };
   const Outcome first = well(city("10000"));
   EXPECT_TRUE(has(first.out, "    0       10000\n"));
-  EXPECT_TRUE(ended(city("10001"), 2, "says other count"));
+  EXPECT_TRUE(ended(city("10001"), 2, "differs in count"));
   const Outcome copies = well(levels(folder / "copies", {"--repeat", "2x1", "--spacing", "20"}));
   EXPECT_TRUE(has(copies.out, "    0         600\n"));
   EXPECT_TRUE(
-      ended(levels(folder / "copies", {"--repeat", "2x1", "--spacing", "21"}), 2, "says other spacing"));
+      ended(levels(folder / "copies", {"--repeat", "2x1", "--spacing", "21"}), 2, "differs in spacing"));
 }
 
 TEST_F(LevelsTest, SayWhatTheyCannotTake) {
   fs::create_directories(folder / "scaffold");
   test::write_scaffold(folder / "scaffold", test::random_scaffold(1, {.anchors = 10}));
-  expect_refused_after({"levels"}, {{{model, "--levels", "0"}, "--levels"},
-                                    {{model, "--leaf", "1"}, "--leaf"},
-                                    {{model, "--lod", "1"}, "level of detail 1: "},
-                                    {{model, "--count", "10000"}, "--count is for demo:city"},
-                                    {{folder / "none.ply"}, "none.ply"},
-                                    {{folder / "scaffold"},
-                                     "is a Scaffold-GS model, which makes its Gaussians anew for each eye"}});
+  expect_refused_after(
+      {"levels"}, {{{model, "--levels", "0"}, "--levels"},
+                   {{model, "--leaf", "1"}, "--leaf"},
+                   {{model, "--lod", "1"}, "level of detail 1: "},
+                   {{model, "--count", "10000"}, "--count is for demo:city"},
+                   {{folder / "none.ply"}, "none.ply"},
+                   {{folder / "scaffold"}, "is a Scaffold-GS model, which decodes Gaussians for each eye"}});
   write_text(model, to_bytes(test::inria_file(0, 0)));
   expect_refused_after({"levels"}, {{{model}, "holds no Gaussians"}});
   PlyFile none = small_model();

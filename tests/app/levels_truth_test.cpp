@@ -2,10 +2,8 @@
 // as wide as all of the scene, others smaller than a pixel.
 
 #include <cmath>
-#include <optional>
 
 #include "app/scene.h"
-#include "support/models.h"
 #include "support/scenes.h"
 
 namespace binosplat {

@@ -45,7 +45,7 @@ TEST_F(RenderLevels, FitTheMemoryNearTheCameraFirst) {
       {"0,0,-20", "1e30", "1000 Gaussians of level 0\n"},
       {"12,0,13", "1.015", "248 Gaussians of level 0, 185 Gaussians of level 1"},
       {"-14,-1,0", "1.075", "505 Gaussians of level 0, 130 Gaussians of level 1"},
-      {"0,0,-20", "0.5", "even its coarsest levels of detail have 250 Gaussians"},
+      {"0,0,-20", "0.5", "its coarsest levels of detail have 250 Gaussians"},
   };
   for (const auto& [eye, memory, said] : cases)
     EXPECT_TRUE(
@@ -99,7 +99,7 @@ TEST_F(RenderLevels, FollowAPathAndTellWhatTheyCost) {
 
 TEST_F(RenderLevels, ByDecibelsAsAFileTells) {
   const Words line = {"--path", save_path({-800, -20}), "--detail", "40dB", "--detail-report"};
-  EXPECT_TRUE(ended(render(line), 2, "has no errors of its levels to go by"));
+  EXPECT_TRUE(ended(render(line), 2, "lacks the errors of its levels"));
   test::add_level_errors(*copy);
   const Outcome told = well(render(line));
   EXPECT_EQ(report()["settings"]["detail_db"], 40.0);
@@ -148,7 +148,7 @@ TEST_F(RenderLevels, OfSinglePicturesGoByThemAlone) {
 TEST_F(RenderLevels, ShareAQuality) {
   const Words line = {"--cameras", save_path({-400}), "--quality", "40"};
   const auto render_with = [&](const Words& more) { return render(joined(line, more)); };
-  EXPECT_TRUE(ended(render_with({"--detail-report"}), 2, "does not say what its levels lose"));
+  EXPECT_TRUE(ended(render_with({"--detail-report"}), 2, "lacks the errors of its levels"));
   ASSERT_TRUE(good(render_with({})));
   EXPECT_FALSE(report()["views"][0].contains("levels_of_detail")) << "the finest";
   test::add_level_errors(*copy);
@@ -165,7 +165,7 @@ TEST_F(RenderLevels, ShareAQuality) {
   EXPECT_GE(view["told_psnr_db"], 39.5);
   EXPECT_GT(view["probed_psnr_db"], view["told_psnr_db"]) << "planted: the frame's alone";
   // What was asked for levels is theirs.
-  EXPECT_TRUE(ended(render_with({"--detail", "40dB"}), 2, "leaves nothing for what a frame leaves out"));
+  EXPECT_TRUE(ended(render_with({"--detail", "40dB"}), 2, "uses up the error that --quality"));
   ASSERT_TRUE(good(render_with({"--detail", "60dB"})));
   EXPECT_GT(levels()["gaussians"], of_view["gaussians"]);
 }
@@ -173,7 +173,7 @@ TEST_F(RenderLevels, ShareAQuality) {
 using LevelErrors = SceneTest;
 
 TEST_F(LevelErrors, SayWhatToDo) {
-  const char* const none = "no levels of detail to choose from";
+  const char* const none = "has no levels of detail";
   expect_refused({{{"--gpu-memory", "100"}, none},
                   {{"--gpu-memory", "100", "--lod", "1"}, "leave one of them out"},
                   {{"--detail", "2"}, none},

@@ -1,7 +1,6 @@
 // What is said where memory does not suffice.
 
 #include "app/scene.h"
-#include "support/models.h"
 #include "support/scenes.h"
 
 namespace binosplat {
@@ -45,7 +44,7 @@ TEST_F(Memory, LevelsSayWhatTheyLeaveOut) {
     const Outcome outcome = with_memory(line, megabytes);
     EXPECT_TRUE(ends_well(outcome)) << megabytes;
     if (outcome.code == 0 && read_text(out + "/lod-meta.json") != whole) {
-      EXPECT_TRUE(has(outcome.err, "there was no memory for")) << megabytes;
+      EXPECT_TRUE(has(outcome.err, "out of memory for")) << megabytes;
     }
     short_of_memory += outcome.code == 0 ? 0 : 1;
     // What is there counts as far as it is whole.

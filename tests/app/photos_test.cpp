@@ -66,11 +66,11 @@ TEST_F(Photos, WithAlphaAreBeforeTheBackgroundOfThePictures) {
     EXPECT_TRUE(good(run_program({"compare", drawn, photo, "--background", background, "--min-psnr", "45"})));
   }
   EXPECT_TRUE(has(render(joined(front, {"--photos", photos, "--background", "1,1,1"})).err,
-                  "front.png has alpha: it is compared before the background 1,1,1"));
+                  "front.png has alpha: photos with alpha are compared over the background 1,1,1"));
   // Planted fault: before another background.
   EXPECT_EQ(run_program({"compare", folder / "1,1,1.png", photo, "--min-psnr", "45"}).code, 1);
   EXPECT_TRUE(ended(run_program({"compare", folder / "exact.png", photo, "--json", folder / "c.json"}), 0,
-                    "before the background 0,0,0"));
+                    "over the background 0,0,0"));
   EXPECT_EQ(load_json(folder / "c.json")["background"], json({0, 0, 0}));
 }
 

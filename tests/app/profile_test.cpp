@@ -85,7 +85,7 @@ TEST_F(ProfileCommand, WhatMakesNoSenseIsNamedAndLeavesNothing) {
   expect_refused_after(
       {"profile", model, "--size", "36x24"},
       {{{"--tour", "calm", "--view", "view1"}, "--tour with --view"},
-       {{"--view", "all"}, "--view stands at one camera: name one"},
+       {{"--view", "all"}, "--view takes a single camera: name one"},
        {{"--view", "nobody"}, "nobody"},
        {{"--tour", "crawl"}, "--tour crawl"},
        {{"--frames", "3"}, "--frames: binosplat profile has no such option"},

@@ -2,7 +2,6 @@
 
 #include "app/scene.h"
 #include "formats/model_file.h"
-#include "support/models.h"
 
 namespace binosplat {
 namespace {
@@ -68,7 +67,7 @@ TEST_F(RefitTest, ForAnotherOrderAndProjection) {
 
 TEST_F(RefitTest, WritesNothingThatIsWorse) {
   const Outcome same = refit("m.ply", {"--against", "exact"});
-  EXPECT_TRUE(ended(same, 1, "no nearer than before, 100.000 dB"));
+  EXPECT_TRUE(ended(same, 1, "would not improve on 100.000 dB"));
   EXPECT_FALSE(fs::exists(folder / "m.ply"));
   // The format costs more than the fit gains.
   const Outcome coarse = refit("m.sog", {"--against", "exact", "--order", "distance"});
@@ -89,7 +88,7 @@ TEST_F(RefitTest, WhatMakesNoSenseIsNamed) {
                         {{"--photos", folder / "none"}, "none"},
                         {{"--against", "exact", "--test", "nowhere"}, "--test nowhere: "},
                         {{"--against", "exact", "--test", "view1", "--held-back", "view1"},
-                         "--held-back view1: named twice"}});
+                         "--held-back view1: the view is named twice"}});
   expect_refused_after({"refit", "--against", "exact"}, {{{model, "-o", folder / "m.png"}, "m.png"}});
   fs::remove(folder / "cameras.json");
   expect_refused_after({"refit", "--against", "exact", "-o", ply}, {{{model}, "refit needs the cameras"}});

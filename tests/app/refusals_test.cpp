@@ -30,7 +30,7 @@ TEST_F(Refusals, Cameras) {
       {{"--view", "pair", "--ipd", "0.06"}, "is a pair of eyes that the cameras give"},
       {{"--view", "pair", "--preset", "headset"}, "use --size"},
       {{"--view", "all", "-o", png}, "name a folder"},
-      {{"--view", "front,side", "-o", png}, "is one file, and 2 views are to be drawn (front, side)"},
+      {{"--view", "front,side", "-o", png}, "is one file for 2 views (front, side)"},
       {{"--axes", "xyz"}, "axes 'XYZ': expected three letters"},
   });
   fs::remove(cameras);
@@ -43,7 +43,7 @@ TEST_F(Refusals, Eyes) {
       {{"--mono", "--cant", "1"}, "--mono with --cant: it has no rig"},
       {{"--cant", "1", "--convergence", "2"}, "--convergence 2 with --cant 1"},
       {{"--ipd", "-1"}, "--ipd -1"},
-      {{"--ipd", "63"}, "--ipd 63: that is 63 metres"},
+      {{"--ipd", "63"}, "--ipd 63: these are 63 metres"},
       {{"--ipd", "0.063x"}, "its unit may be m, cm or mm"},
       {{"--convergence", "3ft"}, "its unit may be m, cm or mm"},
       {{"--convergence", "near"}, "--convergence near: expected metres"},
@@ -113,7 +113,7 @@ TEST_F(Refusals, Foveation) {
       {{"--foveate", "inset=0"}, "--foveate inset 0: expected 1 to 120"},
       {{"--foveate", "inset=20px"}, "inset=20px: expected degrees"},
       {{"--foveate", "contxt=0.4"}, "there is no contxt; did you mean context?"},
-      {{"--foveate", "20"}, "'20' is no WORD=NUMBER"},
+      {{"--foveate", "20"}, "'20': expected WORD=NUMBER"},
       {{"--foveate", "inset=20,inset=30"}, "inset is given twice"},
       {{"--foveate", "gaze=3"}, "gaze=3: expected degrees to the right and up"},
       {{"--foveate", "gaze=3,up"}, "gaze=up: expected degrees"},
@@ -134,8 +134,8 @@ TEST_F(Refusals, Panoramas) {
                   {{"--size", "32x30"}, "an even number of pixels twice"},
                   {{"-o", folder / "a.vr.jpg", "--exr", "half"}, "--exr"},
                   {{"-o", folder / "a.vr.jpg", "--mono"}, "holds both eyes"},
-                  {{"--layout", "anaglyph"}, "parallel and over-under"},
-                  {{"-o", folder / "a.webm"}, "only .mp4 and .mov"},
+                  {{"--layout", "anaglyph"}, "expected parallel, over-under or separate"},
+                  {{"-o", folder / "a.webm"}, "expected .mp4 or .mov"},
                   {{"--preset", "headset"}, "--preset"}},
                  {"--vr180"});
 }
@@ -145,7 +145,7 @@ TEST_F(Refusals, ToursAndPaths) {
       {{"--tour", "trot"}, "--tour trot: expected calm, walk, fast, or metres and degrees a second"},
       {{"--tour", "1.5,45,3"}, "as in 1.5,45"},
       {{"--tour", "0,45"}, "above 0"},
-      {{"--seconds", "1"}, "--seconds is for --tour, how much of it is drawn, and for --path"},
+      {{"--seconds", "1"}, "--seconds needs --tour, of which it is a part, or --path"},
       {{"--fps", "30"}, "--fps is for videos, --tour, --path"},
       {{"--tour", "walk", "--view", "front"}, "--tour with --view: it goes through all cameras"},
       {{"--tour", "walk", "--path", "p.json"}, "--tour with --path"},
@@ -163,7 +163,7 @@ TEST_F(Refusals, ToursAndPaths) {
       {{"--keys"}, "--keys needs --path"},
   });
   write_text(cameras, json({camera_json("lonely", 0.0)}).dump());
-  expect_refused({{{"--tour", "walk"}, "there is 1: name a file of more with --cameras"}});
+  expect_refused({{{"--tour", "walk"}, "there is 1: name a file with more by --cameras"}});
   fs::remove(cameras);
   expect_refused(
       {{{"--tour", "walk"}, "--tour goes through cameras: no cameras beside " + model + "; name their"}});
@@ -186,14 +186,14 @@ TEST_F(Refusals, Shards) {
 
 TEST_F(Refusals, Scenes) {
   expect_refused({
-      {{"--seed", "1"}, "--seed is for demo:city, and " + model + " is none"},
+      {{"--seed", "1"}, "--seed is for demo:city, not for " + model},
       {{"--count", "20000"}, "--count is for demo:city"},
       {{"--repeat", "2x2"}, "--repeat and --spacing go together"},
       {{"--spacing", "2"}, "--repeat and --spacing go together"},
       {{"--repeat", "0x2", "--spacing", "1"}, "NXxNZ, for one 4x4"},
       {{"--repeat", "65536x65536", "--spacing", "1"}, "--repeat 65536x65536 of 300 Gaussians"},
       {{"--repeat", "2x2", "--spacing", "1e300"}, "--spacing: 1e300: expected a number above zero"},
-      {{"--appearance", "0"}, "no Scaffold-GS"},
+      {{"--appearance", "0"}, "only Scaffold-GS models have appearances"},
   });
   expect_refused_after(
       {"render"},
@@ -201,7 +201,7 @@ TEST_F(Refusals, Scenes) {
        {{"demo:town"}, "are called demo:room and demo:city"},
        {{"demo:room", "--axes", "rub"}, "--axes is for model files"},
        {{"demo:room", "--appearance", "0"}, "--appearance is for model files"},
-       {{"demo:room", "--decode", "eyes"}, "no Scaffold-GS"},
+       {{"demo:room", "--decode", "eyes"}, "is not a Scaffold-GS model"},
        {{"demo:city", "--count", "9999"}, "--count 9999: demo:city is made of 10000 to 100000000 Gaussians"},
        {{"demo:city", "--count", "-5"}, "expected a whole number"},
        {{"demo:city", "--count", "99999999999999999999999"}, "expected a whole number"},

@@ -45,13 +45,7 @@ TEST_F(RenderErrors, GaussiansThatCannotBeDrawnAreCounted) {
 
 TEST_F(RenderErrors, Cameras) {
   const Words named = {"--cameras", folder / "cameras.json"};
-  json cameras = {camera_json("front", 0.0)};
-  cameras[0]["fx"] = 0.0;
-  save("cameras.json", cameras);
-  expect("camera 0 (counted from 0), key 'fx': expected a number above 0", named);
-  write_text(folder / "cameras.json", "[{]");
-  expect("is not valid JSON at line 1", named);
-  cameras.clear();
+  json cameras;
   for (int i = 0; i < 20; ++i) cameras.push_back(camera_json("view" + std::to_string(i), 0.0));
   save("cameras.json", cameras);
   expect("view7\n  and 12 more", {"--view", "x"});

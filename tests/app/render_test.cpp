@@ -1,8 +1,6 @@
 // binosplat render as users run it: which files it leaves, and that their contents are what the options ask
 // for.
 
-#include <cmath>
-
 #include "app/scene.h"
 
 namespace binosplat {
@@ -59,9 +57,7 @@ TEST_F(Render, ViewsAreChosenByName) {
 
 TEST_F(Render, APoseSavedBesideTheModelIsUsed) {
   add_cameras();
-  json pose = camera_json("saved", 0.5);
-  pose.update({{"up", {0, -1, 0}}, {"units_per_metre", 2.0}, {"ipd_metres", 0.1}, {"near", 0.1}});
-  save("model.binosplat.json", json::array({pose}));
+  save_pose(2.0, 0.1);
   const auto drawn = [&](const std::string& png, const Words& more) {
     const Outcome outcome = well(render(joined(more, {"-o", folder / png, "--json", folder / "r.json"})));
     return outcome.err.find("pose saved there") != std::string::npos;

@@ -3,7 +3,6 @@
 #include <array>
 
 #include "app/scene.h"
-#include "support/models.h"
 #include "support/scenes.h"
 
 namespace binosplat {
@@ -39,7 +38,7 @@ TEST_F(Runs, OfTwoKindsDoNotMix) {
     const Outcome outcomes[] = {first.wait(), second.wait()};
     const int won = outcomes[0].code == 0 ? 0 : 1;
     EXPECT_TRUE(good(outcomes[won]));
-    EXPECT_TRUE(ended(outcomes[1 - won], 2, "holds pictures of another run"));
+    EXPECT_TRUE(ended(outcomes[1 - won], 2, "has pictures of another run"));
     EXPECT_EQ(contents_of(out), alone[won == 0 ? begins : 1 - begins]);
     fs::remove_all(out);
   }

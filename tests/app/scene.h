@@ -15,6 +15,7 @@
 #include "formats/model_output.h"
 #include "measure/metrics.h"
 #include "support/fixtures.h"
+#include "support/models.h"
 #include "support/ply.h"
 #include "support/program.h"
 
@@ -53,18 +54,12 @@ inline void save_ply(const std::filesystem::path& path, const Model& model) {
 /// A floor of 8 x 8, z up, with a low wall on one side, all of flat Gaussians.
 inline Model floor_model() {
   Model model;
-  const auto add = [&](const glm::vec3& place, const glm::vec3& scale, const glm::vec3& colour) {
-    model.position.push_back(place);
-    model.scale.push_back(scale);
-    model.rotation.emplace_back(1, 0, 0, 0);
-    model.opacity.push_back(0.95f);
-    for (int i = 0; i < 3; ++i) model.sh.push_back(colour[i]);
-  };
   for (int i = 0; i < 40; ++i) {
     for (int j = 0; j < 40; ++j) {
       const float x = 0.2f * static_cast<float>(i) - 4.0f, y = 0.2f * static_cast<float>(j) - 4.0f;
-      add({x, y, 0.0f}, {0.1f, 0.1f, 0.01f}, {(i + j) % 2 == 0 ? 1.0f : -1.0f, 0.5f, -1.0f});
-      if (j < 10) add({x, 4.0f, 0.1f * static_cast<float>(j)}, {0.1f, 0.01f, 0.1f}, {-1.0f, -1.0f, 1.0f});
+      add(model, {x, y, 0.0f}, {0.1f, 0.1f, 0.01f}, 0.95f, {(i + j) % 2 == 0 ? 0.8f : 0.2f, 0.6f, 0.2f});
+      if (j < 10)
+        add(model, {x, 4.0f, 0.1f * static_cast<float>(j)}, {0.1f, 0.01f, 0.1f}, 0.95f, {0.2f, 0.2f, 0.8f});
     }
   }
   return model;
@@ -142,6 +137,16 @@ struct SceneTest : testing::Test {
     for (int i = 0; i < count; ++i)
       cameras.push_back(camera_json("view" + std::to_string(i), 0.1 * i - 0.05 * (count - 1)));
     save("cameras.json", cameras);
+  }
+
+  /// A pose beside the model, as the preview saves it.
+  void save_pose(double units_per_metre, double ipd_metres) const {
+    nlohmann::json pose = camera_json("saved", 0.5);
+    pose.update({{"up", {0, -1, 0}},
+                 {"units_per_metre", units_per_metre},
+                 {"ipd_metres", ipd_metres},
+                 {"near", 0.1}});
+    save("model.binosplat.json", nlohmann::json::array({pose}));
   }
 
   static bool have_ffmpeg() { return std::system("ffmpeg -version > /dev/null 2>&1") == 0; }

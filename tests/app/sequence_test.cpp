@@ -66,7 +66,7 @@ TEST_F(Sequence, SaysWhatDoesNotGoTogether) {
   expect_refused_after(line,
                        {{{}, "is a folder with 3 models; name one of them, or give render or view --fps"}});
   expect_refused_after(moving, {{{"--resume"}, "--resume is for one model"},
-                                {{"-o", folder / "a.png"}, "a.png is one file, and 3 views"}});
+                                {{"-o", folder / "a.png"}, "a.png is one file for 3 views"}});
   expect_refused({{{"--fps", "10"}, "--fps is for videos, --tour, --path and folders"}});
   write_text(frames + "/f_11.ply", "ply");
   EXPECT_TRUE(ended(run_into_out(moving), 2, "f_11.ply"));

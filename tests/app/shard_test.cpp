@@ -94,10 +94,8 @@ TEST_F(Resume, DrawsPairsOfWhichAFileIsMissing) {
   EXPECT_EQ(contents_of(out), whole);
 
   // The same options and cameras, but a pose was saved beside the model, with eyes that are farther apart.
-  json pose = camera_json("saved", 0.5);
-  pose.update({{"up", {0, -1, 0}}, {"units_per_metre", 1.0}, {"ipd_metres", 0.1}, {"near", 0.1}});
-  save("model.binosplat.json", json::array({pose}));
-  EXPECT_TRUE(ended(draw(out, pairs), 2, "says other views."));
+  save_pose(1.0, 0.1);
+  EXPECT_TRUE(ended(draw(out, pairs), 2, "differs in views."));
 }
 
 TEST_F(Resume, TakesNamesInAnyEncoding) {
@@ -109,8 +107,8 @@ TEST_F(Resume, TakesNamesInAnyEncoding) {
 
 TEST_F(Resume, TakesNoPicturesOfAnotherRun) {
   ASSERT_TRUE(good(again({"--shard", "1/2"})));
-  EXPECT_TRUE(refused("says other options", {"--background", "1,1,1"}));
-  EXPECT_TRUE(refused("says other options", {"--tolerance", "1"}));
+  EXPECT_TRUE(refused("differs in options", {"--background", "1,1,1"}));
+  EXPECT_TRUE(refused("differs in options", {"--tolerance", "1"}));
   // On which no picture depends.
   EXPECT_TRUE(good(again({"--backend", "surfaceless", "--shard", "2/3"})));
 
@@ -118,12 +116,12 @@ TEST_F(Resume, TakesNoPicturesOfAnotherRun) {
   std::string other = bytes;
   ++other[other.size() - 100];
   write_text(model, other);
-  EXPECT_TRUE(refused("says other model"));
+  EXPECT_TRUE(refused("differs in model"));
   write_text(model, bytes);
   json moved = json::parse(cameras);
   moved[4]["position"][1] = 0.25;
   save("cameras.json", moved);
-  EXPECT_TRUE(refused("says other cameras, views"));
+  EXPECT_TRUE(refused("differs in cameras, views"));
   write_text(folder / "cameras.json", cameras);
   EXPECT_TRUE(good(again()));
 }
@@ -138,18 +136,18 @@ TEST_F(Resume, TakesACalibrationAsItIs) {
   json other = load_json(calibration);
   for (auto& entry : other["entries"]) entry["tolerance"] = 2.0 * entry["tolerance"].get<double>();
   save("c.json", other);
-  EXPECT_TRUE(refused("says other calibration", calibrated));
+  EXPECT_TRUE(refused("differs in calibration", calibrated));
 }
 
 TEST_F(Resume, TakesNoPicturesOfWhichNothingTells) {
   ASSERT_TRUE(good(draw(out, {"--view", "view3", "--mono"})));
-  EXPECT_TRUE(refused("view3.png: nothing says how it was drawn"));
+  EXPECT_TRUE(refused("view3.png: it belongs to no known run"));
   fs::remove(out + "/view3.png");
   ASSERT_TRUE(good(again()));
   // A run that draws all replaces pictures, whatever it draws them with.
   ASSERT_TRUE(good(draw(out, {"--view", "view3", "--mono", "--background", "1,1,1"})));
   EXPECT_FALSE(fs::exists(out + "/" + run_file));
-  EXPECT_TRUE(refused("nothing says how it was drawn"));
+  EXPECT_TRUE(refused("it belongs to no known run"));
 }
 
 }  // namespace

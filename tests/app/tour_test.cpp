@@ -64,9 +64,7 @@ TEST_F(Tour, EyesAndSpeedsHaveOneMetre) {
               units);
   };
   expect({"--units-per-metre", "0.5"}, 0.5, "at up to 3 m and 90 degrees a second");
-  json pose = camera_json("saved", 0.5);
-  pose.update({{"up", {0, -1, 0}}, {"units_per_metre", 0.75}, {"ipd_metres", 0.063}, {"near", 0.1}});
-  save("model.binosplat.json", json::array({pose}));
+  save_pose(0.75, 0.063);
   expect({}, 0.75, "0.75 world units a metre");
 }
 

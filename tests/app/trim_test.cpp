@@ -2,7 +2,6 @@
 
 #include "app/scene.h"
 #include "formats/model_file.h"
-#include "support/models.h"
 #include "support/scenes.h"
 
 namespace binosplat {
@@ -96,11 +95,10 @@ TEST_F(TrimTest, AModelThatNeedsAllIsReturnedAsItWas) {
   save_ply(model, whole);
   const Outcome outcome = well(trim("m.ply", {"--quality", "65"}));
   EXPECT_EQ(read_text(folder / "m.ply"), read_text(model));
-  EXPECT_TRUE(has(outcome.out, "m.ply: the model as it was"));
+  EXPECT_TRUE(has(outcome.out, "m.ply: the unchanged model"));
   EXPECT_EQ(report()["as_it_was"], true);
   // What the format alone loses is more than the bound.
-  EXPECT_TRUE(
-      ended(trim("m.sog", {"--quality", "65"}), 2, "the format alone costs more than the bound allows"));
+  EXPECT_TRUE(ended(trim("m.sog", {"--quality", "65"}), 2, "the format alone exceeds the bound"));
   EXPECT_FALSE(fs::exists(folder / "m.sog"));
   ASSERT_TRUE(good(run_program({"convert", model, "-o", folder / "a.spz"})));
   const Outcome same =
@@ -115,7 +113,7 @@ TEST_F(TrimTest, CandidatesHaveTheModelsLowPassAndItsLossIsSaid) {
   save_ply(model, thin);
   write_text(folder / "cfg.yml", "result_dir: x\nwith_eval3d: true\nwith_ut: true\n");
   fs::create_directories(folder / "to");
-  const std::string sentence = "does not tell the low-pass of 0.001 px^2: draw it with --kernel-px2 0.001";
+  const std::string sentence = "does not store the low-pass of 0.001 px^2: draw it with --kernel-px2 0.001";
   const auto trimmed_to = [&](const char* name) {
     return run_program(
         {"trim", model, "--quality", "30", "-o", folder / "to" / name, "--json", folder / "r.json"});
@@ -233,16 +231,16 @@ TEST_F(TrimTest, ViewsThatSeeNothingHaveNoSay) {
   for (const std::size_t k : {4u, 5u}) cameras[k]["rotation"] = {{-1, 0, 0}, {0, 1, 0}, {0, 0, -1}};
   save("cameras.json", cameras);
   ASSERT_TRUE(ended(trim("m.ply", {"--quality", "25"}), 0,
-                    "2 of 6 views see nothing of the model and are left out (view4, view5)"));
+                    "the model is not visible in 2 of 6 views, which are skipped (view4, view5)"));
   const json judged = report()["steps"].back()["held_back"]["views"];
   for (const json& view : judged) {
     EXPECT_TRUE(view["name"] != "view4" && view["name"] != "view5") << view;
     EXPECT_LT(view["db"], 100.0) << view;
   }
   EXPECT_TRUE(ended(trim("n.ply", {"--quality", "25", "--held-back", "view4,view5"}), 2,
-                    "none of the views held back to judge by sees anything"));
+                    "the model is visible in none of the held-back views"));
   EXPECT_TRUE(ended(trim("n.ply", {"--quality", "25", "--held-back", "view0,view1,view2,view3"}), 2,
-                    "none of the views to learn from sees anything"));
+                    "the model is visible in no training view"));
 }
 
 // A file that has less of each Gaussian than what is written.
@@ -256,12 +254,11 @@ TEST_F(TrimTest, AModelThatGetsNoSmallerIsSaidToBeSo) {
   const Outcome outcome = well(trim("m.ply", {"--quality", "90"}));
   const json last = report()["steps"].back();
   EXPECT_LT(last["gaussians"], 300);
-  EXPECT_NE(outcome.out.find(fmt::format("the model as it was, {} bytes: with what can be left out gone it "
-                                         "would take {}",
+  EXPECT_NE(outcome.out.find(fmt::format("the unchanged model, {} bytes: the trimmed one would have {}",
                                          fs::file_size(model), last["bytes"].get<int>())),
             std::string::npos)
       << outcome.out;
-  EXPECT_FALSE(has(outcome.out, "nothing can be left out"));
+  EXPECT_FALSE(has(outcome.out, "nothing can be trimmed"));
   EXPECT_EQ(read_text(folder / "m.ply"), read_text(model));
 }
 
@@ -276,7 +273,7 @@ TEST_F(TrimTest, ErrorsSayWhatToDo) {
        {{"--quality", "40", "--test", "view0,view1,view2,view3,view4"}, "which needs two at least"}});
   expect_refused_after({"trim", model, "--quality", "40"},
                        {{{"-o", folder / "m.obj"}, "its ending names no format that can be written"},
-                        {{"-o", model}, "this run reads it"}});
+                        {{"-o", model}, "it is an input of this run"}});
   fs::remove(folder / "cameras.json");
   expect_refused_after({"trim", model, "-o", ply}, {{{"--quality", "40"}, "name their file with --cameras"}});
 }
@@ -285,11 +282,11 @@ TEST_F(TrimTest, InfoSaysHowMuchTheViewsShow) {
   save_ply(model, with_useless());
   const Outcome outcome =
       well(run_program({"info", model, "--cameras", folder / "cameras.json", "--json", folder / "r.json"}));
-  EXPECT_TRUE(has(outcome.out, "59 % of the Gaussians (60) never touch a pixel in these 6 views"));
+  EXPECT_TRUE(has(outcome.out, "59 % of the Gaussians (60) touch no pixel in these 6 views"));
   EXPECT_EQ(report()["views"]["unseen"], useless);
   EXPECT_EQ(report()["views"]["count"], 6);
   EXPECT_LE(report()["views"]["gaussians_of_99_percent"], visible);
-  EXPECT_EQ(run_program({"info", model}).out.find("never touch"), std::string::npos);
+  EXPECT_EQ(run_program({"info", model}).out.find("touch no pixel"), std::string::npos);
 }
 
 // A picture of half the size, each pixel the mean of four.

@@ -43,7 +43,7 @@ TEST_F(View, BadOptionsEndBeforeAnyWindow) {
       {{"--layout", "multi-view"}, "multi-view"},
       {{"--show", "colour"}, "--show"},
       {{"--th", "squared"}, "--tolerance"},
-      {{"--fps", "10"}, "--fps is for a folder with several models, and demo:room is none"},
+      {{"--fps", "10"}, "--fps is for a folder with several models, not for demo:room"},
   };
   for (const auto& [words, said] : cases) EXPECT_TRUE(ended(view(words), 2, said));
 }
@@ -208,7 +208,7 @@ TEST_F(ViewOnADisplay, DrawsByACalibrationAndFlipsToTheExactPicture) {
 
   // Without a calibration the table is measured while the window shows its first pictures.
   open({"--th", "adagscale", "--tolerance", "3"});
-  EXPECT_TRUE(says("measured how much light reaches each depth"));
+  EXPECT_TRUE(says("measured the transmittance by depth"));
   leave();
 }
 

@@ -43,6 +43,14 @@ TEST(Parallel, ChunksMakeUpTheWhole) {
   }
 }
 
+TEST(Parallel, LoopsRunWithinLoops) {
+  std::atomic<int> sum = 0;
+  parallel_for(20, [&](int i) {
+    parallel_for(20, [&](int j) { parallel_for(20, [&](int k) { sum += i + j * k; }); });
+  });
+  EXPECT_EQ(sum, 190 * 400 + 20 * 190 * 190);
+}
+
 TEST(Parallel, WhatIsThrownIsThrownByTheLoop) {
   const auto fails = [](int i) {
     if (i == 77) throw std::runtime_error("77");
@@ -126,6 +134,26 @@ TEST(ParallelStages, OneThatTakesLongHoldsUpNoOther) {
   EXPECT_NE(order.front(), 0u);
 }
 
+TEST(ParallelStages, WhatIsThrownIsThrownByTheCall) {
+  for (const HandOver how : {HandOver::in_order, HandOver::as_done}) {
+    for (const std::string where : {"begins", "work", "hand_over", "nothing"}) {
+      const auto fail_in = [&](const std::string& here, std::size_t k) {
+        if (here == where && k == 20) throw std::runtime_error(where);
+      };
+      const auto call = [&] {
+        parallel_stages(
+            8,
+            [&](std::size_t k) {
+              fail_in("begins", k);
+              return k < 40;
+            },
+            [&](std::size_t k) { fail_in("work", k); }, [&](std::size_t k) { fail_in("hand_over", k); }, how);
+      };
+      EXPECT_EQ(thrown_by(call), where);
+    }
+  }
+}
+
 TEST(Parallel, InTheBackgroundLoopsGiveWay) {
   // Of a thread of its own: it never comes back from there.
   std::jthread([] {
@@ -151,6 +179,8 @@ TEST(Parallel, WithoutHelpersOneThreadDoesItAll) {
       HandOver::as_done);
   EXPECT_EQ(threads, std::set{std::this_thread::get_id()});
 }
+
+TEST(Parallel, ThereIsACore) { EXPECT_GE(core_count(), 1); }
 
 #ifdef __SANITIZE_THREAD__
 

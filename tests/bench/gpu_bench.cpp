@@ -7,6 +7,7 @@
 #include <cstring>
 #include <fstream>
 #include <functional>
+#include <glm/gtc/matrix_transform.hpp>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -21,7 +22,9 @@
 #include "formats/model_file.h"
 #include "render/frame.h"
 #include "render/squared_error.h"
+#include "scene/reduce.h"
 #include "scene/repeat.h"
+#include "scene/transform.h"
 #include "stereo/foveate.h"
 #include "stereo/present.h"
 #include "stereo/rig.h"
@@ -331,6 +334,69 @@ Json run(const Case& c, const fs::path& scenes, const fs::path& views, const How
   return json;
 }
 
+// A hundred instances of one model, each turned before every frame, against the model that holds them all.
+Json run_crowd(const How& how) {
+  const auto context = gl::Context::open();
+  const Model model = demo_city({.count = 10'000}).model;
+  Model merged = without_gaussians(model);
+  std::vector<render::Instance> crowd;
+  const auto on_gpu = std::make_shared<render::GpuModel>(*context, model, how.settings.precision);
+  const auto turn = [&](double radians) {
+    for (int k = 0; k < 100; ++k) {
+      render::InstancePlace& place = crowd[static_cast<std::size_t>(k)].place;
+      place.rotation = glm::dmat3(glm::rotate(glm::dmat4(1.0), radians + k, glm::dvec3(0, 1, 0)));
+      place.translation = {3.0 * (k % 10 - 4.5), 0.0, 3.0 * (k / 10)};
+      place.scale = 0.01;
+    }
+  };
+  crowd.assign(100, {on_gpu, {}});
+  turn(0.0);
+  for (const render::Instance& one : crowd) {
+    glm::dmat4 map(one.place.scale * one.place.rotation);
+    map[3] = glm::dvec4(one.place.translation, 1.0);
+    Model copy = model;
+    std::vector<glm::dvec3> places;
+    if (!transform(copy, map, places)) fail("a matrix that moves a model beyond floats");
+    std::ranges::copy(places, copy.position.begin());
+    append(merged, copy, 0, copy.count());
+  }
+  const Camera head =
+      look_at({0, -12, -12}, {0, 0, 12}, {0, -1, 0}, 90, 3660 / how.shrink, 3200 / how.shrink);
+  const auto eyes = stereo::make_rig(head, {.ipd = 0.064}).views;
+  const auto timed = [&](const char* what, render::Frame& frame, const auto& before) {
+    std::vector<double> cpu_ms;
+    Json json = time(
+        [&] {
+          before(frame);
+          render::FrameReport report = frame.draw(eyes, how.settings);
+          cpu_ms.push_back(report.cpu.plan + report.cpu.upload + report.cpu.submit);
+          return report;
+        },
+        how);
+    json["cpu_ms"] = quantile(cpu_ms, 0.5);
+    print_row("crowd", "all", what, json);
+    return json;
+  };
+  Json json = {{"scene", "crowd"}, {"gpu", context->renderer()}};
+  {
+    render::Frame frame(on_gpu);
+    frame.place(crowd);
+    json["instances"] = timed("instances at rest", frame, [](render::Frame&) {});
+    double radians = 0.0;
+    json["moving"] = timed("instances", frame, [&](render::Frame& moved) {
+      turn(radians += 0.01);
+      moved.place(crowd);
+    });
+  }
+  render::Frame frame(*context, merged, how.settings.precision);
+  json["merged"] = timed("merged", frame, [](render::Frame&) {});
+  const auto of = [&](const char* what, const char* of_it) { return json[what][of_it].get<double>(); };
+  fmt::print("  instances over merged: GPU {:.3f}; CPU {:.3f} ms, {:.3f} moving, merged {:.3f}\n",
+             of("instances", "frame") / of("merged", "frame"), of("instances", "cpu_ms"),
+             of("moving", "cpu_ms"), of("merged", "cpu_ms"));
+  return json;
+}
+
 }  // namespace
 }  // namespace binosplat
 
@@ -377,6 +443,12 @@ int main(int argc, char** argv) {
   how.settings.order = find_choice("--order", order, order_choices);
   how.settings.projection = find_choice("--projection", projection, projection_choices);
   try {
+    if (list) fmt::print("crowd\n");
+    if (name == "crowd") {
+      const Json result = run_crowd(how);
+      if (!json.empty()) std::ofstream(json, std::ios::app) << result.dump() << "\n";
+      return 0;
+    }
     for (const Case& c : cases) {
       if (list) fmt::print("{}\n", c.name);
       if (list || c.name != name) continue;

@@ -78,7 +78,7 @@ TEST(CameraNames, NumbersOfTextsAreReadAsColmapReadsThem) {
   EXPECT_EQ(camera.position, glm::dvec3(-0.25, 0.0, 0.5));
   for (const char* bad : {"160.5", "-160", "++160", "1e30", "160px", "nan", "+"})
     EXPECT_ERROR(load(fmt::format("1 PINHOLE {} 120 1 1 1 1\n", bad), "1 1 0 0 0 0 0 0 1 a\n"),
-                 "cameras.txt, line 1", "is no number of pixels")
+                 "cameras.txt, line 1", "is not a number of pixels")
         << bad;
 }
 
@@ -128,7 +128,7 @@ TEST(CameraNames, ThatOccurTwiceGetNumbersInEveryReader) {
     ASSERT_EQ(cameras.size(), 2u) << kind;
     EXPECT_EQ(cameras[0].name, "same name.jpg") << kind;
     EXPECT_EQ(cameras[1].name, "same name_2.jpg") << kind;
-    EXPECT_NE(said.find("1 of its 2 cameras have the name of one before them"), std::string::npos) << said;
+    EXPECT_NE(said.find("1 of its 2 cameras repeat an earlier name"), std::string::npos) << said;
   }
   // As they should be.
   for (const auto& [kind, files] : pairs_of("left/1.jpg", "right/1.jpg")) {
@@ -198,10 +198,10 @@ TEST(CameraNames, NoTwoViewsTakeOnePhoto) {
       [&] {
         check({"a.jpg", "left/1.jpg", "a.png"});
       },
-      {"a.jpg would be the photo of both views 'a.jpg' and 'a.png'"}));
+      {"a.jpg matches both views 'a.jpg' and 'a.png'"}));
   EXPECT_ERROR(check({"a", "a.jpg"}), "both views 'a' and 'a.jpg'");
-  EXPECT_ERROR(check({"b/c", "b_c.jpg"}), "b_c.jpg would be the photo");
-  EXPECT_ERROR(check({"left/1.jpg", "right/../left/1"}), "1.jpg would be");
+  EXPECT_ERROR(check({"b/c", "b_c.jpg"}), "b_c.jpg matches");
+  EXPECT_ERROR(check({"left/1.jpg", "right/../left/1"}), "1.jpg matches");
   check({"a.jpg", "left/1.jpg", "right/1.jpg", "none.jpg", "none.png"});
   // Once the other has its own.
   write_text(folder / "a.png", "");

@@ -39,7 +39,8 @@ TEST(Colmap, RealPosesAgreeWithAnIndependentReader) {
   for (const fs::path& path : {real / "txt", real / "bin", real / "bin/images.bin"}) {
     testing::internal::CaptureStderr();
     const std::vector<Camera> cameras = load_cameras(path);
-    EXPECT_NE(testing::internal::GetCapturedStderr().find("lenses are distorted"), std::string::npos);
+    EXPECT_NE(testing::internal::GetCapturedStderr().find("the lenses' distortion is not drawn"),
+              std::string::npos);
     ASSERT_EQ(cameras.size(), truth["count"].get<std::size_t>());
     for (const json& expected : truth["cameras"]) {
       const Camera& camera = named(cameras, expected["name"]);
@@ -70,14 +71,15 @@ TEST(Colmap, LensesAgreeWithAnIndependentReader) {
     copy.write(images.substr(at, images.find('\n', at) + 1 - at) + "\n", "images.txt");
     const int model = expected["model_id"];
     if (is_fisheye(model)) {
-      EXPECT_ERROR(load_cameras(copy.path()), "cameras.txt: camera", "is no pinhole's",
+      EXPECT_ERROR(load_cameras(copy.path()), "cameras.txt: camera", "is not a pinhole",
                    "colmap image_undistorter");
       continue;
     }
     testing::internal::CaptureStderr();
     const std::vector<Camera> cameras = load_cameras(copy.path());
     const std::string said = testing::internal::GetCapturedStderr();
-    EXPECT_EQ(said.find("cameras.txt: lenses are distorted") != std::string::npos, model >= 2) << said;
+    EXPECT_EQ(said.find("cameras.txt: the lenses' distortion is not drawn") != std::string::npos, model >= 2)
+        << said;
     ASSERT_EQ(cameras.size(), 1u);
     EXPECT_EQ(cameras[0].name, expected["name"].get<std::string>());
     EXPECT_TRUE(agrees_in_pose_and_lens(cameras[0], expected)) << model;
@@ -88,8 +90,8 @@ TEST(Colmap, LensesAgreeWithAnIndependentReader) {
     const std::vector<Camera> cameras = load_cameras(folder / kind);
     const std::string said = testing::internal::GetCapturedStderr();
     EXPECT_EQ(cameras.size(), 7u);
-    EXPECT_NE(said.find("4 of 11 cameras are left out"), std::string::npos) << said;
-    EXPECT_NE(said.find("FISHEYE, which is no pinhole's"), std::string::npos) << said;
+    EXPECT_NE(said.find("4 of 11 cameras are skipped"), std::string::npos) << said;
+    EXPECT_NE(said.find("FISHEYE, which is not a pinhole"), std::string::npos) << said;
   }
 }
 
@@ -126,14 +128,13 @@ TEST(ColmapErrors, Binary) {
   std::vector<test::BrokenFile> of_images = {
       {images.substr(0, 1000), {"images.bin is cut short or damaged: image 0 of 8", "1000 bytes"}},
       {images.substr(0, name) + std::string(500, 'x'), {"image 0 of 8", "name that runs to the end"}},
-      {patched(images, points, little(std::uint64_t{1} << 60)), {"image 0 of 8", "goes on beyond"}},
-      {patched(images, name - 4, little(99u)),
-       {"image 5 was taken with camera 99", "cameras.bin does not have"}},
-      {patched(images, 12, std::string(32, '\0')), {"image 0 of 8", "no quaternion"}},
+      {patched(images, points, little(std::uint64_t{1} << 60)), {"image 0 of 8", "exceeds the file's"}},
+      {patched(images, name - 4, little(99u)), {"image 5 refers to camera 99", "cameras.bin does not have"}},
+      {patched(images, 12, std::string(32, '\0')), {"image 0 of 8", "not a quaternion"}},
       {patched(images, 44, little(std::nan(""))), {"translation is not finite"}},
       {patched(images, 0, little(std::uint64_t{1} << 62)), {"image 8 of 4611686018427387904"}},
       {little(std::uint64_t{0}), {"images.bin holds no images"}},
-      {"1234", {"the number of records goes on beyond"}},
+      {"1234", {"the number of records exceeds"}},
   };
   // Truncation at every byte of the first record and of the last.
   for (std::size_t end = 0; end < points + 8; ++end) of_images.push_back({images.substr(0, end), {}});
@@ -142,8 +143,8 @@ TEST(ColmapErrors, Binary) {
   refuses("images.bin", of_images);
 
   std::vector<test::BrokenFile> of_cameras = {
-      {patched(cameras, 12, little(42)), {"cameras.bin: camera 1 has the model 42, which is not known"}},
-      {patched(cameras, 12, little(-1)), {"has the model -1"}},
+      {patched(cameras, 12, little(42)), {"cameras.bin: camera 1 has the unknown model 42"}},
+      {patched(cameras, 12, little(-1)), {"has the unknown model -1"}},
       {patched(cameras, 16, little(std::uint64_t{1} << 40)), {"camera 1", "a picture of 2147483647 x"}},
       {patched(cameras, 32, little(-1.0)), {"camera 1: focal lengths of -1 and -1 px"}},
       {patched(cameras, 56, little(std::nan(""))), {"camera 1", "must be finite"}},
@@ -174,16 +175,19 @@ TEST(ColmapErrors, Text) {
        "img_000.png\n\n",
        "img_000.png\n1.5 2.5\n",
        {"line 6", "seen in image 100", "empty line"}},
-      {"images.txt", "100 -0.5 0.5", "100 -0.5 O.5", {"images.txt, line 5", "'O.5' is no number"}},
+      {"images.txt", "100 -0.5 0.5", "100 -0.5 O.5", {"images.txt, line 5", "'O.5' is not a number"}},
       {"images.txt", " 4 sub/img_001.png", "", {"images.txt, line 7", "expected IMAGE_ID QW"}},
-      {"images.txt", "100 -0.5 0.5 0.5 0.5", "100 0 0 0 0", {"line 5", "no quaternion"}},
-      {"images.txt", "0 0 0 1 sub", "0 0 0 99 sub", {"image 100 was taken with camera 99"}},
-      {"cameras.txt", "1 SIMPLE_PINHOLE", "1 SIMPLE", {"cameras.txt, line 4", "'SIMPLE' is no model"}},
+      {"images.txt", "100 -0.5 0.5 0.5 0.5", "100 0 0 0 0", {"line 5", "not a quaternion"}},
+      {"images.txt", "0 0 0 1 sub", "0 0 0 99 sub", {"image 100 refers to camera 99"}},
+      {"cameras.txt",
+       "1 SIMPLE_PINHOLE",
+       "1 SIMPLE",
+       {"cameras.txt, line 4", "'SIMPLE' is not a COLMAP camera model"}},
       {"cameras.txt",
        "480 500 320 240\n",
        "480 500 320\n",
        {"line 4", "2 parameters", "SIMPLE_PINHOLE has 3"}},
-      {"cameras.txt", "1 SIMPLE_PINHOLE 640", "1 SIMPLE_PINHOLE -640", {"'-640' is no number of pixels"}},
+      {"cameras.txt", "1 SIMPLE_PINHOLE 640", "1 SIMPLE_PINHOLE -640", {"'-640' is not a number of pixels"}},
       {"cameras.txt", "4 PINHOLE", "1 PINHOLE", {"line 5", "there is a camera 1 already"}},
       {"cameras.txt", "PINHOLE 640 480 500 320 240", "PINHOLE", {"line 4", "expected CAMERA_ID"}},
   };

@@ -96,7 +96,7 @@ TEST(Distortion, IsSaidInPixelsOfTheFarthestCorner) {
   for (const auto& c : cases) {
     const Read found = read_colmap(c.model, c.parameters);
     ASSERT_EQ(found.cameras.size(), 1u) << c.model << found.said;
-    EXPECT_NE(found.said.find("cameras.txt: lenses are distorted, which is not drawn"), std::string::npos);
+    EXPECT_NE(found.said.find("cameras.txt: the lenses' distortion is not drawn"), std::string::npos);
     EXPECT_NEAR(shift_of(found.said), c.shift, 0.006 * c.shift) << c.model << " " << found.said;
     // The planted fault: the shift in units of the focal length.
     EXPECT_GT(std::abs(shift_of(found.said) - c.shift / 100), 0.006 * c.shift);
@@ -120,7 +120,7 @@ TEST(Distortion, FisheyesAndPanoramasAreRefusedEvenWithoutAny) {
     const Read found = read_colmap(model, parameters);
     EXPECT_TRUE(found.cameras.empty());
     EXPECT_NE(found.said.find("error: "), std::string::npos) << model;
-    EXPECT_NE(found.said.find("lens of the model " + model + ", which is no pinhole's"), std::string::npos)
+    EXPECT_NE(found.said.find("lens of the model " + model + ", which is not a pinhole"), std::string::npos)
         << found.said;
   }
 }
@@ -193,7 +193,7 @@ TEST(Distortion, CamerasThatCannotBeDrawnAreLeftOutOfOthers) {
   const Read found = read(folder);
   ASSERT_EQ(found.cameras.size(), 1u);
   EXPECT_EQ(found.cameras[0].name, "b.jpg");
-  EXPECT_NE(found.said.find("1 of 2 cameras are left out"), std::string::npos) << found.said;
+  EXPECT_NE(found.said.find("1 of 2 cameras are skipped"), std::string::npos) << found.said;
 }
 
 }  // namespace

@@ -70,8 +70,7 @@ TEST(OtherShapes, AreRefusedByTheirNames) {
   }
   test::PlyFile colourless = test::inria_file(0, 2);
   colourless.columns[colourless.column("f_dc_0")] = "feature_0";
-  refusals.push_back(
-      {to_bytes(colourless), {"no colours that are known", "neither f_dc_0 to f_dc_2 nor red"}});
+  refusals.push_back({to_bytes(colourless), {"no known colours", "neither f_dc_0 to f_dc_2 nor red"}});
   test::expect_no_models("bad.ply", refusals);
 }
 

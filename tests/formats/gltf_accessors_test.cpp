@@ -66,13 +66,14 @@ TEST_F(GltfAccessors, WithoutAViewMayBeInAnExtension) {
   primitive["extensions"]["KHR_draco_mesh_compression"] = {{"bufferView", 0}};
   EXPECT_EQ(load().position, model.position);  // all numbers are there without it
   glb.accessor("POSITION").erase("bufferView");
-  EXPECT_TRUE(refuses({"attributes.POSITION'", "in the extension 'KHR_draco_mesh_compression'"}));
+  EXPECT_TRUE(refuses({"attributes.POSITION'", "in the unknown extension 'KHR_draco_mesh_compression'"}));
   primitive["extensions"].erase("KHR_draco_mesh_compression");
   primitive["extensions"][test::splatting]["extensions"]["EXT_packed_somehow"] = json::object();
   testing::internal::CaptureStderr();
-  EXPECT_TRUE(refuses({"in the extension 'EXT_packed_somehow'"}));
-  EXPECT_NE(testing::internal::GetCapturedStderr().find("drawn without the extension 'EXT_packed_somehow'"),
-            std::string::npos);
+  EXPECT_TRUE(refuses({"in the unknown extension 'EXT_packed_somehow'"}));
+  EXPECT_NE(
+      testing::internal::GetCapturedStderr().find("drawn without the unknown extension 'EXT_packed_somehow'"),
+      std::string::npos);
 }
 
 struct GltfSparse : GltfAccessors {
@@ -123,10 +124,11 @@ TEST_F(GltfSparse, AreChecked) {
   };
   const std::vector<test::BrokenFile> refusals = {
       {with({10}, "/count", 1), {".sparse'", "element 10 is replaced, of 10"}},
-      {with({3, 4}, "/count", 2), {".sparse'", "2 elements leave their views"}},
-      {with({3}, "/indices/byteOffset", 1), {".sparse'", "1 elements leave their views"}},
-      {with({3}, "/count", 11), {".sparse'", "11 elements are replaced, of 10"}},
-      {with({3}, "/indices/componentType", 5126), {".sparse.indices.componentType'", "no type of an index"}},
+      {with({3, 4}, "/count", 2), {".sparse'", "2 elements exceed their views"}},
+      {with({3}, "/indices/byteOffset", 1), {".sparse'", "1 elements exceed their views"}},
+      {with({3}, "/count", 11), {".sparse'", "it replaces 11 elements of 10"}},
+      {with({3}, "/indices/componentType", 5126),
+       {".sparse.indices.componentType'", "not a type of an index"}},
   };
   test::expect_no_models("a.glb", refusals);
 }
@@ -189,7 +191,7 @@ TEST_F(GltfAccessors, MayShareAView) {
   // The last element needs no room behind it.
   glb.accessor("OPACITY")["count"] = 11;
   glb.accessor("POSITION")["count"] = 11;
-  EXPECT_TRUE(refuses({"11 elements of", "leave their view of 160 bytes"}));
+  EXPECT_TRUE(refuses({"11 elements of", "exceed their view of 160 bytes"}));
   glb.root["bufferViews"][view]["byteStride"] = 8;
   glb.accessor("POSITION")["count"] = 10;
   EXPECT_TRUE(refuses({"10 elements of 12 bytes, 8 apart"}));
@@ -208,18 +210,18 @@ TEST_F(GltfAccessors, AreChecked) {
   const std::string accessor = "/accessors/3/", view = "/bufferViews/3/";  // of opacities
   const std::string primitive = "/meshes/0/primitives/0/";
   std::vector<test::BrokenFile> refusals = {
-      {glb.with(accessor + "byteOffset", 4), {"leave their view of 40 bytes"}},
-      {glb.with(accessor + "byteOffset", 1e12), {"leave their view of 40 bytes"}},
+      {glb.with(accessor + "byteOffset", 4), {"exceed their view of 40 bytes"}},
+      {glb.with(accessor + "byteOffset", 1e12), {"exceed their view of 40 bytes"}},
       {glb.with(accessor + "byteOffset", -4), {".byteOffset'", "whole number"}},
       {glb.with(accessor + "bufferView", 99), {"key 'bufferViews'"}},
       {glb.with("/accessors/0/count", 1000000000), {"1000000000 elements of 12 bytes", "view of 120 bytes"}},
       {glb.with(accessor + "count", 9), {".count'", "expected 10, as the positions have"}},
       {glb.with(accessor + "type", "VEC4"), {".type'", "expected SCALAR, found VEC4"}},
-      {glb.with(view + "byteStride", 1e12), {"leave their view of 40 bytes"}},
-      {glb.with(view + "byteLength", 39), {"leave their view of 39 bytes"}},
-      {glb.with(view + "byteLength", 300000), {"key 'bufferViews[3]'", "leave its buffer of"}},
+      {glb.with(view + "byteStride", 1e12), {"exceed their view of 40 bytes"}},
+      {glb.with(view + "byteLength", 39), {"exceed their view of 39 bytes"}},
+      {glb.with(view + "byteLength", 300000), {"key 'bufferViews[3]'", "exceed its buffer of"}},
       {glb.with(view + "byteLength", nullptr), {"byteLength' is missing"}},
-      {glb.with(view + "byteOffset", 1e12), {"leave its buffer of"}},
+      {glb.with(view + "byteOffset", 1e12), {"exceed its buffer of"}},
       {glb.with(view + "byteOffset", 1e15), {"key 'bufferViews[3].byteOffset'"}},
       {glb.with(view + "buffer", 1), {"key 'buffers'", "more than 1 values"}},
       {glb.with(primitive + "attributes/" + test::splatting + ":ROTATION", nullptr),
@@ -228,13 +230,13 @@ TEST_F(GltfAccessors, AreChecked) {
   };
   for (const int type : {5124, 5125, 5127, 5130, 0})
     refusals.push_back({glb.with(accessor + "componentType", type),
-                        {".componentType'", std::to_string(type) + " is none that can be read"}});
+                        {".componentType'", std::to_string(type) + " cannot be read"}});
   test::expect_no_models("a.glb", refusals);
 }
 
 TEST_F(GltfAccessors, MayBeEmpty) {
   for (json& accessor : glb.root["accessors"]) accessor["count"] = 0;
-  EXPECT_TRUE(refuses({"without Gaussians"}));
+  EXPECT_TRUE(refuses({"without visible Gaussians"}));
   // An empty primitive beside another one does no harm.
   glb = test::gltf_of(model);
   json empty = glb.root["meshes"][0]["primitives"][0];

@@ -59,18 +59,18 @@ TEST_F(GltfFiles, BrokenContainers) {
   };
   std::vector<test::BrokenFile> refusals = {
       {Glb::whole(text + other), {"key 'buffers[0]'", "no binary chunk"}},
-      {Glb::whole(other + text + binary), {"the first chunk", "no JSON"}},
-      {Glb::whole(binary + text), {"the first chunk", "no JSON"}},
+      {Glb::whole(other + text + binary), {"the first chunk", "not JSON"}},
+      {Glb::whole(binary + text), {"the first chunk", "not JSON"}},
       {Glb::whole(text + other.substr(0, 12) + "cut"),
        {"cut short: its chunk has 16 bytes, and 7 are there"}},
       {with(8, 12), {"its header says 12 bytes"}},
       {with(8, length - 400), {"cut short: its binary chunk"}},
       {with(8, length + 1), {"a.glb is cut short: its header says " + std::to_string(length + 1) + " bytes"}},
-      {with(4, 1), {"glTF of version 1"}},
+      {with(4, 1), {"unknown glTF version 1"}},
       {with(12, 4545), {"the first chunk, 4545 bytes"}},
       {with(12, 0x7ffffffc), {"the first chunk"}},
       {with(12 + text.size(), 0x7fffffff), {"its binary chunk has 2147483647 bytes"}},
-      {test::patched(good, 16, "NOSJ"), {"is no JSON that fits"}},
+      {test::patched(good, 16, "NOSJ"), {"is not JSON, or exceeds"}},
       {test::patched(good, 30, "{{{{"), {"not valid JSON"}},
   };
   for (const std::size_t size : {std::size_t{5}, std::size_t{19}, std::size_t{24}, good.size() / 2})
@@ -143,7 +143,7 @@ TEST_F(GltfFiles, BuffersMayBeInDataUris) {
   buffer()["uri"] = "data:;base64," + coded.substr(0, 40);
   EXPECT_TRUE(refuses({"key 'buffers[0]'", "cut short"}));
   buffer()["uri"] = "data:;base64,AA?A";
-  EXPECT_TRUE(refuses({"key 'buffers[0].uri'", "'?' is no digit of base64"}));
+  EXPECT_TRUE(refuses({"key 'buffers[0].uri'", "'?' is not a digit of base64"}));
   buffer()["uri"] = "data:;base64";
   EXPECT_TRUE(refuses({"key 'buffers[0].uri'", "a comma"}));
 }
@@ -196,7 +196,7 @@ TEST_F(GltfFiles, UrisNameFilesBeside) {
                                 "%2Fetc%2Fpasswd", "b%00.bin", "..%5Cb.bin", ""})
     EXPECT_TRUE(refuses_uri(elsewhere, "must lie beside")) << elsewhere;
   for (const char* far : {"https://example.org/b.bin", "file:///tmp/b.bin"})
-    EXPECT_TRUE(refuses_uri(far, "no file beside this one")) << far;
+    EXPECT_TRUE(refuses_uri(far, "not a file beside this one")) << far;
   buffer()["uri"] = 7;
   EXPECT_TRUE(refuses({"key 'buffers[0].uri'", "text in quotes"}));
 }
@@ -207,10 +207,10 @@ TEST_F(GltfFiles, VersionsAreRead) {
        {json{{"version", "2.0"}}, json{{"version", "2.1"}}, json{{"version", "2.1"}, {"minVersion", "2.0"}}})
     EXPECT_TRUE(is_right(load_gltf_bytes(with(asset))));
   const std::vector<test::BrokenFile> refusals = {
-      {with({{"version", "1.0"}}), {"key 'asset.version'", "version 1.0 is not known"}},
-      {with({{"version", "3.0"}}), {"key 'asset.version'", "version 3.0 is not known"}},
+      {with({{"version", "1.0"}}), {"key 'asset.version'", "unknown glTF version 1.0"}},
+      {with({{"version", "3.0"}}), {"key 'asset.version'", "unknown glTF version 3.0"}},
       {with({{"version", "2.1"}, {"minVersion", "2.1"}}),
-       {"key 'asset.minVersion'", "version 2.1 is not known; 2.0 is"}},
+       {"key 'asset.minVersion'", "unknown glTF version 2.1: expected 2.0"}},
       {with({{"version", "two"}}), {"key 'asset.version'", "as in 2.0, found 'two'"}},
       {with(json::object()), {"asset.version' is missing"}},
   };
@@ -228,7 +228,7 @@ TEST_F(GltfFiles, RequiredExtensionsAreKnown) {
   for (const std::string name : {"VENDOR_unknown", "KHR_draco_mesh_compression", "EXT_meshopt_compression",
                                  "KHR_meshopt_compression", "KHR_materials_unlit"}) {
     refusals.push_back({with({"KHR_gaussian_splatting", name}),
-                        {"key 'extensionsRequired[1]'", "'" + name + "'", "not known"}});
+                        {"key 'extensionsRequired[1]'", "unknown extension '" + name + "'"}});
     // One that is only used is passed over.
     EXPECT_TRUE(is_right(load_gltf_bytes(glb.with("/extensionsUsed", {"KHR_gaussian_splatting", name}))));
   }
@@ -254,7 +254,8 @@ TEST_F(GltfFiles, AreToldFromOthers) {
   // Without buffers all numbers are zeros, and no rotation is one.
   glb.root.erase("buffers");
   for (json& accessor : glb.root["accessors"]) accessor.erase("bufferView");
-  test::expect_no_models("a.gltf", {{tiles.dump(), {"no glTF"}}, {glb.root.dump(), {"zero quaternions"}}});
+  test::expect_no_models("a.gltf",
+                         {{tiles.dump(), {"neither a glTF"}}, {glb.root.dump(), {"zero quaternions"}}});
 }
 
 TEST_F(GltfFiles, SayHowTheyAreSeen) {
@@ -281,8 +282,9 @@ TEST_F(GltfFiles, WithoutGaussiansSayWhatIsThere) {
   Glb mesh = glb;
   mesh.root["meshes"][0]["primitives"][0]["mode"] = 4;
   const std::vector<test::BrokenFile> refusals = {
-      {glb.with(primitive + "extensions/KHR_gaussian_splatting/kernel", "box"), {"'box' is not known"}},
-      {glb.with(primitive + "extensions", nullptr), {"a glTF scene without Gaussians", "0 meshes, 1 points"}},
+      {glb.with(primitive + "extensions/KHR_gaussian_splatting/kernel", "box"), {"unknown 'box'"}},
+      {glb.with(primitive + "extensions", nullptr),
+       {"a glTF scene without visible Gaussians", "0 meshes, 1 points"}},
       {mesh.with(primitive + "extensions", nullptr), {"1 meshes, 0 points"}},
   };
   test::expect_no_models("a.glb", refusals);
@@ -301,7 +303,7 @@ TEST_F(GltfFiles, WhatIsNotDrawnIsSaid) {
   primitives.push_back({{"attributes", json::object()}, {"mode", 0}});
   testing::internal::CaptureStderr();
   EXPECT_TRUE(is_right(load_gltf_bytes(glb.bytes())));
-  EXPECT_NE(testing::internal::GetCapturedStderr().find("not 1 meshes and 1 points"), std::string::npos);
+  EXPECT_NE(testing::internal::GetCapturedStderr().find("1 meshes and 1 points are not"), std::string::npos);
 }
 
 }  // namespace

@@ -100,7 +100,7 @@ TEST(ModelOutputFiles, TagsAreKeptOrSaid) {
   EXPECT_TRUE(test::same_bits(mip.model, model));
   EXPECT_TRUE(mip.losses.empty());
   EXPECT_EQ(round_trip(model, ModelFormat::sog).losses.back(),
-            "SOG does not tell the low-pass of 0.1 px^2: draw it with --kernel-px2 0.1");
+            "SOG does not store the low-pass of 0.1 px^2: draw it with --kernel-px2 0.1");
 }
 
 TEST(ModelOutputFiles, SaysWhatIsCut) {
@@ -136,7 +136,7 @@ TEST(ModelOutputFiles, Errors) {
     file.commit();
   };
   Model model = hard_model(3, 5000);
-  EXPECT_ERROR(write(model, ModelFormat::spz), "its axes are RDF, and spz has RUB");
+  EXPECT_ERROR(write(model, ModelFormat::spz), "its axes are RDF, but spz requires RUB");
   Model far = in_axes_of(model, ModelFormat::spz);
   far.position[3].z = -9e6f;
   EXPECT_ERROR(write(far, ModelFormat::spz), "reach 9e+06", "8388607");

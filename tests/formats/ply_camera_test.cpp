@@ -133,11 +133,11 @@ TEST_F(PlyCamera, ErrorsNameTheElementAndWhatWasExpected) {
       {with({"intrinsic", "float", {NAN, 0, 320, 0, 510, 200, 0, 0, 1}}), {"'intrinsic'", "finite"}},
       {with({"intrinsic", "float", Numbers(17, 1.0)}), {"'intrinsic'", "at most 16 rows"}},
       {with({"image_size", "uint", {640}}), {"'image_size'", "1 numbers; expected width and height"}},
-      {with({"image_size", "uint", {640, 0}}), {"'image_size'", "0 is no number of pixels"}},
+      {with({"image_size", "uint", {640, 0}}), {"'image_size'", "0 is not a number of pixels"}},
       {with({"extrinsic", "float", {1, 2, 3}}), {"'extrinsic'", "3 numbers; expected the 16"}},
       {with({"extrinsic", "float", Numbers(16, 1.0)}), {"'extrinsic'", "orthogonal"}},
       {to_bytes(with_elements({{"intrinsic", "float", intrinsic}})), {"9 numbers; expected 4"}},
-      {to_bytes(test::inria_file(0, 5)), {"tells no camera", "'intrinsic'"}},
+      {to_bytes(test::inria_file(0, 5)), {"without a camera", "'intrinsic'"}},
   };
   // Cut at every byte of what stands behind the vertices.
   const std::string whole = to_bytes(with_elements({sharp()[0], sharp()[1], sharp()[2]}));

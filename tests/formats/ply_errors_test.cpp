@@ -59,9 +59,9 @@ TEST(PlyErrors, CountsThatNoFileHolds) {
       {with("18446744073709551615"), {"18446744073709551615 of element 'vertex'", "than any file can hold"}},
       // 2^64 / 248, rounded up: the product wraps to a small number.
       {with("74382032555280451"), {"more than any file can hold"}},
-      {with("18446744073709551616"), {"line 3", "no count of elements"}},
-      {with("-5"), {"line 3", "'-5' is no count"}},
-      {with("1e2"), {"'1e2' is no count"}},
+      {with("18446744073709551616"), {"line 3", "not a number of elements"}},
+      {with("-5"), {"line 3", "'-5' is not a number"}},
+      {with("1e2"), {"'1e2' is not a number"}},
       {with("0"), {"holds no Gaussians"}},
       {replaced(many, "binary_little_endian", "ascii"), {"cut short"}},
       {replaced(many, end, list), {"cut short", "element 'vertex' 99 of 9000000000000000000"}},
@@ -76,15 +76,15 @@ TEST(PlyErrors, Header) {
   while (endless.size() < 2000000) endless += "comment x\n";
   const char *format = "binary_little_endian", *x = "property float x", *vertices = "element vertex 100";
   expect_refused({
-      {with("end_header\n", ""), {"is no word of a ply header; is its 'end_header' line missing?"}},
+      {with("end_header\n", ""), {"is not a keyword of a ply header; is its 'end_header' line missing?"}},
       {endless, {"no 'end_header' line in its first 1048576 bytes"}},
       {with("format binary_little_endian 1.0\n", ""), {"without a 'format' line"}},
       {with("binary_little_endian 1.0", "binary_little_endian 2.0"), {"line 2", "1.0"}},
       {with(format, "binary_middle_endian"), {"line 2", "expected 'format'"}},
-      {with(x, "property real x"), {"line 4", "'real' is no type"}},
+      {with(x, "property real x"), {"line 4", "'real' is not a type"}},
       {with(x, "property float"), {"line 4", "expected 'property TYPE NAME'"}},
       {with(x, "property list float int x"), {"line 4", "integer type"}},
-      {with(x, "properly float x"), {"line 4", "'properly' is no word"}},
+      {with(x, "properly float x"), {"line 4", "'properly' is not a keyword"}},
       {with(vertices, "property float a"), {"line 3", "before any element"}},
       {with(vertices, "element vertex"), {"line 3", "expected 'element NAME COUNT'"}},
       {with("property float nx", x), {"line 7", "'x' occurs twice"}},
@@ -113,8 +113,8 @@ TEST(PlyErrors, Text) {
   for (auto& row : file.rows) std::fill(row.begin(), row.end(), 0.25);
   const std::string good = to_bytes(file);  // 21 lines of header
   expect_refused({
-      {replaced(good, "0.25", "0,25"), {"line 22", "'0,25' is no number", "'x' of element 'vertex' 0"}},
-      {replaced(good, "0.25", "0.2x"), {"'0.2x' is no number"}},
+      {replaced(good, "0.25", "0,25"), {"line 22", "'0,25' is not a number", "'x' of element 'vertex' 0"}},
+      {replaced(good, "0.25", "0.2x"), {"'0.2x' is not a number"}},
       {replaced(good, "0.25 ", ""), {"line 22", "'vertex' 0 ends before property 'rot_3'"}},
       {replaced(good, "0.25", "1 0.25"), {"line 22", "'vertex' 0 has more values than its 17"}},
       {replaced(good, "property float nx", "property list uchar float nx"),

@@ -150,7 +150,8 @@ TEST_F(BrokenScaffold, WrongSizes) {
   };
   const auto opacity = [&](void (*change)(Network&)) { return with(good.opacity, change); };
   const std::vector<test::BrokenFile> of_opacity = {
-      {opacity([](Network& n) { n.first.pop_back(); }), {"1119 weights and 32 biases make no first layer"}},
+      {opacity([](Network& n) { n.first.pop_back(); }),
+       {"1119 weights and 32 biases do not form a first layer"}},
       {opacity([](Network& n) { n.first.resize(32 * 37); }), {"37 inputs; expected 35", "or 36"}},
       {opacity([](Network& n) { n.first_bias.clear(); }), {"0 biases"}},
       {opacity([](Network& n) { n.second_bias.pop_back(); }), {"320 weights and 9 biases; expected 10 x 32"}},

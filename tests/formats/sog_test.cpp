@@ -93,7 +93,7 @@ TEST(Sog, LevelsThatFitABudget) {
       [&] {
         load_within(copy.path(), {all, {}});
       },
-      {"lod-meta.json", "none of its levels of detail is there"}));
+      {"lod-meta.json", "all its levels of detail are missing"}));
 }
 
 TEST(Sog, LevelsThatAreNotThere) {
@@ -106,7 +106,7 @@ TEST(Sog, LevelsThatAreNotThere) {
   EXPECT_NE(said.find("0_0/meta.json is missing); level 5 is drawn"), std::string::npos) << said;
   EXPECT_EQ(load_model(copy.path(), {.lod = 6}).count(), 1873u);
   EXPECT_ERROR(load_model(copy.path(), {.lod = 3}), "level of detail 3", "3_0/meta.json is missing",
-               "finest level that is there is 5");
+               "finest complete level is 5");
   fs::remove_all(copy.path() / "5_0");
   fs::remove_all(copy.path() / "6_0");
   EXPECT_ERROR(load_model(copy.path()), "lod-meta.json", "no level of detail is complete");
@@ -143,11 +143,11 @@ TEST(SogErrors, Meta) {
       {with("/sh0/codebook/7", "x"), {"key 'sh0.codebook[7]'", "finite number"}},
       {with("/quats/files/0", "../quats.webp"), {"key 'quats.files[0]'", "beside meta.json"}},
       {with("/quats/files/0", "/etc/passwd"), {"key 'quats.files[0]'", "beside meta.json"}},
-      {with("/version", 3), {"key 'version'", "version 3 is not known"}},
+      {with("/version", 3), {"key 'version'", "unknown SOG version 3"}},
       {with("/means/mins/0", nullptr), {"key 'means.mins'", "expected 3 values, found 2"}},
-      {with("/shN/bands", 3), {"shN_centroids.webp", "no palette of 1024 entries", "degree 3"}},
+      {with("/shN/bands", 3), {"shN_centroids.webp", "not form a palette of 1024 entries", "degree 3"}},
       {with("/shN/bands", 4), {"key 'shN.bands'"}},
-      {with("/shN/count", 65536), {"no palette of 65536 entries"}},
+      {with("/shN/count", 65536), {"not form a palette of 65536 entries"}},
       {good.dump().substr(0, 7000), {"not valid JSON at line 1, byte 7000"}},
   };
   expect_refused_with(folder / "sog/playbot-lod6", "meta.json", refusals);
@@ -192,9 +192,9 @@ TEST(SogErrors, Pictures) {
   const std::pair<std::string, std::vector<test::BrokenFile>> of_files[] = {
       {"quats.webp",
        {{small, {"meta.json: quats.webp", "4 x 4 texels do not fit 1873 Gaussians"}},
-        {test::webp(44, 44, grey, false), {"compressed with losses"}}}},
+        {test::webp(44, 44, grey, false), {"lossy compression"}}}},
       {"means_l.webp", {{small, {"means_l.webp has 4 x 4 texels"}}}},
-      {"shN_centroids.webp", {{small, {"no palette"}}}},
+      {"shN_centroids.webp", {{small, {"not form a palette"}}}},
       {"sh0.webp",
        {{"RIFF12345W", {"damaged or cut short"}},
         {"\x89PNG\r\n\x1a\n", {"expected a WebP picture, but it looks like a PNG picture"}}}}};
@@ -247,7 +247,8 @@ TEST(SogErrors, ManyFilesThatPromiseMuch) {
         {{"bound", {{"min", {0, 0, 0}}, {"max", {1, 1, 1}}}}, {"lods", {{"0", lod}}}});
   }
   test::write_text(folder / "lod-meta.json", levels.dump());
-  const std::vector<std::string> parts = {"lod-meta.json: 1228800 Gaussians are wanted", "cannot hold them"};
+  const std::vector<std::string> parts = {"lod-meta.json: it refers to 1228800 Gaussians",
+                                          "too few to hold them"};
   EXPECT_EQ(load_model(folder / "0").count(), 614400u);
   EXPECT_TRUE(test::fails_saying([&] { load_model(folder / "lod-meta.json"); }, parts));
   const LodFiles files(folder / "lod-meta.json");

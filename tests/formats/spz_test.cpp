@@ -68,8 +68,8 @@ TEST(SpzErrors, Header) {
     return test::gzipped(patched(raw, at, bytes));
   };
   expect_spz_refused({
-      {with(4, little(9u)), {"spz of version 9 is not known"}},
-      {with(4, little(0u)), {"spz of version 0"}},
+      {with(4, little(9u)), {"unknown spz version 9"}},
+      {with(4, little(0u)), {"unknown spz version 0"}},
       {with(4, little(4u)), {"version 4 within gzip"}},
       {with(8, little(1001u)), {"its 1001 Gaussians of degree 3 take 65065 bytes", "65000 are there"}},
       {with(8, little(0x80000000u)), {"promises 2147483648 Gaussians of degree 3, which"}},

@@ -155,15 +155,25 @@ TEST_F(TrainingRunTest, OfGsplatSaysWhatIsDrawnOtherwise) {
       {"app_opt: true", "app_opt"},
       {"post_processing: ppisp", "ppisp"},
       {"post_processing: bilateral_grid", "bilateral grid"},
-      {"pose_opt: true", "cameras were moved"}};
+      {"pose_opt: true", "cameras were optimised"}};
   for (const auto& [line, part] : changed) {
     const auto run = found(gsplat_ply, "run/cfg.yml", gsplat_with(std::string(line) + "\n"));
     ASSERT_EQ(run->otherwise.size(), 1u) << line << otherwise(run);
     EXPECT_TRUE(says(run->otherwise[0], part)) << run->otherwise[0];
   }
   EXPECT_EQ(found(gsplat_ply, "run/cfg.yml", gsplat_with("antialiased: true\n"))->antialiased, true);
-  EXPECT_EQ(found(gsplat_ply, "run/cfg.yml", gsplat_with("antialiased: 'true'\n"))->antialiased,
-            std::nullopt);
+}
+
+TEST_F(TrainingRunTest, TextIsNoTruthValue) {
+  const auto said = [&](const std::string& line) {
+    const auto run = found(gsplat_ply, "run/cfg.yml", gsplat_with(line));
+    return run ? run->antialiased : std::optional<bool>();
+  };
+  EXPECT_EQ(said("antialiased: yes\n"), true);
+  EXPECT_EQ(said("antialiased:\n  false\n"), false);
+  for (const char* text : {"|\n  true\n", "'true'\n", "99999999999999999999\n", "\n", "[true]\n"})
+    EXPECT_EQ(said(std::string("antialiased: ") + text), std::nullopt) << text;
+  EXPECT_FALSE(found(gsplat_ply, "run/cfg.yml", gsplat_with("x: [y\n"))) << "with a warning";
 }
 
 TEST_F(TrainingRunTest, OfNerfstudioIsNested) {
@@ -187,7 +197,7 @@ TEST_F(TrainingRunTest, OfNerfstudioIsNested) {
                                 "    rasterize_mode: antialiased\n    use_bilateral_grid: true\n"
                                 "    background_color: white\n"));
   EXPECT_EQ(all->antialiased, true);
-  EXPECT_TRUE(says(otherwise(all), "bilateral grid") && says(otherwise(all), "cameras were moved"));
+  EXPECT_TRUE(says(otherwise(all), "bilateral grid") && says(otherwise(all), "cameras were optimised"));
   ASSERT_EQ(all->advice.size(), 1u);
   EXPECT_TRUE(says(all->advice[0], "--background 1,1,1"));
   // Another program's config.yml, and one too far above.
@@ -203,7 +213,7 @@ TEST_F(TrainingRunTest, OfOthers) {
   ASSERT_TRUE(args);
   EXPECT_FALSE(args->antialiased) << "INRIA's trainer does not write it";
   EXPECT_EQ(args->advice.size(), 1u);
-  EXPECT_TRUE(says(otherwise(args), "exposure.json with them is not there"));
+  EXPECT_TRUE(says(otherwise(args), "their exposure.json is missing"));
   test::write_text(folder / "run/exposure.json", "{}");
   EXPECT_TRUE(find_training_run(folder / inria)->otherwise.empty());
   EXPECT_EQ(found(inria, "run/cfg_args", "Namespace(antialiasing=True, sh_degree=3)")->antialiased, true);

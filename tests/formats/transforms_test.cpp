@@ -28,7 +28,7 @@ TEST(Transforms, AgreeWithAnIndependentReader) {
     testing::internal::CaptureStderr();
     const std::vector<Camera> cameras = load_cameras(folder / name);
     const std::string said = testing::internal::GetCapturedStderr();
-    EXPECT_EQ(said.find("lenses are distorted") != std::string::npos, name[8] == 's') << said;
+    EXPECT_EQ(said.find("the lenses' distortion is not drawn") != std::string::npos, name[8] == 's') << said;
     ASSERT_EQ(cameras.size(), truth[name]["count"].get<std::size_t>()) << name;
     for (std::size_t i = 0; i < cameras.size(); ++i) {
       const json& expected = truth[name]["cameras"][i];
@@ -55,7 +55,8 @@ TEST(Transforms, SizesComeFromThePictureBeside) {
   const test::TempFolder temporary;
   const fs::path file = temporary / "transforms_train.json";
   fs::copy(folder / "cameras/blender-lego-transforms_train.json", file);
-  EXPECT_ERROR(load_cameras(file), "key 'frames[0]'", "no w and h, and no picture", "train/r_0");
+  EXPECT_ERROR(load_cameras(file), "key 'frames[0]'", "w and h are missing, and so is the picture",
+               "train/r_0");
   save_png((fs::create_directories(temporary / "train"), temporary / "train/r_0.png"), Image(80, 60, 3));
   const Camera camera = load_cameras(file)[0];
   EXPECT_EQ(camera.width, 80);

@@ -22,7 +22,7 @@ TEST(Splat, ContentDecides) {
   for (int i = 0; i < 3200; ++i) noise += static_cast<char>(uniform(0, 256));
   const std::string text = "AAAAAAAAAAAA????????????\xc3\xa4\xe2\x82\xac\xc3\xb6\xc3";
   test::expect_no_models("model", {{noise, {"something unknown"}}, {text, {"a text file"}}});
-  test::expect_no_models("a.splat", {{noise, {"does not hold .splat's records"}}, {"", {"an empty file"}}});
+  test::expect_no_models("a.splat", {{noise, {"is not a .splat file"}}, {"", {"an empty file"}}});
   // No byte below 0x20, and yet no text: 0x80 begins no character.
   EXPECT_EQ(test::load_model_of("AAAAAAAAAAAA????????????\x80\x80\x80\xf0\xff\x80\x80\x80", "model").count(),
             1u);
@@ -50,8 +50,8 @@ TEST(Ksplat, Damaged) {
   const auto with = [&](std::size_t at, const std::string& bytes) { return patched(good, at, bytes); };
   const std::size_t section = 4096, data = section + 1024;  // lengths of buckets that are not full
   std::vector<test::BrokenFile> refusals = {
-      {with(1, std::string(1, '\0')), {".ksplat of version 0.0 is not known"}},
-      {with(0, "\x01"), {".ksplat of version 1.1 is not known"}},
+      {with(1, std::string(1, '\0')), {"unknown .ksplat version 0.0"}},
+      {with(0, "\x01"), {"unknown .ksplat version 1.1"}},
       {with(4, little(0x40000000u)), {"has room for 1073741824 sections"}},
       {with(16, little(1001u)), {"promises 1001 Gaussians, at byte 16, but its sections have 1000"}},
       {with(20, little(std::uint16_t{3})), {"compression level 3, at byte 20"}},

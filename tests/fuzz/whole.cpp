@@ -11,7 +11,6 @@
 #include <cctype>
 #include <charconv>
 #include <chrono>
-#include <fstream>
 #include <map>
 #include <mutex>
 #include <thread>

@@ -36,7 +36,7 @@ TEST(GpuClock, SaysWhyNothingTellsIt) {
   if (!has_library()) GTEST_SKIP() << "no " BINOSPLAT_FAKE_NVML;
   const GpuClock none("libno-such-library.so.1", counting());
   EXPECT_FALSE(none.mhz());
-  EXPECT_EQ(none.problem(), "there is no libno-such-library.so.1 to ask");
+  EXPECT_EQ(none.problem(), "libno-such-library.so.1 cannot be loaded");
   GpuClock::Uuid other = counting();
   other[3] = 99;
   const GpuClock of_another(BINOSPLAT_FAKE_NVML, other);

@@ -182,7 +182,8 @@ TEST_F(ShownPage, BarsAreAsLongAsTheirNumbers) {
   }
   ASSERT_EQ(found.size(), values.size()) << widths;
   const double px = (found.back().get<double>() + 1) / values.back();
-  for (std::size_t i = 0; i < values.size(); ++i) EXPECT_NEAR(found[i].get<double>() + 1, px * values[i], 0.6) << i;
+  for (std::size_t i = 0; i < values.size(); ++i)
+    EXPECT_NEAR(found[i].get<double>() + 1, px * values[i], 0.6) << i;
 }
 
 TEST_F(ShownPage, WhatIsEmptyOrBrokenSaysSo) {

@@ -98,8 +98,8 @@ TEST(Profile, TellsOfRepeatsCutsAndClocks) {
   EXPECT_EQ(names(0), (std::vector<std::string>{"display missed: 2 times"}));
   EXPECT_EQ(names(1), (std::vector<std::string>{"drawn again: 2 times, until it kept its quality: 39.2 dB",
                                                 "measured its error"}));
-  EXPECT_EQ(names(2), (std::vector<std::string>{"camera cut: it goes by nothing that earlier frames measured",
-                                                "low clock: 1200 MHz"}));
+  EXPECT_EQ(names(2),
+            (std::vector<std::string>{"camera cut: it uses no earlier measurement", "low clock: 1200 MHz"}));
   EXPECT_TRUE(is_missed(profile.recording, 0));
   EXPECT_EQ(summary_of(profile).slow_clock, 1u);
 }
@@ -276,7 +276,7 @@ TEST_F(ShownProfile, HasLinesAreasAndPictures) {
           "first: document.querySelector('#worst tbody tr').textContent});");
   const json shown = json::parse(found, nullptr, false);
   ASSERT_TRUE(shown.is_object()) << found;
-  EXPECT_EQ(shown["alerts"].size(), 1u) << "only the clock is not told: " << found;
+  EXPECT_EQ(shown["alerts"].size(), 1u) << "only the clock is unknown: " << found;
   EXPECT_EQ(shown["lines"], 3) << "frame, GPU and budget";
   ASSERT_EQ(shown["areas"].size(), 2u) << found;
   EXPECT_GT(shown["areas"][0].get<double>(), 10.0);

@@ -75,7 +75,7 @@ TEST(Results, FrontHoldsWhatNothingBeats) {
   other = points;
   other[3] = other[1];  // twice the same: neither beats the other
   EXPECT_TRUE(front_of(other)[1] && front_of(other)[3]);
-  EXPECT_NEAR(number(points[1].row, "speed"), 2.0, 1e-12) << "times exact";
+  EXPECT_NEAR(number(points[1].row, "speed"), 2.0, 1e-12) << "speed vs exact";
   EXPECT_FALSE(points[4].row.contains("speed")) << "its chart has no exact one";
 }
 

@@ -115,10 +115,10 @@ TEST_F(Contexts, ThatAreTooOldOrNoneOfOpenGL) {
   for (const char* version : {"4.4 (Core Profile) Mesa 22.3.6", "2.1 Mesa 22.3.6", "4.3.0 NVIDIA 535.54"}) {
     Loader::version = version;
     EXPECT_TRUE(none_drawn_by(Loader::get_proc_address,
-                              {std::string("is of OpenGL ") + version, "needs OpenGL 4.5 core or later"}));
+                              {std::string("has OpenGL ") + version, "needs OpenGL 4.5 core or later"}));
   }
   Loader::version = "OpenGL ES 3.2 Mesa 22.3.6";
-  EXPECT_TRUE(none_drawn_by(Loader::get_proc_address, {"is of OpenGL ES 3.2", "not OpenGL ES"}));
+  EXPECT_TRUE(none_drawn_by(Loader::get_proc_address, {"has OpenGL ES 3.2", "not OpenGL ES"}));
   Loader::version = "4.6.0 NVIDIA 535.54";
   EXPECT_NO_THROW(Renderer(Loader::get_proc_address, model));
   Loader::hidden = "glDispatchCompute";
@@ -140,7 +140,7 @@ TEST_F(Contexts, OfOpenGLES) {
   bind(opengl);
   if (context == nullptr) GTEST_SKIP() << "no OpenGL ES here";
   ASSERT_NE(function<MakeCurrent>("eglMakeCurrent")(display, nullptr, nullptr, context), 0u);
-  EXPECT_TRUE(none_drawn_by(caller.get_proc_address(), {"is of OpenGL ES 3", "binosplat needs OpenGL 4.5"}));
+  EXPECT_TRUE(none_drawn_by(caller.get_proc_address(), {"has OpenGL ES 3", "binosplat needs OpenGL 4.5"}));
   function<unsigned(void*, void*)>("eglDestroyContext")(display, context);  // once it is not current
 }
 

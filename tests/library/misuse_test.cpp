@@ -85,7 +85,7 @@ TEST_F(Misuse, TexturesThatCannotTakeAPicture) {
   const std::uint32_t good = caller.texture(GL_RGBA8, size.x, size.y),
                       array = caller.texture(GL_RGBA8, size.x, size.y, 2);
   EXPECT_TRUE(target_refused({.texture = good, .level = 1}, {"has no level 1"}));
-  EXPECT_TRUE(target_refused({.texture = good, .layer = 0}, {"has no layer 0", "no array"}));
+  EXPECT_TRUE(target_refused({.texture = good, .layer = 0}, {"has no layer 0", "not an array"}));
   EXPECT_TRUE(target_refused({.texture = array, .layer = 2}, {"has no layer 2", "an array of 2"}));
   EXPECT_TRUE(target_refused({.texture = array}, {"has no layer -1"}));
   EXPECT_TRUE(target_refused({.texture = good, .x = 1}, {"views[1].target", "72 x 64 px at 1, 0"}));
@@ -116,7 +116,7 @@ TEST_F(Misuse, FramebuffersThatCannotTakeAPicture) {
   const std::uint32_t small = caller.texture(GL_RGBA8, size.x, size.y / 2);
   EXPECT_TRUE(target_refused({.framebuffer = framebuffer({good, small})}, {"within 72 x 32 px"}));
   const std::uint32_t integers = caller.texture(GL_RGBA8UI, size.x, size.y);
-  EXPECT_TRUE(target_refused({.framebuffer = framebuffer({integers})}, {"is of integers"}));
+  EXPECT_TRUE(target_refused({.framebuffer = framebuffer({integers})}, {"has an integer format"}));
   std::uint32_t deleted = caller.texture(GL_RGBA8, size.x, size.y);
   const std::uint32_t of_deleted = framebuffer({deleted});
   caller.gl.DeleteTextures(1, &deleted);

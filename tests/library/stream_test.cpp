@@ -53,8 +53,21 @@ TEST_P(LevelsIn, ComeAsFramesAreDrawn) {
   ASSERT_TRUE(stream.settled());
   EXPECT_GT(stream.count(), at_first);
   EXPECT_NE(read(0), coarse);
-  const Bounds seen = stream.bounds(), true_ones = SplatModel(levels(), {.lod = 0}).bounds();
+  // The same as all of the model, but for what was asked to be lost.
+  const SplatModel finest_level(levels(), {.lod = 0});
+  const Bounds seen = stream.bounds(), true_ones = finest_level.bounds();
   EXPECT_LT(glm::distance(seen.low, true_ones.low), 0.1f * glm::distance(true_ones.low, true_ones.high));
+  Renderer whole(caller.get_proc_address(), finest_level);
+  const std::vector<float> drawn = read(0);
+  whole.draw(views(), there, over_black);
+  const std::vector<float> finest = read(0);
+  double squared = 0.0, from_coarse = 0.0;
+  for (std::size_t k = 0; k < finest.size(); ++k) {
+    squared += std::pow(drawn[k] - finest[k], 2.0);
+    from_coarse += std::pow(coarse[k] - finest[k], 2.0);
+  }
+  EXPECT_GT(10.0 * std::log10(static_cast<double>(finest.size()) / squared), 43.0);
+  EXPECT_LT(squared, from_coarse);
 }
 
 INSTANTIATE_TEST_SUITE_P(Precision, LevelsIn, testing::Values(Precision::full, Precision::half));

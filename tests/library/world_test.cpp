@@ -75,7 +75,7 @@ TEST_F(Library, ModelsComeAndGo) {
       },
       {"instances[1].model", "add()"}));
   EXPECT_EQ(renderer.draw(views(), World{placement, some}, over_black).visible, with_one);
-  EXPECT_EQ(renderer.draw(views(), World{placement}, over_black).visible, 0u);
+  EXPECT_EQ(renderer.draw(views(), World{placement, {}}, over_black).visible, 0u);
   EXPECT_TRUE(test::fails_saying([&] { renderer.draw(views(), placement, over_black); },
                                  {"without a model", "World"}));
 }

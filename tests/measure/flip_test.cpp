@@ -38,8 +38,15 @@ TEST(Flip, IsWhatItsAuthorsPublished) {
   EXPECT_GT(std::abs(flip(reference, swapped) - 0.133285), 1e-2);
 }
 
+Image first_rows(const Image& image, int rows) {
+  Image part(image.width, rows, image.channels);
+  std::copy_n(image.data.begin(), part.data.size(), part.data.begin());
+  return part;
+}
+
 TEST(Flip, IsSymmetricAndZeroForEqualPictures) {
-  const Image reference = published("reference.png"), test = published("test.png");
+  const Image reference = first_rows(published("reference.png"), 64),
+              test = first_rows(published("test.png"), 64);
   EXPECT_EQ(flip(reference, reference), 0.0);
   EXPECT_EQ(flip(reference, test), flip(test, reference));
   Image other = flat(40, 30, {0.5f, 0.5f, 0.5f});

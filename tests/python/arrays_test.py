@@ -161,11 +161,11 @@ def test_masked_values_are_refused(arrays, name):
     masked = np.ma.masked_array(arrays[name], mask=False)
     assert binosplat.Model(**dict(arrays, **{name: masked})).count == 300
     masked[7] = np.ma.masked
-    with pytest.raises(binosplat.InputError, match=f"{name}: a masked array"):
+    with pytest.raises(binosplat.InputError, match=f"{name}: masked arrays"):
         binosplat.Model(**dict(arrays, **{name: masked}))
     picture = np.ma.masked_greater(np.zeros((4, 4, 3), np.float32) + np.eye(4)[:, :, None], 0.5)
     for call in (lambda: binosplat.compare(picture, picture), lambda: binosplat.quantised(picture)):
-        with pytest.raises(binosplat.InputError, match="a masked array"):
+        with pytest.raises(binosplat.InputError, match="masked arrays"):
             call()
 
 

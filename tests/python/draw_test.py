@@ -115,7 +115,7 @@ WRONG = [
     ({"tiles": "round"}, "tiles: 'round' is not one of aabb, ellipse"),
     ({"transmittance": "depth", "tolerance": 1}, "transmittance depth: needs calibration"),
     ({"transmittance": "last", "tolerance": 1}, "transmittance last: needs follow=True"),
-    ({"decode": "cyclopean"}, "decode cyclopean: this is no Scaffold-GS model"),
+    ({"decode": "cyclopean"}, "decode cyclopean: this is not a Scaffold-GS model"),
     ({"near": 0}, "near 0: expected world units above zero"),
     ({"background": (0, 0, 2)}, "background: expected three numbers from 0 to 1"),
 ]
@@ -206,7 +206,7 @@ def test_a_calibration_draws_as_the_program_does(model, cameras, scene, program,
             renderer.draw(cameras["front"], th="peripheral")
         with pytest.raises(binosplat.InputError, match="transmittance depth: needs calibration"):
             renderer.draw(cameras["front"], th="adagscale", tolerance=1)
-        with pytest.raises(binosplat.InputError, match="take peripheral"):
+        with pytest.raises(binosplat.InputError, match="give peripheral"):
             renderer.draw(cameras["front"], th="adagscale", transmittance="last", calibration=calibration)
         with pytest.raises(TypeError, match="a Calibration"):
             renderer.draw(cameras["front"], th="adagscale", calibration=file)

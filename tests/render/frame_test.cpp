@@ -1,6 +1,5 @@
 // Whole frames: the picture does not depend on how it is drawn.
 
-#include "base/error.h"
 #include "render/faulty_shaders.h"
 #include "render/support.h"
 #include "stereo/rig.h"
@@ -340,10 +339,10 @@ TEST(Frame, SaysBeforehandWhatMemoryItStartsWith) {
 
 TEST(Frame, BadShapesAreNamed) {
   const Model model = test::random_model(74, 10, 0);
-  EXPECT_TRUE(test::fails_saying([&] { draw(model, std::vector<shared::View>{}); }, {"1 to 8 views"}));
+  EXPECT_ERROR(draw(model, std::vector<shared::View>{}), "1 to 8 views");
   shared::View empty = make_view(test::front_camera(16, 16, 16));
   empty.width = 0;
-  EXPECT_TRUE(test::fails_saying([&] { draw(model, empty); }, {"0 x 16"}));
+  EXPECT_ERROR(draw(model, empty), "0 x 16");
 }
 
 TEST(Frame, IsTimedWithoutTheMakingOfItsPrograms) {

@@ -1,12 +1,11 @@
 // Several models, each at its place in one frame: against the model that the CPU makes of them.
 
 #include <glm/gtc/quaternion.hpp>
-#include <numbers>
 
 #include "formats/model_file.h"
 #include "render/faulty_shaders.h"
 #include "render/support.h"
-#include "scene/framing.h"
+#include "scene/reduce.h"
 #include "scene/transform.h"
 #include "stereo/rig.h"
 #include "support/errors.h"
@@ -50,14 +49,7 @@ Model moved(Model model, const InstancePlace& place) {
 }
 
 Model joined(Model a, const Model& b) {
-  const std::size_t first = a.count();
-  a.resize(first + b.count());
-  const std::size_t floats = 3 * static_cast<std::size_t>(sh_count(a.degree));
-  std::ranges::copy(b.position, a.position.begin() + static_cast<std::ptrdiff_t>(first));
-  std::ranges::copy(b.rotation, a.rotation.begin() + static_cast<std::ptrdiff_t>(first));
-  std::ranges::copy(b.scale, a.scale.begin() + static_cast<std::ptrdiff_t>(first));
-  std::ranges::copy(b.opacity, a.opacity.begin() + static_cast<std::ptrdiff_t>(first));
-  std::ranges::copy(b.sh, a.sh.begin() + static_cast<std::ptrdiff_t>(first * floats));
+  append(a, b, 0, b.count());
   return a;
 }
 
@@ -139,8 +131,9 @@ TEST_F(Instances, PlantedFaultsAreCaught) {
   faulty({"projection.glsl", "precise vec3 jx = gain.x * (view.row_x.xyz",
           "precise vec3 jx = gain.x / view.eye.w * (view.row_x.xyz"},
          {});
-  faulty({"projection/tangent.glsl", "precise float distance = view.eye.w * sqrt",
-          "precise float distance = sqrt"},
+  faulty({"projection/tangent.glsl",
+          "vec3 away = d - view.eye.xyz;\n  precise float distance = view.eye.w * sqrt",
+          "vec3 away = d - view.eye.xyz;\n  precise float distance = sqrt"},
          {.order = ORDER_DISTANCE, .projection = PROJECTION_TANGENT});
   // Harmonics that are not turned.
   Model unturned = there;
@@ -149,15 +142,14 @@ TEST_F(Instances, PlantedFaultsAreCaught) {
 }
 
 TEST_F(Instances, AreSortedTogether) {
-  InstancePlace place = some_place();
-  place.opacity = 0.5f;
-  Model other = test::random_model(72, 3000, 3);
-  const auto several = draw({{upload(model), {}}, {upload(other), place}, {upload(model), some_place()}});
-  const auto expected =
-      test::draw(joined(joined(model, moved(other, place)), moved(model, some_place())), views);
+  const Model few = test::random_model(71, 100, 3), other = test::random_model(72, 60, 3);
+  InstancePlace place{.translation = {-0.3, 0.1, 0.6}, .scale = 0.4, .opacity = 0.5f};
+  const auto on_gpu = upload(few);
+  const auto several = draw({{on_gpu, {}}, {upload(other), place}, {on_gpu, some_place()}});
+  const auto expected = test::draw(joined(joined(few, moved(other, place)), moved(few, some_place())), views);
   for (std::size_t eye = 0; eye < 2; ++eye) EXPECT_GT(test::psnr(several[eye], expected[eye]), 60.0);
   place.opacity = 1.0f;
-  const auto opaque = draw({{upload(model), {}}, {upload(other), place}, {upload(model), some_place()}});
+  const auto opaque = draw({{on_gpu, {}}, {upload(other), place}, {on_gpu, some_place()}});
   EXPECT_LT(test::psnr(opaque[0], expected[0]), 40.0) << "planted: its opacity";
 }
 
@@ -166,8 +158,7 @@ TEST_F(Instances, KeepTheirOwnTraining) {
   Model other = test::random_model(73, 3000, 1);
   other.kernel_px2 = 0.1;
   other.antialiased = true;
-  InstancePlace behind{.translation = {0, 0, 40}}, far = behind;
-  far.translation.z = 60;
+  const InstancePlace behind{.translation = {0, 0, 40}};
   // Neither hides the other, so that each must be what it is alone.
   FrameSettings settings;
   const auto together = draw({{upload(model), {}}, {upload(other), behind}}, settings);
@@ -235,7 +226,8 @@ TEST_F(Instances, MayMoveAndComeAndGo) {
   EXPECT_TRUE(draw_next({{shown, place}}).used_measured);
   EXPECT_FALSE(draw_next({{shown, place}, {shown, {}}}).used_measured) << "another one";
   EXPECT_EQ(draw_next({}).visible, 0u);
-  for (const glm::vec4& pixel : frame.read_pictures()[0].colour) EXPECT_EQ(pixel, glm::vec4(0, 0, 0, 1));
+  const Picture empty = frame.read_pictures()[0];
+  for (const glm::vec4& pixel : empty.colour) EXPECT_EQ(pixel, glm::vec4(0, 0, 0, 1));
   EXPECT_GT(draw_next({{shown, {}}}).visible, 0u);
 }
 
@@ -256,7 +248,7 @@ TEST_F(Instances, KeepAQuality) {
 
 TEST(InstancesOfScenes, HalvesOfFoxAreFox) {
   REQUIRE_SCENE("fox", folder);
-  const Model fox = load_model(folder);
+  const Model fox = load_model(folder / "fox.ply");
   const Camera camera = look_at({0, 0, -3}, {0, 0, 0}, {0, -1, 0}, 60, 160, 120);
   const auto views = eyes_of(camera);
   const std::size_t half = fox.count() / 2;

@@ -6,7 +6,6 @@
 
 #include "render/history.h"
 #include "render/support.h"
-#include "stereo/rig.h"
 
 namespace binosplat {
 namespace {

@@ -4,7 +4,6 @@
 
 #include <cmath>
 
-#include "base/error.h"
 #include "scene/axes.h"
 #include "support/calibration.h"
 #include "support/errors.h"
@@ -63,14 +62,12 @@ TEST_F(ThresholdPolicyTest, RefusesWhatItIsNotFor) {
   policy().check(asked);
   policy().check_perspective(asked, model);
   policy().check_model(model);
-  EXPECT_TRUE(
-      test::fails_saying([&] { policy().check({.th = TH_PERIPHERAL, .transmittance = TRANSMITTANCE_DEPTH}); },
-                         {"c.json", "no entry for threshold peripheral with transmittance depth"}));
-  EXPECT_TRUE(test::fails_saying([&] { policy().check_model(test::random_model(4, 100, 1)); },
-                                 {"c.json", "another model (fox.ply, 100 Gaussians)"}));
-  EXPECT_TRUE(test::fails_saying(
-      [&] { policy().check_perspective({.th = TH_PERIPHERAL, .projection = PROJECTION_TANGENT}, model); },
-      {"is for order depth and projection affine", "drawn with order depth and projection tangent"}));
+  EXPECT_ERROR(policy().check({.th = TH_PERIPHERAL, .transmittance = TRANSMITTANCE_DEPTH}), "c.json",
+               "no entry for threshold peripheral with transmittance depth");
+  EXPECT_ERROR(policy().check_model(test::random_model(4, 100, 1)), "c.json",
+               "another model (fox.ply, 100 Gaussians)");
+  EXPECT_ERROR(policy().check_perspective({.th = TH_PERIPHERAL, .projection = PROJECTION_TANGENT}, model),
+               "is for order depth and projection affine", "drawn with order depth and projection tangent");
 }
 
 TEST_F(ThresholdPolicyTest, WithoutACalibrationSettingsStayAsTheyAre) {

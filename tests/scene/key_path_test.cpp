@@ -190,12 +190,12 @@ TEST(KeyPath, KeysAreNoFrames) {
 TEST(KeyPath, WhatIsNoPathIsRefused) {
   const Cameras set = keys();
   EXPECT_ERROR(frames_of(KeyPath(std::span<const Camera>(set).first(1)), 30.0),
-               "two keys or more, and there is 1: set another");
+               "two keys or more, and there is 1: add another");
   EXPECT_ERROR(KeyPath path(set, 0.0), "expected more than 0");
   Cameras back = set;
   std::swap(back[1].time, back[2].time);
-  EXPECT_ERROR(KeyPath path(back), "say in how many seconds");
-  EXPECT_ERROR(frames_of(KeyPath(set), 1e9), "too many");
+  EXPECT_ERROR(KeyPath path(back), "give the path's duration in seconds");
+  EXPECT_ERROR(frames_of(KeyPath(set), 1e9), "frames, more than");
 }
 
 }  // namespace

@@ -262,7 +262,8 @@ TEST(Foveate, WrongWordsAreNamed) {
   EXPECT_TRUE(test::fails_saying(said({.gaze = {{0, 0}, {0, 0}}}), {"2 gazes", "eye 2"}));
   EXPECT_TRUE(test::fails_saying(said({.seam = -1}), {"seam -1"}));
   EXPECT_ERROR(stereo::foveated_views(std::vector(5, view), {}), "5 eyes", "1 to 4");
-  EXPECT_ERROR(stereo::foveated_views(std::vector(1, view), {}, {.regions = {{}}}), "only regions are drawn");
+  EXPECT_ERROR(stereo::foveated_views(std::vector(1, view), {}, {.regions = {{}}}),
+               "foveation with view regions");
 }
 
 }  // namespace

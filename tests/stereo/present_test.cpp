@@ -189,7 +189,7 @@ TEST_F(Present, WhatCannotBeIsRefused) {
   EXPECT_TRUE(fails(0, LAYOUT_SEPARATE, {.texture = 4711}, blue, "texture 4711"));
   std::uint32_t empty = 0;
   caller.gl.CreateFramebuffers(1, &empty);
-  EXPECT_TRUE(fails(0, LAYOUT_SEPARATE, {.framebuffer = empty}, blue, "expected a complete one"));
+  EXPECT_TRUE(fails(0, LAYOUT_SEPARATE, {.framebuffer = empty}, blue, "expected a complete framebuffer"));
   EXPECT_TRUE(fails(0, LAYOUT_GREY, {.texture = plain}, std::nullopt, "give a background"));
   EXPECT_TRUE(fails(0, LAYOUT_QUAD_BUFFER, {.texture = plain}, blue, "each view by itself"));
   EXPECT_TRUE(fails(0, LAYOUT_MULTI_VIEW, {.texture = plain}, blue, "for OpenEXR"));

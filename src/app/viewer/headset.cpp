@@ -157,7 +157,7 @@ void view_in_headset(const RenderOptions& o, const preview::Opened& scene, previ
   std::unique_ptr<gl::Context> own;
   if (o.headset.mirror && has_display()) {
     if (o.context.device >= 0 || o.context.backend != gl::Backend::automatic)
-      fail("--device and --backend with a window, which its display draws: add --no-mirror");
+      fail("--device and --backend with the mirror window, which uses the display's GPU: add --no-mirror");
     try {
       mirror = std::make_unique<preview::Mirror>();
     } catch (const Error&) {

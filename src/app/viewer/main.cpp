@@ -41,7 +41,7 @@ namespace fs = std::filesystem;
 void check_view(const RenderOptions& o, bool is_sequence) {
   check(o);
   if (o.output.fps && !is_sequence)
-    fail("--fps is for a folder with several models, and {} is none", o.scene.name);
+    fail("--fps is for a folder with several models, not for {}", o.scene.name);
   if (is_sequence && o.headset.xr) fail("--fps: a headset shows one model: name one of the folder");
   if (o.camera.views.size() > 1)
     fail("--view {}: the window starts at one camera, and goes on to the next with N: name one",

@@ -75,8 +75,8 @@ def _expect(value: Any, kind: Any, name: str) -> None:
 
 def _refuse_masked(given: Any, name: str) -> None:
     if np.ma.is_masked(given):
-        raise InputError(f"{name}: a masked array, and a mask has no place here: leave the masked rows out, or fill "
-                         "them (filled())")
+        raise InputError(f"{name}: masked arrays are not supported: leave the masked rows out, or fill them "
+                         "(filled())")
 
 
 def _dense(array: NDArray[Any], kind: type) -> NDArray[Any]:
@@ -627,7 +627,7 @@ class Renderer:
         rule: str | None = th
         if th == "adagscale":
             if transmittance == "last":
-                raise InputError("th adagscale goes by its table by depth: for transmittance last take peripheral")
+                raise InputError("th adagscale uses its table by depth: for transmittance last give peripheral")
             rule, transmittance = "peripheral", "depth"
         policy = calibration._policy if calibration else None
         return self._renderer.settings(quality, tolerance, rule, transmittance, *others_but_last, policy)
