@@ -66,8 +66,8 @@ class ExrHeaders {
     const std::int64_t shown_width = extent(shown.min.x, shown.max.x),
                        shown_height = extent(shown.min.y, shown.max.y);
 
-    // The most pixels per byte. Pictures of one colour with up to 4 channels reached 7,000 with DWA, and 500 with
-    // other compressions. The limits are about twice as large.
+    // The most pixels per byte. Pictures of one colour with up to 4 channels reached 7,000 with DWA, and
+    // 500 with other compressions. The limits are about twice as large.
     const bool dwa = compression == EXR_COMPRESSION_DWAA || compression == EXR_COMPRESSION_DWAB;
     const int most = (dwa ? 16384 : 1024) * 4 / std::clamp(channels->num_channels, 4, 4096);
     const auto check_window = [&](std::int64_t w, std::int64_t h) {

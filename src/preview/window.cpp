@@ -108,7 +108,7 @@ void Window::run() {
     context_->check_alive();
   }
   if (loading_.loaded.valid() || levels_move()) {
-    // Nobody will see the model, and the reading thread holds nothing but memory: quit without waiting for it.
+    // Nobody will see the model, and the reading thread holds only memory: quit without waiting for it.
     log_info("left while {} was being read", loading_.loaded.valid() ? loading_.scene.name : scene_.name);
     std::quick_exit(0);
   }

@@ -1,6 +1,7 @@
 #pragma once
-// A thread that owns an OpenGL context. A context is current on one thread only, but Python may call functions
-// and collect garbage on any thread. A context that the caller made current on its own thread stays current.
+// A thread that owns an OpenGL context. A context is current on one thread only, but Python may call
+// functions and collect garbage on any thread. A context that the caller made current on its own thread
+// stays current.
 
 #include <condition_variable>
 #include <deque>

@@ -70,8 +70,8 @@ struct FrameBuffers {
     gl::Buffer measured;                              // uint by splat: the bits of the largest T as a float
   } transmittance;
 
-  // For Scaffold-GS, one buffer per page of the model: uint by (decoding, anchor). Bit k is set if the anchor's
-  // Gaussian k exists.
+  // For Scaffold-GS, one buffer per page of the model: uint by (decoding, anchor). Bit k is set if the
+  // anchor's Gaussian k exists.
   std::vector<std::unique_ptr<gl::Buffer>> kept;
 
   std::vector<std::unique_ptr<DrawnBuffers>> drawn;  // by order group
