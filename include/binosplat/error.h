@@ -17,7 +17,7 @@ enum class ExitCode {
 
 /// The library throws this if the caller, a file or the machine is at fault. what() is written for people: it
 /// names the file or the argument, the expected value, and the remedy. The library also passes std::bad_alloc
-/// on, and throws std::runtime_error for an OpenGL error of its own. After an error the object remains
+/// on, and throws std::runtime_error for its own OpenGL errors. After an error the object remains
 /// usable, unless its GPU was reset. It can be destroyed in any case.
 class Error : public std::runtime_error {
  public:
@@ -29,7 +29,7 @@ class Error : public std::runtime_error {
 };
 
 /// Turns off the library's messages on standard error; they are on by default. Each begins with "binosplat:
-/// ". Warnings are always written; quiet drops the others, such as the count of Gaussians that a file lost.
+/// ". Warnings are always written; quiet drops other messages, such as counts of lost Gaussians.
 /// Applies to the whole program; any thread may call it.
 void set_quiet(bool quiet);
 

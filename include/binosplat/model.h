@@ -49,7 +49,7 @@ class SplatModel {
   /// it. Removes Gaussians with numbers that are not finite, and reports their count on standard error. Takes
   /// anti-aliasing and low-pass from the file, or else from the trainer's file beside it. Reports on standard
   /// error the effects of the training that are not drawn. Throws Error(bad_input) if the path holds no such
-  /// model; the text says what the file looks like.
+  /// model; the text describes the file.
   explicit SplatModel(const std::filesystem::path& path, const ModelOptions& options = {});
 
   /// Copies Gaussians from arrays. Throws Error(bad_input), with the array and the row, for arrays of

@@ -45,7 +45,7 @@ struct ViewRegion {
   std::vector<glm::uvec2> columns = {};
   /// px. Tiles within [hole_begin, hole_end) are not drawn: an inset covers them.
   glm::uvec2 hole_begin{0}, hole_end{0};
-  float tolerance_share = 1.0f;  // the view's tolerance over the frame's; 0: the view is exact
+  float tolerance_share = 1.0f;  // the view's tolerance divided by the frame's; 0: exact
   /// For a picture with fewer pixels per degree than another one, such as the context around an inset: (its
   /// pixels per degree / the other's) squared, at most 1. The low-pass has the same width in px in every
   /// picture, so thin Gaussians would be too bright in this one. The renderer dims them by this factor.
@@ -88,10 +88,9 @@ struct Instance {
   DepthTable depth_table = {};
 };
 
-/// What a frame draws, and from where: instances, and the place of the eyes' space in their world. All
-/// instances are sorted by the middles of their Gaussians and blended together, as those of one model are.
-/// They cast no shadows on each other. The first instance's model sets the order and the projection, unless
-/// the settings do.
+/// The instances that a frame draws, and the place of the eyes' space in their world. All instances are
+/// sorted together by the middles of their Gaussians and blended like one model. They cast no shadows on each
+/// other. The first instance's model sets the order and the projection, unless the settings do.
 struct World {
   World(const Placement& of_eyes, std::span<const Instance> drawn) : placement(of_eyes), instances(drawn) {}
 
@@ -120,7 +119,7 @@ class Renderer {
   Renderer(GetProcAddress get_proc_address, const SplatModel& model, Precision precision = Precision::full);
   /// Draws the levels that a stream has read (binosplat/stream.h). A stream has one renderer at a time.
   Renderer(GetProcAddress get_proc_address, SplatStream& stream, Precision precision = Precision::full);
-  /// Holds no model yet, and draws those that add() uploads, as a World places them.
+  /// Begins without a model. add() uploads models, and a World places them.
   explicit Renderer(GetProcAddress get_proc_address, Precision precision = Precision::full);
   ~Renderer();
   Renderer(Renderer&&) noexcept;
@@ -137,9 +136,9 @@ class Renderer {
   /// millionth of its distance from the eyes' origin. The renderer moves it to the first one's depth, because
   /// rounding separates the poses of parallel eyes.
   ///
-  /// With a quality or measured transmittance, a frame uses the measurements of earlier ones. It starts anew
-  /// at a camera cut: a view turns by more than 15 degrees, moves by more than a tenth of the middle depth,
-  /// or has another size, frustum or set of tiles, or the number of views changes.
+  /// With a quality or measured transmittance, a frame uses the measurements of earlier frames. It starts
+  /// anew at a camera cut: a view turns by more than 15 degrees, moves by more than a tenth of the middle
+  /// depth, or has another size, frustum or set of tiles, or the number of views changes.
   ///
   /// If it throws Error, it submits nothing. bad_input: numbers that are not finite, an orientation of zero,
   /// an empty frustum or picture, contradictory settings, a target that is too small or cannot be drawn into,
@@ -147,21 +146,21 @@ class Renderer {
   /// context is not current.
   void submit(std::span<const View> views, const Placement& placement, const Settings& settings = {});
 
-  /// Uploads a model, or the levels that a stream has read, for the instances of a World. Once for each
-  /// model, between frames or while one is under way. Throws as the constructors do.
+  /// Uploads a model, or the levels that a stream has read, for the instances of a World. Call it once for
+  /// each model, between frames or while a frame is under way. Throws as the constructors do.
   ModelId add(const SplatModel& model);
   ModelId add(SplatStream& stream);
   /// Frees a model. Throws Error(bad_input) while a frame is under way, and for a model that is not held.
   void remove(ModelId model);
 
   /// Draws a World as submit() draws a single model. Instances may move, and come and go, from frame to
-  /// frame: no Gaussian is uploaded for that. Measurements of earlier frames hold as long as no instance
-  /// moves, turns or grows past the limits above, as the views see it. A Scaffold-GS model is drawn alone,
-  /// and not moved. bad_input also for a model that is not held, and numbers out of range.
+  /// frame, and no such change uploads a Gaussian. Measurements of earlier frames stay valid as long as no
+  /// instance moves, turns or grows past the limits above, as the views see it. A Scaffold-GS model must be
+  /// the only instance, and unmoved. bad_input also for a model that was not added, and numbers out of range.
   void submit(std::span<const View> views, const World& world, const Settings& settings = {});
 
-  /// The place of the eyes' space in the world of an instance's model, whose axes are those of its file:
-  /// for Calibration::settings() and SplatStream::begin_frame().
+  /// The place of the eyes' space in the world of an instance's model, with the axes of the model's file.
+  /// Calibration::settings() and SplatStream::begin_frame() take it.
   Placement in_model(const Placement& placement, const Instance& instance) const;
 
   /// Compiles every shader that frames of these settings and targets may need, so that no submit() has to.
@@ -209,14 +208,14 @@ inline const Settings adagscale{.threshold = Threshold::peripheral, .transmittan
 /// Copies are cheap. Any thread may call these functions; they need no context.
 class Calibration {
  public:
-  /// Reads the file, and compares all numbers of the model with those of the calibrated one. Throws
+  /// Reads the file, and compares all numbers of the model with the calibrated model's. Throws
   /// Error(bad_input) for a file of another kind, and for another model.
   Calibration(const std::filesystem::path& path, const SplatModel& model);
 
   /// Returns `asked` with the file's table. If `asked` has neither a tolerance nor a quality, adds the file's
   /// tolerance for its threshold (none: squared) and transmittance, scaled to the first view's focal length.
   /// The result is exact if the first eye is too far from the calibrated cameras: more than twice the largest
-  /// distance between neighbours of them. Throws Error(bad_input) if the file lacks that threshold and
+  /// distance between neighbouring cameras. Throws Error(bad_input) if the file lacks that threshold and
   /// transmittance, or has another order or projection. Throws as Renderer::submit() does for views.
   Settings settings(std::span<const View> views, const Placement& placement,
                     const Settings& asked = adagscale) const;

@@ -38,14 +38,14 @@ struct Report {
   std::uint32_t order_groups = 0;
 
   float tolerance = 0.0f;  // the frame's tolerance; 0: it is exact
-  /// With Settings::quality: the PSNR in dB of the worst view, from the measurements of this frame and
-  /// earlier ones. Infinite if nothing differs.
+  /// With Settings::quality: the PSNR in dB of the worst view, from the measurements of this and earlier
+  /// frames. Infinite if nothing differs.
   double quality = 0.0;
   bool quality_is_estimate = false;  // measured on a part of this frame: may be some dB off
   int attempts = 0;                  // drawings until the quality held
   int redrawn = 0;                   // drawings that were repeated because a buffer was too small
   int programs_made = 0;             // shaders that were compiled for the frame, or loaded from the cache
-  bool used_measured = false;        // the frame used the transmittance that an earlier one measured
+  bool used_measured = false;        // the frame used transmittance that an earlier frame measured
   bool sampled_error = false;        // the frame also drew some tiles exactly, to measure its error
   /// With a quality or measured transmittance: the frame could not use earlier measurements. True for the
   /// first frame and after a camera cut.
@@ -80,10 +80,11 @@ class FrameBudget {
 
   Effort effort() const;
 
-  /// Records that a frame of this effort took `ms` (Report::gpu_ms); the display shows one every `period_ms`.
-  /// Ignores the first frame of an effort. Lowers the effort after one frame that is late by a third, or two
-  /// late ones in a row. Raises it after a second of frames that take less than three quarters of the time.
-  /// After each raise that was too much, the next one takes twice as many seconds, up to 32.
+  /// Records that a frame of this effort took `ms` (Report::gpu_ms); the display shows a frame every
+  /// `period_ms`. Ignores the first frame of an effort. Lowers the effort after one frame that is late by a
+  /// third, or two late frames in a row. Raises it after a second of frames that take less than three
+  /// quarters of the time. After each raise that was too much, the next raise takes twice as many seconds, up
+  /// to 32.
   void took(double ms, double period_ms);
 
  private:

@@ -61,15 +61,15 @@ enum class DepthKind {
 };
 
 /// Foveated pictures: each eye has an inset about its gaze, and around it the context, which has fewer pixels
-/// and is scaled up. The inset is exact; in full precision to the bit. Degrees are those of the eye. The
-/// middle of its picture is on its axis, also in an asymmetric frustum.
+/// and is scaled up. The inset is exact; in full precision to the bit. Degrees are
+/// measured at the eye. The middle of its picture is on its axis, also in an asymmetric frustum.
 struct Foveation {
   double inset_degrees = 20.0;  // width of the exact part around the gaze, from 1 to 120
-  double context_scale = 0.4;   // the context's pixels along each axis over the picture's, from 0.05 to 1
+  double context_scale = 0.4;   // ratio of the context's to the picture's pixels along each axis, 0.05 to 1
   /// Degrees to the right of the eye's axis and above it, at most 80. One per eye, or one for all; empty:
   /// along the axis.
   std::vector<glm::dvec2> gaze = {};
-  /// The width of the border in which the inset fades into the context, over the inset's width. 0: no border.
+  /// The border in which the inset fades into the context, as a share of the inset's width. 0: no border.
   double seam = 0.1;
 };
 

@@ -17,7 +17,7 @@ namespace binosplat {
 /// glasses, with red for the left eye, and need a background. The numbers are the program's; its layouts 1
 /// and 2 are for files and windows only.
 enum class Layout {
-  separate = 0,      // each view in a target of its own
+  separate = 0,      // each view in its own target
   parallel = 3,      // side by side, the left eye's on the left: twice as wide
   cross_eyed = 4,    // side by side, swapped: for crossed eyes
   half_width = 5,    // parallel, each squeezed to half its width; the width is even
@@ -36,8 +36,8 @@ enum class Layout {
 /// The renderer writes in place, without a copy, into a 2D texture or a layer of an array of these formats:
 /// GL_RGBA8, RGBA16, RGBA16F, RGBA32F, RGB10_A2, and GL_SRGB8_ALPHA8 with immutable storage
 /// (glTextureStorage2D and the like). A framebuffer is written in place if its only colour attachment is such
-/// a texture. For other targets the renderer draws its own picture first: 4 bytes a pixel, or 16 if the
-/// target keeps more than 8 bits of a colour.
+/// a texture. For other targets the renderer draws its own picture first, with 4 bytes per pixel, or 16
+/// if the target keeps more than 8 bits of a colour.
 ///
 /// Colours are display-referred, as models are trained: a texture of GL_SRGB8_ALPHA8 holds such values. The
 /// caller's GL_FRAMEBUFFER_SRGB, blending, masks and tests do not affect them. All draw buffers of a
@@ -54,8 +54,8 @@ struct Target {
   /// sRGB's this way.
   bool linear = false;
   /// Whether shaders may write into the target. Set it to false for an OpenXR swapchain without
-  /// XR_SWAPCHAIN_USAGE_UNORDERED_ACCESS_BIT, such as Monado's of sRGB. The renderer then draws its own
-  /// picture and copies it into the target.
+  /// XR_SWAPCHAIN_USAGE_UNORDERED_ACCESS_BIT, such as Monado's sRGB swapchains. The renderer then draws its
+  /// own picture and copies it into the target.
   bool in_place = true;
 };
 

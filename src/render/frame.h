@@ -47,7 +47,7 @@ struct FrameReport {
   int tile_size = 0;                  // px
   float tolerance = 0.0f;             // K or kappa of the frame
   bool used_measured = false;         // the frame used the transmittance that an earlier one measured
-  bool measured = false;              // the frame measured transmittance for later ones
+  bool measured = false;              // the frame measured transmittance for later frames
   bool sampled_error = false;         // the frame also drew some tiles exactly, to measure its error
   bool is_cut = false;  // no earlier measurements could be used: it is the first, or follows a camera cut
   bool on_canvases = false;  // the pictures are on the caller's canvases only

@@ -64,7 +64,7 @@ PlannedModel planned(const Model& model, const ModelSize& size);
 /// make_plan() derives it once from settings, views and model. history.h keeps the state that frames share.
 struct FramePlan {
   FrameSettings settings;
-  float tolerance = 0.0f;            // K or kappa: the settings', or the one found for a quality
+  float tolerance = 0.0f;            // K or kappa, of the settings or found for a quality
   bool between_pixels = false;       // Workings::between_pixels
   bool visibility_as_depth = false;  // Workings::visibility_as_depth
   Perspective perspective;
@@ -99,7 +99,7 @@ struct FramePlan {
   /// Whether splats are blended by blocks, which end once their pixels are opaque (docs/method.md 5.2).
   bool is_approximate() const { return settings.th == TH_SQUARED && settings.tiles == TILES_ELLIPSE; }
   std::uint32_t view_count() const { return static_cast<std::uint32_t>(views.size()); }
-  /// The tiles of all supertiles: slightly more than those of the pictures.
+  /// The tiles of all supertiles: slightly more than the pictures have.
   std::uint32_t tile_count() const { return supertile_count * SUPERTILE_SIDE * SUPERTILE_SIDE; }
   std::uint32_t supertiles_of(std::uint32_t view) const {
     return (view + 1 < view_count() ? views[view + 1].supertile_offset : supertile_count) -
@@ -110,7 +110,7 @@ struct FramePlan {
   std::uint32_t decoding_of_probe() const { return probe ? probe->view / views_per_decoding : 0; }
 };
 
-/// The settings' order and projection, or else those of the model's training.
+/// The order and projection of the settings, or else of the model's training.
 Perspective perspective_of(const FrameSettings& settings, const Model& model);
 
 /// Inputs of a plan besides settings.

@@ -72,7 +72,7 @@ class GpuModel {
 
   /// Returns the model in that precision, and uploads it if no frame holds it. It stays on the GPU as long as
   /// a frame holds it. The last requested precision also stays, until a reload while frames hold only the
-  /// other one. Throws as the constructor does.
+  /// other precision. Throws as the constructor does.
   std::shared_ptr<ModelBuffers> in(int precision);
 
   /// Uploads the model again after a change: the same scene at other levels of detail. Reuses buffers that

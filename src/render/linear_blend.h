@@ -44,8 +44,8 @@ class LinearBlend {
   std::vector<glm::dvec4> transposed(float largest);
 
   /// For each of drawn(): the squared change of the picture if it alone is removed, summed over pixels and
-  /// channels. Uses the model's colours, or those set last. Each pixel adds a multiple of 1 / CHANGE_SCALE,
-  /// and at most CHANGE_MOST.
+  /// channels. Uses the model's colours, or the colours set last. Each pixel adds a multiple of 1 /
+  /// CHANGE_SCALE, and at most CHANGE_MOST.
   std::vector<double> changes();
 
  private:

@@ -27,7 +27,7 @@ struct Capacity {
   std::int64_t tile_pairs = 0;   // Gaussian-tile pairs
   std::int64_t rounds = 0;       // rounds that split lists too long to sort at once
 
-  /// Starts with at least the sizes for a frame of this plan, or exactly those that `asked` names.
+  /// Starts with at least the sizes for a frame of this plan, or exactly the sizes that `asked` names.
   void start(const FramePlan& plan, const Workings& asked);
 
   /// Enlarges the overflowed buffers to the size they needed and a margin, and logs it. Throws

@@ -1,5 +1,5 @@
 #pragma once
-// Copies pictures from the GPU, while it draws the next ones.
+// Copies pictures from the GPU, while the GPU draws the next pictures.
 
 #include <cstdint>
 #include <memory>

@@ -17,7 +17,7 @@
 
 namespace binosplat::render {
 
-/// Whether frames measure transmittance for later ones.
+/// Whether frames measure transmittance for later frames.
 constexpr bool measures(int transmittance) { return transmittance == TRANSMITTANCE_LAST; }
 
 /// Frames after a camera cut until measured transmittance has settled; three are enough for most.

@@ -23,7 +23,7 @@ class SquaredError {
   /// Starts without wanted pictures; add() appends them.
   explicit SquaredError(gl::Context& context);
 
-  /// Appends the pixels that a frame has just drawn to the wanted ones; they stay on the GPU.
+  /// Appends the pixels that a frame has just drawn to the wanted pixels, which stay on the GPU.
   void add(const gl::Buffer& colours, std::uint32_t pixels);
   /// The same for a window: its first pixel has the index `first`, and its rows are `pitch` pixels apart.
   void add_window(const gl::Buffer& colours, glm::uvec2 size, std::uint32_t first, std::uint32_t pitch);

@@ -13,8 +13,8 @@ void decode(gl::Dispatcher& dispatcher, const FramePlan& plan, const ModelBuffer
 /// The buffers of the plan's models.
 using DrawnModels = std::span<const std::shared_ptr<ModelBuffers>>;
 
-/// Culls the Gaussians for an order group, and projects the others in index order for each of its views:
-/// splats and tile coverage by slot, and depths.
+/// Culls the Gaussians for an order group, and projects the remaining Gaussians in index order for each of
+/// its views. Writes splats and tile coverage by slot, and depths.
 void project(gl::Dispatcher& dispatcher, const FramePlan& plan, std::uint32_t group, bool measures,
              DrawnModels models, FrameBuffers& buffers);
 

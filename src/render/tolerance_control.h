@@ -10,8 +10,8 @@
 
 namespace binosplat::render {
 
-/// Chooses the tolerance of each frame from the results of its own and earlier probes. A probe has tiles
-/// evenly spread over a view; probes cycle through the views, and through the tiles of each. The control aims
+/// Chooses the tolerance of each frame from its probe and earlier probes. A probe has tiles evenly
+/// spread over a view. Probes cycle through the views, and through the tiles of each. The control aims
 /// at the requested quality in the worst view; single frames may miss it by some tenths of a dB.
 ///
 /// A rule's mean squared error grows as a power of its tolerance (docs/method.md 8: kappa^1.3, K^2 on trained
@@ -19,9 +19,9 @@ namespace binosplat::render {
 /// estimates the exponent anew. So the tolerance falls at once and rises carefully. It also follows small
 /// changes of the requested quality.
 ///
-/// A frame that does not hold must be drawn again. After a camera cut this lasts until every view holds.
-/// Later it happens if a probe shows much more error than expected. If a view is so small that a probe has
-/// all its tiles, it lasts until all views were measured. Each attempt is
+/// A frame that misses the quality must be drawn again. After a camera cut, the frame is drawn again until
+/// every view holds. Later this happens if a probe shows much more error than expected. If a view is so small
+/// that a probe has all its tiles, the frame is drawn again until all views were measured. Each attempt is
 ///   next_probe(), next_tolerance(), the drawing, measured(), and again unless holds().
 class ToleranceControl {
  public:
@@ -29,7 +29,7 @@ class ToleranceControl {
   void forget();
 
   /// Whether a frame of these settings can be drawn at tolerance() without a probe. False for views whose
-  /// probe has all tiles: single Gaussians may change their error by some dB a frame.
+  /// probe has all tiles: single Gaussians may change their error by some dB per frame.
   bool knows(std::span<const shared::View> views, const FrameSettings& settings) const;
   float tolerance() const { return static_cast<float>(tolerance_); }
 
@@ -54,7 +54,7 @@ class ToleranceControl {
  private:
   struct Estimate {
     double error = 0.0;      // mean squared error of the view's probed tiles
-    double weight = 0.0;     // number of tiles; older ones count less
+    double weight = 0.0;     // number of tiles; older tiles count less
     double tolerance = 0.0;  // the tolerance of `error`
     bool measured = false;   // on the whole view in this frame
   };

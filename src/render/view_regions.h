@@ -19,13 +19,13 @@ struct ViewRegion {
   /// picture. Corner and size are multiples of BLEND_CELL px, or end at the picture's edge. A size of 0 also
   /// reaches the edge. In Scaffold-GS models a window may have other Gaussians than the whole picture.
   glm::uvec2 corner{0}, size{0};
-  /// The drawn columns of tiles [x, y), one range per row of tiles. Other tiles, such as those that no lens
-  /// shows, get no pairs; their pixels have C = 0 and T = 1. Tiles are of settings.tile_size px, counted from
+  /// The drawn columns of tiles [x, y), one range per row of tiles. Other tiles, such as tiles that no lens
+  /// shows, get no pairs. Their pixels have C = 0 and T = 1. Tiles are of settings.tile_size px, counted from
   /// the window's corner. Empty: all are drawn.
   std::vector<glm::uvec2> columns;
   /// px from the window's corner. Tiles within [hole_begin, hole_end) are not drawn.
   glm::uvec2 hole_begin{0}, hole_end{0};
-  /// The view's tolerance over the frame's; 0: the view is exact.
+  /// The ratio of the view's tolerance to the frame's. 0: the view is exact.
   float tolerance_share = 1.0f;
   /// For a picture with fewer pixels than another one of the same view: (its pixels along an axis / the
   /// other's) squared, below 1. The low-pass has the same width in px in every picture, so thin Gaussians

@@ -11,7 +11,7 @@
 
 namespace binosplat {
 
-/// Returns whether all cameras have times, each later than the one before.
+/// Returns whether all cameras have times, each later than the time before.
 bool times_rise(std::span<const Camera> cameras);
 
 /// Returns whether cameras are keys, and not the frames of a path: their times rise, with a median step above
@@ -31,7 +31,7 @@ class KeyPath {
   double seconds() const { return knots_.back().at; }
 
   /// Returns the camera `seconds` after the first key, with that `time`. It has the first key's size; the
-  /// lenses of the others are resized() to it.
+  /// lenses of all other cameras are resized() to it.
   Camera at(double seconds) const;
 
  private:

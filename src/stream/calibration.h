@@ -46,8 +46,8 @@ struct SampleError {
 SampleError sample_error(const LevelChoice& choice, std::span<const std::size_t> levels,
                          std::span<const std::size_t> sample, double measured);
 
-/// The calibration factor: the measured error of levels over the predicted one. It is a mean over samples
-/// with fading weights. A sample that covers 99 % of the predicted error replaces it.
+/// The calibration factor: the ratio of the measured to the predicted error of levels. It is a mean over
+/// samples with fading weights. A sample that covers 99 % of the predicted error replaces it.
 class LevelCalibration {
  public:
   void add(const SampleError& error);

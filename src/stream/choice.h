@@ -28,7 +28,7 @@ struct DetailRequest {
   std::size_t most = any_number;      // Gaussians of the model
   std::optional<double> db = {};      // replaces apart_px: each view's PSNR against the finest levels
   bool heads_turn = true;             // with db: also refine chunks out of view
-  double calibration = 1.0;           // with db: the loss of levels over the predicted loss
+  double calibration = 1.0;           // with db: the ratio of the loss of levels to the predicted loss
   std::size_t most_new = any_number;  // with db: Gaussians to read; one chunk always may be read
 };
 
@@ -116,7 +116,7 @@ LevelChoice choose_levels(const std::vector<LodChunk>& chunks, std::span<const s
 
 /// Chooses levels by the spacing of Gaussians. All chunks begin with their coarsest level. While there is
 /// room, the chunk with the largest spacing for its nearest eye gets its next finer level. The spacing in
-/// radians is the box's diagonal by the root of the count of Gaussians, over the distance to the box. A chunk
+/// radians is the box's diagonal, divided by the root of the count of Gaussians and by the distance. A chunk
 /// whose spacing is at most `enough` stays as it is. The choice is shared by all eyes. It exceeds `most`
 /// Gaussians only if the coarsest levels do. Hysteresis keeps levels steady. Spacings count as a tenth larger
 /// for steps to levels no finer than the chunk's in `before` (a choice for the same chunks). For steps to
@@ -150,10 +150,10 @@ LevelChoice choose_within(const std::vector<LodChunk>& chunks, const std::vector
                           const ErrorBudget& budget, const VisibleChunks& visible = {},
                           std::span<const std::size_t> before = {});
 
-/// Returns a level's squared error over the visible area of its chunk (ChunkVisibility::area). The eye looks
-/// `along` a vector of any length, and a pixel covers `width` world units. Between the file's widths,
-/// logarithms are interpolated linearly. Wider pixels use the widest one's error; for narrower pixels the
-/// error grows by a power law.
+/// Returns the ratio of a level's squared error to the visible area of its chunk (ChunkVisibility::area). The
+/// eye looks `along` a vector of any length, and a pixel covers `width` world units. Between the file's
+/// widths, logarithms are interpolated linearly. Wider pixels use the error at the widest; for narrower
+/// pixels the error grows by a power law.
 double relative_error(const LodChunk& chunk, std::size_t level, double width, const glm::dvec3& along);
 
 /// The error of views while a few levels change at a time. It is updated by the changes, since a frame has no

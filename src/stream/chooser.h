@@ -18,7 +18,7 @@ class Chooser {
 
   LevelChoice choose(std::span<const shared::View> views, const DetailRequest& request,
                      const VisibleChunks& visible);
-  /// Makes the next choice independent of earlier ones.
+  /// Makes the next choice independent of earlier choices.
   void forget() { before_.clear(); }
 
  private:

@@ -41,7 +41,7 @@ class LodFiles {
   std::size_t count(std::span<const std::size_t> levels) const;
   /// The same at the finest levels.
   std::size_t finest() const;
-  /// Gaussians for which a model needs room beside those of its levels. They fill up half empty blocks and,
+  /// Gaussians for which a model needs room beside its levels. They fill up half empty blocks and,
   /// if the files have errors, hold a calibration sample at its finest levels (at most an eighth of all
   /// Gaussians).
   std::size_t spare() const { return spare_; }
@@ -61,7 +61,7 @@ class LodFiles {
   /// time, on any thread. The order is:
   /// - first chunks that get fewer Gaussians, so that the model never has more than before or after;
   /// - then, for a choice by dB, files that save the most error per Gaussian; otherwise coarse levels before
-  ///   fine ones.
+  ///   fine levels.
   ///
   /// With `goes_on`, each file is passed on as soon as it is decoded, and no further file is begun after
   /// `goes_on` returned false. Throws Error if a file has become unreadable.

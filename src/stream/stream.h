@@ -18,8 +18,8 @@ class Stream : public StreamedModel {
   /// and onto the GPU. Or, if levels are chosen by dB, it draws one view of a visibility pass. The worker
   /// chooses and reads levels for the views. While the views move, the second half of a pass measures the
   /// views predicted for the time when their levels arrive. When the views rest and their levels are
-  /// complete, one call takes longer than `ms`, to calibrate the loss of levels. The views are those of one
-  /// frame, in the model's frame of reference. Uses the settings `quality` and those of
+  /// complete, one call takes longer than `ms`, to calibrate the loss of levels. The views belong to
+  /// one frame, in the model's frame of reference. Uses the settings `quality` and the settings of
   /// Visibility::measure(). Returns whether the model has changed. Rethrows an error of the worker, which
   /// then stops reading.
   bool begin_frame(std::span<const shared::View> views, const render::FrameSettings& settings, double ms);
@@ -46,7 +46,7 @@ class Stream : public StreamedModel {
   double lost_now() const;
 
   struct Pass {
-    std::vector<shared::View> views;  // measured so far: current views, then predicted ones
+    std::vector<shared::View> views;  // measured so far: current views, then predicted views
     std::size_t here = 0, all = 0;    // number of current views in the pass, and of all
     VisibleChunks visible;            // visibility in `views`
     Clock::time_point began = {};

@@ -79,7 +79,7 @@ class StreamedModel {
   /// `lost` multiplies the predicted loss of levels.
   DetailRequest request_for(std::span<const shared::View> views, double lost = 1.0) const;
   std::optional<double> db_for(double quality) const;
-  /// Returns whether these views equal those of the last frame or picture, bit for bit.
+  /// Returns whether the last frame or picture had these views, bit for bit.
   bool are_last(std::span<const shared::View> views) const;
   /// Puts chunks that were read into the model.
   void put(std::span<const LodFiles::Piece> pieces);

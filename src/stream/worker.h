@@ -19,7 +19,7 @@
 namespace binosplat {
 
 /// Chooses levels for the last request and reads their chunks, until another request arrives. Its loops use
-/// up to half of the cores; the others draw frames.
+/// up to half of the cores. The other cores draw frames.
 class StreamWorker {
  public:
   /// A request for levels, for views of one frame in the model's frame of reference.
@@ -27,7 +27,7 @@ class StreamWorker {
     std::vector<shared::View> views;
     DetailRequest detail;
     VisibleChunks visible;
-    std::size_t here = 0;       // number of current views; they come first, predicted ones follow
+    std::size_t here = 0;       // number of current views, which precede predicted views
     Clock::time_point at = {};  // time of the current views
   };
   /// The last choice.
