@@ -11,8 +11,8 @@
 #include "base/error.h"
 #include "formats/calibration_file.h"
 #include "python/module.h"
+#include "python/released_gil.h"
 #include "python/renderer.h"
-#include "python/unlocked.h"
 #include "scene/axes.h"
 
 namespace binosplat::python {
@@ -27,7 +27,7 @@ std::shared_ptr<Renderer> open(std::shared_ptr<Model> model, const std::string& 
     fail("device {}: backend {} has none", *device, backend);
   if (device && *device < 0) fail("device {}: devices are numbered from 0", *device);
   const int kept = find_choice("precision", precision, precision_choices);
-  const Unlocked unlocked;
+  const ReleasedGil released;
   return std::make_shared<Renderer>(std::move(model), chosen, device.value_or(-1), kept);
 }
 
@@ -168,7 +168,7 @@ class Frames {
 };
 
 void close(const std::shared_ptr<Renderer>& renderer) {
-  const Unlocked unlocked;
+  const ReleasedGil released;
   renderer->close();
 }
 
@@ -178,7 +178,7 @@ void add_renderer(py::module_& module) {
   const py::class_<Settings> settings(module, "Settings");
   py::class_<render::ThresholdPolicy>(module, "Calibration")
       .def(py::init([](const std::filesystem::path& path, const std::shared_ptr<Model>& model) {
-        const Unlocked unlocked;
+        const ReleasedGil released;
         render::ThresholdPolicy policy(path.string(), load_calibration(path));
         policy.check_model(*model);
         return policy;

@@ -83,7 +83,7 @@ class Renderer {
   }
   ~Renderer() {
     const bool is_here = GlThread::in_its_process();  // in a fork, thread and context are gone
-    if (is_here && !(Unlocked::ends_by_interrupt() && thread_->is_busy())) {
+    if (is_here && !(ReleasedGil::ends_by_interrupt() && thread_->is_busy())) {
       close();
     } else {
       // Leak all that the thread may still use.
