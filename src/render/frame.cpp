@@ -75,6 +75,7 @@ void Frame::place(std::vector<Instance> instances) {
   };
   if (std::ranges::equal(drawn, drawn_, same)) return;  // and what was noted of their uploads holds
   drawn_ = std::move(drawn);
+  model_buffers_.clear();  // frees the models that are gone
   is_placed_anew_ = true;
 }
 
