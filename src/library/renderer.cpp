@@ -114,11 +114,12 @@ struct Renderer::Impl {
       library::check_numbers(instance, name);
       if (!instance.is_shown || instance.opacity == 0.0f) continue;
       const ModelAxes& axes = model.on_gpu->model().axes;
-      render::InstancePlace place{.rotation = instance.rotation * world_from_axes(axes.letters),
-                                  .scale = instance.scale,
-                                  .opacity = instance.opacity,
-                                  .depth_table = instance.depth_table};
-      place.translation = instance.translation + place.scale * (place.rotation * axes.origin);
+      render::InstancePlace place = render::in_frame({.rotation = instance.rotation,
+                                                      .translation = instance.translation,
+                                                      .scale = instance.scale,
+                                                      .opacity = instance.opacity,
+                                                      .depth_table = instance.depth_table},
+                                                     axes, ModelAxes{});
       if (scene.origin == glm::dvec3(0.0) && axes.origin != glm::dvec3(0.0)) scene.origin = place.translation;
       scene.instances.push_back({model.on_gpu, std::move(place)});
       if (model.stream) scene.streams.push_back(model.stream.get());

@@ -2,7 +2,9 @@
 
 #include <cmath>
 #include <filesystem>
+#include <glm/gtc/type_ptr.hpp>
 #include <memory>
+#include <tuple>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -167,6 +169,26 @@ class Frames {
   bool has_begun_ = false;
 };
 
+/// Models, their matrices row by row, and their opacities.
+using Instances = std::vector<std::tuple<std::shared_ptr<Model>, std::array<double, 16>, float>>;
+
+void place(const std::shared_ptr<Renderer>& renderer, const Instances& instances) {
+  std::vector<Placed> placed;
+  for (std::size_t k = 0; k < instances.size(); ++k) {
+    const auto& [model, numbers, opacity] = instances[k];
+    auto place = render::place_of(glm::transpose(glm::make_mat4(numbers.data())));
+    if (!place)
+      fail(
+          "instances[{}]: its matrix is not a rotation, a scale above 0 and a translation, with 0 0 0 1 "
+          "below",
+          k);
+    if (!(opacity >= 0.0f && opacity <= 1.0f)) fail("instances[{}]: opacity {}: expected 0 to 1", k, opacity);
+    place->opacity = opacity;
+    placed.push_back({model, *place});
+  }
+  awaited(renderer->place(std::move(placed)));
+}
+
 void close(const std::shared_ptr<Renderer>& renderer) {
   const ReleasedGil released;
   renderer->close();
@@ -191,6 +213,7 @@ void add_renderer(py::module_& module) {
            py::arg("decode"), py::arg("background"), py::arg("near"), py::arg("depth"), py::arg("follow"),
            py::arg("calibration"))
       .def("draw", &draw, py::arg("view"), py::arg("settings"))
+      .def("place", &place, py::arg("instances"))
       .def("close", &close);
   py::class_<Frames>(module, "Path")
       .def(py::init<std::shared_ptr<Renderer>, const Settings&>())
