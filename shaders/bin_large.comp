@@ -62,11 +62,11 @@ bool are_one(uvec2 a, uvec2 b) { return max(a.x, b.x) <= min(a.y, b.y); }
 void main() {
   uint self = gl_LocalInvocationIndex;
   uint first = group_index() * LARGE_EACH;
-  if (first >= counters.large) return;
+  if (first >= counters.large_splats) return;
   uint nth_of_all = first + self / EYE_COUNT, eye = self % EYE_COUNT;
   if (self < LARGE_EACH * EYE_COUNT) {
     uvec4 box = uvec4(0u);
-    if (nth_of_all < counters.large) {
+    if (nth_of_all < counters.large_splats) {
       uint splat = large[nth_of_all], v = view_of(splat) + eye;
       splat += eye * frame.slots;
       if (v < frame.view_count && coverages[splat] != 0u) box = box_of_tiles(outline_of(SPLAT(splat), views[v]), views[v]);
@@ -158,7 +158,7 @@ void main() {
     memoryBarrierShared();
     barrier();
   }
-  if (self < LARGE_EACH * EYE_COUNT && nth_of_all < counters.large && touches[self / EYE_COUNT][eye] == 0u) {
+  if (self < LARGE_EACH * EYE_COUNT && nth_of_all < counters.large_splats && touches[self / EYE_COUNT][eye] == 0u) {
     uint splat = large[nth_of_all];
     if (view_of(splat) + eye < frame.view_count) coverages[splat + eye * frame.slots] = 0u;
   }

@@ -78,9 +78,9 @@ void main() {
       barrier();
       if (lit == 0u) break;
 #if APPROXIMATE
-      bool is_asked = (batch - begin) % APPROXIMATE_STEP == 0u;
-      if (is_asked && (bright & dark_bit) == 0u) end_dark();
-      if (MEASURE != MEASURE_TRANSMITTANCE && is_asked && bright == 0u) break;  // measurements include splats behind
+      bool is_test_step = (batch - begin) % APPROXIMATE_STEP == 0u;
+      if (is_test_step && (bright & dark_bit) == 0u) end_dark();
+      if (MEASURE != MEASURE_TRANSMITTANCE && is_test_step && bright == 0u) break;  // measurements include splats behind
 #endif
     }
     load(batch + gl_LocalInvocationIndex);

@@ -4,7 +4,7 @@
 uniform uint shown;
 layout(std430, binding = 8) writeonly buffer DebugView { float debug_values[]; };  // below 0: no value
 #if !MEASURE
-layout(std430, binding = 7) readonly buffer Measured { uint measured[]; };  // SHOW_LIGHT: max(T) of each splat
+layout(std430, binding = 7) readonly buffer Measured { uint measured[]; };  // SHOW_TRANSMITTANCE: max(T) of each splat
 #endif
 shared float batch_transmittance[BATCH];
 float debug_value;
@@ -12,7 +12,7 @@ float debug_value;
 void begin_debug_view() { debug_value = shown == SHOW_MEDIAN_DEPTH ? -1.0 : 0.0; }
 
 void debug_stage(uint at, uint splat) {
-  if (shown == SHOW_LIGHT) batch_transmittance[at] = uintBitsToFloat(measured[splat]);
+  if (shown == SHOW_TRANSMITTANCE) batch_transmittance[at] = uintBitsToFloat(measured[splat]);
 }
 
 // Counts alphas, including that of the splat before which the pixel stops.
@@ -22,19 +22,19 @@ void debug_evaluated(uint at) {
 
 void debug_blended(uint at, float weight) {
   if (shown == SHOW_VISIBLE && weight > 0.0) debug_value += 1.0;
-  if (shown == SHOW_LIGHT) debug_value += weight * batch_transmittance[at];
+  if (shown == SHOW_TRANSMITTANCE) debug_value += weight * batch_transmittance[at];
   if (shown == SHOW_MEDIAN_DEPTH && debug_value < 0.0 && weight > 0.0 && transmittance[0] < 1.0 - float(COVERAGE_FOR_DEPTH))
     debug_value = depth_of(at);
 }
 
 // A block ended dark: scales the value like the colour.
 void debug_scale(float scale) {
-  if (shown == SHOW_LIGHT) debug_value *= scale;
+  if (shown == SHOW_TRANSMITTANCE) debug_value *= scale;
 }
 
 void write_debug_view(uint to, float left, uint list) {
   if (shown == SHOW_PAIRS) debug_value = float(list);
-  if (shown == SHOW_LIGHT) debug_value = left < 1.0 ? debug_value / (1.0 - left) : -1.0;
+  if (shown == SHOW_TRANSMITTANCE) debug_value = left < 1.0 ? debug_value / (1.0 - left) : -1.0;
 #if PROJECTION == PROJECTION_TANGENT
   if (shown == SHOW_MEDIAN_DEPTH) debug_value *= sqrt(nearness[0]);  // from a distance
 #endif

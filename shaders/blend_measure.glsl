@@ -43,12 +43,12 @@ void begin_measuring(View view, uint p, bool inside) {
 // Whether a splat counts in a pixel: its alpha reaches ALPHA_MIN, even in a block from which the approximate blend
 // drops it.
 #if MEASURE == MEASURE_TRANSMITTANCE && APPROXIMATE
-bool is_met[COLUMN][AHEAD];
-#define MEET(p, k, alpha) is_met[p][k] = alpha >= float(ALPHA_MIN)
-#define IS_MET(p, k, weight) is_met[p][k]
+bool is_marked[COLUMN][AHEAD];
+#define MARK(p, k, alpha) is_marked[p][k] = alpha >= float(ALPHA_MIN)
+#define IS_MARKED(p, k, weight) is_marked[p][k]
 #else
-#define MEET(p, k, alpha)
-#define IS_MET(p, k, weight) (weight > 0.0)
+#define MARK(p, k, alpha)
+#define IS_MARKED(p, k, weight) (weight > 0.0)
 #endif
 
 int visible = 0;  // of the current splat, in this invocation's pixels
@@ -62,7 +62,7 @@ void measure(uint at, uint p, uint k, float weight) {
   float counted = transmittance[p] >= float(VISIBILITY_LEAST) ? weight * transmittance[p] : 0.0;
   visible += int(floor(counted * float(VISIBILITY_SCALE) + 0.5));
 #elif MEASURE != MEASURE_NONE
-  if (!IS_MET(p, k, weight)) return;
+  if (!IS_MARKED(p, k, weight)) return;
 #endif
 #if MEASURE == MEASURE_TRANSMITTANCE
   atomicMax(batch_measured[at], floatBitsToUint(transmittance[p]));

@@ -1,10 +1,10 @@
 // The caller's meshes among the splats (MESH_DEPTH): splats behind a mesh are not drawn. Part of blending.glsl.
-//   MESH_ASKED   1: a block first tests whether it may have any splat behind a mesh (blend_subgroups.comp)
+//   MESH_TESTED_BY_BLOCK   1: a block first tests whether it may have any splat behind a mesh (blend_subgroups.comp)
 #ifndef MESH_DEPTH
 #define MESH_DEPTH 0
 #endif
-#ifndef MESH_ASKED
-#define MESH_ASKED 0
+#ifndef MESH_TESTED_BY_BLOCK
+#define MESH_TESTED_BY_BLOCK 0
 #endif
 #define NO_MESH 3e38  // beyond every splat
 #if MESH_DEPTH
@@ -42,7 +42,7 @@ float mesh_at(uint p) {
 }
 #endif
 
-#if MESH_DEPTH && MESH_ASKED
+#if MESH_DEPTH && MESH_TESTED_BY_BLOCK
 float nearest_mesh;  // of the block
 #define MESH(p) mesh_at(p)
 #elif MESH_DEPTH
@@ -55,7 +55,7 @@ float mesh[COLUMN];
 void begin_meshes(uint p, bool inside) {
 #if MESH_DEPTH
   float depth = inside ? mesh_at(p) : NO_MESH;
-#if MESH_ASKED
+#if MESH_TESTED_BY_BLOCK
   nearest_mesh = p == 0u ? depth : min(nearest_mesh, depth);
   if (p + 1u == COLUMN) nearest_mesh = subgroupMin(nearest_mesh);
 #else
@@ -66,7 +66,7 @@ void begin_meshes(uint p, bool inside) {
 
 // The depth of the mesh in a pixel; 0: none.
 float mesh_behind(uint p) {
-#if MESH_DEPTH && MESH_ASKED
+#if MESH_DEPTH && MESH_TESTED_BY_BLOCK
   if (nearest_mesh == NO_MESH) return 0.0;
 #endif
   float depth = MESH(p);

@@ -66,7 +66,7 @@ float depth_of(uint at) { return batch_colour[at].a; }
 #if PROJECTION == PROJECTION_TANGENT
 #define OF_TILE shared
 OF_TILE float farthest;  // the largest |d|^2
-OF_TILE vec2 heart;      // the slope of the tile's middle
+OF_TILE vec2 middle_slope;  // the slope of the tile's middle
 float nearness[COLUMN];  // by pixel: 1 / |d|^2
 #else
 #define OF_TILE
@@ -130,7 +130,7 @@ void blend(uint at[AHEAD], const bool may_be_hidden) {
       bool is_seen = a >= float(ALPHA_MIN) && REACHES(at[k]);  // NaN: false
       if (may_be_hidden) is_seen = is_seen && depth_of(at[k]) <= farthest[p];
       weights[p][k] = is_seen ? min(float(ALPHA_MAX), a) : 0.0;
-      MEET(p, k, a);
+      MARK(p, k, a);
     }
   }
 #if BROAD
@@ -139,7 +139,7 @@ void blend(uint at[AHEAD], const bool may_be_hidden) {
     for (uint k = 0u; k < AHEAD; ++k) {
       if (dot(direction_of(batch_down[at[k]].w), ray) >= 0.0) continue;
       weights[p][k] = 0.0;
-      MEET(p, k, 0.0);
+      MARK(p, k, 0.0);
     }
   }
 #endif
@@ -234,7 +234,7 @@ void stage(uint at, Splat splat) {
   precise float bend = fma(yx, yx, yy * yy);
 #if PROJECTION == PROJECTION_TANGENT
   float direction = is_wide(splat) ? direction_in_bytes(views[view_index], splat) : 0.0;
-  if (BROAD == 0 && dot(direction_of(direction), vec3(heart, 1.0)) < 0.0) bits = -1e30;
+  if (BROAD == 0 && dot(direction_of(direction), vec3(middle_slope, 1.0)) < 0.0) bits = -1e30;
   batch_across[at] = vec4(xx, u, 2.0 * yx, v * v);
   batch_down[at] = vec4(slope, bend, -bits, direction);
 #else

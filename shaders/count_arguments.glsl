@@ -7,7 +7,7 @@ uniform uint groups_max;
 
 void set_arguments(uint count) {
   counters.visible += count;
-  counters.order_wanted = max(counters.order_wanted, count);
+  counters.slots_wanted = max(counters.slots_wanted, count);
   if (count > capacity) {
     atomicOr(counters.overflow, OVERFLOW_ORDER);
     count = 0u;

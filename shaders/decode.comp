@@ -91,10 +91,10 @@ void main() {
   uint at = thread_index();
   uint decoding = at / anchor_count;
   uint first = decoding * frame.views_per_decoding;
-  if (first >= frame.asked) return;
+  if (first >= frame.requested_views) return;
   uint n = at % anchor_count;
   Anchor anchor = anchors[n];
-  uint end = min(first + frame.views_per_decoding, frame.asked);
+  uint end = min(first + frame.views_per_decoding, frame.requested_views);
   vec3 eye = vec3(0.0);  // relative to the first view's anchor point
   bool seen = frame.anchor_cull == 0u;
   for (uint v = first; v < end; ++v) {

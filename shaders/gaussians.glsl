@@ -30,7 +30,7 @@ layout(std430, binding = 9) readonly buffer Kept { uint kept[]; };  // (decoding
 
 // The place of the page's Gaussian i for view v; is_kept() returns whether it exists.
 uint place_of(uint i, uint v) {
-  return (v < frame.asked ? v / frame.views_per_decoding : frame.decoding_of_probe) * page_count + i;
+  return (v < frame.requested_views ? v / frame.views_per_decoding : frame.decoding_of_probe) * page_count + i;
 }
 
 bool is_kept(uint i, uint v) {

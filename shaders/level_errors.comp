@@ -9,7 +9,7 @@ layout(local_size_x = THREADS) in;
 
 layout(std430, binding = 0) readonly buffer Colours { vec4 colours[]; };  // C, and T left; by pixel
 layout(std430, binding = 1) buffer Finest { vec4 finest[]; };             // likewise
-layout(std430, binding = 2) buffer Behind { vec4 behind[]; };             // by square: mean colour, contrast squared
+layout(std430, binding = 2) buffer Backgrounds { vec4 backgrounds[]; };   // by square: mean colour, contrast squared
 layout(std430, binding = 3) writeonly buffer Sums { float sums_of_squares[]; };
 #if FINEST
 layout(std430, binding = 4) readonly buffer ZSums { float z_sums[]; };  // visibility by pixel
@@ -48,8 +48,8 @@ void main() {
   vec4 colour = vec4(0.0);
   float squares = 0.0;
 #else
-  vec3 over = behind[square].rgb;
-  float contrast_squared = behind[square].a;
+  vec3 over = backgrounds[square].rgb;
+  float contrast_squared = backgrounds[square].a;
 #endif
   float sum = 0.0;
   for (uint k = gl_LocalInvocationIndex; k < square_side * square_side; k += THREADS) {
@@ -73,7 +73,7 @@ void main() {
   if (gl_LocalInvocationIndex == 0u) {
     vec3 mean = all.a > 0.0 ? all.rgb / all.a : vec3(0.0);
     float deviation_squared = all.a > 0.0 ? max(sums_of_square.y / all.a - dot(mean, mean) / 3.0, 0.0) : 0.0;
-    behind[square] = vec4(mean, max(deviation_squared, contrast_least * contrast_least));
+    backgrounds[square] = vec4(mean, max(deviation_squared, contrast_least * contrast_least));
   }
 #else
   sum = sum_of_all(vec4(sum)).x;

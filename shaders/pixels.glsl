@@ -40,7 +40,7 @@ uint place_of(View view, uint p) {
 }
 
 // The drawn view, or the view of the drawn probe.
-uint view_at_hand() { return view_index < frame.asked ? view_index : frame.probed; }
+uint view_at_hand() { return view_index < frame.requested_views ? view_index : frame.probed_view; }
 
 // Initialises the pixels of this invocation; `in_tile` is the first.
 void begin_pixels(uvec2 in_tile) {
@@ -54,9 +54,9 @@ void begin_pixels(uvec2 in_tile) {
   vec2 first = (vec2(corner) + 0.5 - view.lens.zw) * step;
   vec2 most = max(abs(first), abs(first + float(TILE_SIZE - 1) * step));
   farthest = 1.0 + dot(most, most);
-  heart = first + float(TILE_SIZE - 1) * 0.5 * step;
+  middle_slope = first + float(TILE_SIZE - 1) * 0.5 * step;
 #endif
-  begin_block(view, view_index < frame.asked);
+  begin_block(view, view_index < frame.requested_views);
   begin_debug_view();
   for (uint p = 0u; p < COLUMN; ++p) {
     bool inside = first_pixel.x <= last_drawn(view).x && first_pixel.y + p <= last_drawn(view).y;

@@ -20,7 +20,7 @@ vec3 shown(uint pixel) {
 }
 
 float squared_error(uint nth) {
-  View exact = views[frame.asked];
+  View exact = views[frame.requested_views];
   const uint side = uint(TILE_SIZE);
   uvec2 tile = uvec2(nth / (side * side) % exact.tiles_x, nth / (side * side) / exact.tiles_x);
   uvec2 in_tile = uvec2(nth % side, nth / side % side);
@@ -28,7 +28,7 @@ float squared_error(uint nth) {
   uvec2 at = tile * exact.pitch + uvec2(exact.shift_x, exact.shift_y) + in_tile;
   if (tile.y >= exact.tiles_y || at.x >= exact.width || at.y >= exact.height) return 0.0;
   vec3 d = shown(exact.pixel_offset + kept.y * exact.tiles_x * side + kept.x) -
-           shown(views[frame.probed].pixel_offset + at.y * exact.width + at.x);
+           shown(views[frame.probed_view].pixel_offset + at.y * exact.width + at.x);
   return dot(d, d);
 }
 

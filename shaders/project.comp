@@ -37,10 +37,10 @@ void leave_aside(uint splat, bool is_large) {
 #if WITH_SUBGROUPS
   uint all = subgroupBallot(is_large).x, lane = gl_SubgroupInvocationID, place = 0u;
   if (all == 0u) return;
-  if (lane == 0u) place = atomicAdd(counters.large, uint(bitCount(all)));
+  if (lane == 0u) place = atomicAdd(counters.large_splats, uint(bitCount(all)));
   place = subgroupShuffle(place, 0u) + uint(bitCount(all & gl_SubgroupLtMask.x));
 #else
-  uint place = is_large ? atomicAdd(counters.large, 1u) : 0u;
+  uint place = is_large ? atomicAdd(counters.large_splats, 1u) : 0u;
 #endif
   if (!is_large) return;
   large[place] = splat;

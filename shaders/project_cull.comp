@@ -22,7 +22,7 @@ uniform uint view_end;  // without the probe
 // it grows slightly; otherwise it would never be measured again. Drawn ones are measured.
 #if MEASURES
 void age_bound(View view, uint gaussian, uint v, bool projected, bool drawn, Splat splat) {
-  if (v >= frame.asked) return;  // a probe measures nothing
+  if (v >= frame.requested_views) return;  // a probe measures nothing
   bool left_out = false;
 #if TH != TH_TAU
   if (projected && !drawn) {
@@ -59,9 +59,9 @@ uint key_of(uint i) {
 #endif
 #if PROBED
     // A probe of this group draws every visible Gaussian.
-    if (projected && !drawn && v == frame.probed && view.order_group == views[frame.asked].order_group) {
+    if (projected && !drawn && v == frame.probed_view && view.order_group == views[frame.requested_views].order_group) {
       splat.colour.w = visible_level(splat.opacity);
-      drawn = touches_a_tile(splat, views[frame.asked]);  // in tiles that all instances share
+      drawn = touches_a_tile(splat, views[frame.requested_views]);  // in tiles that all instances share
     }
 #endif
     if (drawn) key = floatBitsToUint(order_depth(view, g));

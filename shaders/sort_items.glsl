@@ -4,13 +4,13 @@
 // (sort_split.comp).
 
 // An item: supertile, first entry, number of entries. The last word is the second eye's supertile or NO_SECOND; for a
-// slab it is PART and the slab's index in slab_tiles.
-#define PART 0x80000000u
+// slab it is SLAB and the slab's index in slab_tiles.
+#define SLAB 0x80000000u
 layout(std430, binding = ITEMS_BINDING) writeonly buffer Items { uvec4 items[]; };
 uniform uint item_room;  // for each kind
 uniform uint rounds;     // that split lists
 
-bool is_part(uvec4 item) { return (item.w & PART) != 0u; }
+bool is_slab(uvec4 item) { return (item.w & SLAB) != 0u; }
 
 // The kind of a list. If it is too long, `round` is the first to split it.
 uint kind_of(uint length, uint round) {

@@ -98,7 +98,7 @@ void write_lists(uvec4 item) {
   if (lane < LIST_TILES) {
     uint begin = list_begin;
     for (uint tile = 0u; tile < LIST_TILES; ++tile) begin += tile < lane ? of_list[tile] : 0u;
-    if (is_part(item)) begin = slab_tiles[(item.w & ~PART) * LIST_TILES + lane];
+    if (is_slab(item)) begin = slab_tiles[(item.w & ~SLAB) * LIST_TILES + lane];
     else if (row == 0u) {
       set_range(item, lane, begin, sum);
       if (begin + sum > capacity) atomicOr(counters.overflow, OVERFLOW_TILE_PAIRS);
@@ -145,7 +145,7 @@ void sort_list(uvec4 item) {
   atomicAdd(of_tiles, in_tiles);
   memoryBarrierShared();
   barrier();
-  if (self == 0u) list_begin = is_part(item) ? 0u : atomicAdd(counters.tile_pairs, of_tiles);
+  if (self == 0u) list_begin = is_slab(item) ? 0u : atomicAdd(counters.tile_pairs, of_tiles);
   memoryBarrierShared();
   barrier();
   write_lists(item);
@@ -248,7 +248,7 @@ void sort_list(uvec4 item) {
     return;
   }
   uint begin = 0u;  // of a whole list: requested here, because it is needed later
-  if (self == 0u && !is_part(item)) begin = atomicAdd(counters.tile_pairs, of_tiles);
+  if (self == 0u && !is_slab(item)) begin = atomicAdd(counters.tile_pairs, of_tiles);
   uint bin[EACH];  // first place; count from bit 16 on
   for (uint i = 0u; i < EACH; ++i) {
     bin[i] = 0u;

@@ -109,16 +109,16 @@ void split_list(uvec4 item) {
     uint in_tiles = 0u;
     for (uint tile = 0u; tile < LIST_TILES; ++tile) in_tiles += totals[tile];
     first_slab = atomicAdd(counters.slabs, SORT_SLABS);
-    list_begin = is_part(item) ? 0u : atomicAdd(counters.tile_pairs, in_tiles);
-    if (!is_part(item) && list_begin + in_tiles > capacity) atomicOr(counters.overflow, OVERFLOW_TILE_PAIRS);
+    list_begin = is_slab(item) ? 0u : atomicAdd(counters.tile_pairs, in_tiles);
+    if (!is_slab(item) && list_begin + in_tiles > capacity) atomicOr(counters.overflow, OVERFLOW_TILE_PAIRS);
   }
   memoryBarrierShared();
   barrier();
   if (self < LIST_TILES) {
     uint begin = list_begin;
     for (uint tile = 0u; tile < self; ++tile) begin += totals[tile];
-    if (!is_part(item)) set_range(item, self, begin, totals[self]);
-    else begin = slab_tiles[(item.w & ~PART) * LIST_TILES + self];
+    if (!is_slab(item)) set_range(item, self, begin, totals[self]);
+    else begin = slab_tiles[(item.w & ~SLAB) * LIST_TILES + self];
     for (uint slab = 0u; slab < SORT_SLABS; ++slab) {
       slab_tiles[(first_slab + slab) * LIST_TILES + self] = begin;
       begin += slab_sums[slab][self];
@@ -128,7 +128,7 @@ void split_list(uvec4 item) {
     uint end = length;
     for (uint slab = self + 1u; slab < SORT_SLABS; ++slab) end = min(end, slab_begin[slab]);
     uint count = end - slab_begin[self], kind = kind_of(count, round + 1u);
-    add_item(kind, make_room(kind, 1u), uvec4(item.x, other + slab_begin[self], count, PART | (first_slab + self)));
+    add_item(kind, make_room(kind, 1u), uvec4(item.x, other + slab_begin[self], count, SLAB | (first_slab + self)));
   }
 }
 

@@ -84,7 +84,7 @@ std::optional<DisparityRange> disparity_range(const std::array<Camera, 2>& eyes,
   return range;
 }
 
-bool comfortable(const DisparityRange& range) {
+bool is_comfortable(const DisparityRange& range) {
   return range.near_degrees <= comfortable_degrees && range.far_degrees >= -comfortable_degrees;
 }
 

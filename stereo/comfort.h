@@ -39,7 +39,7 @@ std::optional<DisparityRange> disparity_range(const std::array<Camera, 2>& eyes,
                                               std::optional<double> focus);
 
 /// Whether both ends of a range are within comfortable_degrees.
-bool comfortable(const DisparityRange& range);
+bool is_comfortable(const DisparityRange& range);
 
 /// A rig for parallel eyes, in world units.
 struct ComfortableRig {

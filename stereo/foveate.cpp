@@ -101,16 +101,16 @@ FoveatedEye foveate(const shared::View& eye, const Foveation& foveation, std::si
     (k == 0 ? out.context.width : out.context.height) = std::max(pixels, 1u);
     out.context.lens[k] = static_cast<float>(eye.lens[k] * scale);
     out.context.lens[k + 2] = static_cast<float>(eye.lens[k + 2] * scale);
-    out.context_part.low_pass_share *= static_cast<float>(scale);
+    out.context_region.low_pass_share *= static_cast<float>(scale);
     // The hole is the part of the context that is never drawn. No pixel outside the inset depends on it.
     const auto begin = static_cast<std::uint32_t>(std::ceil(out.inset_begin[k] * scale)) + inset_reach;
     const auto end = static_cast<std::uint32_t>(std::floor(out.inset_end[k] * scale));
     const bool at_begin = out.inset_begin[k] == 0, at_end = out.inset_end[k] == size[k];
-    out.context_part.hole_begin[k] = at_begin ? 0 : begin;
-    out.context_part.hole_end[k] = at_end ? std::max(pixels, 1u) : end - std::min(end, inset_reach);
+    out.context_region.hole_begin[k] = at_begin ? 0 : begin;
+    out.context_region.hole_end[k] = at_end ? std::max(pixels, 1u) : end - std::min(end, inset_reach);
   }
-  if (glm::any(glm::greaterThanEqual(out.context_part.hole_begin, out.context_part.hole_end)))
-    out.context_part.hole_begin = out.context_part.hole_end = glm::uvec2(0);
+  if (glm::any(glm::greaterThanEqual(out.context_region.hole_begin, out.context_region.hole_end)))
+    out.context_region.hole_begin = out.context_region.hole_end = glm::uvec2(0);
   out.window.tolerance_share = 0.0f;
   return out;
 }
@@ -126,15 +126,17 @@ FoveatedViews foveated_views(std::span<const shared::View> eyes, const Foveation
   for (std::size_t k = 0; k < eyes.size(); ++k) {
     const FoveatedEye& eye = out.eyes.emplace_back(foveate(eyes[k], foveation, k));
     out.views.insert(out.views.end(), {eye.context, eyes[k]});
-    out.settings.regions.insert(out.settings.regions.end(), {eye.context_part, eye.window});
+    out.settings.regions.insert(out.settings.regions.end(), {eye.context_region, eye.window});
   }
   return out;
 }
 
 // Passes the parts to `to`, the member function of render::Frame that draws them.
-void FoveatedFrame::hand_over(std::span<const shared::View> eyes, const Foveation& foveation,
-                              const render::FrameSettings& settings, const render::Workings& workings,
-                              const render::CallersTextures& textures, decltype(&render::Frame::submit) to) {
+void FoveatedFrame::submit_or_prepare(std::span<const shared::View> eyes, const Foveation& foveation,
+                                      const render::FrameSettings& settings,
+                                      const render::DebugOptions& debug,
+                                      const render::CallersTextures& textures,
+                                      decltype(&render::Frame::submit) to) {
   const std::size_t canvases = textures.canvases.size(), meshes = textures.mesh_depths.size();
   if (canvases != 0 && canvases != eyes.size())
     fail("{} canvases for {} eyes: expected one each", canvases, eyes.size());
@@ -148,7 +150,7 @@ void FoveatedFrame::hand_over(std::span<const shared::View> eyes, const Foveatio
     pixels += std::int64_t{eye.width} * eye.height;
   }
   to_.assign(textures.canvases.begin(), textures.canvases.end());
-  among_meshes_ = meshes != 0;
+  has_mesh_depths_ = meshes != 0;
   background_ = settings.background;
   parts_ = std::move(drawn.eyes);
   drawn.settings.depth = to_.empty() ? Depth::mean : Depth::none;
@@ -159,9 +161,9 @@ void FoveatedFrame::hand_over(std::span<const shared::View> eyes, const Foveatio
   std::vector<shared::Canvas> of_eyes;
   for (const render::Canvas& canvas : to_) of_eyes.push_back(render::on_gpu(canvas));
   if (!of_eyes.empty()) canvases_.upload(of_eyes);
-  render::Workings with_compose = workings;
-  with_compose.then_called = "compose";
-  with_compose.then = [this](gl::Dispatcher& dispatcher) { compose(dispatcher); };
+  render::DebugOptions with_compose = debug;
+  with_compose.extra_stage_name = "compose";
+  with_compose.extra_stage = [this](gl::Dispatcher& dispatcher) { compose(dispatcher); };
   std::vector<render::MeshDepth> of_views;
   for (const render::MeshDepth& mesh : textures.mesh_depths) of_views.insert(of_views.end(), 2, mesh);
   (frame_.*to)(drawn.views, drawn.settings, with_compose, {.mesh_depths = of_views});
@@ -188,11 +190,11 @@ void FoveatedFrame::compose_eye(gl::Dispatcher& dispatcher, std::size_t k) {
     const render::Canvas& to = to_[k];
     gl.gl().BindImageTexture(0, to.texture, to.level, GL_FALSE, to.layer, GL_WRITE_ONLY, to.format);
   }
-  if (among_meshes_) frame_.buffers().nearest.bind(0, to_[k].texture);
+  if (has_mesh_depths_) frame_.buffers().nearest.bind(0, to_[k].texture);
   const std::uint64_t groups = std::uint64_t{(eye.width + COMPOSE_COLUMNS - 1) / COMPOSE_COLUMNS} *
                                ((eye.height + COMPOSE_ROWS - 1) / COMPOSE_ROWS);
   const std::array variant = {gl::Number{"CANVASES", !to_.empty(), 2},
-                              gl::Number{"MESH_DEPTH", among_meshes_, 2}};
+                              gl::Number{"MESH_DEPTH", has_mesh_depths_, 2}};
   dispatcher.start(gl.program("foveate.comp", variant), gl::DispatchSize::of_groups(groups),
                    {{"Colours", frame_.colours()},
                     {"ZSums", frame_.z_sums()},

@@ -27,7 +27,7 @@ struct FoveatedEye {
   glm::uvec2 inset_begin{0}, inset_end{0};  // the exact pixels
   double seam = 0.0;                        // the border's width around them
   shared::View context;                     // the context's view, with fewer pixels
-  render::ViewRegion context_part;          // without the pixels that only the inset shows
+  render::ViewRegion context_region;        // without the pixels that only the inset shows
   render::ViewRegion window;                // the drawn part of the eye's own view: the inset and its seam
 };
 
@@ -61,24 +61,24 @@ class FoveatedFrame {
   /// require canvases; splats behind meshes are not drawn. Throws as foveated_views() and
   /// render::Frame::draw() do.
   render::FrameReport draw(std::span<const shared::View> eyes, const Foveation& foveation,
-                           const render::FrameSettings& settings = {}, const render::Workings& workings = {},
+                           const render::FrameSettings& settings = {}, const render::DebugOptions& debug = {},
                            const render::CallersTextures& textures = {}) {
-    submit(eyes, foveation, settings, workings, textures);
+    submit(eyes, foveation, settings, debug, textures);
     return finish();
   }
 
   /// The same in two calls, like those of frame().
   void submit(std::span<const shared::View> eyes, const Foveation& foveation,
-              const render::FrameSettings& settings = {}, const render::Workings& workings = {},
+              const render::FrameSettings& settings = {}, const render::DebugOptions& debug = {},
               const render::CallersTextures& textures = {}) {
-    hand_over(eyes, foveation, settings, workings, textures, &render::Frame::submit);
+    submit_or_prepare(eyes, foveation, settings, debug, textures, &render::Frame::submit);
   }
   render::FrameReport finish();
 
   /// Same as render::Frame::prepare().
   void prepare(std::span<const shared::View> eyes, const Foveation& foveation,
                const render::FrameSettings& settings, const render::CallersTextures& textures) {
-    hand_over(eyes, foveation, settings, {}, textures, &render::Frame::prepare);
+    submit_or_prepare(eyes, foveation, settings, {}, textures, &render::Frame::prepare);
   }
 
   /// The composed pictures of the last frame, one per eye. colours() has them on the GPU, in the layout of
@@ -94,9 +94,9 @@ class FoveatedFrame {
   render::Frame& frame() { return frame_; }
 
  private:
-  void hand_over(std::span<const shared::View> eyes, const Foveation& foveation,
-                 const render::FrameSettings& settings, const render::Workings& workings,
-                 const render::CallersTextures& textures, decltype(&render::Frame::submit) to);
+  void submit_or_prepare(std::span<const shared::View> eyes, const Foveation& foveation,
+                         const render::FrameSettings& settings, const render::DebugOptions& debug,
+                         const render::CallersTextures& textures, decltype(&render::Frame::submit) to);
   void compose(gl::Dispatcher& dispatcher);
   void compose_eye(gl::Dispatcher& dispatcher, std::size_t k);
 
@@ -104,7 +104,7 @@ class FoveatedFrame {
   gl::Buffer colours_, z_sums_, canvases_;
   // Of the last submitted frame:
   std::vector<render::Canvas> to_;  // empty: the pictures go into the buffers above
-  bool among_meshes_ = false;
+  bool has_mesh_depths_ = false;
   glm::vec3 background_{0.0f};
   std::vector<shared::View> eyes_;
   std::vector<FoveatedEye> parts_;

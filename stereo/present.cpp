@@ -182,9 +182,9 @@ void Presenter::draw(const gl::Buffer& colours, std::span<const shared::View> vi
                             glm::uvec2(PRESENT_COLUMNS, PRESENT_ROWS);
   const glm::vec3 behind = background.value_or(glm::vec3(0.0f));
   gl::Context& context = dispatcher_.context();
-  const gl::KeptState kept(context);
-  kept.set_plain();
-  std::optional<gl::KeptTextures> textures;
+  const gl::SavedState saved(context);
+  saved.set_plain();
+  std::optional<gl::SavedTextures> textures;
   if (over_target) textures.emplace(context);
   const auto write = [&](const Target& image, GLenum format) {
     context.gl().BindImageTexture(0, image.texture, image.level, GL_FALSE, std::max(image.layer, 0),
@@ -276,7 +276,8 @@ int depth_rows(const gl::Context& context, std::span<const shared::View> views,
 }
 
 void Presenter::draw_depth(const render::Frame& frame, std::size_t v, const DepthTarget& target) {
-  if (v >= frame.plan().asked) fail("view {} of a frame of {} views", v, frame.plan().asked);
+  if (v >= frame.plan().requested_views)
+    fail("view {} of a frame of {} views", v, frame.plan().requested_views);
   if (frame.plan().depth() == DEPTH_NONE)
     fail("the frame was drawn without depths: choose one in its settings");
   const double near = target.near_plane, far = target.far_plane;
@@ -287,8 +288,8 @@ void Presenter::draw_depth(const render::Frame& frame, std::size_t v, const Dept
   gl::Context& context = dispatcher_.context();
   const gl::Functions& gl = context.gl();
   const shared::View& view = frame.views()[v];
-  const gl::KeptState kept(context);
-  kept.set_plain();
+  const gl::SavedState saved(context);
+  saved.set_plain();
   if (depth_framebuffer_ == 0) {
     gl.CreateFramebuffers(1, &depth_framebuffer_);
     gl.NamedFramebufferDrawBuffer(depth_framebuffer_, GL_NONE);
@@ -297,9 +298,9 @@ void Presenter::draw_depth(const render::Frame& frame, std::size_t v, const Dept
   attach(depth_framebuffer_, GL_DEPTH_ATTACHMENT, target.texture, target.level, target.layer, "depth");
   const glm::ivec2 size = size_of(gl, target);
   {
-    const gl::KeptDrawing drawing(context, depth_framebuffer_, no_vertices_, size.x, size.y);
+    const gl::SavedDrawing drawing(context, depth_framebuffer_, no_vertices_, size.x, size.y);
     dispatcher_.draw_whole(
-        context.program("present_depth.frag", gl::Number{"IS_DEPTH", frame.plan().tells_depths(), 2}),
+        context.program("present_depth.frag", gl::Number{"IS_DEPTH", frame.plan().has_final_depths(), 2}),
         {{"Colours", frame.colours()}, {"ZSums", frame.z_sums()}},
         {{"first", view.pixel_offset},
          {"width", view.width},

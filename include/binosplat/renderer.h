@@ -88,9 +88,10 @@ struct Instance {
   DepthTable depth_table = {};
 };
 
-/// The instances that a frame draws, and the place of the eyes' space in their world. All instances are
-/// sorted together by the middles of their Gaussians and blended like one model. They cast no shadows on each
-/// other. The first instance's model sets the order and the projection, unless the settings do.
+/// The content of a frame: instances, and the place of the eyes' space in their world. All instances are
+/// sorted by the middles of their Gaussians and blended together, as if they were one model. They cast no
+/// shadows on each other. The first shown instance's model sets the order and the projection, unless the
+/// settings do.
 struct World {
   World(const Placement& of_eyes, std::span<const Instance> drawn) : placement(of_eyes), instances(drawn) {}
 

@@ -61,7 +61,7 @@
 #define SHOW_ALPHAS 5
 #define SHOW_VISIBLE 6
 #define SHOW_PAIRS 7
-#define SHOW_LIGHT 8
+#define SHOW_TRANSMITTANCE 8
 #define SHOW_MEDIAN_DEPTH 9
 #define SHOW_LEFT_OUT 10
 
@@ -144,7 +144,7 @@ inline constexpr Choice show_choices[] = {
     {"alphas", "alphas that a pixel evaluates until it ends"},
     {"visible", "alphas that a pixel blends"},
     {"pairs", "Gaussians in the list of the pixel's tile"},
-    {"light", "max(T), the largest transmittance of a Gaussian: the mean over the visible ones"},
+    {"transmittance", "max(T), the largest transmittance of a Gaussian: the mean over the visible ones"},
     {"median-depth", "view depth at which transmittance falls below a half, world units"},
     {"left-out", "Gaussians that the threshold drops from the pixel's tile"},
 };

@@ -62,17 +62,17 @@ struct View {
 
 // Values of a whole frame. They are in a uniform block, whose std140 equals std430 without arrays.
 struct FrameParameters {
-  vec4 background;      // rgb, display-referred; w: unused
-  float tolerance;      // of the threshold rule: K or kappa
-  uint has_bounds;      // 0: no earlier frame measured bounds for this one
-  uint view_count;      // including the probe
-  uint asked;           // views without the probe, which comes next and is exact
-  uint probed;          // index of the view that the probe samples; MAX_VIEWS without one
-  uint gaussian_count;  // of all instances
-  uint slots;           // room for Gaussians in each view
-  uint tile_count;      // tiles of all supertiles, over all views
-  uint list_per_view;   // 1 with --tiles all: a view's tiles share one list
-  uint has_regions;     // 1: some views have regions
+  vec4 background;       // rgb, display-referred; w: unused
+  float tolerance;       // of the threshold rule: K or kappa
+  uint has_bounds;       // 0: no earlier frame measured bounds for this one
+  uint view_count;       // including the probe
+  uint requested_views;  // views without the probe, which comes next and is exact
+  uint probed_view;      // index of the view that the probe samples; MAX_VIEWS without one
+  uint gaussian_count;   // of all instances
+  uint slots;            // room for Gaussians in each view
+  uint tile_count;       // tiles of all supertiles, over all views
+  uint list_per_view;    // 1 with --tiles all: a view's tiles share one list
+  uint has_regions;      // 1: some views have regions
   // For Scaffold-GS:
   uint offset_count;        // K
   uint views_per_decoding;  // views that share decoded Gaussians
@@ -144,7 +144,7 @@ struct ListCount {
 // for the number wanted; the frame is then drawn again with larger ones.
 struct Counters {
   uint visible;          // Gaussians drawn, summed over the order groups
-  uint order_wanted;     // the most Gaussians that one order group had
+  uint slots_wanted;     // the most Gaussians that one order group had
   uint pairs;            // entries wanted: pairs with supertiles; both eyes have one if they share lists
   uint tile_pairs;       // Gaussian-tile pairs wanted, over all views
   uint overflow;         // OVERFLOW_ bits
@@ -157,7 +157,7 @@ struct Counters {
   uint probe_squares_high;
   uint long_lists;  // tiles with more than LONG_LIST pairs, and the groups of their dispatch
   uint long_x, long_y, long_z;
-  uint large;  // splats in many supertiles (as `pairs`), and the groups of their dispatch
+  uint large_splats;  // splats in many supertiles (as `pairs`), and the groups of their dispatch
   uint large_x, large_y, large_z;
   uint large_entries;  // entries of these, and the groups of the dispatch that places them
   uint fill_x, fill_y, fill_z;

@@ -15,7 +15,7 @@ float threshold_of(View view, Splat splat, float bound) {
 
 // Th of a Gaussian in view v; a probe has tau.
 float threshold_in(View view, uint v, uint gaussian, Splat splat) {
-  if (v >= frame.asked) return float(ALPHA_MIN);
+  if (v >= frame.requested_views) return float(ALPHA_MIN);
   return threshold_of(view, splat, bound_of(view, v, gaussian, abs(splat.depth)));
 }
 

@@ -7,7 +7,7 @@
 
 #include "app/bench_plan.h"
 #include "app/blind.h"
-#include "app/followed.h"
+#include "app/level_options.h"
 #include "app/load_scene.h"
 #include "app/tour.h"
 #include "base/error.h"
@@ -63,8 +63,8 @@ ChosenViews choose_views(const BenchOptions& options, const lab::Axes& axes, con
 }
 
 /// World units per metre, as render chooses them.
-double metre_of(const BenchOptions& options, const Known& known) {
-  return options.rig.units_per_metre.value_or(known.units_per_metre.value_or(1.0));
+double metre_of(const BenchOptions& options, const SceneHints& hints) {
+  return options.rig.units_per_metre.value_or(hints.units_per_metre.value_or(1.0));
 }
 
 }  // namespace
@@ -96,7 +96,7 @@ void check_cases(const BenchPlan& plan, const BenchOptions& options) {
     }
     if ((levels || is_along_frames(which.along)) && !list.listed)
       fail("{}: {}; name their file with --cameras", levels ? "'detail'" : "along " + which.along,
-           why_no_cameras(scene.options, list.known));
+           why_no_cameras(scene.options, list.hints));
     if (is_along_frames(which.along) && which.along != "sideways" && list.cameras.size() < 2)
       fail("along {}: expected two cameras or more, and {} has one", which.along, list.source);
     if (foveated && is_along_frames(which.along))
@@ -137,7 +137,7 @@ const Model& MeasuredScene::some_model() { return stream_ ? stream_->model() : m
 lab::BenchCase MeasuredScene::open(const CasePlan& which) {
   const CameraList list =
       scene_.list.listed ? scene_.list
-                         : made_up_cameras(scene_.options, options_.camera, scene_.list.known, some_model());
+                         : made_up_cameras(scene_.options, options_.camera, scene_.list.hints, some_model());
   const ModelAxes& axes = some_model().axes;
   lab::BenchCase opened;
   opened.near_plane = near_plane_of(options_.camera, list);
@@ -149,7 +149,7 @@ lab::BenchCase MeasuredScene::open(const CasePlan& which) {
       return lab::FollowingModel{stream->gpu_model(context_, PRECISION_FULL),
                                  [stream](std::span<const shared::View> views) {
                                    stream->settle(views, {});
-                                   return lab::LevelsBrought{stream->gaussians(), stream->reported_db()};
+                                   return lab::LoadedLevels{stream->gaussians(), stream->reported_db()};
                                  }};
     };
   const Lens lens = lens_of(which.size);
@@ -204,10 +204,10 @@ void MeasuredScene::open_views(const CasePlan& which, const CameraList& list, la
 
 std::vector<lab::Stretch> MeasuredScene::stretches_of(const CasePlan& which, const CameraList& list,
                                                       const Lens& lens, const RigOptions& rig) {
-  const double near_plane = near_plane_of(options_.camera, list), metre = metre_of(options_, list.known);
+  const double near_plane = near_plane_of(options_.camera, list), metre = metre_of(options_, list.hints);
   const auto frames_of = [&](const std::vector<Camera>& cameras, const Lens& of) {
     const CameraList path{
-        .cameras = cameras, .path = true, .known = {.units_per_metre = metre, .ipd = list.known.ipd}};
+        .cameras = cameras, .path = true, .hints = {.units_per_metre = metre, .ipd = list.hints.ipd}};
     std::vector<std::vector<shared::View>> frames;
     for (const Shot& shot : make_shots({}, of, rig, path, near_plane, some_model().axes))
       frames.push_back(views_of(shot));

@@ -39,14 +39,15 @@ BenchScene open_bench_scene(const BenchOptions& options, const std::string& file
 /// Appends the settings of a calibration with their tolerances, without duplicates.
 void add_calibrated(const std::string& file, lab::Axes& axes) {
   std::set<std::string> known;
-  for (const lab::BenchSettings& settings : axes.settings) known.insert(lab::named(settings).dump());
+  for (const lab::BenchSettings& settings : axes.settings)
+    known.insert(lab::row_of_settings(settings).dump());
   for (const CalibrationEntry& entry : load_calibration(file).entries) {
     lab::BenchSettings settings;
     settings.th = entry.th;
     settings.transmittance = entry.transmittance;
     settings.tolerance = static_cast<float>(entry.tolerance);
     lab::check(file, settings);
-    if (known.insert(lab::named(settings).dump()).second) axes.settings.push_back(settings);
+    if (known.insert(lab::row_of_settings(settings).dump()).second) axes.settings.push_back(settings);
   }
 }
 
@@ -115,7 +116,7 @@ void add_cases(BenchPlan& plan, std::size_t scene) {
             lab::row_of("scene", plan.scenes[scene].name, "eyes", eyes, "size", size, "along", along);
         for (const lab::BenchSettings& settings : plan.axes.settings) {
           lab::Row& row = plan.points.emplace_back(start);
-          row.update(lab::named(settings));
+          row.update(lab::row_of_settings(settings));
           lab::put(row, "name", lab::describe(settings), "family", lab::describe_family(settings));
         }
         if (plan.axes.contributions && along == "views" && eyes == 1) {
@@ -222,7 +223,7 @@ lab::Results BenchFolder::results() const {
     point.details = std::move(measured.details);
     point.picture = std::move(measured.picture);
   }
-  lab::put_beside_others(results.points);
+  lab::add_relative_columns(results.points);
   lab::add_means(results.points);
   return results;
 }

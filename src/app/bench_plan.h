@@ -96,7 +96,7 @@ class BenchFolder {
   bool has(std::size_t point) const;  // complete
   lab::Point load(std::size_t point) const;
   void save(std::size_t point, const lab::Point& measured) const;
-  /// All points, measured or not, with the columns that compare them (put_beside_others).
+  /// All points, measured or not, with the columns that compare them (add_relative_columns).
   lab::Results results() const;
   /// Writes report.html, results.json, results.csv and details.csv.
   void save_results(const lab::Results& results) const;

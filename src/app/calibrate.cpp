@@ -75,7 +75,7 @@ ExitCode calibrate(const CalibrateOptions& o) {
   Progress progress("calibrating", lab::calibrated_settings(rules).size());
   const ThresholdCalibration found = lab::calibrate(
       *context, scene.model, views, scene.near_plane,
-      {o.target.target(), o.table, rules, keep_steps(o.output, o, photos, scene.list, *context)},
+      {o.target.target(), o.table, rules, cache_steps(o.output, o, photos, scene.list, *context)},
       [&](std::size_t entries, std::size_t) { progress.update(entries); });
   save_json(o.output, json_of(found));
   forget_steps(o.output);

@@ -29,7 +29,7 @@ std::string json_text(const nlohmann::ordered_json& value) {
   return value.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
 }
 
-int end_by_what_was_thrown() {
+int exit_code_of_current_exception() {
   const auto end = [](ExitCode code, const std::string& text) {
     log_line(text);
     return static_cast<int>(code);
@@ -91,7 +91,7 @@ fs::path place_of(const fs::path& path) {
   return error ? whole.lexically_normal() : place;
 }
 
-fs::path folder_there(fs::path folder) {
+fs::path nearest_existing_folder(fs::path folder) {
   std::error_code ignored;
   // A dangling link exists, too.
   while (!fs::exists(fs::symlink_status(folder, ignored)) && folder.has_relative_path())
@@ -106,7 +106,7 @@ void check_output(const fs::path& path) {
   if (error == std::errc::too_many_symbolic_link_levels)
     fail("cannot write {}: its symbolic links lead in a circle", path.string());
   check_no_input(path);
-  const fs::path folder = folder_there(fs::absolute(path).parent_path());
+  const fs::path folder = nearest_existing_folder(fs::absolute(path).parent_path());
   if (!fs::is_directory(folder, error)) {
     const char* const what = fs::is_symlink(folder, error) ? "symbolic link that leads to no folder" : "file";
     fail("cannot write {}: {} is a {} where a folder is needed", path.string(), folder.string(), what);

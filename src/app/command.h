@@ -33,7 +33,7 @@ void add_info(CLI::App& program, Command& command);
 bool has_preview();
 
 /// Logs the current exception and returns its exit code. Call it in a handler of `main`.
-int end_by_what_was_thrown();
+int exit_code_of_current_exception();
 
 /// From now on SIGHUP, SIGINT and SIGTERM end the program and remove unfinished files (base/output_file.h).
 /// Call it before any thread starts.
@@ -43,7 +43,7 @@ void end_cleanly_on_signals();
 std::filesystem::path place_of(const std::filesystem::path& path);
 
 /// The folder, or its nearest ancestor that exists.
-std::filesystem::path folder_there(std::filesystem::path folder);
+std::filesystem::path nearest_existing_folder(std::filesystem::path folder);
 
 /// Throws Error if `path` cannot be written: a file in place of a folder, no permission, a folder, or a file
 /// that this run reads (base/inputs.h). Leaves no trace; call it before long work.

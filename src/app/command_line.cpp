@@ -171,10 +171,10 @@ void add_quiet(CLI::App& sub) {
       "--quiet", [] { set_quiet(true); }, "Print only results, warnings and errors");
 }
 
-void settle_shader_caches() {
+void prepare_shader_caches() {
   const char* cache = std::getenv("XDG_CACHE_HOME");
   if (cache != nullptr && !fs::path(cache).is_absolute()) unsetenv("XDG_CACHE_HOME");
-  const fs::path folder = folder_there(gl::ProgramCache::default_folder());
+  const fs::path folder = nearest_existing_folder(gl::ProgramCache::default_folder());
   std::error_code error;
   const fs::space_info space = fs::space(folder, error);
   const bool writable = fs::is_directory(folder, error) && access(folder.c_str(), W_OK | X_OK) == 0;

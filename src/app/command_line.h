@@ -31,7 +31,7 @@ std::string explain(const CLI::App& command, const std::string& name, const CLI:
 ///   below the working one.
 /// - If the user's cache folder is full or cannot be written, disables the drivers' caches and warns. On a
 ///   full disk drivers write into mapped files, and SIGBUS ends the program.
-void settle_shader_caches();
+void prepare_shader_caches();
 
 /// Limit of memory for pictures that are drawn but not yet written, in bytes (--max-memory).
 inline std::atomic<double> picture_memory_allowed{1e30};

@@ -135,7 +135,7 @@ ExitCode compare_files(const CompareOptions& options) {
   Image a = load_image(options.a, limit);
   Image b = load_image(options.b, limit);
   check_comparable(options, a, b);
-  const bool before_background = measure::make_shown(a, b, options.background);
+  const bool before_background = measure::prepare_comparison(a, b, options.background);
   const glm::dvec3 background(options.background.value_or(glm::vec3(0.0f)));
   if (before_background) {
     log_info("alpha: transparent pixels are compared over the background {:g},{:g},{:g}{}", background.r,

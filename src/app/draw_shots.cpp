@@ -93,7 +93,7 @@ std::optional<Comfort> comfort_of(const Shot& shot, bool headset, const Picture&
   if (!range) return std::nullopt;
   Comfort comfort{*range, focus ? std::optional(*focus / shot.units_per_metre) : std::nullopt, {}};
   const bool own_rig = !shot.given_eyes && !canted && !headset;
-  if (own_rig && !stereo::comfortable(*range)) {
+  if (own_rig && !stereo::is_comfortable(*range)) {
     comfort.better = stereo::comfortable_rig(*range, eyes);
     comfort.better->convergence /= shot.units_per_metre;
     if (comfort.better->ipd) *comfort.better->ipd /= shot.units_per_metre;
@@ -124,11 +124,11 @@ double bytes_of(const Shot& shot) {
 
 /// Measures, encodes and writes shots on threads while the next ones are drawn. A video receives its frames
 /// in order.
-class ShotFiles {
+class ShotWriter {
  public:
   /// Pictures that wait for writing take at most a quarter of the machine's memory, or --max-memory if that
   /// is less; three shots are always allowed. Starts a thread for each core, if memory allows.
-  explicit ShotFiles(RenderRun& run)
+  explicit ShotWriter(RenderRun& run)
       : run_(run), read_back_(*run.context), video_(open_video(run.outputs, run.shots)) {
     double most = 1.0;
     for (const Shot& shot : run.shots) most = std::max(most, bytes_of(shot));
@@ -147,7 +147,7 @@ class ShotFiles {
     const auto frame = std::make_shared<std::string>();
     const auto encode_all = [this, &drawn, take = std::move(take), frame] {
       ShotPictures of = take();
-      judge(drawn, of.pictures);
+      measure(drawn, of.pictures);
       if (!of.shown) of.shown = {std::move(of.pictures), std::nullopt};
       for (const PictureFile& file : drawn.shot.files) {
         const auto begin = Clock::now();
@@ -195,7 +195,7 @@ class ShotFiles {
   bool all_empty() const { return all_empty_; }
 
  private:
-  void judge(Drawn& drawn, const std::vector<Picture>& pictures) {
+  void measure(Drawn& drawn, const std::vector<Picture>& pictures) {
     const RenderOptions& o = run_.options;
     if (!std::all_of(pictures.begin(), pictures.end(), is_empty)) all_empty_ = false;
     if (!run_.outputs.vr180) drawn.comfort = comfort_of(drawn.shot, o.camera.lens.headset(), pictures[0]);
@@ -221,7 +221,7 @@ class ShotFiles {
 /// The scene at its finest levels, the reference of --detail-report.
 struct FinestLevels {
   explicit FinestLevels(const RenderRun& run) : model(load_model(run.options.scene.name)) {
-    set_as_asked(run.options.scene, model);
+    apply_options(run.options.scene, model);
     frame.emplace(*run.context, model);
   }
 
@@ -250,7 +250,7 @@ struct Drawer {
   std::optional<FinestLevels> finest;
 
   /// Whether the output needs only the frame's own pictures, which can be read while the next shot is drawn.
-  bool reads_behind() const {
+  bool reads_asynchronously() const {
     const OutputOptions& o = run.options.output;
     return !panorama && !foveated && o.show == SHOW_PICTURE && !o.detail_report;
   }
@@ -273,7 +273,7 @@ struct Drawer {
     levels.read_ms = times.read_ms;
     levels.upload_ms = times.upload_ms;
     // The frame's threshold may use the error that the levels leave.
-    settings.quality = static_cast<float>(run.stream->quality_left(settings.quality));
+    settings.quality = static_cast<float>(run.stream->frame_quality(settings.quality));
     return levels;
   }
 
@@ -281,10 +281,10 @@ struct Drawer {
   render::FrameReport draw(const Shot& shot, const std::vector<shared::View>& views,
                            const render::FrameSettings& settings, const std::function<void()>& meanwhile) {
     const RenderOptions& o = run.options;
-    const render::Workings workings = workings_of(o.drawing);
+    const render::DebugOptions debug = debug_options_of(o.drawing);
     if (panorama) return panorama->draw(eyes_in_axes(shot, run.model().axes), run.near_plane);
-    if (foveated) return foveated->draw(views, *o.foveate, settings, workings);
-    frame.submit(views, settings, workings);
+    if (foveated) return foveated->draw(views, *o.foveate, settings, debug);
+    frame.submit(views, settings, debug);
     meanwhile();
     return frame.finish();
   }
@@ -336,7 +336,7 @@ void draw_all(RenderRun& run) {
   if (!run.shots[0].model.empty()) in_turn.emplace(o.scene, run.loaded, run.shots);
 
   const auto begin = Clock::now();
-  ShotFiles files(run);
+  ShotWriter files(run);
   Progress progress("drawing", run.shots.size() * static_cast<std::size_t>(o.drawing.frames),
                     o.drawing.frames == 1 ? "views" : "frames");
   run.drawn.reserve(run.shots.size());  // threads hold references to elements
@@ -363,7 +363,7 @@ void draw_all(RenderRun& run) {
       progress.update(run.frames.size());
     }
     if (drawer->foveated) drawn.foveated = drawer->foveated->parts();
-    if (drawer->reads_behind()) {
+    if (drawer->reads_asynchronously()) {
       files.read_back(drawn, drawer->frame);
     } else {
       const auto pictures = std::make_shared<ShotPictures>(drawer->read(drawn, views, of_shot));

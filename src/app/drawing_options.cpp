@@ -66,7 +66,7 @@ void check(const DrawingOptions& o) {
     fail("--th {} needs --tolerance, --quality or --calibration, which set the accepted loss", th);
   if (exact && calibrated) fail("--calibration has no effect with --th {}, which is exact", th);
   render::check_choice(settings, "--");
-  render::check(workings_of(o), settings, "--");
+  render::check(debug_options_of(o), settings, "--");
 }
 
 int threshold_of(const DrawingOptions& o) {
@@ -88,10 +88,10 @@ render::FrameSettings settings_of(const DrawingOptions& o) {
   return settings;
 }
 
-render::Workings workings_of(const DrawingOptions& o) {
-  render::Workings workings;
-  if (o.reference_until) workings.stand_in = measure::reference_until(*o.reference_until);
-  return workings;
+render::DebugOptions debug_options_of(const DrawingOptions& o) {
+  render::DebugOptions debug;
+  if (o.reference_until) debug.stand_in = measure::reference_until(*o.reference_until);
+  return debug;
 }
 
 }  // namespace binosplat::app

@@ -5,9 +5,9 @@
 #include <string>
 
 #include "app/cli.h"
+#include "render/debug_options.h"
 #include "render/settings.h"
 #include "render/stage.h"
-#include "render/workings.h"
 
 namespace binosplat::app {
 
@@ -42,6 +42,6 @@ int threshold_of(const DrawingOptions& options);
 render::FrameSettings settings_of(const DrawingOptions& options);
 
 /// The debug options of a frame (--reference-until).
-render::Workings workings_of(const DrawingOptions& options);
+render::DebugOptions debug_options_of(const DrawingOptions& options);
 
 }  // namespace binosplat::app

@@ -21,10 +21,10 @@ MiddlesSeen look(const Model& model, Camera camera, double near_plane) {
   camera = into_axes(camera, model.axes);
   MiddlesSeen seen;
   for (const glm::vec3& p : model.position) {
-    const PointSeen point = see(camera, p);
-    if (point.ahead <= 0.0) continue;
-    ++(point.ahead > near_plane ? seen.ahead : seen.near);
-    if (point.is_within(0.0) && point.ahead > near_plane) ++seen.inside;
+    const ProjectedPoint point = project_point(camera, p);
+    if (point.depth <= 0.0) continue;
+    ++(point.depth > near_plane ? seen.ahead : seen.near);
+    if (point.is_within(0.0) && point.depth > near_plane) ++seen.inside;
   }
   return seen;
 }

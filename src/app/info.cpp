@@ -81,7 +81,7 @@ std::string axes_in_words(const Model& model) {
 render::MemoryNeeds headset_needs(const Model& model) {
   const CoredModel cored(model);
   const Camera head = stereo::apply_preset(into_axes(frame_model(cored, 1280, 720), model.axes), "headset");
-  const stereo::EyePair eyes = stereo::make_rig(head, {.near_plane = near_for(cored)});
+  const stereo::EyePair eyes = stereo::make_rig(head, {.near_plane = near_plane_for(cored)});
   return render::memory_needs(render::make_plan(eyes.views, {}, model));
 }
 
@@ -144,10 +144,10 @@ void print_info(const Trained& trained) {
   if (trained.run) {
     fmt::print("{:<14} by {}, says {}\n", "trained", trained.run->trainer, trained.run->file.string());
     std::string said;
-    for (const auto& [key, value] : trained.run->said)
+    for (const auto& [key, value] : trained.run->settings)
       said += fmt::format("{}{} {}", said.empty() ? "" : ", ", key, value);
     if (!said.empty()) fmt::print("{:<14} {}\n", "", said);
-    for (const std::string& sentence : trained.run->otherwise)
+    for (const std::string& sentence : trained.run->differences)
       fmt::print("{:<14} {}\n", "  differs", sentence);
     for (const std::string& sentence : trained.run->advice) fmt::print("{:<14} {}\n", "  note", sentence);
   }
@@ -160,8 +160,8 @@ ordered_json info_json(const Trained& trained) {
     const TrainingRun& run = *trained.run;
     json["by"] = run.trainer;
     json["file"] = run.file.string();
-    for (const auto& [key, value] : run.said) json["says"][key] = value;
-    json["not_drawn_so"] = run.otherwise;
+    for (const auto& [key, value] : run.settings) json["says"][key] = value;
+    json["not_drawn_so"] = run.differences;
     json["to_know"] = run.advice;
   }
   if (trained.exposures) {
@@ -255,10 +255,10 @@ ordered_json info_json(const Model& model, const ModelSummary& s, const render::
 // Prints the names that --view accepts.
 ExitCode list_views(const InfoOptions& options) {
   CameraList list = listed_cameras(options.scene, options.camera);
-  if (list.cameras.empty() && list.known.unusable.empty())
+  if (list.cameras.empty() && list.hints.unusable.empty())
     fail("{}: there are no cameras beside it; name their file with --cameras", options.scene.name);
   if (list.cameras.empty())  // as render makes them
-    list = made_up_cameras(options.scene, options.camera, list.known, load_scene(options.scene));
+    list = made_up_cameras(options.scene, options.camera, list.hints, load_scene(options.scene));
   std::size_t widest = 0;
   for (const Camera& camera : list.cameras) widest = std::max(widest, camera.name.size());
   fmt::print("{}: {} views\n", list.source, list.cameras.size());
@@ -289,7 +289,7 @@ ExitCode info(const InfoOptions& options) {
     if (trained.run) follow(*trained.run, file, model);
   }
   const bool named = !options.camera.file.empty();
-  settle_axes(options.scene,
+  choose_axes(options.scene,
               named ? listed_cameras(options.scene, options.camera).cameras : std::vector<Camera>{}, model);
   if (!options.scene.place.empty() && !is_built_in(options.scene.name)) append_placed(options.scene, model);
   const ModelSummary summary = summarise(model);

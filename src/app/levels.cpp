@@ -20,9 +20,9 @@
 #include "base/log.h"
 #include "base/mapped_file.h"
 #include "base/output_file.h"
-#include "compact/leaf_errors.h"
+#include "compact/joint_loss.h"
 #include "compact/level_errors.h"
-#include "compact/loss_together.h"
+#include "compact/level_errors_json.h"
 #include "compact/streamed_sog_writer.h"
 #include "formats/cameras_file.h"
 #include "formats/content.h"
@@ -75,7 +75,7 @@ class Folder {
  private:
   bool is_complete(const std::string& name) const {
     if (name.ends_with("meta.json")) return is_whole_sog(folder_ / name);
-    return is_whole(folder_ / name) && (!name.starts_with("together_") || all_drawn(name, read(name)));
+    return is_whole(folder_ / name) && (!name.starts_with("joint_") || all_drawn(name, read(name)));
   }
 
   fs::path folder_;
@@ -86,8 +86,8 @@ class Folder {
 /// The values that identify a run.
 nlohmann::ordered_json identity_of(const LevelsOptions& o) {
   nlohmann::ordered_json run =
-      lab::object("format", "binosplat levels", "version", 5, "program", BINOSPLAT_VERSION, "leaf",
-                  o.settings.leaf, "levels", o.settings.levels, "lod", o.scene.lod, "axes", o.scene.axes);
+      lab::object("format", "binosplat levels", "version", 6, "program", BINOSPLAT_VERSION, "chunk",
+                  o.settings.chunk, "levels", o.settings.levels, "lod", o.scene.lod, "axes", o.scene.axes);
   if (o.scene.seed) run["seed"] = *o.scene.seed;
   if (o.scene.count) run["count"] = *o.scene.count;
   if (o.scene.repeat) run["repeat"] = {o.scene.repeat->x, o.scene.repeat->y};
@@ -121,8 +121,8 @@ void write_cameras(const LevelsOptions& o) {
   const fs::path file = fs::path(o.output) / "cameras.json";
   if (is_whole(file)) return;
   const CameraList list = listed_cameras(o.scene, {});
-  if (!list.known.unusable.empty())
-    log_warning("{}; no cameras are left beside the levels", list.known.unusable);
+  if (!list.hints.unusable.empty())
+    log_warning("{}; no cameras are left beside the levels", list.hints.unusable);
   auto json = nlohmann::ordered_json::array();
   for (const Camera& camera : list.cameras) {
     json.push_back(camera_json(camera));
@@ -147,10 +147,13 @@ ExitCode levels(const LevelsOptions& o) {
       {[&](const std::string& name) { return folder.has(name); },
        [&](const std::string& name) { return folder.read(name); },
        [&](const std::string& name, std::span<const std::byte> bytes) { folder.write(name, bytes); }},
-      {[&](std::span<const std::vector<Model>> leaves) { return compact::level_errors(*context, leaves); },
-       [&](std::span<const std::vector<Model>> leaves, std::span<const LeafErrors> errors, int pictures) {
-         std::vector<LossTogether> losses = compact::loss_together(*context, leaves, errors, pictures);
-         undrawn += std::ranges::count(losses, false, &LossTogether::drawn);
+      {[&](std::span<const std::vector<Model>> levels_of_chunks) {
+         return compact::level_errors(*context, levels_of_chunks);
+       },
+       [&](std::span<const std::vector<Model>> levels_of_chunks, std::span<const LevelErrors> errors,
+           int pictures) {
+         std::vector<JointLoss> losses = compact::joint_losses(*context, levels_of_chunks, errors, pictures);
+         undrawn += std::ranges::count(losses, false, &JointLoss::drawn);
          return losses;
        }});
   if (undrawn > 0)
@@ -185,7 +188,7 @@ void add_levels(CLI::App& program, Command& command) {
       ->type_name("N")
       ->check(range(1, 16));
   sub->add_option(
-         "--leaf", o->settings.leaf,
+         "--chunk", o->settings.chunk,
          "Largest chunk, in Gaussians of the finest level; each chunk has a level\nof its own (2048)")
       ->type_name("N")
       ->check(range(64, 131072));

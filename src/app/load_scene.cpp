@@ -52,7 +52,7 @@ CitySettings city_settings(const SceneOptions& o) {
   return settings;
 }
 
-void set_as_asked(const SceneOptions& o, Model& model) {
+void apply_options(const SceneOptions& o, Model& model) {
   if (!o.axes.empty()) model.axes.letters = o.axes;
   if (o.antialias) {
     model.antialiased = *o.antialias;
@@ -71,10 +71,10 @@ std::vector<Camera> built_in_cameras(const SceneOptions& o) {
   return {};
 }
 
-void settle_axes(const SceneOptions& o, std::span<const Camera> cameras, Model& model) {
+void choose_axes(const SceneOptions& o, std::span<const Camera> cameras, Model& model) {
   if (!o.axes.empty() || !model.format.starts_with("spz")) return;
   if (model.axes.letters != "RUB" && model.axes.letters != "RDF") return;
-  const bool said = !model.format.ends_with(axes_not_said);
+  const bool said = !model.format.ends_with(axes_assumed);
   const std::string usual = model.axes.letters, other = usual == "RUB" ? "RDF" : "RUB";
   auto detected = detect_axes(model, other, cameras);
   if (!detected) detected = detect_axes(model, other, cameras_beside(o));
@@ -108,8 +108,8 @@ void settle_axes(const SceneOptions& o, std::span<const Camera> cameras, Model& 
 Model load_scene(const SceneOptions& o, const std::optional<DetailBudget>& budget,
                  std::span<const Camera> cameras) {
   Model model = load_once(o, budget);
-  set_as_asked(o, model);
-  settle_axes(o, cameras, model);
+  apply_options(o, model);
+  choose_axes(o, cameras, model);
   if (o.repeat) model = repeat(std::move(model), o.repeat->x, o.repeat->y, *o.spacing);
   if (!o.place.empty()) append_placed(o, model);
   return model;

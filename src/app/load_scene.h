@@ -17,7 +17,7 @@ namespace binosplat::app {
 CitySettings city_settings(const SceneOptions& options);
 
 /// Applies the options for axes and anti-aliasing to a model.
-void set_as_asked(const SceneOptions& options, Model& model);
+void apply_options(const SceneOptions& options, Model& model);
 
 /// The cameras of a built-in scene, without making its model; none for a file. Throws Error for an unknown
 /// built-in scene.
@@ -26,7 +26,7 @@ std::vector<Camera> built_in_cameras(const SceneOptions& options);
 /// Chooses the axes of an spz without --axes, because programs write spz in two frames. Prefers the axes in
 /// which `cameras`, or those beside the model, see it (scene/detected_axes.h), then the file's or the
 /// format's. Logs a choice that the file does not state, and how to change it.
-void settle_axes(const SceneOptions& options, std::span<const Camera> cameras, Model& model);
+void choose_axes(const SceneOptions& options, std::span<const Camera> cameras, Model& model);
 
 /// Reads or makes the model, which may take long, and repeats it by the options. `budget` applies to files
 /// with levels of detail. `cameras` are its views, if known. Throws Error as built_in_cameras() and

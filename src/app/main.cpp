@@ -110,13 +110,13 @@ int run(int argc, char** argv) {
 int main(int argc, char** argv) {
   // A write beyond the limit of file size then fails with an error, as on a full disk.
   std::signal(SIGXFSZ, SIG_IGN);
-  binosplat::app::settle_shader_caches();
+  binosplat::app::prepare_shader_caches();
   binosplat::end_cleanly_without_memory();
   binosplat::end_cleanly_on_cut_files();
   try {
     binosplat::app::end_cleanly_on_signals();
     return run(argc, argv);
   } catch (...) {
-    return binosplat::app::end_by_what_was_thrown();
+    return binosplat::app::exit_code_of_current_exception();
   }
 }

@@ -102,7 +102,7 @@ bool names_a_file(const fs::path& path) {
 }
 
 // Whether the name is a generic one of trainers and exporters, possibly with a number.
-bool tells_nothing(std::string name) {
+bool is_generic_name(std::string name) {
   while (!name.empty() && (std::isdigit(static_cast<unsigned char>(name.back())) != 0 || name.back() == '_' ||
                            name.back() == '-'))
     name.pop_back();
@@ -202,7 +202,7 @@ fs::path default_folder(const std::string& scene) {
   std::string name = fs::is_directory(path, ignored) ? path.filename().string() : path.stem().string();
   // A number distinguishes models of one training.
   std::string number;
-  while (tells_nothing(name) && path.has_relative_path()) {
+  while (is_generic_name(name) && path.has_relative_path()) {
     if (number.empty() && name.find_first_of("0123456789") != std::string::npos) number = "_" + name;
     path = path.parent_path();
     name = path.filename().string();

@@ -72,13 +72,13 @@ Image load_view_photo(const fs::path& file, const Camera& camera, const glm::vec
     log_info("photo {} has alpha: photos with alpha are compared over the background {:g},{:g},{:g}",
              file.string(), background.r, background.g, background.b);
   }
-  return photo.channels == 3 ? photo : measure::before(background, photo);
+  return photo.channels == 3 ? photo : measure::composite_over(background, photo);
 }
 
 void check_cameras_of(const std::string& photos, const CameraList& list) {
-  if (!photos.empty() && !list.known.unusable.empty())
+  if (!photos.empty() && !list.hints.unusable.empty())
     fail("--photos {}: the cameras beside the model cannot be used: {}; name their file with --cameras",
-         photos, list.known.unusable);
+         photos, list.hints.unusable);
 }
 
 void check_photos(const std::string& photos, std::span<const Camera> cameras) {
@@ -135,7 +135,7 @@ std::vector<Camera> photographed_cameras(const ViewChoice& choice, const std::st
   const std::vector<std::string> without = view_names(choice.without, list);
   const bool named = !choice.views.empty();
   check_cameras_of(photos, list);
-  if (!photos.empty()) check_photos_apart(photos, list.cameras);
+  if (!photos.empty()) check_photos_unique(photos, list.cameras);
   std::vector<Camera> cameras = chosen_cameras(choice.views, lens, list);
   std::erase_if(cameras, [&](const Camera& camera) {
     return std::find(without.begin(), without.end(), camera.name) != without.end() ||

@@ -57,7 +57,7 @@ void append_placed(const SceneOptions& o, Model& model) {
         (std::filesystem::path(o.place).parent_path() / entry.at("model").text()).lexically_normal().string();
     const glm::dmat4 matrix = matrix_of(entry);
     Model placed = load_model(path);
-    set_as_asked(asked, placed);
+    apply_options(asked, placed);
     check_trained_alike(entry, placed, model);
     // From the model's frame into the scene's.
     const glm::dmat4 turned(world_from_axes(placed.axes.letters));

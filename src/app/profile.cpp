@@ -10,13 +10,13 @@
 
 #include "app/calibrated.h"
 #include "app/command.h"
-#include "app/followed.h"
 #include "app/foveate_options.h"
+#include "app/level_options.h"
 #include "app/load_scene.h"
 #include "app/option_checks.h"
+#include "app/option_conflicts.h"
 #include "app/report.h"
 #include "app/shots.h"
-#include "app/together.h"
 #include "app/tour.h"
 #include "base/log.h"
 #include "base/memory.h"
@@ -129,7 +129,7 @@ Profiled open_profiled(ProfileOptions o) {
   all.stream = open_for_frames(o.scene, settings);
   if (!all.stream) all.loaded = load_scene(o.scene, {}, list.cameras);
   if (!list.listed && !o.camera.along_path())
-    list = made_up_cameras(o.scene, o.camera, list.known, all.model());
+    list = made_up_cameras(o.scene, o.camera, list.hints, all.model());
   const double near_plane = near_plane_of(o.camera, list);
   std::vector<Shot> shots =
       make_shots(o.camera.views, o.camera.lens, o.rig, list, near_plane, all.model().axes);
@@ -234,7 +234,7 @@ void add_profile(CLI::App& program, Command& command) {
       "  binosplat profile garden.ply --view DSC07956 --fps 0 --compare out/profile/results.json -o out/new\n"
       "  binosplat profile demo:room --size 320x180 --seconds 2");
   sub->callback([options, sub, &command] {
-    check_together(*sub);
+    check_conflicts(*sub);
     Lens& lens = options->camera.lens;
     if (lens.preset.empty() && !lens.size) lens.preset = "headset";
     command = [options] { return profile(*options); };

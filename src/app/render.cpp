@@ -11,10 +11,10 @@
 #include "app/command.h"
 #include "app/command_line.h"
 #include "app/load_scene.h"
+#include "app/option_conflicts.h"
 #include "app/render_run.h"
 #include "app/resume.h"
 #include "app/sequence.h"
-#include "app/together.h"
 #include "app/tour.h"
 #include "base/log.h"
 #include "demo/demo.h"
@@ -84,7 +84,7 @@ std::optional<Shot> shot_for_screen(const RenderRun& run) {
 void check_photos_drawn(const RenderRun& run) {
   const std::string& folder = run.photos.folder;
   if (folder.empty() || !run.list.listed) return;
-  check_photos_apart(folder, run.list.cameras);
+  check_photos_unique(folder, run.list.cameras);
   const CameraOptions& o = run.options.camera;
   std::vector<Camera> cameras = chosen_cameras(o.views, o.lens, run.list);
   if (o.views.empty() && !run.list.path) cameras.resize(1);
@@ -142,7 +142,7 @@ std::vector<Shot> plan_shots(const RenderRun& run, const std::vector<fs::path>& 
   std::vector<Shot> shots =
       make_shots(o.camera.views, o.camera.lens, o.rig, run.list, run.near_plane, run.model().axes);
   if (run.outputs.vr180) {
-    for (Shot& shot : shots) level(shot, run.list.known.up.value_or(default_up));
+    for (Shot& shot : shots) level(shot, run.list.hints.up.value_or(default_up));
   }
   if (!sequence.empty()) show_in_turn(sequence, shots);
   place_files(run.outputs, o.output.json, shots);
@@ -201,7 +201,7 @@ ExitCode render(const RenderOptions& asked) {
   note_photos(run.photos.folder);
   check_photos_drawn(run);
   const render::FrameSettings settings = settings_of(o.drawing);
-  if (o.scene.detail || may_share(o)) {
+  if (o.scene.detail || quality_may_choose_levels(o)) {
     run.heads_turn = run.list.path || run.outputs.vr180;  // turning the head shows what is beside the view
     run.stream = open_for_shots(o.scene, settings, run.heads_turn);
     if (!o.scene.detail && !run.stream->files().has_errors()) run.stream.reset();
@@ -223,7 +223,7 @@ ExitCode render(const RenderOptions& asked) {
   log_model(o.scene.name, o.drawing.decode, run.model(), run.stream.get());
   run.policy.check_perspective(settings, run.model());
   run.policy.check_model(run.model());
-  if (!run.list.listed) run.list = made_up_cameras(o.scene, o.camera, run.list.known, run.model());
+  if (!run.list.listed) run.list = made_up_cameras(o.scene, o.camera, run.list.hints, run.model());
 
   run.near_plane = near_plane_of(o.camera, run.list);
   run.shots = plan_shots(run, sequence);
@@ -272,7 +272,7 @@ void add_render(CLI::App& program, Command& command) {
       "  binosplat render garden.ply --view all --shard $I/8 --resume -o out     # on 8 machines\n"
       "  binosplat render garden.ply --tour 0.5,30 --seconds 2 --preset headset --quality 40 -o frames");
   sub->callback([options, sub, &command] {
-    check_together(*sub);
+    check_conflicts(*sub);
     options->given = options_given(*sub);
     command = [options] { return render(*options); };
   });

@@ -7,7 +7,7 @@
 
 #include "app/foveate_options.h"
 #include "app/option_checks.h"
-#include "app/together.h"
+#include "app/option_conflicts.h"
 #include "app/tour.h"
 #include "base/error.h"
 #include "base/text.h"
@@ -163,7 +163,7 @@ void add_view_options(CLI::App& sub, RenderOptions& o) {
   for (const char* name : not_in_windows) sub.get_option(name)->group("Headset");
   sub.footer(keys_text());
   sub.parse_complete_callback([&sub, &o] {
-    check_together(sub);
+    check_conflicts(sub);
     for (const char* name : not_in_windows) {
       if (sub.count(name) > 0 && !o.headset.xr)
         fail("{} is for `binosplat render`, and for --xr: leave it out", name);
@@ -172,7 +172,7 @@ void add_view_options(CLI::App& sub, RenderOptions& o) {
   });
 }
 
-bool may_share(const RenderOptions& o) {
+bool quality_may_choose_levels(const RenderOptions& o) {
   return o.drawing.quality && !o.scene.lod && !o.scene.repeat && o.scene.place.empty() &&
          !is_built_in(o.scene.name) && is_streamed_sog(o.scene.name);
 }
@@ -191,7 +191,7 @@ void check_foveate(const RenderOptions& o) {
 
 void check(const RenderOptions& o) {
   check(o.scene);
-  if (o.output.detail_report && !o.scene.detail && !may_share(o))
+  if (o.output.detail_report && !o.scene.detail && !quality_may_choose_levels(o))
     fail("--detail-report needs --detail, whose loss it reports");
   if (o.scene.detail && o.scene.detail->db && o.drawing.quality &&
       *o.scene.detail->db <= *o.drawing.quality) {

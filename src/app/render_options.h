@@ -48,7 +48,7 @@ void add_options(CLI::App& sub, RenderOptions& options);
 void add_view_options(CLI::App& sub, RenderOptions& options);
 
 /// Whether --quality may also apply to levels of detail, if the scene's files have errors of levels.
-bool may_share(const RenderOptions& options);
+bool quality_may_choose_levels(const RenderOptions& options);
 
 /// Throws Error for contradicting options.
 void check(const RenderOptions& options);

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "app/calibrated.h"
-#include "app/followed.h"
+#include "app/level_options.h"
 #include "app/outputs.h"
 #include "app/photos.h"
 #include "app/render_options.h"

@@ -160,7 +160,7 @@ std::vector<StageRow> stage_rows(const RenderRun& run) {
 }
 
 // The reason if most of the time is spent waiting for files.
-std::string what_bounds(const RenderRun& run) {
+std::string bottleneck_of(const RenderRun& run) {
   const RunTimes& times = run.times;
   const OutputOptions& o = run.options.output;
   const std::string cores = fmt::format("on {} core{}", times.threads, times.threads == 1 ? "" : "s");
@@ -178,7 +178,7 @@ std::string what_bounds(const RenderRun& run) {
                                        : "more cores would help");
 }
 
-void tell_whether_quality_pays(const RenderRun& run) {
+void warn_if_quality_is_slower(const RenderRun& run) {
   const RenderOptions& o = run.options;
   if (!o.drawing.quality) return;
   double ms = 0.0;
@@ -211,7 +211,7 @@ void print_run(const RenderRun& run) {
       "files {} %\n",
       shots, 1e-3 * times.all, 1e3 * static_cast<double>(shots) / times.all, drawing, percent(times.reading),
       files);
-  if (files > 50) fmt::print("{}\n", what_bounds(run));
+  if (files > 50) fmt::print("{}\n", bottleneck_of(run));
   if (!run.context->software() && times.gpu < 0.5 * times.all)
     fmt::print(
         "The GPU had nothing to do for {} % of the time and may have run at a low clock: `binosplat bench` "
@@ -264,7 +264,7 @@ ordered_json comfort_json(const Comfort& comfort) {
   const stereo::DisparityRange& r = comfort.range;
   return object("focus_metres", comfort.focus ? ordered_json(*comfort.focus) : ordered_json(), "near_px",
                 r.near_px, "far_px", r.far_px, "near_degrees", r.near_degrees, "far_degrees", r.far_degrees,
-                "vertical_px", r.vertical_px, "comfortable", stereo::comfortable(r));
+                "vertical_px", r.vertical_px, "comfortable", stereo::is_comfortable(r));
 }
 
 ordered_json levels_json(const ShotLevels& l) {
@@ -291,8 +291,8 @@ ordered_json view_json(const Drawn& drawn, const RenderOptions& options,
   FieldWriter{json}("visible", r.visible, "pairs", r.pairs, "gpu_ms", ms_of(r).value_or(NAN), "tile",
                     r.tile_size, "depth_orders", r.order_groups, "drawn_again", r.redrawn, "tolerance",
                     given(drawing.quality || !drawing.calibration.empty(), r.tolerance), "probed_psnr_db",
-                    given(drawing.quality.has_value(), r.quality), "told_psnr_db",
-                    given(drawing.quality.has_value(), reported_psnr(drawn)), "told_is_estimate",
+                    given(drawing.quality.has_value(), r.quality), "reported_psnr_db",
+                    given(drawing.quality.has_value(), reported_psnr(drawn)), "reported_is_estimate",
                     given(drawing.quality.has_value(), is_estimate(drawn)), "photo_psnr_db",
                     drawn.photo_psnr);
   if (drawn.levels) json["levels_of_detail"] = levels_json(*drawn.levels);
@@ -320,7 +320,7 @@ ordered_json settings_json(const RenderRun& run) {
                 "kernel_px2", model.kernel_px2, "th", th_choices[threshold_of(o)].name, "tolerance",
                 o.tolerance, "transmittance", transmittance_choices[o.transmittance].name, "decode",
                 given(model.scaffold != nullptr, decode_choices[o.decode.value_or(DECODE_EYES)].name),
-                "detail_px", given(detail && !detail->db, detail ? detail->apart_px : 0.0), "detail_db",
+                "detail_px", given(detail && !detail->db, detail ? detail->spacing_px : 0.0), "detail_db",
                 detail ? detail->db : std::nullopt, "quality_db", o.quality, "calibration",
                 given(!o.calibration.empty(), o.calibration), "background",
                 background ? list(glm::dvec3(*background)) : ordered_json(), "reference_until",
@@ -350,7 +350,7 @@ ordered_json scene_json(const RenderRun& run) {
 void print(const RenderRun& run) {
   print_views(run);
   warn_of_discomfort(run.drawn);
-  tell_whether_quality_pays(run);
+  warn_if_quality_is_slower(run);
   const std::vector<StageRow> rows = stage_rows(run);
   if (rows.empty()) fmt::print("(by the float64 reference, on the CPU)\n");
   if (rows.empty() || is_quiet()) return;
@@ -362,7 +362,7 @@ void print(const RenderRun& run) {
   fmt::print(
       "GPU time of {} frame{} on {}{}; {:.1f} MB in buffers; making the shaders' programs took {:.2f} s\n",
       frames, frames == 1 ? "" : "s", run.context->renderer(), frames == 1 ? " (--frames N for more)" : "",
-      static_cast<double>(run.context->peak_bytes()) / 1e6, 1e-3 * run.context->making_ms());
+      static_cast<double>(run.context->peak_bytes()) / 1e6, 1e-3 * run.context->compile_ms());
   print_run(run);
 }
 

@@ -105,8 +105,8 @@ void check_alone(const fs::path& folder, const std::optional<ordered_json>& run)
         folder.string());
 }
 
-lab::Keep keep_steps(const fs::path& result, const MeasuredOptions& options, const PhotoSource& photos,
-                     const CameraList& list, const gl::Context& context) {
+lab::StepCache cache_steps(const fs::path& result, const MeasuredOptions& options, const PhotoSource& photos,
+                           const CameraList& list, const gl::Context& context) {
   const std::string run =
       json_text(lab::object("program", BINOSPLAT_VERSION, "options", options.given, "scene",
                             scene_identity(options, {options.scene.name, options.scene, list, photos}),

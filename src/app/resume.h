@@ -33,8 +33,8 @@ void leave_out_drawn(const std::filesystem::path& folder, const nlohmann::ordere
 
 /// Stores each measured step in a folder beside the file `result` until forget_steps(). An interrupted run of
 /// the same options, contents and device resumes from there.
-lab::Keep keep_steps(const std::filesystem::path& result, const MeasuredOptions& options,
-                     const PhotoSource& photos, const CameraList& list, const gl::Context& context);
+lab::StepCache cache_steps(const std::filesystem::path& result, const MeasuredOptions& options,
+                           const PhotoSource& photos, const CameraList& list, const gl::Context& context);
 void forget_steps(const std::filesystem::path& result);
 
 /// For runs that draw all views: removes the file that identifies earlier pictures in the folder.

@@ -112,17 +112,17 @@ void add_eyes(const Lens& lens, const RigOptions& rig, const stereo::RigSettings
   shot.ipd = shot.given_eyes ? apart / settings.units_per_metre : settings.ipd;
 }
 
-Known known_of(const std::optional<SavedPose>& saved) {
+SceneHints hints_of(const std::optional<SavedPose>& saved) {
   if (!saved) return {};
   return {saved->units_per_metre, saved->ipd, saved->up, {}};
 }
 
 // Stores what the cameras of a capture imply for new cameras.
-void learn(const std::vector<Camera>& cameras, Known& known) {
-  const auto capture = capture_of(cameras, known.up);
+void learn(const std::vector<Camera>& cameras, SceneHints& hints) {
+  const auto capture = capture_of(cameras, hints.up);
   if (!capture) return;
-  if (!known.up) known.up = capture->up;
-  known.around = capture->around;
+  if (!hints.up) hints.up = capture->up;
+  hints.around = capture->around;
 }
 
 // Reads cameras and moves them into the model's world, which may differ from the file's.
@@ -136,12 +136,12 @@ std::vector<Camera> cameras_for(const std::string& scene, const std::string& fil
 }
 
 // Ignores unreadable cameras beside the model, with a warning.
-void learn_beside(const std::string& scene, Known& known) {
+void learn_beside(const std::string& scene, SceneHints& hints) {
   const auto found = find_cameras(scene);
   if (!found) return;
   note_input(*found);
   try {
-    learn(cameras_for(scene, found->string()), known);
+    learn(cameras_for(scene, found->string()), hints);
   } catch (const Error& error) {
     log_warning("{}; cameras are made up without them", error.what());
   }
@@ -159,34 +159,34 @@ CameraList camera_list(const SceneOptions& scene, const CameraOptions& camera,
     return {found->string(), cameras_for(scene.name, found->string(), camera.fov)};
   } catch (const Error& error) {
     if (error.code() != ExitCode::bad_input) throw;
-    return {.source = scene.name, .known = {.unusable = error.what()}};
+    return {.source = scene.name, .hints = {.unusable = error.what()}};
   }
 }
 
 // Derives up and centre from the model if no cameras define them. Returns the origin of both for the log;
 // empty if --eye and --up define all.
 std::string learn_from(const CoredModel& cored, const SceneOptions& scene, const CameraOptions& camera,
-                       Known& known) {
-  if (known.around && !camera.eye)
+                       SceneHints& hints) {
+  if (hints.around && !camera.eye)
     return "around what the cameras beside it look at (--eye and --at for other places)";
-  const std::optional<glm::dvec3> up = known.up;
+  const std::optional<glm::dvec3> up = hints.up;
   std::string place = camera.eye ? "" : "from outside";
-  const char* tells = known.up ? "by what lies beside it" : "since nothing in it tells";
+  const char* tells = hints.up ? "by what lies beside it" : "since nothing in it tells";
   if (!is_built_in(scene.name) && !(camera.eye && up)) {
     if (const auto ground = find_ground(cored, up)) {
-      if (!camera.up) known.up = ground->up;
+      if (!camera.up) hints.up = ground->up;
       if (!up) tells = "by the surfaces in it";
       if (!camera.eye)
-        known.around = capture_of(cored, *ground, eye_height * known.units_per_metre.value_or(1.0)).around;
-      if (known.around) {
-        const double eyes = glm::dot(known.around->middle, ground->up) - *ground->height +
-                            known.around->distance * std::sin(known.around->elevation);
+        hints.around = capture_of(cored, *ground, eye_height * hints.units_per_metre.value_or(1.0)).around;
+      if (hints.around) {
+        const double eyes = glm::dot(hints.around->middle, ground->up) - *ground->height +
+                            hints.around->distance * std::sin(hints.around->elevation);
         place = fmt::format("from {:.2g} units above the ground (--eye and --at for another place)", eyes);
       }
     }
   }
   if (camera.up || is_built_in(scene.name)) return place;
-  const glm::dvec3 found = known.up.value_or(default_up);
+  const glm::dvec3 found = hints.up.value_or(default_up);
   return fmt::format("{}{}up is {:.2f},{:.2f},{:.2f}, {} (--up for another)", place,
                      place.empty() ? "" : "; ", found.x, found.y, found.z, tells);
 }
@@ -196,27 +196,27 @@ std::string learn_from(const CoredModel& cored, const SceneOptions& scene, const
 CameraList listed_cameras(const SceneOptions& scene, const CameraOptions& camera, const RigOptions& rig,
                           const std::optional<SavedPose>& saved) {
   const std::vector<Camera> built_in = built_in_cameras(scene);
-  Known known = known_of(saved);
-  if (camera.up) known.up = camera.up;
-  if (rig.units_per_metre) known.units_per_metre = rig.units_per_metre;
-  if (!known.units_per_metre && built_in.empty()) {
-    known.units_per_metre = usd_units_per_metre(model_file(scene.name));
-    if (known.units_per_metre.value_or(1.0) != 1.0)
-      log_info("{}: {:.6g} units make a metre, says its metersPerUnit", scene.name, *known.units_per_metre);
+  SceneHints hints = hints_of(saved);
+  if (camera.up) hints.up = camera.up;
+  if (rig.units_per_metre) hints.units_per_metre = rig.units_per_metre;
+  if (!hints.units_per_metre && built_in.empty()) {
+    hints.units_per_metre = usd_units_per_metre(model_file(scene.name));
+    if (hints.units_per_metre.value_or(1.0) != 1.0)
+      log_info("{}: {:.6g} units make a metre, says its metersPerUnit", scene.name, *hints.units_per_metre);
   }
   if (camera.made_up()) {
-    if (built_in.empty() && !(camera.eye && camera.up)) learn_beside(scene.name, known);
-    return {.known = known};
+    if (built_in.empty() && !(camera.eye && camera.up)) learn_beside(scene.name, hints);
+    return {.hints = hints};
   }
   CameraList list = camera_list(scene, camera, built_in);
   list.listed = !list.cameras.empty();
   list.path = camera.along_path();
-  known.unusable = list.known.unusable;
-  list.known = known;
+  hints.unusable = list.hints.unusable;
+  list.hints = hints;
   // Keys of a path may all be tilted alike. The mean of the many cameras beside the model is level.
   if (built_in.empty() && camera.lens.vr180() && !(camera.path + camera.file).empty())
-    learn_beside(scene.name, list.known);
-  if (built_in.empty()) learn(list.cameras, list.known);
+    learn_beside(scene.name, list.hints);
+  if (built_in.empty()) learn(list.cameras, list.hints);
   const bool takes_fov = list.listed && camera.fov && built_in.empty() && lacks_lenses(list.source);
   if (list.listed && ((camera.up && !camera.lens.vr180()) || (camera.fov && !takes_fov))) {
     fail(
@@ -225,13 +225,13 @@ CameraList listed_cameras(const SceneOptions& scene, const CameraOptions& camera
         list.source);
   }
   if (!list.listed && !camera.views.empty())
-    fail("--view {}: {}; name their file with --cameras", camera.views[0], why_no_cameras(scene, known));
+    fail("--view {}: {}; name their file with --cameras", camera.views[0], why_no_cameras(scene, hints));
   return list;
 }
 
-std::string why_no_cameras(const SceneOptions& scene, const Known& known) {
-  if (known.unusable.empty()) return fmt::format("no cameras beside {}", scene.name);
-  return fmt::format("the cameras beside {} cannot be used: {}", scene.name, known.unusable);
+std::string why_no_cameras(const SceneOptions& scene, const SceneHints& hints) {
+  if (hints.unusable.empty()) return fmt::format("no cameras beside {}", scene.name);
+  return fmt::format("the cameras beside {} cannot be used: {}", scene.name, hints.unusable);
 }
 
 std::optional<SavedPose> find_saved(const SceneOptions& scene) {
@@ -252,36 +252,36 @@ std::optional<CameraList> saved_camera(const SceneOptions& scene, const CameraOp
                     .cameras = {saved->camera},
                     .listed = true,
                     .near_plane = saved->near_plane,
-                    .known = known_of(saved)};
+                    .hints = hints_of(saved)};
 }
 
-CameraList eye_camera(const CameraOptions& camera, const Known& known) {
+CameraList eye_camera(const CameraOptions& camera, const SceneHints& hints) {
   return {.source = "--eye",
-          .cameras = {look_at(*camera.eye, *camera.at, known.up.value_or(default_up),
+          .cameras = {look_at(*camera.eye, *camera.at, hints.up.value_or(default_up),
                               camera.fov.value_or(default_fov_degrees), made_up_width, made_up_height)},
-          .known = known};
+          .hints = hints};
 }
 
-CameraList made_up_cameras(const SceneOptions& scene, const CameraOptions& camera, Known known,
+CameraList made_up_cameras(const SceneOptions& scene, const CameraOptions& camera, SceneHints hints,
                            const Model& model) {
   const double fov = camera.fov.value_or(default_fov_degrees);
   const CoredModel cored(model);
-  const std::string how = learn_from(cored, scene, camera, known);
-  const glm::dvec3 up = known.up.value_or(default_up);
-  CameraList list{.source = scene.name, .known = known};
-  if (!known.unusable.empty()) log_warning("{}; cameras are made up instead", known.unusable);
+  const std::string how = learn_from(cored, scene, camera, hints);
+  const glm::dvec3 up = hints.up.value_or(default_up);
+  CameraList list{.source = scene.name, .hints = hints};
+  if (!hints.unusable.empty()) log_warning("{}; cameras are made up instead", hints.unusable);
   if (camera.eye) {
     if (!how.empty()) log_info("looking at {} from --eye: {}", scene.name, how);
-    list = eye_camera(camera, known);
+    list = eye_camera(camera, hints);
   } else if (camera.orbit) {
     list.source = "--orbit";
     log_info("going around {}: {}", scene.name, how);
-    list.cameras = orbit(cored, *camera.orbit, made_up_width, made_up_height, fov, {up, known.around});
+    list.cameras = orbit(cored, *camera.orbit, made_up_width, made_up_height, fov, {up, hints.around});
   } else {
-    log_info("{} {}: {}", known.unusable.empty() ? "no cameras beside" : "one camera for", scene.name, how);
-    list.cameras = {frame_model(cored, made_up_width, made_up_height, fov, {up, known.around})};
+    log_info("{} {}: {}", hints.unusable.empty() ? "no cameras beside" : "one camera for", scene.name, how);
+    list.cameras = {frame_model(cored, made_up_width, made_up_height, fov, {up, hints.around})};
   }
-  list.near_plane = near_for(cored);
+  list.near_plane = near_plane_for(cored);
   return list;
 }
 
@@ -294,16 +294,16 @@ OpenScene open_scene(const SceneOptions& scene, const CameraOptions& camera, con
   OpenScene opened{.list = listed_cameras(scene, camera, rig)};
   if (check && opened.list.listed) check(opened.list);
   opened.model = load_scene(scene, {}, opened.list.cameras);
-  if (!opened.list.listed) opened.list = made_up_cameras(scene, camera, opened.list.known, opened.model);
+  if (!opened.list.listed) opened.list = made_up_cameras(scene, camera, opened.list.hints, opened.model);
   opened.near_plane = near_plane_of(camera, opened.list);
   return opened;
 }
 
-stereo::RigSettings rig_settings(const RigOptions& rig, const Known& known, double near_plane) {
+stereo::RigSettings rig_settings(const RigOptions& rig, const SceneHints& hints, double near_plane) {
   stereo::RigSettings settings;
-  settings.ipd = rig.ipd.value_or(known.ipd.value_or(settings.ipd));
+  settings.ipd = rig.ipd.value_or(hints.ipd.value_or(settings.ipd));
   settings.units_per_metre =
-      rig.units_per_metre.value_or(known.units_per_metre.value_or(settings.units_per_metre));
+      rig.units_per_metre.value_or(hints.units_per_metre.value_or(settings.units_per_metre));
   if (rig.convergence != std::numeric_limits<double>::infinity()) settings.convergence = rig.convergence;
   settings.cant_degrees = rig.cant.value_or(settings.cant_degrees);
   settings.near_plane = near_plane;
@@ -359,7 +359,7 @@ std::vector<Camera> chosen_cameras(const std::vector<std::string>& views, const 
 
 std::vector<Shot> make_shots(const std::vector<std::string>& views, const Lens& lens, const RigOptions& rig,
                              const CameraList& list, double near_plane, const ModelAxes& axes) {
-  const stereo::RigSettings settings = rig_settings(rig, list.known, near_plane);
+  const stereo::RigSettings settings = rig_settings(rig, list.hints, near_plane);
   std::vector<Shot> shots;
   std::set<std::string> taken;
   for (const ShotChoice& choice : chosen(views, list, rig.mono)) {

@@ -45,7 +45,7 @@ struct Shot {
 };
 
 /// Defaults from the scene for rigs and for cameras made from the model.
-struct Known {
+struct SceneHints {
   std::optional<double> units_per_metre;  // world units
   std::optional<double> ipd;              // m
   std::optional<glm::dvec3> up;           // the world's, or --up
@@ -60,18 +60,18 @@ struct CameraList {
   bool listed = false;               // from a file or a built-in scene, not made from the model
   bool path = false;                 // frames of one path
   std::optional<double> near_plane;  // world units, if known
-  Known known;
+  SceneHints hints;
 };
 
 /// The cameras of --cameras, of a file beside the model or of the built-in scene. Does not read the model.
 /// Empty if there are none, or if options place their own. Also empty if the ones beside the model cannot be
-/// used (Known::unusable) and no option requests them. `saved` comes from find_saved(). `Known` stores the
-/// units and eye distance of the rig, or else the scene's.
+/// used (SceneHints::unusable) and no option requests them. `saved` comes from find_saved(). `SceneHints`
+/// stores the units and eye distance of the rig, or else the scene's.
 CameraList listed_cameras(const SceneOptions& scene, const CameraOptions& camera, const RigOptions& rig = {},
                           const std::optional<SavedPose>& saved = {});
 
 /// The reason for missing cameras, for errors: none lie beside the model, or those cannot be used.
-std::string why_no_cameras(const SceneOptions& scene, const Known& known);
+std::string why_no_cameras(const SceneOptions& scene, const SceneHints& hints);
 
 /// The pose that `binosplat view` saved beside the model, if any; logs it.
 std::optional<SavedPose> find_saved(const SceneOptions& scene);
@@ -81,11 +81,11 @@ std::optional<CameraList> saved_camera(const SceneOptions& scene, const CameraOp
                                        const std::optional<SavedPose>& saved);
 
 /// The camera of --eye and --at.
-CameraList eye_camera(const CameraOptions& camera, const Known& known);
+CameraList eye_camera(const CameraOptions& camera, const SceneHints& hints);
 
 /// Level cameras from --eye, --orbit or the model. Their up and centre come from cameras beside the model or
 /// from the model's ground (scene/ground.h), and are stored in the list. Logs the choice.
-CameraList made_up_cameras(const SceneOptions& scene, const CameraOptions& camera, Known known,
+CameraList made_up_cameras(const SceneOptions& scene, const CameraOptions& camera, SceneHints hints,
                            const Model& model);
 
 /// --near, or the near plane that suits the cameras; world units.
@@ -104,7 +104,8 @@ OpenScene open_scene(const SceneOptions& scene, const CameraOptions& camera, con
                      const std::function<void(const CameraList&)>& check = {});
 
 /// The rig of the options, with defaults from the scene. `near_plane` is in world units.
-stereo::RigSettings rig_settings(const RigOptions& rig, const Known& known, double near_plane = near_default);
+stereo::RigSettings rig_settings(const RigOptions& rig, const SceneHints& hints,
+                                 double near_plane = near_default);
 
 /// Moves the screen of a parallel rig from infinity to `metres`. Ignores eyes that the cameras define.
 void converge(Shot& shot, double metres);

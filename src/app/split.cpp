@@ -33,8 +33,8 @@ CameraList needed_cameras(const std::string& command, const MeasuredOptions& o) 
     fail("cannot read {}: No such file or directory", o.scene.name);
   if (!list.listed)
     fail("{} needs the cameras that the pictures are of: {}; name their file with --cameras", command,
-         why_no_cameras(o.scene, list.known));
-  if (!o.photos.empty()) check_photos_apart(o.photos, list.cameras);
+         why_no_cameras(o.scene, list.hints));
+  if (!o.photos.empty()) check_photos_unique(o.photos, list.cameras);
   check_photos(o.photos, chosen_cameras({}, o.camera.lens, list));
   return list;
 }

@@ -66,15 +66,15 @@ CameraList go_on_tour(const SceneOptions& scene, const CameraOptions& camera, co
     fail(
         "--tour goes through cameras: {}; name their file with --cameras, or go around the model with "
         "--orbit",
-        why_no_cameras(scene, list.known));
+        why_no_cameras(scene, list.hints));
   }
-  if (!list.known.units_per_metre && !is_built_in(scene.name))
+  if (!list.hints.units_per_metre && !is_built_in(scene.name))
     log_info(
         "--tour: a metre is one world unit, as for pictures; from each camera to the next are {0:.4g} units, "
         "in the median: --units-per-metre {0:.4g} takes that for a metre",
-        metre_of(list.cameras));
+        estimated_metre(list.cameras));
   const std::size_t count = list.cameras.size();
-  TourSettings settings{*camera.tour, fps, rig_settings(rig, list.known).units_per_metre};
+  TourSettings settings{*camera.tour, fps, rig_settings(rig, list.hints).units_per_metre};
   settings.seconds = camera.seconds.value_or(settings.seconds);
   list.cameras = tour(list.cameras, settings);
   log_info("--tour: through {} cameras of {} at up to {} m and {} degrees a second: {} frames, {:.3g} s{}",
@@ -91,7 +91,7 @@ CameraList go_along_path(const CameraOptions& camera, const std::optional<double
       fail("--fps: --keys draws each camera of {} as it is: leave one of them out", list.source);
     return list;
   }
-  const std::vector<Camera> heads = heads_of(list.cameras);
+  const std::vector<Camera> heads = heads_from_pairs(list.cameras);
   if (!camera.seconds && !are_keys(heads)) {
     if (fps && !played)
       fail("--fps: {} has frames, each drawn as it is; --seconds S goes through them as keys", list.source);

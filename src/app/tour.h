@@ -16,14 +16,14 @@ CLI::Option* add_tour_option(CLI::App& sub, CameraOptions& options);
 void add_tour_options(CLI::App& sub, CameraOptions& options);
 
 /// Replaces the cameras by the tour's, one a frame, and logs it. A metre is that of the rig; if unknown, one
-/// unit. Then the log also has the metre that the distances of the cameras suggest (metre_of). Throws Error
-/// for fewer than two cameras.
+/// unit. Then the log also has the metre that the distances of the cameras suggest (estimated_metre). Throws
+/// Error for fewer than two cameras.
 CameraList go_on_tour(const SceneOptions& scene, const CameraOptions& camera, const RigOptions& rig,
                       double fps, CameraList list);
 
 /// The frames of a path. Keys (scene/key_path.h) are interpolated smoothly at `fps`, and logged; frames stay
-/// as they are. A pair of eyes (heads_of) is one key. Throws Error if options need keys but the file has
-/// frames. `fps` is such an option, unless the frames are `played` at it.
+/// as they are. A pair of eyes (heads_from_pairs) is one key. Throws Error if options need keys but the file
+/// has frames. `fps` is such an option, unless the frames are `played` at it.
 CameraList go_along_path(const CameraOptions& camera, const std::optional<double>& fps, bool played,
                          CameraList list);
 

@@ -122,8 +122,8 @@ ordered_json trimmed_json(const Calibrator::Cost& cost, const std::vector<lab::C
 ordered_json trimmed_json(const TrimOptions& o, const compact::Trimmed& found, const lab::ViewSplit& views,
                           ModelFormat format, const std::vector<std::string>& losses) {
   ordered_json json = lab::object("version", BINOSPLAT_VERSION, "model", o.scene.name, "output", o.output,
-                                  "format", word_of(format), "as_it_was", !found.less, "unseen", found.unseen,
-                                  "views_weighed", views.training.size(), "losses", losses);
+                                  "format", word_of(format), "as_it_was", !found.is_smaller, "unseen",
+                                  found.unseen, "views_weighed", views.training.size(), "losses", losses);
   if (o.bound.max_drop) json["target"]["drop_db"] = *o.bound.max_drop;
   if (o.bound.quality) json["target"]["quality_db"] = *o.bound.quality;
   for (const compact::TrimStep& s : found.steps) {
@@ -141,7 +141,7 @@ ordered_json trimmed_json(const TrimOptions& o, const compact::Trimmed& found, c
 /// Writes the trimmed model, or a copy of the input if nothing could be removed.
 std::vector<std::string> write_trimmed(const TrimOptions& o, const compact::Trimmed& found,
                                        ModelFormat format, const std::optional<fs::path>& original) {
-  if (!found.less && original) {
+  if (!found.is_smaller && original) {
     write_file(o.output, as_text(MappedFile(*original).bytes()));
     return {};
   }
@@ -167,16 +167,16 @@ ExitCode trim(const TrimOptions& o) {
   if (const fs::path file = model_file(o.scene.name); fs::is_regular_file(file))
     found.steps.front().bytes = fs::file_size(file);
   const compact::TrimStep &first = found.steps.front(), &last = found.steps.back();
-  const bool no_smaller = found.less && original && last.bytes >= first.bytes;
-  if (no_smaller) found.less = false;
+  const bool no_smaller = found.is_smaller && original && last.bytes >= first.bytes;
+  if (no_smaller) found.is_smaller = false;
   print_trimmed(o, found, views, model.count());
-  if (!found.fits && !original) {
+  if (!found.format_fits && !original) {
     fail("-o {}: the format alone exceeds the bound, {}; choose .ply, which loses nothing, or a wider bound",
-         o.output, fmt::format("{:.3f} dB", last.worse_db()));
+         o.output, fmt::format("{:.3f} dB", last.bounded_db()));
   }
   const std::vector<std::string> losses = write_trimmed(o, found, format, original);
   for (const std::string& loss : losses) log_warning("{}", loss);
-  if (found.less) {
+  if (found.is_smaller) {
     fmt::print("\n{}\n", o.output);
   } else if (no_smaller) {
     fmt::print("\n{}: the unchanged model, {} bytes: the trimmed one would have {}\n", o.output, first.bytes,

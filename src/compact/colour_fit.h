@@ -25,9 +25,9 @@ class ColourFit {
 
  private:
   static constexpr std::size_t count_max = 9;
-  std::array<float, count_max*(count_max + 1) / 2> gram_{};  // normal matrix, lower triangle by rows
-  std::array<glm::vec3, count_max> seen_{};                  // sums of basis times colour
-  float square_ = 0.0f;                                      // sum of squared colours
+  std::array<float, count_max*(count_max + 1) / 2> normal_matrix_{};  // lower triangle by rows
+  std::array<glm::vec3, count_max> right_side_{};                     // sums of basis times colour
+  float squares_ = 0.0f;                                              // sum of squared colours
 };
 
 }  // namespace binosplat::compact

@@ -38,10 +38,10 @@ Box box_of(const Model& model) {
 }
 
 /// A chunk to measure.
-struct Part {
+struct MeasuredChunk {
   std::span<const Model> levels;
   Box box;
-  LeafErrors* errors;
+  LevelErrors* errors;
   int square;  // px, side of its narrowest picture
 };
 
@@ -64,7 +64,7 @@ class LevelDrawer {
       : context_(context),
         dispatcher_(context),
         finest_(context, "the finest level"),
-        behind_(context, "colours behind chunks"),
+        backgrounds_(context, "colours behind chunks"),
         sums_(context, "errors of chunks") {}
 
   /// The next model to draw; its memory is reused.
@@ -75,7 +75,7 @@ class LevelDrawer {
   std::vector<float> draw_finest(const shared::View& view, const Grid& grid) {
     draw(view, true);
     finest_.reserve(frame_->colours().bytes());
-    behind_.reserve(std::int64_t{grid.count} * 16);
+    backgrounds_.reserve(std::int64_t{grid.count} * 16);
     return sums_of(grid, true);
   }
 
@@ -103,7 +103,7 @@ class LevelDrawer {
     dispatcher_.run(program, gl::DispatchSize::of_groups(grid.count),
                     {{"Colours", frame_->colours()},
                      {"Finest", finest_},
-                     {"Behind", behind_},
+                     {"Backgrounds", backgrounds_},
                      {"Sums", sums_},
                      {"ZSums", frame_->z_sums()}},
                     {{"square_count", grid.count},
@@ -119,22 +119,22 @@ class LevelDrawer {
   gl::Dispatcher dispatcher_;
   Model model_;
   std::optional<render::Frame> frame_;
-  gl::Buffer finest_;  // vec4 by pixel
-  gl::Buffer behind_;  // vec4 by square
-  gl::Buffer sums_;    // float by square
+  gl::Buffer finest_;       // vec4 by pixel
+  gl::Buffer backgrounds_;  // vec4 by square
+  gl::Buffer sums_;         // float by square
 };
 
 /// Chunks side by side, each in its own square, seen along `direction`.
-class Sheet {
+class ChunkSheet {
  public:
-  Sheet(std::span<const Part> parts, std::size_t width, const glm::dvec3& direction)
-      : parts_(parts), width_(width) {
+  ChunkSheet(std::span<const MeasuredChunk> chunks, std::size_t width, const glm::dvec3& direction)
+      : chunks_(chunks), width_(width) {
     double widest = 0.0;
-    for (const Part& part : parts)
-      widest = std::max(widest, glm::distance(part.box.low, part.box.high) / pixel(part));
-    grid_ = {static_cast<std::uint32_t>(parts.size()),
+    for (const MeasuredChunk& chunk : chunks)
+      widest = std::max(widest, glm::distance(chunk.box.low, chunk.box.high) / pixel(chunk));
+    grid_ = {static_cast<std::uint32_t>(chunks.size()),
              static_cast<std::uint32_t>(std::ceil(widest)) + 2 * margin,
-             static_cast<std::uint32_t>(std::ceil(std::sqrt(static_cast<double>(parts.size()))))};
+             static_cast<std::uint32_t>(std::ceil(std::sqrt(static_cast<double>(chunks.size()))))};
     camera_.width = static_cast<int>(grid_.width());
     camera_.height = static_cast<int>(grid_.height());
     camera_.fx = camera_.fy = away * std::max(camera_.width, camera_.height);
@@ -156,28 +156,28 @@ class Sheet {
  private:
   /// Places one level of all chunks.
   void fill(Model& all, std::size_t level) const {
-    if (all.count() == 0) all = without_gaussians(parts_.front().levels[level]);
+    if (all.count() == 0) all = without_gaussians(chunks_.front().levels[level]);
     std::vector<std::size_t> first{0};
-    for (const Part& part : parts_) first.push_back(first.back() + part.levels[level].count());
+    for (const MeasuredChunk& chunk : chunks_) first.push_back(first.back() + chunk.levels[level].count());
     all.resize(first.back());
-    parallel_for(parts_.size(), [&](std::size_t i) {
-      const Part& part = parts_[i];
-      copy(part.levels[level], 0, part.levels[level].count(), all, first[i]);
+    parallel_for(chunks_.size(), [&](std::size_t i) {
+      const MeasuredChunk& chunk = chunks_[i];
+      copy(chunk.levels[level], 0, chunk.levels[level].count(), all, first[i]);
       // At a distance of as many world units as the focal length has pixels, a pixel is one world unit.
       const glm::dvec2 centre =
           glm::dvec2(grid_.corner(i)) + 0.5 * grid_.side - glm::dvec2(camera_.cx, camera_.cy);
       const glm::dvec3 at(centre, camera_.fx);
-      const glm::dvec3 to = camera_.rotation * at, middle = 0.5 * (part.box.low + part.box.high);
+      const glm::dvec3 to = camera_.rotation * at, middle = 0.5 * (chunk.box.low + chunk.box.high);
       for (std::size_t k = first[i]; k < first[i + 1]; ++k) {
-        all.position[k] = glm::vec3((glm::dvec3(all.position[k]) - middle) / pixel(part) + to);
-        all.scale[k] = glm::vec3(glm::dvec3(all.scale[k]) / pixel(part));
+        all.position[k] = glm::vec3((glm::dvec3(all.position[k]) - middle) / pixel(chunk) + to);
+        all.scale[k] = glm::vec3(glm::dvec3(all.scale[k]) / pixel(chunk));
       }
     });
   }
 
-  double pixel(const Part& part) const { return part.errors->pixels[width_]; }
+  double pixel(const MeasuredChunk& chunk) const { return chunk.errors->pixels[width_]; }
 
-  std::span<const Part> parts_;
+  std::span<const MeasuredChunk> chunks_;
   std::size_t width_;
   Grid grid_{};
   Camera camera_;
@@ -190,63 +190,64 @@ constexpr std::size_t fine_levels = 3;
 /// In wide pixels both sides look much alike, so only the first of two opposite directions is drawn.
 bool is_drawn(std::size_t direction, std::size_t width) { return width == 0 || direction % 2 == 0; }
 
-void fill_in(LeafErrors& leaf) {
+void fill_in(LevelErrors& errors) {
   for (std::size_t d = 0; d < detail_directions; ++d) {
     for (std::size_t width = 1; width < widths; ++width) {
       const std::size_t drawn = is_drawn(d, width) ? d : d - 1;
-      leaf.seen[d][width] = leaf.seen[drawn][width];
-      for (auto& of : leaf.of_level) of[d][width] = of[drawn][width];
+      errors.seen[d][width] = errors.seen[drawn][width];
+      for (auto& of : errors.of_level) of[d][width] = of[drawn][width];
     }
-    const double larger = leaf.seen[d][1] > 0.0 ? leaf.seen[d][0] / leaf.seen[d][1] : 0.0;
-    for (std::size_t level = fine_levels; level < leaf.of_level.size(); ++level)
-      leaf.of_level[level][d][0] = larger * leaf.of_level[level][d][1];
+    const double larger = errors.seen[d][1] > 0.0 ? errors.seen[d][0] / errors.seen[d][1] : 0.0;
+    for (std::size_t level = fine_levels; level < errors.of_level.size(); ++level)
+      errors.of_level[level][d][0] = larger * errors.of_level[level][d][1];
   }
 }
 
-void judge_parts(LevelDrawer& drawer, std::span<const Part> parts) {
-  const std::size_t levels = parts.front().levels.size();
-  for (const Part& part : parts) {
-    part.errors->seen.assign(detail_directions, std::vector<double>(widths));
-    part.errors->of_level.assign(levels, part.errors->seen);
+void measure_chunks(LevelDrawer& drawer, std::span<const MeasuredChunk> chunks) {
+  const std::size_t levels = chunks.front().levels.size();
+  for (const MeasuredChunk& chunk : chunks) {
+    chunk.errors->seen.assign(detail_directions, std::vector<double>(widths));
+    chunk.errors->of_level.assign(levels, chunk.errors->seen);
   }
   for (std::size_t d = 0; d < detail_directions; ++d) {
     for (std::size_t width = 0; width < widths; ++width) {
       if (!is_drawn(d, width)) continue;
-      const Sheet sheet(parts, width, detail_direction(d));
+      const ChunkSheet sheet(chunks, width, detail_direction(d));
       const std::vector<float> seen = sheet.draw_finest(drawer);
-      for (std::size_t i = 0; i < parts.size(); ++i) parts[i].errors->seen[d][width] = double{seen[i]};
+      for (std::size_t i = 0; i < chunks.size(); ++i) chunks[i].errors->seen[d][width] = double{seen[i]};
       for (std::size_t level = 1; level < (width == 0 ? std::min(levels, fine_levels) : levels); ++level) {
         const std::vector<float> lost = sheet.draw(drawer, level);
-        for (std::size_t i = 0; i < parts.size(); ++i)
-          parts[i].errors->of_level[level][d][width] = double{lost[i]};
+        for (std::size_t i = 0; i < chunks.size(); ++i)
+          chunks[i].errors->of_level[level][d][width] = double{lost[i]};
       }
     }
   }
-  for (const Part& part : parts) fill_in(*part.errors);
+  for (const MeasuredChunk& chunk : chunks) fill_in(*chunk.errors);
 }
 
 }  // namespace
 
-std::vector<LeafErrors> level_errors(gl::Context& context, std::span<const std::vector<Model>> leaves) {
-  std::vector<LeafErrors> errors(leaves.size());
-  std::vector<Part> parts;
-  for (std::size_t i = 0; i < leaves.size(); ++i) {
-    const Model& finest = leaves[i].front();
+std::vector<LevelErrors> level_errors(gl::Context& context,
+                                      std::span<const std::vector<Model>> levels_of_chunks) {
+  std::vector<LevelErrors> errors(levels_of_chunks.size());
+  std::vector<MeasuredChunk> chunks;
+  for (std::size_t i = 0; i < levels_of_chunks.size(); ++i) {
+    const Model& finest = levels_of_chunks[i].front();
     const Box box = box_of(finest);
     const double diagonal = glm::distance(box.low, box.high);
     const double across = std::ceil(std::sqrt(static_cast<double>(finest.count())) / narrowest);
     for (int k = 0; k < widths; ++k)
       errors[i].pixels.push_back((diagonal > 0.0 ? diagonal / across : 1.0) * std::pow(wider, k));
-    parts.push_back({leaves[i], box, &errors[i], static_cast<int>(across) + 2 * margin});
+    chunks.push_back({levels_of_chunks[i], box, &errors[i], static_cast<int>(across) + 2 * margin});
   }
   LevelDrawer drawer(context);
   // All squares of a sheet have the size of its largest.
-  std::stable_sort(parts.begin(), parts.end(),
-                   [](const Part& a, const Part& b) { return a.square > b.square; });
-  for (std::size_t first = 0, count = 0; first < parts.size(); first += count) {
-    const auto row = static_cast<std::size_t>(std::max(1, side_most / parts[first].square));
-    count = std::min(parts.size() - first, row * row);
-    judge_parts(drawer, std::span(parts).subspan(first, count));
+  std::stable_sort(chunks.begin(), chunks.end(),
+                   [](const MeasuredChunk& a, const MeasuredChunk& b) { return a.square > b.square; });
+  for (std::size_t first = 0, count = 0; first < chunks.size(); first += count) {
+    const auto row = static_cast<std::size_t>(std::max(1, side_most / chunks[first].square));
+    count = std::min(chunks.size() - first, row * row);
+    measure_chunks(drawer, std::span(chunks).subspan(first, count));
   }
   return errors;
 }

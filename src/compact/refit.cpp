@@ -65,11 +65,11 @@ float largest_of(std::span<const glm::vec3> colours) {
 class Refit {
  public:
   Refit(gl::Context& context, const Model& model, const RefitTargets& targets, const RefitSettings& settings,
-        const RefitJudge& judge)
+        const ValidationLoss& validation_loss)
       : model_(model),
         targets_(targets),
         settings_(settings),
-        judge_(judge),
+        validation_loss_(validation_loss),
         coefficients_(static_cast<std::size_t>(sh_count(model.degree))),
         blend_(context, model),
         context_(context),
@@ -77,7 +77,7 @@ class Refit {
 
   Refitted run() {
     found_.sh = model_.sh;
-    if (judge_) found_.judged = {judge_(model_)};
+    if (validation_loss_) found_.losses = {validation_loss_(model_)};
     const auto rounds = static_cast<std::uint64_t>(settings_.rounds);
     const std::uint64_t restarts =
         (rounds + static_cast<std::uint64_t>(settings_.rounds_linear) - 1) / settings_.rounds_linear;
@@ -86,8 +86,9 @@ class Refit {
     for (int round = 1; round <= settings_.rounds; ++round) {
       if ((round - 1) % settings_.rounds_linear == 0) linearise();
       if (!step()) break;
-      if (judge_) found_.judged.push_back(judge_(candidate_));
-      if (!judge_ || found_.judged.back() < found_.judged[static_cast<std::size_t>(found_.best_round)]) {
+      if (validation_loss_) found_.losses.push_back(validation_loss_(candidate_));
+      if (!validation_loss_ ||
+          found_.losses.back() < found_.losses[static_cast<std::size_t>(found_.best_round)]) {
         found_.best_round = round;
         found_.sh = candidate_.sh;
       } else if (round - found_.best_round == patience) {
@@ -239,7 +240,7 @@ class Refit {
   const Model& model_;
   const RefitTargets& targets_;
   const RefitSettings& settings_;
-  const RefitJudge& judge_;
+  const ValidationLoss& validation_loss_;
   const std::size_t coefficients_;  // of a Gaussian and channel
   render::LinearBlend blend_;
   gl::Context& context_;
@@ -258,8 +259,8 @@ class Refit {
 }  // namespace
 
 Refitted refit(gl::Context& context, const Model& model, const RefitTargets& targets,
-               const RefitSettings& settings, const RefitJudge& judge) {
-  return Refit(context, model, targets, settings, judge).run();
+               const RefitSettings& settings, const ValidationLoss& validation_loss) {
+  return Refit(context, model, targets, settings, validation_loss).run();
 }
 
 }  // namespace binosplat::compact

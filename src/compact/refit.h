@@ -33,19 +33,19 @@ struct RefitSettings {
 };
 
 /// Returns a model's loss in validation views, in any unit; called after each round.
-using RefitJudge = std::function<double(const Model&)>;
+using ValidationLoss = std::function<double(const Model&)>;
 
 struct Refitted {
   std::vector<float> sh;       // in Model's layout, after the best round
-  std::vector<double> judged;  // before the first round and after each; empty without a judge
+  std::vector<double> losses;  // before the first round and after each; empty without a validation loss
   int best_round = 0;          // 0: the unchanged model
 };
 
-/// Fits the harmonics of `model`, in its perspective. Ends early if it no longer improves. Without a judge
-/// the last round is the best. Takes about seven times the memory of the harmonics; pictures are drawn or
-/// read one at a time. Coefficients that affect no target stay. Deterministic. Model and original have the
-/// same axes and no scaffold.
+/// Fits the harmonics of `model`, in its perspective. Ends early if it no longer improves. Without a
+/// validation loss the last round is the best. Takes about seven times the memory of the harmonics; pictures
+/// are drawn or read one at a time. Coefficients that affect no target stay. Deterministic. Model and
+/// original have the same axes and no scaffold.
 Refitted refit(gl::Context& context, const Model& model, const RefitTargets& targets,
-               const RefitSettings& settings, const RefitJudge& judge);
+               const RefitSettings& settings, const ValidationLoss& validation_loss);
 
 }  // namespace binosplat::compact

@@ -26,9 +26,9 @@ constexpr std::size_t some = 256;                           // Gaussians of a th
 constexpr double after_bits = 0.25, after_harmonics = 0.5;  // shares of the bound
 
 /// Measures the loss of a model in the validation views, and whether the bound allows it.
-class TrimJudge {
+class TrimBound {
  public:
-  TrimJudge(gl::Context& context, const Model& original, const lab::ViewSplit& views,
+  TrimBound(gl::Context& context, const Model& original, const lab::ViewSplit& views,
             const CalibrationTarget& target)
       : target_(target) {
     const auto open = [&](const std::vector<lab::CalibrationView>& of) {
@@ -44,7 +44,7 @@ class TrimJudge {
 
   /// Returns the value that the bound limits: the mean over the validation views, at the size that loses
   /// more.
-  double judged(const Model& model) {
+  double bounded_db(const Model& model) {
     const std::size_t views = held_back_->views().size();
     Progress progress(
         fmt::format("measuring model {}, {} Gaussians of degree {}", ++judged_, model.count(), model.degree),
@@ -56,17 +56,17 @@ class TrimJudge {
   }
 
   /// The same as a loss: smaller is better.
-  double loss(const Model& model) { return -sign() * judged(model); }
+  double loss(const Model& model) { return -sign() * bounded_db(model); }
 
   /// Drops are relative to this model's loss: shares of the bound are shares of the rest.
-  void start_from(const Model& whole) { start_ = judged(whole); }
+  void start_from(const Model& whole) { start_ = bounded_db(whole); }
 
   bool holds(double db, double share) const { return sign() * db >= sign() * bound(share); }
 
   /// Returns the largest amount within a share of the bound, if `db(amount)` is the model's cost; 0 must be
   /// within it.
-  double largest(const std::function<double(double)>& db, double share,
-                 measure::ToleranceSearch search) const {
+  double largest_within(const std::function<double(double)>& db, double share,
+                        measure::ToleranceSearch search) const {
     search.within = is_drop() ? 0.03 * (target_.db - start_) : 0.1;
     const auto value = [&](double amount) { return sign() * db(amount); };
     return measure::find_tolerance(value, sign() * bound(share), search).tolerance;
@@ -146,15 +146,15 @@ class Trimmer {
         views_(views),
         settings_(settings),
         original_(model),
-        judge_(context, model, views, settings.target) {
+        bound_(context, model, views, settings.target) {
     add_step("original", model, 0);
   }
 
   Trimmed run() {
     if (settings_.refit) {
       refitted_ = original_;
-      found_.less = fit(*refitted_, {});
-      judge_.start_from(*refitted_);
+      found_.is_smaller = fit(*refitted_, {});
+      bound_.start_from(*refitted_);
       add_step("colours fitted", *refitted_, 0);
     }
     const bool has_harmonics = whole().degree > 0;
@@ -164,7 +164,7 @@ class Trimmer {
     const std::string name = row_of(settings_.format).name;
     const bool packs = settings_.format == ModelFormat::spz;
     if (!holds(model_, 8, 1.0)) {
-      found_.fits = false;
+      found_.format_fits = false;
       add_written_step("as " + name);
     } else {
       if (packs && has_harmonics) lower_bits();
@@ -179,8 +179,8 @@ class Trimmer {
   }
 
  private:
-  double cost(const Model& model, int bits) { return judge_.judged(settings_.write(model, bits).model); }
-  bool holds(const Model& model, int bits, double share) { return judge_.holds(cost(model, bits), share); }
+  double cost(const Model& model, int bits) { return bound_.bounded_db(settings_.write(model, bits).model); }
+  bool holds(const Model& model, int bits, double share) { return bound_.holds(cost(model, bits), share); }
 
   /// The model to trim.
   const Model& whole() const { return refitted_ ? *refitted_ : original_; }
@@ -189,7 +189,7 @@ class Trimmer {
   bool fit(Model& model, const RefitSettings& settings) {
     const RefitTargets targets{original_, views_.training, *settings_.refit, views_.near_plane};
     Refitted found = refit(context_, model, targets, settings,
-                           [this](const Model& fitting) { return judge_.loss(fitting); });
+                           [this](const Model& fitting) { return bound_.loss(fitting); });
     model.sh = std::move(found.sh);
     return found.best_round > 0;
   }
@@ -203,7 +203,7 @@ class Trimmer {
   void lower_bits() {
     while (found_.harmonic_bits > 1 && holds(model_, found_.harmonic_bits - 1, after_bits))
       --found_.harmonic_bits;
-    found_.less = found_.less || found_.harmonic_bits < 8;
+    found_.is_smaller = found_.is_smaller || found_.harmonic_bits < 8;
   }
 
   Model lowered(const std::vector<std::uint8_t>& degrees) {
@@ -242,7 +242,7 @@ class Trimmer {
     const auto db = [&](double change) {
       return cost(change > 0.0 ? lowered(degrees(change)) : model_, found_.harmonic_bits);
     };
-    const double change = judge_.largest(db, after_harmonics, {.start = start});
+    const double change = bound_.largest_within(db, after_harmonics, {.start = start});
     if (change == 0.0) return;
     const std::vector<std::uint8_t> of = degrees(change);
     const auto lower = std::count_if(of.begin(), of.end(), [&](int d) { return d < model_.degree; });
@@ -274,14 +274,14 @@ class Trimmer {
     };
     const auto most = static_cast<double>(count - 1);
     const double start = std::clamp(static_cast<double>(found_.unseen), 1.0, most);
-    const double dropped = judge_.largest(db, 1.0, {.start = start, .smallest = 1.0, .largest = most});
+    const double dropped = bound_.largest_within(db, 1.0, {.start = start, .smallest = 1.0, .largest = most});
     if (dropped == 0.0) return;
     model_ = without(dropped);
     take("fewer Gaussians");
   }
 
   void take(const std::string& name) {
-    found_.less = true;
+    found_.is_smaller = true;
     add_written_step(name);
   }
 
@@ -293,7 +293,7 @@ class Trimmer {
   void add_step(const std::string& name, const Model& model, std::uintmax_t bytes) {
     TrimStep& step =
         found_.steps.emplace_back(TrimStep{name, model.count(), model.degree, bytes, {}, {}, {}, {}});
-    judge_.report(model, step);
+    bound_.report(model, step);
     log_info("{}: {} Gaussians, {:.3f} dB{}", name, step.gaussians, step.held_back.mean_db,
              step.held_back_own
                  ? fmt::format(", {:.3f} dB in the cameras' own size", step.held_back_own->mean_db)
@@ -304,7 +304,7 @@ class Trimmer {
   const lab::ViewSplit& views_;
   const TrimSettings& settings_;
   const Model& original_;
-  TrimJudge judge_;
+  TrimBound bound_;
   std::optional<Model> refitted_;  // the original with fitted colours, if requested
   Model model_;                    // as trimmed so far
   Weights weights_;

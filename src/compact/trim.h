@@ -36,7 +36,7 @@ struct TrimStep {
 
   /// Returns the value that the bound limits: the lower mean PSNR of both sizes. Drops exist at one size
   /// only.
-  double worse_db() const {
+  double bounded_db() const {
     return held_back_own ? std::min(held_back.mean_db, held_back_own->mean_db) : held_back.mean_db;
   }
 };
@@ -44,8 +44,8 @@ struct TrimStep {
 struct Trimmed {
   Model model;                  // to write, with
   int harmonic_bits = 8;        // of spz
-  bool fits = true;             // false: the format alone exceeds the bound, and nothing was removed
-  bool less = false;            // something was removed, or colours were fitted
+  bool format_fits = true;      // false: the format alone exceeds the bound, and nothing was removed
+  bool is_smaller = false;      // something was removed, or colours were fitted
   std::size_t unseen = 0;       // Gaussians that touch no pixel of the training views
   std::vector<TrimStep> steps;  // from the whole model on, which has no file and so no bytes
 };

@@ -211,7 +211,7 @@ Demo demo_room() {
   add_window(stage);
   add_curtains(stage);
   add_outside(stage, light.to_sun);
-  add_things(stage);
+  add_furniture(stage);
   Demo demo{bake(stage, light, 3, demo_room_name), room_cameras()};
   // Removes Gaussians inside boxes, which nobody should see. A wall's Gaussians would show through things
   // close in front of it if their centres have the smaller depth.

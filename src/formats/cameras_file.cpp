@@ -54,19 +54,19 @@ Camera read_camera(const JsonValue& object) {
 std::vector<Camera> load_list(const std::filesystem::path& path, const nlohmann::json& root) {
   if (root.empty()) fail("{} holds no cameras", path.string());
   std::vector<Camera> cameras;
-  DrawnLenses drawn(path.string());
+  LensReport lens_report(path.string());
   for (std::size_t i = 0; i < root.size(); ++i) {
     const std::string where = fmt::format("{}, camera {} (counted from 0)", path.string(), i);
     const JsonValue object(where, root[i]);
     const KeyOf key = [&](const char* name) { return object.find(name); };
     if (const std::string fault = undrawable_lens(key); !fault.empty()) {
-      drawn.leave_out(fmt::format("{}, {}", where, fault));
+      lens_report.add_skipped(fmt::format("{}, {}", where, fault));
       continue;
     }
     cameras.push_back(read_camera(object));
-    drawn.add(cameras.back(), read_distortion(key));
+    lens_report.add(cameras.back(), read_distortion(key));
   }
-  drawn.finish();
+  lens_report.report();
   return cameras;
 }
 
@@ -110,7 +110,7 @@ std::string_view ending_of(std::string_view name) {
 
 /// Makes names unique: a camera whose name occurred before becomes NAME_2 or so. INRIA's trainer gives equal
 /// names to test and training views of NeRF's synthetic scenes.
-void tell_apart(const std::filesystem::path& path, std::vector<Camera>& cameras) {
+void make_names_unique(const std::filesystem::path& path, std::vector<Camera>& cameras) {
   std::set<std::string> names, met;
   for (const Camera& camera : cameras) {
     // Names become file names and are printed on terminals.
@@ -158,7 +158,7 @@ std::filesystem::path resolve_cameras(const std::filesystem::path& path) {
 std::vector<Camera> load_cameras(const std::filesystem::path& path,
                                  const std::optional<double>& fov_degrees) {
   std::vector<Camera> cameras = load_any(path, fov_degrees);
-  tell_apart(path, cameras);
+  make_names_unique(path, cameras);
   set_short_names(cameras);
   return cameras;
 }

@@ -118,7 +118,7 @@ std::vector<Camera> load_colmap(const fs::path& folder) {
   const std::string undistorting = fmt::format(
       "colmap image_undistorter --image_path IMAGES --input_path {} --output_path OUT", folder.string());
   std::vector<Camera> cameras;
-  DrawnLenses drawn(lens_file.string(), ". Undistort pictures and cameras: " + undistorting);
+  LensReport lens_report(lens_file.string(), ". Undistort pictures and cameras: " + undistorting);
   for (const ColmapImage& image : binary ? colmap_images(image_file) : colmap_images_text(image_file)) {
     const auto lens = lenses.find(image.lens);
     if (lens == lenses.end()) {
@@ -127,16 +127,16 @@ std::vector<Camera> load_colmap(const fs::path& folder) {
     }
     const auto plane = plane_lens(lens->second);
     if (!plane) {
-      drawn.leave_out(
+      lens_report.add_skipped(
           fmt::format("{}: camera {} has a lens of the model {}, which is not a pinhole. Undistort pictures "
                       "and cameras: {}",
                       lens_file.string(), lens->first, colmap_model_name(lens->second.model), undistorting));
       continue;
     }
     cameras.push_back(camera_of(lens_file, image, lens->second, plane->focal_lengths));
-    drawn.add(cameras.back(), plane->distortion);
+    lens_report.add(cameras.back(), plane->distortion);
   }
-  drawn.finish();
+  lens_report.report();
   if (cameras.empty()) fail("{} holds no images", image_file.string());
   std::ranges::stable_sort(cameras, {}, &Camera::name);
   return cameras;

@@ -13,7 +13,7 @@ namespace binosplat {
 bool is_colmap(const std::filesystem::path& folder);
 
 /// Reads all cameras of a folder, sorted by the names of their pictures, from the binary files if both kinds
-/// exist. DrawnLenses (formats/distortion.h) defines how lenses are drawn: distorted pinholes without the
+/// exist. LensReport (formats/distortion.h) defines how lenses are drawn: distorted pinholes without the
 /// distortion, with a warning that names the command to undistort; fisheyes and panoramas not at all. Throws
 /// Error naming the file, and the image or line in it, if something is damaged, cut short or missing.
 std::vector<Camera> load_colmap(const std::filesystem::path& folder);

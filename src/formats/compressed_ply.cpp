@@ -64,7 +64,7 @@ class CompressedPlyReader {
     model.name = path_.filename().string();
     model.format = "compressed ply";
     model.degree = degree_;
-    const std::optional<bool> said = said_antialiased(header_);
+    const std::optional<bool> said = antialiased_comment(header_);
     model.antialiased = said.value_or(false);
     if (said) model.antialiased_by = by_comment;
     model.perspective = read_perspective(header_.comments);

@@ -40,7 +40,7 @@ double corner_shift(const Camera& camera, const Distortion& distortion) {
   return farthest;
 }
 
-void DrawnLenses::add(const Camera& camera, const Distortion& distortion) {
+void LensReport::add(const Camera& camera, const Distortion& distortion) {
   ++drawn_;
   if (!distortion) return;
   const double shift = corner_shift(camera, distortion);
@@ -49,11 +49,11 @@ void DrawnLenses::add(const Camera& camera, const Distortion& distortion) {
   farthest_camera_ = camera.name;
 }
 
-void DrawnLenses::leave_out(std::string why) {
+void LensReport::add_skipped(std::string why) {
   if (left_out_++ == 0) first_left_out_ = std::move(why);
 }
 
-void DrawnLenses::finish() const {
+void LensReport::report() const {
   if (left_out_ > 0 && drawn_ == 0) fail("{}", first_left_out_);
   if (left_out_ > 0)
     log_warning("{}: {} of {} cameras are skipped, because their lenses cannot be drawn. The first: {}",

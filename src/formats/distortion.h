@@ -1,6 +1,6 @@
 #pragma once
 // Lenses other than pinholes. Only pinholes can be drawn, so distortion is ignored, and every reader of
-// cameras reports that in the same words: DrawnLenses.
+// cameras reports that in the same words: LensReport.
 
 #include <array>
 #include <functional>
@@ -30,19 +30,19 @@ Distortion distortion_of(const BrownDistortion& brown);
 /// if the lens does not reach a corner.
 double corner_shift(const Camera& camera, const Distortion& distortion);
 
-/// Collects the lenses of a file's cameras. finish() reports each kind of unusual lens in one warning.
-class DrawnLenses {
+/// Collects the lenses of a file's cameras. report() gives one warning for each kind of unusual lens.
+class LensReport {
  public:
   /// `remedy` ends the warning about distorted lenses, as ". Undistort ...".
-  explicit DrawnLenses(std::string file, std::string remedy = "")
+  explicit LensReport(std::string file, std::string remedy = "")
       : file_(std::move(file)), remedy_(std::move(remedy)) {}
 
   /// Adds a camera that can be drawn.
   void add(const Camera& camera, const Distortion& distortion);
   /// Adds a camera that cannot be drawn; `why` is the error's text if no other camera can be.
-  void leave_out(std::string why);
+  void add_skipped(std::string why);
   /// Warns about distorted and skipped cameras. Throws Error if all were skipped.
-  void finish() const;
+  void report() const;
 
  private:
   std::string file_, remedy_;

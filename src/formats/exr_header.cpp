@@ -66,8 +66,8 @@ class ExrHeaders {
     const std::int64_t shown_width = extent(shown.min.x, shown.max.x),
                        shown_height = extent(shown.min.y, shown.max.y);
 
-    // The most pixels per byte. Pictures of one colour with up to 4 channels reached 7,000 with DWA, and
-    // 500 with other compressions. The limits are about twice as large.
+    // The most pixels per byte. Pictures of one colour with up to 4 channels reached 7,000 with DWA, and 500
+    // with other compressions. The limits are about twice as large.
     const bool dwa = compression == EXR_COMPRESSION_DWAA || compression == EXR_COMPRESSION_DWAB;
     const int most = (dwa ? 16384 : 1024) * 4 / std::clamp(channels->num_channels, 4, 4096);
     const auto check_window = [&](std::int64_t w, std::int64_t h) {
@@ -76,8 +76,8 @@ class ExrHeaders {
     check_window(width, height);
     check_room(path_, width, height, limit);
     // The area around the data window takes no bytes.
-    constexpr std::int64_t no_reason = std::int64_t{1} << 24;  // px that are always allowed: 4096 x 4096
-    if (std::min(shown_width, shown_height) < 1 || shown_width > no_reason / shown_height)
+    constexpr std::int64_t always_allowed = std::int64_t{1} << 24;  // px that are always allowed: 4096 x 4096
+    if (std::min(shown_width, shown_height) < 1 || shown_width > always_allowed / shown_height)
       check_window(shown_width, shown_height);
     check_room(path_, shown_width, shown_height, limit);
 

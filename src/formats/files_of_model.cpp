@@ -33,7 +33,7 @@ Files pictures_of_sog(const fs::path& meta, const nlohmann::json& json) {
     const JsonValue names = root.at(item).at("files");
     for (std::size_t i = 0; i < names.size(); ++i) {
       const std::string name = names.at(i).text();
-      if (stays_below(name)) files.push_back(meta.parent_path() / name);
+      if (is_below_folder(name)) files.push_back(meta.parent_path() / name);
     }
   }
   return files;

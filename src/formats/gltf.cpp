@@ -107,7 +107,7 @@ class GltfReader {
 
   Model read() {
     check_asset(document_.root());
-    const std::vector<GltfNode> nodes = nodes_shown(document_.root());
+    const std::vector<GltfNode> nodes = visible_nodes(document_.root());
     for (const GltfNode& node : nodes) ++meshes_[node.mesh].left;
     for (const GltfNode& node : nodes) show(node);
     if (model_.count() == 0 && model_.left_out == 0) {
@@ -143,7 +143,7 @@ class GltfReader {
     --mesh.left;
     if (of_one == 0) return;
     check_still(shown, mesh);
-    const MeshPlaces places(document_, shown.node);
+    const MeshInstances places(document_, shown.node);
     check_copies(shown.node, of_one, places.count());
     read_ += of_one * places.count();
     for (std::size_t i = 0; i < places.count(); ++i) {

@@ -50,7 +50,7 @@ const Component& component_of(const JsonValue& holder) {
 constexpr const char* meshopt_names[] = {"EXT_meshopt_compression", "KHR_meshopt_compression"};
 
 /// Returns whether a buffer is a placeholder for another, compressed one.
-bool is_stand_in(const JsonValue& buffer) {
+bool is_placeholder(const JsonValue& buffer) {
   return std::any_of(std::begin(meshopt_names), std::end(meshopt_names), [&](const char* name) {
     return buffer.has("extensions") && buffer.at("extensions").has(name) &&
            buffer.at("extensions").at(name).has("fallback");
@@ -128,7 +128,7 @@ std::span<const std::byte> GltfDocument::buffer(std::size_t index) {
 
 std::span<const std::byte> GltfDocument::bytes_of(std::size_t index, const JsonValue& buffer) {
   if (!buffer.has("uri")) {
-    if (is_stand_in(buffer))
+    if (is_placeholder(buffer))
       buffer.fail_here("it is compressed with meshopt, which cannot be read; export the model without");
     if (index != 0 || binary_.empty()) buffer.fail_here("it has no uri, and the file no binary chunk for it");
     return binary_;

@@ -57,7 +57,7 @@ bool is_visible(const JsonValue& node) {
 
 }  // namespace
 
-std::vector<GltfNode> nodes_shown(const JsonValue& root) {
+std::vector<GltfNode> visible_nodes(const JsonValue& root) {
   struct Open {
     std::size_t node;
     glm::dmat4 parent;
@@ -90,7 +90,7 @@ std::vector<GltfNode> nodes_shown(const JsonValue& root) {
   return shown;
 }
 
-MeshPlaces::MeshPlaces(GltfDocument& document, const JsonValue& node) : attributes_(node) {
+MeshInstances::MeshInstances(GltfDocument& document, const JsonValue& node) : attributes_(node) {
   const auto instancing = extension_of(node, "EXT_mesh_gpu_instancing");
   if (!instancing) return;
   attributes_ = instancing->at("attributes");
@@ -114,7 +114,7 @@ MeshPlaces::MeshPlaces(GltfDocument& document, const JsonValue& node) : attribut
   scales_ = read("SCALE", 3);
 }
 
-glm::dmat4 MeshPlaces::at(std::size_t i) const {
+glm::dmat4 MeshInstances::at(std::size_t i) const {
   glm::dvec3 translation(0.0), scale(1.0);
   glm::dvec4 rotation(0, 0, 0, 1);
   if (!translations_.empty()) translation = glm::make_vec3(&translations_[3 * i]);

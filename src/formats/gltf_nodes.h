@@ -19,13 +19,13 @@ struct GltfNode {
 /// Returns the nodes with a mesh of the default scene (or the first), except those that are hidden or below a
 /// hidden one (KHR_node_visibility). Throws Error naming the key for missing nodes, nodes with two parents,
 /// and invalid transforms.
-std::vector<GltfNode> nodes_shown(const JsonValue& root);
+std::vector<GltfNode> visible_nodes(const JsonValue& root);
 
 /// The transforms of a mesh's copies within a node: those of EXT_mesh_gpu_instancing, or one identity.
-class MeshPlaces {
+class MeshInstances {
  public:
   /// Throws Error naming the key if the attributes differ in number.
-  MeshPlaces(GltfDocument& document, const JsonValue& node);
+  MeshInstances(GltfDocument& document, const JsonValue& node);
 
   /// Number of copies; checked against the bytes only if an attribute moves, rotates or scales them.
   std::size_t count() const { return count_; }

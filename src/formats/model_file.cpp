@@ -60,7 +60,7 @@ bool has_text(const fs::path& path, std::string_view text) {
 
 /// Returns whether a file named as a model is something else: a ply with a mesh or points, or a glTF without
 /// Gaussians. Unreadable files count as models, so that their error is shown.
-bool is_no_model(const fs::path& path) {
+bool is_other_content(const fs::path& path) {
   try {
     if (lowered_ending(path).starts_with(".gl")) return !has_text(path, "gaussian_splat");
     if (lowered_ending(path) != ".ply") return false;
@@ -112,7 +112,8 @@ std::vector<fs::path> models_in(const fs::path& folder) {
     if (is_named_as_model(entry.path()) && fs::is_regular_file(entry.path(), ignored))
       found.push_back(entry.path());
   }
-  if (found.size() > 1 && !std::ranges::all_of(found, is_no_model)) std::erase_if(found, is_no_model);
+  if (found.size() > 1 && !std::ranges::all_of(found, is_other_content))
+    std::erase_if(found, is_other_content);
   std::ranges::sort(found, [](const fs::path& a, const fs::path& b) {
     return comes_before(a.filename().string(), b.filename().string());
   });
@@ -175,7 +176,7 @@ Model load_model(const fs::path& path, const ModelOptions& options) {
   const fs::path file = file_of(path);
   Model model = load_model_alone(file, options);
   if (const auto run = run_of(file)) {
-    for (const std::string& sentence : run->otherwise) log_warning("{}: {}", run->file.string(), sentence);
+    for (const std::string& sentence : run->differences) log_warning("{}: {}", run->file.string(), sentence);
     for (const std::string& sentence : run->advice) log_info("{}: {}", run->file.string(), sentence);
     follow(*run, file, model);
   }

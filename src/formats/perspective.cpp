@@ -39,17 +39,17 @@ std::vector<std::pair<std::string, std::string>> words_of_perspective(const Pers
 }  // namespace
 
 Perspective read_perspective(const std::string& place, const std::string& order,
-                             const std::string& projection, const Perspective& unless_said) {
-  Perspective read = unless_said;
+                             const std::string& projection, const Perspective& defaults) {
+  Perspective read = defaults;
   if (!order.empty()) read.order = number_of(order_key, order, order_words, read.order, place);
   if (!projection.empty())
     read.projection = number_of(projection_key, projection, projection_words, read.projection, place);
   return read;
 }
 
-Perspective read_perspective(const JsonValue& holder, const Perspective& unless_said) {
+Perspective read_perspective(const JsonValue& holder, const Perspective& defaults) {
   const auto word = [&](const char* key) { return holder.has(key) ? holder.at(key).text() : ""; };
-  return read_perspective(holder.source(), word(order_key), word(projection_key), unless_said);
+  return read_perspective(holder.source(), word(order_key), word(projection_key), defaults);
 }
 
 void write_perspective(const Perspective& perspective, nlohmann::ordered_json& holder) {

@@ -11,12 +11,12 @@
 namespace binosplat {
 
 /// Reads "sortingMethod" (cameraDistance or zDepth) and "projection" (perspective or tangential) of an
-/// object. Missing values are those of `unless_said`; so are unknown words, with a warning.
-Perspective read_perspective(const JsonValue& holder, const Perspective& unless_said = {});
+/// object. Missing values are those of `defaults`; so are unknown words, with a warning.
+Perspective read_perspective(const JsonValue& holder, const Perspective& defaults = {});
 
 /// The same from two words, "" if missing; `place` names them in warnings.
 Perspective read_perspective(const std::string& place, const std::string& order,
-                             const std::string& projection, const Perspective& unless_said = {});
+                             const std::string& projection, const Perspective& defaults = {});
 
 /// Adds them to an object if they are not 3D-GS's.
 void write_perspective(const Perspective& perspective, nlohmann::ordered_json& holder);

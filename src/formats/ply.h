@@ -1,13 +1,13 @@
 #pragma once
 // Trained models in INRIA's ply layout (3D-GS, Kerbl 2023), which many trainers write.
 //
-// Vertex properties are found by name: x y z, f_dc_0..2, f_rest_*, opacity (logit), scale_0..2
-// (logarithms), rot_0..3 (quaternion w x y z of any length). The number of f_rest is 0, 9, 24 or 45 for
-// harmonics of degrees 0 to 3. With 72 (degree 4), degrees up to 3 are read, and Model::lacks_degree_4 is
-// set. With K coefficients per channel, the f_rest are channel-major in the file, f_rest[c * K + k], and
-// coefficient-major in Model::sh. The file may be text, or binary of either byte order. Any scalar types,
-// any order of properties, CRLF in the header, and other elements and properties are read or skipped as
-// ply defines.
+// Vertex properties are found by name: x y z, f_dc_0..2, f_rest_*, opacity (logit), scale_0..2 (logarithms),
+// rot_0..3 (quaternion w x y z of any length). The number of f_rest is 0, 9, 24 or 45 for harmonics of
+// degrees 0 to 3. With 72 (degree 4), degrees up to 3 are read, and Model::lacks_degree_4 is set. With
+// K coefficients per channel, the f_rest are channel-major in the file, f_rest[c * K + k], and
+// coefficient-major in Model::sh. The file may be text, or binary of either byte order. Any scalar types, any
+// order of properties, CRLF in the header, and other elements and properties are read or skipped as ply
+// defines.
 //
 // A property of a Gaussian declared as ushort is a half (IEEE 754 binary16), a type that ply lacks; some
 // exporters and other viewers use this. In text it is the decimal value of its bits. The types half and

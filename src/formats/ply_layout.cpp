@@ -21,7 +21,7 @@ constexpr std::pair<const char*, const char*> other_kernels[] = {
 };
 
 /// Throws Error for files that are well-formed but not models of Gaussians.
-void refuse_relatives(const std::filesystem::path& path, const PlyHeader& header) {
+void refuse_other_kinds(const std::filesystem::path& path, const PlyHeader& header) {
   const std::string name = path.string();
   const PlyElement* vertices = header.find("vertex");
   if (vertices == nullptr && header.find("codebook_centers") != nullptr)
@@ -96,7 +96,7 @@ void find_rgb(const std::filesystem::path& path, PlyLayout& layout) {
 
 }  // namespace
 
-std::optional<bool> said_antialiased(const PlyHeader& header) {
+std::optional<bool> antialiased_comment(const PlyHeader& header) {
   std::optional<bool> antialiased;
   for (const std::string& line : header.comments) {
     const std::string comment = lowered(line);
@@ -109,7 +109,7 @@ std::optional<bool> said_antialiased(const PlyHeader& header) {
 }
 
 PlyLayout find_layout(const std::filesystem::path& path, const PlyHeader& header) {
-  refuse_relatives(path, header);
+  refuse_other_kinds(path, header);
   PlyLayout layout;
   layout.vertices = header.find("vertex");
   const std::size_t in_file = count_rest(path, *layout.vertices) / 3;
@@ -142,7 +142,7 @@ PlyLayout find_layout(const std::filesystem::path& path, const PlyHeader& header
   layout.filter_3d = layout.vertices->find("filter_3D") != nullptr;
   if (layout.filter_3d) add("filter_3D");
   layout.lacks_degree_4 = in_file > higher;
-  const std::optional<bool> said = said_antialiased(header);
+  const std::optional<bool> said = antialiased_comment(header);
   layout.antialiased = said.value_or(layout.filter_3d);
   layout.antialiased_by = said ? by_comment : layout.filter_3d ? "its filter_3D" : "";
   if (std::ranges::any_of(layout.sources, &PlyLayout::Source::as_bits))

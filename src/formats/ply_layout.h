@@ -42,7 +42,7 @@ constexpr double mip_splatting_kernel_px2 = 0.1;
 
 /// Returns whether a model was trained with anti-aliasing, from the last comment about it (Brush's and
 /// Postshot's); nothing if there is none.
-std::optional<bool> said_antialiased(const PlyHeader& header);
+std::optional<bool> antialiased_comment(const PlyHeader& header);
 
 /// Names that source for display.
 constexpr const char* by_comment = "a comment of the ply";

@@ -42,7 +42,7 @@ bool is_unmarked(const ModelBytes& f, const char* ending, bool (*is)(std::span<c
 Model read_scaffold(const ModelBytes& f, const ModelOptions& options) {
   const std::shared_ptr<Scaffold> scaffold = load_scaffold(f.path);
   if (options.appearance) choose_appearance(*scaffold, *options.appearance);
-  return stand_in(scaffold);
+  return placeholder_model(scaffold);
 }
 
 Model read_ply(const ModelBytes& f, const ModelOptions&) { return load_ply(f.path); }

@@ -134,7 +134,7 @@ SogSource sog_in_archive(const std::filesystem::path& archive) {
   return {archive.string(), root, [archive](const std::string& name) { return Archive(archive).read(name); }};
 }
 
-SogSource open_part(const std::filesystem::path& path) {
+SogSource open_sog(const std::filesystem::path& path) {
   const MappedFile file(path);
   if (content_of(file.bytes()) == Content::zip) return sog_in_archive(path);
   return sog_in_folder(path, parse_json(path.string(), as_text(file.bytes())));

@@ -46,18 +46,18 @@ std::vector<double> by_direction(const JsonValue& value, std::size_t widths) {
   return numbers;
 }
 
-void check_bound(const JsonValue& bound, const LodChunk& leaf) {
-  if (!glm::all(glm::lessThanEqual(leaf.low, leaf.high)))
+void check_bound(const JsonValue& bound, const LodChunk& chunk) {
+  if (!glm::all(glm::lessThanEqual(chunk.low, chunk.high)))
     bound.fail_here("expected a 'min' that is at most 'max' along each axis");
-  if (glm::any(glm::greaterThan(glm::max(glm::abs(leaf.low), glm::abs(leaf.high)), glm::dvec3(most_lost))))
+  if (glm::any(glm::greaterThan(glm::max(glm::abs(chunk.low), glm::abs(chunk.high)), glm::dvec3(most_lost))))
     bound.fail_here("expected numbers from -{0} to {0}", most_lost);
 }
 
-/// Returns whether a leaf's errors per visible pixel are bounded. They are not if its finest level shows
+/// Returns whether a chunk's errors per visible pixel are bounded. They are not if its finest level shows
 /// nothing and another level does.
-bool knows_errors(const LodChunk& leaf) {
-  return std::ranges::all_of(leaf.levels, [&](const LodChunk::Level& level) {
-    return std::ranges::equal(level.errors, leaf.seen,
+bool has_bounded_errors(const LodChunk& chunk) {
+  return std::ranges::all_of(chunk.levels, [&](const LodChunk::Level& level) {
+    return std::ranges::equal(level.errors, chunk.seen,
                               [](double error, double seen) { return error <= most_lost * seen; });
   });
 }
@@ -96,7 +96,7 @@ SogLevels::SogLevels(const fs::path& path, const nlohmann::json& json) : path_(p
   walk(root, [&](const JsonValue& node) {
     const JsonValue lods = node.at("lods");
     if (!lods.value().is_object()) lods.fail_here("expected an object of levels by their numbers");
-    std::vector<Place>& places = leaves_.emplace_back();
+    std::vector<Place>& places = places_.emplace_back();
     std::size_t known = 0;
     for (int level = 0; level < count_; ++level) {
       const std::string key = std::to_string(level);
@@ -108,56 +108,56 @@ SogLevels::SogLevels(const fs::path& path, const nlohmann::json& json) : path_(p
   });
 }
 
-bool SogLevels::there(std::size_t file) const {
+bool SogLevels::exists(std::size_t file) const {
   std::error_code ignored;
   return fs::is_regular_file(files_[file], ignored);
 }
 
-std::vector<SogLevels::TakenOfFile> SogLevels::taken(
-    const std::function<int(std::size_t leaf)>& level_of) const {
-  std::vector<TakenOfFile> result(files_.size());
-  for (std::size_t leaf = 0; leaf < leaves_.size(); ++leaf) {
-    const int level = level_of(leaf);
+std::vector<SogLevels::FileRanges> SogLevels::ranges_in_use(
+    const std::function<int(std::size_t chunk)>& level_of) const {
+  std::vector<FileRanges> result(files_.size());
+  for (std::size_t chunk = 0; chunk < places_.size(); ++chunk) {
+    const int level = level_of(chunk);
     if (level < 0) continue;
-    for (const Place& place : leaves_[leaf]) {
-      if (place.level == level && place.range.count > 0) result[place.file].push_back({leaf, place.range});
+    for (const Place& place : places_[chunk]) {
+      if (place.level == level && place.range.count > 0) result[place.file].push_back({chunk, place.range});
     }
   }
   for (std::size_t i = 0; i < result.size(); ++i) sort(result[i], i);
   return result;
 }
 
-std::vector<SogLevels::TakenOfFile> SogLevels::taken(int level) const {
-  return taken([level](std::size_t) { return level; });
+std::vector<SogLevels::FileRanges> SogLevels::ranges_in_use(int level) const {
+  return ranges_in_use([level](std::size_t) { return level; });
 }
 
 std::vector<bool> SogLevels::found() const {
   std::vector<bool> found;
-  for (std::size_t i = 0; i < files_.size(); ++i) found.push_back(there(i));
+  for (std::size_t i = 0; i < files_.size(); ++i) found.push_back(exists(i));
   return found;
 }
 
-std::vector<LodChunk> SogLevels::leaves(const nlohmann::json& json) const {
+std::vector<LodChunk> SogLevels::chunks(const nlohmann::json& json) const {
   const std::vector<bool> is_there = found();
   std::vector<LodChunk> result;
   walk(JsonValue(path_.string(), json), [&](const JsonValue& node) {
     const JsonValue bound = node.at("bound");
-    LodChunk leaf{bound.at("min").vector<3>(), bound.at("max").vector<3>(), {}};
-    check_bound(bound, leaf);
+    LodChunk chunk{bound.at("min").vector<3>(), bound.at("max").vector<3>(), {}};
+    check_bound(bound, chunk);
     if (node.has("pixels")) {
-      leaf.pixels = widths_of(node.at("pixels"));
-      leaf.seen = by_direction(node.at("seen"), leaf.pixels.size());
+      chunk.pixels = widths_of(node.at("pixels"));
+      chunk.seen = by_direction(node.at("seen"), chunk.pixels.size());
     }
-    for (const Place& place : leaves_[result.size()]) {
+    for (const Place& place : places_[result.size()]) {
       LodChunk::Level level{place.level, place.range.count};
-      if (!leaf.pixels.empty()) {
+      if (!chunk.pixels.empty()) {
         const JsonValue lod = node.at("lods").at(std::to_string(place.level));
-        level.errors = by_direction(lod.at("errors"), leaf.pixels.size());
+        level.errors = by_direction(lod.at("errors"), chunk.pixels.size());
       }
-      if (is_there[place.file]) leaf.levels.push_back(std::move(level));
+      if (is_there[place.file]) chunk.levels.push_back(std::move(level));
     }
-    if (!knows_errors(leaf)) leaf.pixels.clear();
-    result.push_back(std::move(leaf));
+    if (!has_bounded_errors(chunk)) chunk.pixels.clear();
+    result.push_back(std::move(chunk));
   });
   return result;
 }
@@ -165,7 +165,7 @@ std::vector<LodChunk> SogLevels::leaves(const nlohmann::json& json) const {
 std::vector<std::optional<fs::path>> SogLevels::missing() const {
   const std::vector<bool> is_there = found();
   std::vector<std::size_t> first(static_cast<std::size_t>(count_), files_.size());
-  for (const std::vector<Place>& places : leaves_) {
+  for (const std::vector<Place>& places : places_) {
     for (const Place& place : places) {
       std::size_t& of_level = first[static_cast<std::size_t>(place.level)];
       if (place.range.count > 0 && !is_there[place.file]) of_level = std::min(of_level, place.file);
@@ -179,12 +179,12 @@ std::vector<std::optional<fs::path>> SogLevels::missing() const {
 
 fs::path SogLevels::file(const JsonValue& value) const {
   const std::string name = value.text();
-  if (!stays_below(name))
+  if (!is_below_folder(name))
     value.fail_here("a file must lie below lod-meta.json's folder; it is named '{}'", name);
   return path_.parent_path() / name;
 }
 
-// Parses the file and range of a leaf's level.
+// Parses the file and range of a chunk's level.
 SogLevels::Place SogLevels::place(int level, const JsonValue& lod) const {
   const std::uint64_t index = lod.at("file").whole(most_gaussians);
   if (index >= files_.size()) {
@@ -193,11 +193,11 @@ SogLevels::Place SogLevels::place(int level, const JsonValue& lod) const {
   return {level, index, {lod.at("offset").whole(most_gaussians), lod.at("count").whole(most_gaussians), 0}};
 }
 
-void SogLevels::sort(TakenOfFile& taken, std::size_t index) const {
-  std::sort(taken.begin(), taken.end(),
-            [](const Taken& a, const Taken& b) { return a.range.first < b.range.first; });
-  for (std::size_t i = 1; i < taken.size(); ++i) {
-    const SogSource::Range &before = taken[i - 1].range, &now = taken[i].range;
+void SogLevels::sort(FileRanges& ranges, std::size_t index) const {
+  std::sort(ranges.begin(), ranges.end(),
+            [](const ChunkRange& a, const ChunkRange& b) { return a.range.first < b.range.first; });
+  for (std::size_t i = 1; i < ranges.size(); ++i) {
+    const SogSource::Range &before = ranges[i - 1].range, &now = ranges[i].range;
     if (now.first < before.first + before.count) {
       fail("{}: two leaves of the tree share Gaussian {} of {}; the file is damaged", path_.string(),
            now.first, files_[index].string());
@@ -205,14 +205,14 @@ void SogLevels::sort(TakenOfFile& taken, std::size_t index) const {
   }
 }
 
-std::vector<SogSource::Range> ranges_of(const SogLevels::TakenOfFile& taken) {
+std::vector<SogSource::Range> ranges_of(const SogLevels::FileRanges& chunks) {
   std::vector<SogSource::Range> ranges;
-  for (const SogLevels::Taken& of_leaf : taken) ranges.push_back(of_leaf.range);
+  for (const SogLevels::ChunkRange& of_chunk : chunks) ranges.push_back(of_chunk.range);
   return ranges;
 }
 
-void check_leaves(const fs::path& path, const std::vector<LodChunk>& leaves) {
-  if (std::ranges::all_of(leaves, [](const LodChunk& leaf) { return leaf.levels.empty(); }))
+void check_chunks(const fs::path& path, const std::vector<LodChunk>& chunks) {
+  if (std::ranges::all_of(chunks, [](const LodChunk& chunk) { return chunk.levels.empty(); }))
     fail("{}: the files of all its levels of detail are missing: fetch one", path.string());
 }
 
@@ -220,9 +220,9 @@ std::string format_of_chosen(const SogLevels& levels) {
   return fmt::format("streamed SOG, levels chosen of {}", levels.count());
 }
 
-void check_taken(const std::filesystem::path& lod_meta, const std::filesystem::path& file,
-                 const SogSource& source, std::span<const SogLevels::Taken> taken) {
-  const SogSource::Range& last = taken.back().range;
+void check_ranges(const std::filesystem::path& lod_meta, const std::filesystem::path& file,
+                  const SogSource& source, std::span<const SogLevels::ChunkRange> ranges) {
+  const SogSource::Range& last = ranges.back().range;
   if (last.first + last.count <= source.count()) return;
   fail("{}: it refers to Gaussians {} to {} of {}, which has {}", lod_meta.string(), last.first,
        last.first + last.count - 1, file.string(), source.count());

@@ -35,12 +35,12 @@ struct LodChunk {
 
 class SogLevels {
  public:
-  /// The range of a file that a leaf uses; its slot is not set.
-  struct Taken {
-    std::size_t leaf = 0;
+  /// The range of a file that a chunk uses; its slot is not set.
+  struct ChunkRange {
+    std::size_t chunk = 0;
     SogSource::Range range;
   };
-  using TakenOfFile = std::vector<Taken>;
+  using FileRanges = std::vector<ChunkRange>;
 
   /// Reads the parsed lod-meta.json at `path`. Throws Error naming the wrong key, as the functions below do.
   SogLevels(const std::filesystem::path& path, const nlohmann::json& json);
@@ -50,22 +50,22 @@ class SogLevels {
   /// The SOG that is part of every level.
   const std::optional<std::filesystem::path>& environment() const { return environment_; }
   /// Returns whether a file exists: files of unused levels may be missing.
-  bool there(std::size_t file) const;
+  bool exists(std::size_t file) const;
 
-  /// Returns, for each file, the ranges in use, in order, if leaf i has level_of(i); a negative level uses
+  /// Returns, for each file, the ranges in use, in order, if chunk i has level_of(i); a negative level uses
   /// nothing.
-  std::vector<TakenOfFile> taken(const std::function<int(std::size_t leaf)>& level_of) const;
-  std::vector<TakenOfFile> taken(int level) const;
+  std::vector<FileRanges> ranges_in_use(const std::function<int(std::size_t chunk)>& level_of) const;
+  std::vector<FileRanges> ranges_in_use(int level) const;
 
-  /// Returns the tree's leaves, with the levels whose files exist, and with their errors if stored. `json` is
+  /// Returns the chunks, with the levels whose files exist, and with their errors if stored. `json` is
   /// the same lod-meta.json.
-  std::vector<LodChunk> leaves(const nlohmann::json& json) const;
+  std::vector<LodChunk> chunks(const nlohmann::json& json) const;
 
   /// Returns, for each level, the first file that it needs and that is missing.
   std::vector<std::optional<std::filesystem::path>> missing() const;
 
  private:
-  /// The range of a leaf's level in a file.
+  /// The range of a chunk's level in a file.
   struct Place {
     int level = 0;
     std::size_t file = 0;
@@ -75,29 +75,29 @@ class SogLevels {
   std::filesystem::path file(const JsonValue& value) const;
   std::vector<bool> found() const;
   Place place(int level, const JsonValue& lod) const;
-  void sort(TakenOfFile& taken, std::size_t index) const;
+  void sort(FileRanges& ranges, std::size_t index) const;
 
   std::filesystem::path path_;
   int count_ = 0;
   std::vector<std::filesystem::path> files_;
   std::optional<std::filesystem::path> environment_;
-  std::vector<std::vector<Place>> leaves_;
+  std::vector<std::vector<Place>> places_;
 };
 
-/// A level that uses nothing (SogLevels::taken).
+/// A level that uses nothing (SogLevels::ranges_in_use).
 inline constexpr int no_level = -1;
 
-std::vector<SogSource::Range> ranges_of(const SogLevels::TakenOfFile& taken);
+std::vector<SogSource::Range> ranges_of(const SogLevels::FileRanges& chunks);
 
-/// Throws Error if no leaf has a level with an existing file.
-void check_leaves(const std::filesystem::path& path, const std::vector<LodChunk>& leaves);
+/// Throws Error if no chunk has a level with an existing file.
+void check_chunks(const std::filesystem::path& path, const std::vector<LodChunk>& chunks);
 
 /// Returns Model::format for a model whose levels are chosen by chunk.
 std::string format_of_chosen(const SogLevels& levels);
 
 /// Throws Error unless the ranges, at least one, are within the file.
-void check_taken(const std::filesystem::path& lod_meta, const std::filesystem::path& file,
-                 const SogSource& source, std::span<const SogLevels::Taken> taken);
+void check_ranges(const std::filesystem::path& lod_meta, const std::filesystem::path& file,
+                  const SogSource& source, std::span<const SogLevels::ChunkRange> ranges);
 
 /// Throws Error if `total` Gaussians are too many for files of `bytes` bytes (SogSource::bytes) together.
 /// Each file alone is allowed a million more than its size justifies, but a thousand files are not.

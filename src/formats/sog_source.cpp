@@ -46,7 +46,7 @@ std::array<float, 256> exponential(std::array<float, 256> table) {
 
 std::string file_name(const JsonValue& value) {
   std::string name = value.text();
-  if (!stays_below(name))
+  if (!is_below_folder(name))
     value.fail_here("a file must lie beside meta.json or below; it is named '{}'", name);
   return name;
 }

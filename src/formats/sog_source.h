@@ -93,7 +93,7 @@ class SogSource {
 };
 
 /// Opens a SOG by its meta.json or its archive, recognised by content.
-SogSource open_part(const std::filesystem::path& path);
+SogSource open_sog(const std::filesystem::path& path);
 
 /// Opens the SOG of a meta.json, with pictures in its folder.
 SogSource sog_in_folder(const std::filesystem::path& meta, const nlohmann::json& root);

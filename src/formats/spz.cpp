@@ -90,7 +90,7 @@ class SpzDecoder {
 Model load_spz(const std::string& source, std::span<const std::byte> bytes) {
   const SpzContents contents = unpack_spz(source, bytes);
   Model model;
-  model.format = fmt::format("spz {}{}", contents.version, contents.axes ? "" : axes_not_said);
+  model.format = fmt::format("spz {}{}", contents.version, contents.axes ? "" : axes_assumed);
   model.degree = std::min(contents.degree, 3);
   model.axes.letters = contents.axes.value_or("RUB");
   model.antialiased = contents.antialiased;

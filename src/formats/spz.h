@@ -3,7 +3,7 @@
 // with gzip or not at all, version 4 with zstd.
 //
 // Frame: OpenGL's (RUB) as the format defines, unless an extension in the file names another. Some writers
-// store a ply's numbers (RDF) without that extension, so Model::format then ends with axes_not_said.
+// store a ply's numbers (RDF) without that extension, so Model::format then ends with axes_assumed.
 
 #include <span>
 #include <string>
@@ -13,7 +13,7 @@
 
 namespace binosplat {
 
-inline constexpr std::string_view axes_not_said = ", axes not said";
+inline constexpr std::string_view axes_assumed = ", axes assumed";
 
 /// Decodes a file's bytes; `source` names it in errors. Of harmonics of degree 4, degrees up to 3 are read,
 /// and Model::lacks_degree_4 is set. Throws Error for damaged or cut files, for unknown versions, and for

@@ -22,12 +22,12 @@ namespace binosplat {
 namespace {
 
 namespace fs = std::filesystem;
-using Taken = SogLevels::TakenOfFile;
+using FileRanges = SogLevels::FileRanges;
 
 /// A SOG and the ranges read from it.
-struct LoadedPart {
+struct OpenSog {
   SogSource source;
-  Taken taken;
+  FileRanges ranges;
 };
 
 /// Returns the requested level, or the finest complete one.
@@ -59,20 +59,20 @@ int choose(const fs::path& path, const SogLevels& levels, std::optional<int> lod
   return level;
 }
 
-std::vector<LoadedPart> open_parts(const fs::path& lod_meta, const SogLevels& levels,
-                                   const std::vector<Taken>& taken) {
-  std::vector<LoadedPart> parts;
-  for (std::size_t i = 0; i < taken.size(); ++i) {
-    if (taken[i].empty()) continue;
-    parts.push_back({open_part(levels.files()[i]), taken[i]});
-    check_taken(lod_meta, levels.files()[i], parts.back().source, taken[i]);
+std::vector<OpenSog> open_sogs(const fs::path& lod_meta, const SogLevels& levels,
+                               const std::vector<FileRanges>& ranges) {
+  std::vector<OpenSog> sogs;
+  for (std::size_t i = 0; i < ranges.size(); ++i) {
+    if (ranges[i].empty()) continue;
+    sogs.push_back({open_sog(levels.files()[i]), ranges[i]});
+    check_ranges(lod_meta, levels.files()[i], sogs.back().source, ranges[i]);
   }
   if (levels.environment()) {
-    SogSource source = open_part(*levels.environment());
+    SogSource source = open_sog(*levels.environment());
     const std::size_t count = source.count();
-    parts.push_back({std::move(source), {{0, {0, count, 0}}}});
+    sogs.push_back({std::move(source), {{0, {0, count, 0}}}});
   }
-  return parts;
+  return sogs;
 }
 
 }  // namespace
@@ -101,26 +101,26 @@ Model load_streamed_sog(const fs::path& lod_meta, const nlohmann::json& root, st
   const SogLevels levels(lod_meta, root);
   const int level = choose(lod_meta, levels, lod);
   log_info("{}: level of detail {} of {}", lod_meta.string(), level, levels.count());
-  return load_taken(lod_meta, levels, levels.taken(level),
-                    fmt::format("streamed SOG, level {} of {}", level, levels.count()));
+  return load_ranges(lod_meta, levels, levels.ranges_in_use(level),
+                     fmt::format("streamed SOG, level {} of {}", level, levels.count()));
 }
 
-Model load_taken(const fs::path& lod_meta, const SogLevels& levels, const std::vector<Taken>& taken_of_files,
-                 const std::string& format) {
-  std::vector<LoadedPart> parts = open_parts(lod_meta, levels, taken_of_files);
+Model load_ranges(const fs::path& lod_meta, const SogLevels& levels,
+                  const std::vector<FileRanges>& ranges_of_files, const std::string& format) {
+  std::vector<OpenSog> sogs = open_sogs(lod_meta, levels, ranges_of_files);
   Model model;
   model.name = lod_meta.filename().string();
   model.format = format;
   std::size_t total = 0;
   std::uint64_t bytes = 0;
-  for (LoadedPart& part : parts) {
-    bytes += part.source.bytes();
-    model.degree = std::max(model.degree, part.source.degree());
-    model.antialiased = model.antialiased || part.source.antialiased();
-    model.perspective = part.source.perspective();  // equal in all
-    for (SogLevels::Taken& taken : part.taken) {
-      taken.range.slot = total;
-      total += taken.range.count;
+  for (OpenSog& sog : sogs) {
+    bytes += sog.source.bytes();
+    model.degree = std::max(model.degree, sog.source.degree());
+    model.antialiased = model.antialiased || sog.source.antialiased();
+    model.perspective = sog.source.perspective();  // equal in all
+    for (SogLevels::ChunkRange& used : sog.ranges) {
+      used.range.slot = total;
+      total += used.range.count;
     }
   }
   if (total == 0) fail("{} holds no Gaussians ({})", lod_meta.string(), format);
@@ -132,9 +132,9 @@ Model load_taken(const fs::path& lod_meta, const SogLevels& levels, const std::v
     Progress progress("reading " + lod_meta.string(), total);
     std::mutex counting;
     std::size_t done = 0;
-    parallel_for(parts.size(), [&](std::size_t i) {
-      const std::vector<SogSource::Range> ranges = ranges_of(parts[i].taken);
-      parts[i].source.decode(model, ranges, kept);
+    parallel_for(sogs.size(), [&](std::size_t i) {
+      const std::vector<SogSource::Range> ranges = ranges_of(sogs[i].ranges);
+      sogs[i].source.decode(model, ranges, kept);
       const std::lock_guard<std::mutex> lock(counting);
       for (const SogSource::Range& range : ranges) done += range.count;
       progress.update(done);

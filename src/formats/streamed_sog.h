@@ -31,8 +31,8 @@ bool is_streamed_sog(const std::filesystem::path& path);
 Model load_streamed_sog(const std::filesystem::path& lod_meta, const nlohmann::json& root,
                         std::optional<int> lod);
 
-/// Reads the ranges `taken` of each file (SogLevels::taken), and the environment; `format` is the model's.
-Model load_taken(const std::filesystem::path& lod_meta, const SogLevels& levels,
-                 const std::vector<SogLevels::TakenOfFile>& taken, const std::string& format);
+/// Reads the `ranges` of each file (SogLevels::ranges_in_use), and the environment; `format` is the model's.
+Model load_ranges(const std::filesystem::path& lod_meta, const SogLevels& levels,
+                  const std::vector<SogLevels::FileRanges>& ranges, const std::string& format);
 
 }  // namespace binosplat

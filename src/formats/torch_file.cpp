@@ -23,7 +23,7 @@ constexpr std::size_t tensor_bytes_max = std::size_t{64} << 20;
 std::string root_of(const std::filesystem::path& path, const ZipFile& archive) {
   std::string root;
   for (const std::string& name : archive.names()) {
-    if (!stays_below(name)) {
+    if (!is_below_folder(name)) {
       fail("{}: its file {} leads out of the archive; no trainer writes such a one", path.string(),
            binosplat::quoted(name));
     }

@@ -93,7 +93,7 @@ struct RunKind {
   const char* prefix;  // of the following keys
   const char* mark;    // a key that every file of this kind has, and no other kind
   const char *antialiasing, *word_for_it;
-  const char* said;  // keys to report besides those of the clues
+  const char* reported_keys;  // keys to report besides those of the clues
   std::vector<Clue> clues;
 };
 
@@ -141,23 +141,23 @@ bool holds(const Clue& clue, const std::string& value) {
 }
 
 void tell(const FlatValues& values, const RunKind& kind, TrainingRun& run) {
-  std::vector<std::string_view> keys = words_of(kind.said);
+  std::vector<std::string_view> keys = words_of(kind.reported_keys);
   for (const Clue& clue : kind.clues) keys.emplace_back(clue.key);
   for (const std::string_view key : keys) {
     const auto is_key = [&](const auto& said) { return said.first == key; };
     const auto value = value_of(values, kind, key);
-    if (value && std::ranges::none_of(run.said, is_key))
-      run.said.emplace_back(std::string(key), printable(*value));
+    if (value && std::ranges::none_of(run.settings, is_key))
+      run.settings.emplace_back(std::string(key), printable(*value));
   }
   for (const Clue& clue : kind.clues) {
     const auto value = value_of(values, kind, clue.key);
     if (!value || !holds(clue, *value)) continue;
     // The sentence about 3DGUT's evaluation along rays covers its transform, too.
-    if (clue.sentence == no_sigma_points && !run.otherwise.empty()) continue;
+    if (clue.sentence == no_sigma_points && !run.differences.empty()) continue;
     if (clue.sentence == no_exposures && find_above(run.file, exposures_name)) continue;
     if (clue.sentence == no_eval3d) run.kernel_px2 = along_rays_kernel_px2;
     const bool is_advice = clue.sentence == white || clue.sentence == moved_world;
-    (is_advice ? run.advice : run.otherwise).emplace_back(clue.sentence);
+    (is_advice ? run.advice : run.differences).emplace_back(clue.sentence);
   }
   const auto value = value_of(values, kind, kind.antialiasing);
   // Other text than true or false decides nothing.

@@ -15,9 +15,10 @@ struct TrainingRun {
   std::string trainer;               // for display
   std::optional<bool> antialiased;   // trained with opacity compensated for the low-pass
   std::optional<double> kernel_px2;  // nearest low-pass if training had an unusual one, px^2
-  std::vector<std::pair<std::string, std::string>> said;  // settings that may affect pictures, as in the file
+  std::vector<std::pair<std::string, std::string>>
+      settings;  // settings that may affect pictures, as in the file
   /// Differences between the training's rendering and this program's: their effect, and a remedy.
-  std::vector<std::string> otherwise;
+  std::vector<std::string> differences;
   std::vector<std::string> advice;  // options that draw it as it was trained
 };
 

@@ -110,20 +110,20 @@ std::vector<Camera> load_transforms(const fs::path& path, const nlohmann::json& 
   std::vector<Camera> named(frames.size()), cameras;
   for (std::size_t i = 0; i < frames.size(); ++i) named[i].name = frames.at(i).at("file_path").text();
   set_short_names(named);
-  DrawnLenses drawn(path.string());
+  LensReport lens_report(path.string());
   for (std::size_t i = 0; i < frames.size(); ++i) {
     const JsonValue value = frames.at(i);
     const Frame frame(path, root, value);
     const KeyOf key = [&](const char* name) { return frame.value(name); };
     if (const std::string fault = undrawable_lens(key); !fault.empty()) {
-      drawn.leave_out(fmt::format("{}, frame {} (counted from 0), {}", path.string(), i, fault));
+      lens_report.add_skipped(fmt::format("{}, frame {} (counted from 0), {}", path.string(), i, fault));
       continue;
     }
     frame.read(named[i]);
     cameras.push_back(std::move(named[i]));
-    drawn.add(cameras.back(), read_distortion(key));
+    lens_report.add(cameras.back(), read_distortion(key));
   }
-  drawn.finish();
+  lens_report.report();
   return cameras;
 }
 

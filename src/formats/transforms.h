@@ -27,7 +27,7 @@ void place_as_opengl(Camera& camera, const RigidTransform& pose);
 /// Reads the frames in file order; a camera's name is its file_path. Poses are camera-to-world with OpenGL's
 /// axes, as stored: nerfstudio's applied_transform stays applied. The size, fl_x, fl_y, cx and cy are the
 /// frame's or the file's. Without fl_x, camera_angle_x or x_fov gives the focal length; without w and h, the
-/// picture gives the size. DrawnLenses (formats/distortion.h) defines how lenses are drawn. Throws Error
+/// picture gives the size. LensReport (formats/distortion.h) defines how lenses are drawn. Throws Error
 /// naming the frame and the key for missing or wrong values.
 std::vector<Camera> load_transforms(const std::filesystem::path& path, const nlohmann::json& json);
 

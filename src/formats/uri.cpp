@@ -61,7 +61,7 @@ std::filesystem::path file_named(const std::filesystem::path& folder, const Json
   const std::string text = uri.text(), decoded = percent_decoded(text);
   if (decoded.find("://") != std::string::npos)
     uri.fail_here("'{}' is not a file beside this one; fetch it, and name it by its path", text);
-  if (!stays_below(decoded) || !stays_below(text))
+  if (!is_below_folder(decoded) || !is_below_folder(text))
     uri.fail_here("a buffer must lie beside the file or below; it is named '{}'", text);
   std::error_code ignored;
   using std::filesystem::path;

@@ -55,15 +55,15 @@ class UsdReader {
       : path_(path), source_(source), file_(read_usda(source, text)) {}
 
   Model read() {
-    note_parts_elsewhere(file_);
+    note_unresolved(file_);
     for (const UsdaPrim& prim : file_.prims) show(prim, {});
     // As in renderers, proxies are not drawn beside prims with the purpose render.
     for (const auto& add_proxy : proxies_)
       if (!has_render_) add_proxy();
     if (model_.count() == 0 && model_.left_out == 0) fail_without_gaussians();
-    if (!elsewhere_.empty()) {
+    if (!unresolved_.empty()) {
       log_warning("{}: the contents of its {} are not drawn; merge them into one file with: {}", source_,
-                  elsewhere_, flatten_command(path_));
+                  unresolved_, flatten_command(path_));
     }
     for (const char* type : {"Mesh", "PointInstancer", "Points", "Volume"}) {
       if (others_.contains(type)) log_warning("{}: only its Gaussians are drawn, and no {}", source_, type);
@@ -76,8 +76,8 @@ class UsdReader {
 
  private:
   [[noreturn]] void fail_without_gaussians() const {
-    if (!elsewhere_.empty()) {
-      fail("{} has no Gaussians of its own, but {}: merge them into one file with: {}", source_, elsewhere_,
+    if (!unresolved_.empty()) {
+      fail("{} has no Gaussians of its own, but {}: merge them into one file with: {}", source_, unresolved_,
            flatten_command(path_));
     }
     std::string names;
@@ -95,9 +95,9 @@ class UsdReader {
     return up == "Y" ? "RUB" : "RFU";
   }
 
-  void note_parts_elsewhere(const UsdaPrim& prim) {
+  void note_unresolved(const UsdaPrim& prim) {
     for (const char* key : {"subLayers", "references", "payload", "inherits", "specializes", "variantSet"}) {
-      if (elsewhere_.empty() && prim.metadata.contains(key)) elsewhere_ = key;
+      if (unresolved_.empty() && prim.metadata.contains(key)) unresolved_ = key;
     }
   }
 
@@ -110,7 +110,7 @@ class UsdReader {
   void show(const UsdaPrim& prim, Inherited inherited) {
     const auto active = prim.metadata.find("active");
     if (active != prim.metadata.end() && active->second.rest() == "false") return;
-    note_parts_elsewhere(prim);
+    note_unresolved(prim);
     if (prim.specifier != "def" || token_of(prim, "visibility") == "invisible") return;
     if (prim.attribute("visibility.timeSamples") != nullptr)
       log_warning("{}: the visibility of '{}' changes with time; it is always drawn", source_, prim.name);
@@ -220,7 +220,7 @@ class UsdReader {
   std::vector<glm::dvec3> places_;  // positions of its Gaussians in the scene
   bool flat_ = false, nurec_ = false, has_render_ = false;
   std::vector<std::function<void()>> proxies_;
-  std::string elsewhere_;         // the word for its parts in other files or variants, for errors
+  std::string unresolved_;        // the word for its parts in other files or variants, for errors
   std::set<std::string> others_;  // types of prims that are no Gaussians
 };
 

@@ -100,7 +100,7 @@ std::optional<fs::path> find_view_photo(const fs::path& folder, const std::strin
   return is_whole ? picture_at(view) : std::nullopt;
 }
 
-void check_photos_apart(const fs::path& folder, std::span<const Camera> views) {
+void check_photos_unique(const fs::path& folder, std::span<const Camera> views) {
   std::map<fs::path, std::string> taken;
   for (const Camera& view : views) {
     const auto photo = find_view_photo(folder, view);

@@ -30,6 +30,6 @@ inline std::optional<std::filesystem::path> find_view_photo(const std::filesyste
 
 /// Throws Error if two of a file's views share one photo, as "a.jpg" and "a.png" do if only one exists. One
 /// view would be compared with the other's photo. Pass all views of the file, drawn or not.
-void check_photos_apart(const std::filesystem::path& folder, std::span<const Camera> views);
+void check_photos_unique(const std::filesystem::path& folder, std::span<const Camera> views);
 
 }  // namespace binosplat

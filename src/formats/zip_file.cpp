@@ -19,7 +19,7 @@ struct CloseEntry {
 
 }  // namespace
 
-bool stays_below(const std::string& name) {
+bool is_below_folder(const std::string& name) {
   const std::filesystem::path path(name);
   return !name.empty() && name.find('\0') == std::string::npos && name.find('\\') == std::string::npos &&
          path.is_relative() &&

@@ -14,7 +14,7 @@ struct zip;
 namespace binosplat {
 
 /// Returns whether a name in a file stays below that file's folder.
-bool stays_below(const std::string& name);
+bool is_below_folder(const std::string& name);
 
 /// Files of an archive to write: names and contents.
 using ZipEntries = std::vector<std::pair<std::string, std::vector<std::byte>>>;

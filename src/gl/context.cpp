@@ -40,7 +40,7 @@ std::unique_ptr<Context> attempt(const Open& open, std::string& reasons) {
 }
 
 /// A line for each environment variable that selects Mesa's driver or version.
-std::string asked_of_mesa() {
+std::string mesa_overrides() {
   std::string lines;
   for (const char* name : {"GALLIUM_DRIVER", "MESA_LOADER_DRIVER_OVERRIDE", "MESA_GL_VERSION_OVERRIDE"}) {
     const char* const value = std::getenv(name);
@@ -100,7 +100,7 @@ std::unique_ptr<Context> Context::open(Backend backend, int device) {
   if (context == nullptr && tries(Backend::osmesa)) context = attempt(open_osmesa, reasons);
   if (context == nullptr)
     throw Error(ExitCode::no_gl,
-                fmt::format("no usable OpenGL 4.5 context. Tried:{}{}", reasons, asked_of_mesa()));
+                fmt::format("no usable OpenGL 4.5 context. Tried:{}{}", reasons, mesa_overrides()));
   return context;
 }
 
@@ -187,7 +187,7 @@ const Program& Context::program(std::string_view name, std::span<const Number> v
     Program made(functions_, of_shader->first, defines_of(variant), shader_folder_, *program_cache_);
     add_span((made.is_compiled() ? "compile " : "load ") + of_shader->first, begin);
     ++programs_made_;
-    making_ms_ += ms_since(begin);
+    compile_ms_ += ms_since(begin);
     found = of_shader->second.emplace(key, std::move(made)).first;
   }
   if (!is_preparing_ && !found->second.is_complete()) complete(of_shader->second, found);
@@ -199,7 +199,7 @@ void Context::complete(Variants& variants, Variants::iterator program) {
     const auto begin = Clock::now();
     const bool is_compiled = program->second.is_compiled();
     program->second.complete(*program_cache_);
-    making_ms_ += ms_since(begin);
+    compile_ms_ += ms_since(begin);
     if (is_compiled) add_span("compile " + program->second.name(), begin);
   } catch (...) {
     variants.erase(program);

@@ -101,7 +101,7 @@ class Context {
   /// The number of programs that were compiled, or loaded from the cache, so far.
   int programs_made() const { return programs_made_; }
   /// The time that this took, in ms.
-  double making_ms() const { return making_ms_; }
+  double compile_ms() const { return compile_ms_; }
   bool is_preparing() const { return is_preparing_; }
 
   /// From now on reads shaders from this folder; empty: the embedded ones.
@@ -152,7 +152,7 @@ class Context {
   std::map<std::string, Variants, std::less<>> programs_;  // by shader
   bool is_preparing_ = false;
   int programs_made_ = 0;
-  double making_ms_ = 0.0;
+  double compile_ms_ = 0.0;
   std::int64_t allocated_ = 0, peak_ = 0;
 };
 

@@ -85,7 +85,7 @@ class Dispatcher {
   void start(const Program& program, const DispatchSize& work, std::initializer_list<Binding> bindings,
              std::initializer_list<Uniform> uniforms = {});
 
-  /// Draws the whole bound framebuffer by a fragment shader (KeptDrawing of gl/state.h).
+  /// Draws the whole bound framebuffer by a fragment shader (SavedDrawing of gl/state.h).
   void draw_whole(const Program& program, std::initializer_list<Binding> bindings,
                   std::initializer_list<Uniform> uniforms) {
     draw(program, 3, bindings, uniforms);

@@ -103,12 +103,12 @@ void ProgramCache::store(const Functions& gl, std::uint32_t program, const std::
   write(key(source), kept);
 }
 
-std::optional<std::string> ProgramCache::recall(const std::string& asked) const {
-  return read(key("found by\n" + asked));
+std::optional<std::string> ProgramCache::load_result(const std::string& test_name) const {
+  return read(key("found by\n" + test_name));
 }
 
-void ProgramCache::remember(const std::string& asked, const std::string& found) const {
-  write(key("found by\n" + asked), found);
+void ProgramCache::store_result(const std::string& test_name, const std::string& found) const {
+  write(key("found by\n" + test_name), found);
 }
 
 }  // namespace binosplat::gl

@@ -29,10 +29,10 @@ class ProgramCache {
   /// Stores a linked program. Does nothing for drivers without program binaries.
   void store(const Functions& gl, std::uint32_t program, const std::string& source) const;
 
-  /// Returns the result that remember() stored for this driver; none if there is none yet. `asked` identifies
-  /// the test, such as by its shaders' sources.
-  std::optional<std::string> recall(const std::string& asked) const;
-  void remember(const std::string& asked, const std::string& found) const;
+  /// Returns the result that store_result() stored for this driver; none if there is none yet. `test_name`
+  /// identifies the test, such as by its shaders' sources.
+  std::optional<std::string> load_result(const std::string& test_name) const;
+  void store_result(const std::string& test_name, const std::string& found) const;
 
  private:
   std::string key(const std::string& source) const;

@@ -2,7 +2,7 @@
 
 namespace binosplat::gl {
 
-KeptState::KeptState(const Context& context) : gl_(context.gl()) {
+SavedState::SavedState(const Context& context) : gl_(context.gl()) {
   gl_.GetIntegerv(GL_CURRENT_PROGRAM, &program_);
   gl_.GetIntegerv(GL_SHADER_STORAGE_BUFFER_BINDING, &storage_);
   gl_.GetIntegerv(GL_UNIFORM_BUFFER_BINDING, &uniform_);
@@ -33,13 +33,13 @@ KeptState::KeptState(const Context& context) : gl_(context.gl()) {
   }
 }
 
-void KeptState::set_plain() const {
+void SavedState::set_plain() const {
   gl_.Disablei(GL_SCISSOR_TEST, 0);
   gl_.Disable(GL_FRAMEBUFFER_SRGB);
   gl_.Disable(GL_RASTERIZER_DISCARD);
 }
 
-void KeptState::bind(GLenum target, GLuint binding, const Range& kept) const {
+void SavedState::bind(GLenum target, GLuint binding, const Range& kept) const {
   const auto buffer = static_cast<GLuint>(kept.buffer);
   if (kept.size == 0) {
     gl_.BindBufferBase(target, binding, buffer);
@@ -48,7 +48,7 @@ void KeptState::bind(GLenum target, GLuint binding, const Range& kept) const {
   }
 }
 
-KeptState::~KeptState() {
+SavedState::~SavedState() {
   for (GLuint i = 0; i < storage_bindings_needed; ++i) bind(GL_SHADER_STORAGE_BUFFER, i, storages_[i]);
   bind(GL_UNIFORM_BUFFER, 0, uniforms_);
   gl_.BindBuffer(GL_UNIFORM_BUFFER, static_cast<GLuint>(uniform_));
@@ -67,7 +67,7 @@ KeptState::~KeptState() {
   gl_.UseProgram(gl_.IsProgram(program) == GL_TRUE ? program : 0);
 }
 
-KeptTextures::KeptTextures(const Context& context) : gl_(context.gl()) {
+SavedTextures::SavedTextures(const Context& context) : gl_(context.gl()) {
   gl_.GetIntegerv(GL_ACTIVE_TEXTURE, &active_);
   for (GLuint unit = 0; unit < units_.size(); ++unit) {
     gl_.ActiveTexture(GL_TEXTURE0 + unit);
@@ -77,7 +77,7 @@ KeptTextures::KeptTextures(const Context& context) : gl_(context.gl()) {
   gl_.ActiveTexture(static_cast<GLenum>(active_));
 }
 
-KeptTextures::~KeptTextures() {
+SavedTextures::~SavedTextures() {
   for (GLuint unit = 0; unit < units_.size(); ++unit) {
     gl_.ActiveTexture(GL_TEXTURE0 + unit);
     gl_.BindTexture(GL_TEXTURE_2D, static_cast<GLuint>(units_[unit].texture));
@@ -86,8 +86,8 @@ KeptTextures::~KeptTextures() {
   gl_.ActiveTexture(static_cast<GLenum>(active_));
 }
 
-KeptDrawing::KeptDrawing(const Context& context, std::uint32_t framebuffer, std::uint32_t vertices, int width,
-                         int height)
+SavedDrawing::SavedDrawing(const Context& context, std::uint32_t framebuffer, std::uint32_t vertices,
+                           int width, int height)
     : gl_(context.gl()) {
   gl_.GetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &framebuffer_);
   gl_.GetIntegerv(GL_VERTEX_ARRAY_BINDING, &vertices_);
@@ -112,7 +112,7 @@ KeptDrawing::KeptDrawing(const Context& context, std::uint32_t framebuffer, std:
   gl_.ViewportIndexedf(0, 0.0f, 0.0f, static_cast<float>(width), static_cast<float>(height));
 }
 
-KeptDrawing::~KeptDrawing() {
+SavedDrawing::~SavedDrawing() {
   gl_.ViewportIndexedf(0, viewport_[0], viewport_[1], viewport_[2], viewport_[3]);
   gl_.BindVertexArray(static_cast<GLuint>(vertices_));
   gl_.BindFramebuffer(GL_DRAW_FRAMEBUFFER, static_cast<GLuint>(framebuffer_));

@@ -19,14 +19,14 @@ namespace binosplat::gl {
 /// A current program that was deleted cannot be restored; then none is current. Frames and pictures change no
 /// other state, such as vertex arrays, framebuffers, textures, samplers, other images, pixel store, clear
 /// values, viewports, masks, tests, blending and the debug callback. Drawing a triangle changes some of
-/// these, which a KeptDrawing restores. Do not use it within transform feedback or conditional rendering.
+/// these, which a SavedDrawing restores. Do not use it within transform feedback or conditional rendering.
 /// Active queries count the work done here.
-class KeptState {
+class SavedState {
  public:
-  explicit KeptState(const Context& context);
-  ~KeptState();
-  KeptState(const KeptState&) = delete;
-  KeptState& operator=(const KeptState&) = delete;
+  explicit SavedState(const Context& context);
+  ~SavedState();
+  SavedState(const SavedState&) = delete;
+  SavedState& operator=(const SavedState&) = delete;
 
   /// Sets the state in which a copy reaches a framebuffer whole and unchanged: no scissors, no conversion to
   /// sRGB, no discarding (NVIDIA's driver also discards copies).
@@ -52,13 +52,13 @@ class KeptState {
 };
 
 /// Saves the 2D textures and samplers of the first 2 MAX_CANVASES units, and restores them when destroyed. A
-/// frame with mesh depths reads the caller's textures through these units. Use it with a KeptState.
-class KeptTextures {
+/// frame with mesh depths reads the caller's textures through these units. Use it with a SavedState.
+class SavedTextures {
  public:
-  explicit KeptTextures(const Context& context);
-  ~KeptTextures();
-  KeptTextures(const KeptTextures&) = delete;
-  KeptTextures& operator=(const KeptTextures&) = delete;
+  explicit SavedTextures(const Context& context);
+  ~SavedTextures();
+  SavedTextures(const SavedTextures&) = delete;
+  SavedTextures& operator=(const SavedTextures&) = delete;
 
  private:
   struct Unit {
@@ -73,14 +73,14 @@ class KeptTextures {
 /// Saves the state for drawing a triangle into a depth texture, and restores it when destroyed. In between,
 /// the triangle writes the whole texture. The state is the framebuffer and vertex array to draw with,
 /// viewport 0, clip control, polygon mode, and the tests of depth, stencil, faces and clip distances. Use it
-/// with a KeptState.
-class KeptDrawing {
+/// with a SavedState.
+class SavedDrawing {
  public:
-  KeptDrawing(const Context& context, std::uint32_t framebuffer, std::uint32_t vertices, int width,
-              int height);
-  ~KeptDrawing();
-  KeptDrawing(const KeptDrawing&) = delete;
-  KeptDrawing& operator=(const KeptDrawing&) = delete;
+  SavedDrawing(const Context& context, std::uint32_t framebuffer, std::uint32_t vertices, int width,
+               int height);
+  ~SavedDrawing();
+  SavedDrawing(const SavedDrawing&) = delete;
+  SavedDrawing& operator=(const SavedDrawing&) = delete;
 
  private:
   static constexpr std::array tests = {GL_DEPTH_TEST,     GL_DEPTH_CLAMP,    GL_STENCIL_TEST,

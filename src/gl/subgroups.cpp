@@ -49,8 +49,8 @@ std::vector<Number> numbers_of(const GroupShape& shape) {
 
 }  // namespace
 
-std::string found_in_subgroups(Context& context) {
-  const KeptState kept(context);
+std::string run_subgroup_tests(Context& context) {
+  const SavedState saved(context);
   Dispatcher dispatcher(context);
   Buffer wrong(context, "faults of subgroups");
   wrong.upload(std::vector<std::uint32_t>{0});
@@ -81,13 +81,13 @@ std::string why_no_subgroups(Context& context) {
     return "its compute shaders have no subgroups";
   if ((integer(GL_SUBGROUP_SUPPORTED_FEATURES_KHR) & needed) != needed)
     return "its subgroups lack votes, sums, ballots or shuffles";
-  std::string asked;
+  std::string test_name;
   for (const GroupShape& shape : group_shapes)
-    asked += ShaderSource(check_shader, defines_of(numbers_of(shape)), {}).text();
-  if (const std::optional<std::string> known = context.program_cache().recall(asked)) return *known;
+    test_name += ShaderSource(check_shader, defines_of(numbers_of(shape)), {}).text();
+  if (const std::optional<std::string> known = context.program_cache().load_result(test_name)) return *known;
   try {
-    std::string found = found_in_subgroups(context);
-    context.program_cache().remember(asked, found);
+    std::string found = run_subgroup_tests(context);
+    context.program_cache().store_result(test_name, found);
     return found;
   } catch (const Error& error) {  // a compiler without a feature that its driver reports
     if (error.code() != ExitCode::no_gl) throw;

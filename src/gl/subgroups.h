@@ -15,6 +15,6 @@ std::string why_no_subgroups(Context& context);
 
 /// Runs those dispatches, whatever the driver and the cache report. Returns the fault found, or an empty
 /// text.
-std::string found_in_subgroups(Context& context);
+std::string run_subgroup_tests(Context& context);
 
 }  // namespace binosplat::gl

@@ -164,7 +164,7 @@ void add_settings(const Block& block, std::vector<BenchSettings>& settings) {
 
 void remove_repeated(std::vector<BenchSettings>& settings) {
   std::set<std::string> seen;
-  std::erase_if(settings, [&](const auto& s) { return !seen.insert(named(s).dump()).second; });
+  std::erase_if(settings, [&](const auto& s) { return !seen.insert(row_of_settings(s).dump()).second; });
 }
 
 std::vector<std::string> along_of(const Block& top) {
@@ -255,7 +255,7 @@ Axes load_axes(const std::string& preset_or_file) {
 
 nlohmann::ordered_json to_json(const Axes& axes) {
   std::vector<Row> settings;
-  for (const BenchSettings& s : axes.settings) settings.push_back(named(s));
+  for (const BenchSettings& s : axes.settings) settings.push_back(row_of_settings(s));
   return object("views", axes.views, "training", axes.training, "frames", axes.frames, "repeats",
                 axes.repeats, "perception", axes.perception, "contributions", axes.contributions, "eyes",
                 axes.eyes, "sizes", axes.sizes, "along", axes.along, "settings", settings);

@@ -297,7 +297,7 @@ std::string Bench::verify(const BenchSettings& settings) {
   if (what_.views.empty()) return "";
   const BenchView& view = what_.views.front();
   BenchDrawer drawer = this->drawer(settings);
-  drawer.bring(view.eyes);
+  drawer.load_levels(view.eyes);
   drawer.draw(view.eyes);
   const std::vector<Picture> pictures = drawer.read_pictures();
   for (const Picture& picture : pictures) {
@@ -355,11 +355,11 @@ void Bench::time_views(BenchDrawer& drawer, Row& row) {
     CpuUse cpu;
     double drawn = 0.0;
     for (const BenchView& view : what_.views) {
-      drawer.bring(view.eyes);
+      drawer.load_levels(view.eyes);
       // A GPU's clock drops while pictures are compared or levels are read.
       if (repeat == 0 && &view == &what_.views.front())
-        wake(context_, 1000.0, [&] { drawer.draw(view.eyes); });
-      if (follows) wake(context_, 300.0, [&] { drawer.draw(view.eyes); });
+        raise_clock(context_, 1000.0, [&] { drawer.draw(view.eyes); });
+      if (follows) raise_clock(context_, 300.0, [&] { drawer.draw(view.eyes); });
       if (repeat == 0) settled = warm_up(drawer, view, software) && settled;
       for (int n = 0; repeat > 0 && n < render::settling_frames; ++n) drawer.draw(view.eyes);
       Reports frames;
@@ -383,14 +383,14 @@ void Bench::time_views(BenchDrawer& drawer, Row& row) {
   put_stages(mean_of(turns).stages, row);
 }
 
-void Bench::judge_views(const BenchSettings& settings, BenchDrawer& drawer, Point& point) {
+void Bench::measure_views(const BenchSettings& settings, BenchDrawer& drawer, Point& point) {
   std::vector<Row> views;
   std::vector<measure::FoveatedComparison> seen;
   FrameWork work{.precision = settings.precision};
   const bool finest = has_finest(point.row);
   for (std::size_t v = 0; v < what_.views.size(); ++v) {
     const BenchView& view = what_.views[v];
-    const LevelsBrought levels = drawer.bring(view.eyes);
+    const LoadedLevels levels = drawer.load_levels(view.eyes);
     render::FrameReport report;
     for (int n = 0; n < render::settling_frames; ++n) report = drawer.draw(view.eyes);
     const std::vector<Picture> drawn = drawer.read_pictures();
@@ -430,7 +430,7 @@ void Bench::judge_views(const BenchSettings& settings, BenchDrawer& drawer, Poin
 }
 
 // Computes only PSNR and drops, from sums on the GPU. Reads back only the first picture.
-void Bench::judge_by_sums(const BenchSettings& settings, BenchDrawer& drawer, Point& point) {
+void Bench::measure_by_sums(const BenchSettings& settings, BenchDrawer& drawer, Point& point) {
   const Calibrator::Cost cost = calibrator(false, false, settings).cost(settings);
   std::vector<Row> views;
   for (std::size_t v = 0; v < what_.views.size(); ++v)
@@ -470,9 +470,9 @@ Point Bench::measure(BenchSettings settings) {
   } else {
     time_views(drawer, point.row);
     if (effort_.perception || what_.tested.empty() || settings.foveation || settings.detail)
-      judge_views(settings, drawer, point);
+      measure_views(settings, drawer, point);
     else
-      judge_by_sums(settings, drawer, point);
+      measure_by_sums(settings, drawer, point);
   }
   return point;
 }

@@ -65,8 +65,8 @@ class Bench {
   std::string verify(const BenchSettings& settings);
 
   void time_views(BenchDrawer& drawer, Row& row);
-  void judge_views(const BenchSettings& settings, BenchDrawer& drawer, Point& point);
-  void judge_by_sums(const BenchSettings& settings, BenchDrawer& drawer, Point& point);
+  void measure_views(const BenchSettings& settings, BenchDrawer& drawer, Point& point);
+  void measure_by_sums(const BenchSettings& settings, BenchDrawer& drawer, Point& point);
   Row compare(const BenchView& view, const Exact& exact, const std::vector<Picture>& drawn) const;
   void measure_frames(const BenchSettings& settings, BenchDrawer& drawer, Point& point);
   void time_frames(BenchDrawer& drawer, Point& point);

@@ -38,15 +38,15 @@ struct Stretch {
 std::vector<std::size_t> stretch_starts(std::size_t total, std::size_t length, std::size_t count);
 
 /// The levels that a model was brought to.
-struct LevelsBrought {
+struct LoadedLevels {
   std::size_t gaussians = 0;
   std::optional<double> predicted_db = {};  // PSNR against the finest; none: not predicted
 };
 
-/// A model whose levels follow the views; without `bring` its levels are fixed.
+/// A model whose levels follow the views; without `load_levels` its levels are fixed.
 struct FollowingModel {
   std::shared_ptr<render::GpuModel> model;
-  std::function<LevelsBrought(std::span<const shared::View> views)> bring = {};  // reads needed levels
+  std::function<LoadedLevels(std::span<const shared::View> views)> load_levels = {};  // reads needed levels
 };
 
 /// Exactly one of the three is set: views, stretches or turned.

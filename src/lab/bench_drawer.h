@@ -16,10 +16,10 @@ class BenchDrawer {
       : model_(std::move(model)), frame_(model_.model), settings_(settings) {}
 
   /// Whether levels follow the views.
-  bool follows() const { return bool(model_.bring); }
+  bool follows() const { return bool(model_.load_levels); }
   /// Reads the levels that the views need.
-  LevelsBrought bring(std::span<const shared::View> eyes) {
-    return model_.bring ? model_.bring(eyes) : LevelsBrought{model_.model->size().gaussians};
+  LoadedLevels load_levels(std::span<const shared::View> eyes) {
+    return model_.load_levels ? model_.load_levels(eyes) : LoadedLevels{model_.model->size().gaussians};
   }
   render::FrameReport draw(std::span<const shared::View> eyes) {
     return settings_.foveation ? frame_.draw(eyes, *settings_.foveation, settings_)

@@ -61,7 +61,7 @@ void put_popping(BenchDrawer& drawer, const Stretch& stretch, Row& row) {
   std::vector<Picture> pictures;
   drawer.frame().start_over();
   for (const std::vector<shared::View>& views : stretch.frames) {
-    drawer.bring(views);
+    drawer.load_levels(views);
     drawer.draw(views);
     pictures.push_back(drawer.read_pictures().front());
   }
@@ -114,7 +114,7 @@ void Bench::measure_frames(const BenchSettings& settings, BenchDrawer& drawer, P
     const Stretch& stretch = what_.stretches[s];
     drawer.frame().start_over();
     for (std::size_t n = 0; n < stretch.frames.size(); ++n) {
-      const LevelsBrought levels = drawer.bring(stretch.frames[n]);
+      const LoadedLevels levels = drawer.load_levels(stretch.frames[n]);
       const render::FrameReport report = drawer.draw(stretch.frames[n]);
       Row& row = frames.emplace_back(row_of("of", "frame", "stretch", s + 1, "frame", frames.size(), "part",
                                             n < stretch.moving ? "moving" : "stop"));
@@ -147,7 +147,7 @@ void Bench::time_frames(BenchDrawer& drawer, Point& point) {
   std::vector<Typical> turns;
   std::size_t differs = 0;
   const Stretch& first = what_.stretches.front();
-  wake(context_, 1000.0, [&] { drawer.draw(first.frames.front()); });
+  raise_clock(context_, 1000.0, [&] { drawer.draw(first.frames.front()); });
   for (int repeat = 0; repeat < effort_.repeats; ++repeat) {
     std::size_t at = 0;
     std::vector<double> moving;
@@ -156,7 +156,7 @@ void Bench::time_frames(BenchDrawer& drawer, Point& point) {
       drawer.frame().start_over();
       Reports reports;
       for (std::size_t n = 0; n < stretch.frames.size(); ++n, ++at) {
-        drawer.bring(stretch.frames[n]);
+        drawer.load_levels(stretch.frames[n]);
         const CpuUse before = CpuUse::now(context_);
         const render::FrameReport report = drawer.draw(stretch.frames[n]);
         ms[at].push_back(report.total_ms);

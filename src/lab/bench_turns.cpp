@@ -19,7 +19,7 @@ constexpr float difference_gain = 8.0f;     // brightens the picture of differen
 constexpr double seen_error = 5.0 / 255.0;  // in a colour from 0 to 1
 constexpr double field_degrees = 60.0;      // width and height of the field of rays
 constexpr double turns_degrees[] = {0.25, 1.0, 5.0, 15.0, 45.0};
-constexpr double told_degrees = 15.0;  // means and picture are of this turn
+constexpr double summary_degrees = 15.0;  // means and picture are of this turn
 
 /// Number of rays, evenly spread over the field in the head's picture; fewer on a CPU.
 glm::ivec2 rays_of(const gl::Context& context) {
@@ -94,7 +94,7 @@ void Bench::measure_turns(const BenchSettings& settings, Point& point) {
       .order = settings.order, .projection = settings.projection, .anchor_cull = false};
   render::Frame frame(gpu_model());
   const auto colours = measure::colours_at(frame, camera, field, drawn, what_.near_plane);
-  std::vector<Row> told;
+  std::vector<Row> summary_rows;
   for (const HeadAxis& axis : head_axes) {
     for (const double degrees : turns_degrees) {
       const Camera head = measure::turned(camera, axis.unit, glm::radians(degrees));
@@ -113,15 +113,15 @@ void Bench::measure_turns(const BenchSettings& settings, Point& point) {
       Row& row = point.details.emplace_back(row_of("of", "turn", "about", axis.name, "degrees", degrees));
       row.update(compare_turned(rays_picture(before, shown, rays), rays_picture(after, shown, rays), shown,
                                 difference));
-      if (degrees != told_degrees) continue;
-      told.push_back(row);
+      if (degrees != summary_degrees) continue;
+      summary_rows.push_back(row);
       if (&axis == head_axes.data() && !shown.empty()) point.picture = std::move(difference);
     }
   }
-  put(point.row, "psnr_db", pooled_db(numbers(told, "psnr_db")));
-  for (const char* name : {"flip", "rays_off", "rays"}) put(point.row, name, mean_number(told, name));
+  put(point.row, "psnr_db", pooled_db(numbers(summary_rows, "psnr_db")));
+  for (const char* name : {"flip", "rays_off", "rays"}) put(point.row, name, mean_number(summary_rows, name));
   const auto psnr = [](const Row& row) { return row.value("psnr_db", equal_db); };
-  const Row& worst = *std::ranges::min_element(told, {}, psnr);
+  const Row& worst = *std::ranges::min_element(summary_rows, {}, psnr);
   put(point.row, "worst_psnr_db", number(worst, "psnr_db"), "worst_view", text(worst, "about"));
 }
 

@@ -33,8 +33,8 @@ bool has_middle(const Model& model, const Camera& camera, double near_plane) {
   if (model.antialiased || model.scaffold) return false;
   for (std::size_t i = 0; i < model.count(); ++i) {
     if (double{model.opacity[i]} < not_faint) continue;
-    const PointSeen middle = see(camera, model.position[i]);
-    if (middle.ahead > 1.01 * near_plane && middle.is_within(1.0)) return true;
+    const ProjectedPoint middle = project_point(camera, model.position[i]);
+    if (middle.depth > 1.01 * near_plane && middle.is_within(1.0)) return true;
   }
   return false;
 }

@@ -53,7 +53,7 @@ struct Calibrator::Reference {
 
 Calibrator::Calibrator(gl::Context& context, const Model& model, const std::vector<CalibrationView>& views,
                        double near_plane, CalibrationTarget::Kind kind, CalibratorOptions options)
-    : context_(context), frame_(context, model), kind_(kind), keep_(std::move(options.keep)) {
+    : context_(context), frame_(context, model), kind_(kind), cache_(std::move(options.cache)) {
   const render::FrameSettings exact{.order = options.order, .projection = options.projection};
   if (views.empty()) fail("calibration needs at least one view");
   for (const CalibrationView& view : views) {
@@ -77,19 +77,19 @@ Calibrator::Cost Calibrator::cost(const render::FrameSettings& settings) {
   const auto measured = [&]() -> ordered_json {
     return cost(frame_, settings, render::measures(settings.transmittance) ? render::settling_frames : 1);
   };
-  if (!keep_) return measured();
-  return keep_(object("views", names_, "drop", kind_ == CalibrationTarget::Kind::drop, "settings",
-                      named(BenchSettings(settings)), "table", settings.depth_table.bounds, "far",
-                      settings.depth_table.far)
-                   .dump(-1, ' ', false, ordered_json::error_handler_t::replace),
-               measured);
+  if (!cache_) return measured();
+  return cache_(object("views", names_, "drop", kind_ == CalibrationTarget::Kind::drop, "settings",
+                       row_of_settings(BenchSettings(settings)), "table", settings.depth_table.bounds, "far",
+                       settings.depth_table.far)
+                    .dump(-1, ' ', false, ordered_json::error_handler_t::replace),
+                measured);
 }
 
 Calibrator::Cost Calibrator::cost(const Model& other, int drawings,
                                   const std::function<void(std::size_t)>& after_view) {
   render::Frame frame(context_, other);
   // The GPU's clock dropped while the model was made.
-  if (drawings > 1) wake(context_, 500.0, [&] { frame.draw(std::span(&views_.front(), 1)); });
+  if (drawings > 1) raise_clock(context_, 500.0, [&] { frame.draw(std::span(&views_.front(), 1)); });
   return cost(frame, {}, drawings, after_view);
 }
 
@@ -170,7 +170,7 @@ ThresholdCalibration calibrate(gl::Context& context, const Model& model,
                                const std::function<void(std::size_t, std::size_t)>& done) {
   const render::FrameSettings exact{.order = wanted.table.order, .projection = wanted.table.projection};
   Calibrator calibrator(context, model, views, near_plane, wanted.target.kind,
-                        {wanted.keep, exact.order, exact.projection});
+                        {wanted.cache, exact.order, exact.projection});
   ThresholdCalibration c;
   c.model_name = model.name;
   c.gaussians = model.count();

@@ -20,8 +20,8 @@
 namespace binosplat::lab {
 
 /// Returns the result of `measure` for a step of this name, or that of an interrupted earlier run.
-using Keep = std::function<nlohmann::ordered_json(const std::string& step,
-                                                  const std::function<nlohmann::ordered_json()>& measure)>;
+using StepCache = std::function<nlohmann::ordered_json(
+    const std::string& step, const std::function<nlohmann::ordered_json()>& measure)>;
 
 struct CalibrationView {
   Camera camera;               // in the world (scene/axes.h)
@@ -42,7 +42,7 @@ struct ViewSplit {
 
 /// Options of a Calibrator.
 struct CalibratorOptions {
-  Keep keep = {};                        // for costs
+  StepCache cache = {};                  // for costs
   std::optional<int> order, projection;  // of the exact pictures; none: the model's
 };
 
@@ -91,7 +91,7 @@ class Calibrator {
   gl::Context& context_;
   render::Frame frame_;
   CalibrationTarget::Kind kind_;
-  Keep keep_;
+  StepCache cache_;
   std::vector<std::string> names_;
   std::vector<shared::View> views_;
   std::vector<std::unique_ptr<Reference>> references_;
@@ -103,7 +103,7 @@ struct CalibrationSettings {
   CalibrationTarget target;
   measure::DepthTableSettings table = {};
   std::vector<Rule> rules = all_rules();
-  Keep keep = {};
+  StepCache cache = {};
 };
 
 /// The settings that a calibration has entries for: the inexact ones of these rules.

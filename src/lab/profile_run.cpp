@@ -35,7 +35,7 @@ ProfileDrawer::ProfileDrawer(std::shared_ptr<render::GpuModel> model, const Prof
 
 render::FrameSettings ProfileDrawer::settings_now() const {
   render::FrameSettings settings = run_.settings;
-  if (stream_ != nullptr) settings.quality = static_cast<float>(stream_->quality_left(settings.quality));
+  if (stream_ != nullptr) settings.quality = static_cast<float>(stream_->frame_quality(settings.quality));
   return settings;
 }
 
@@ -70,7 +70,7 @@ double ProfileDrawer::warm_up() {
     while (!stream_->settled() && ms_since(begin) < levels_wait_ms);
     draw_first();
   }
-  wake(context_, busy_ms, draw_first);
+  raise_clock(context_, busy_ms, draw_first);
   frame_.frame().start_over();
   return ms;
 }
@@ -117,7 +117,7 @@ std::optional<Saving> ProfileDrawer::saving(std::size_t frame, double quality_db
   less.th = TH_SQUARED;
   less.quality = static_cast<float>(quality_db);
   // Raise the clock first; otherwise later frames seem faster.
-  if (!context_.software()) wake(context_, busy_ms, [&] { draw(views, run_.settings); });
+  if (!context_.software()) raise_clock(context_, busy_ms, [&] { draw(views, run_.settings); });
   std::vector<double> before, after;
   if (draw(views, run_.settings).total_ms > slow_ms) return std::nullopt;
   for (int n = 0; n < (context_.software() ? 4 : 16); ++n)

@@ -293,7 +293,7 @@ const Point* exact_of(const std::vector<Point>& points, const Point& point) {
   return nullptr;
 }
 
-void put_beside_others(std::vector<Point>& points) {
+void add_relative_columns(std::vector<Point>& points) {
   for (Point& point : points) {
     if (!point.measured() || !point.row.contains("frame_ms")) continue;
     point.row["pareto"] = is_on_front(points, point);

@@ -95,7 +95,7 @@ Row identity_of(const Row& row);
 
 /// Adds values relative to other points of a chart. "pareto": no other point is faster beyond noise and at
 /// least as accurate. "speed": the exact point's time over this one's.
-void put_beside_others(std::vector<Point>& points);
+void add_relative_columns(std::vector<Point>& points);
 /// The exact point, at the finest levels, of the same chart, order and projection; null if not measured.
 const Point* exact_of(const std::vector<Point>& points, const Point& point);
 

@@ -17,7 +17,7 @@ std::vector<Rule> all_rules() {
   std::vector<Rule> rules;
   for (int th = 0; th < std::ssize(th_choices); ++th) {
     for (int source = 0; source < std::ssize(transmittance_choices); ++source) {
-      if (render::takes(th, source)) rules.push_back({th, source});
+      if (render::can_use(th, source)) rules.push_back({th, source});
     }
   }
   return rules;

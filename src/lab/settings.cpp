@@ -25,16 +25,16 @@ DetailRequest parse_detail(const std::string& text, const std::string& option) {
   const std::optional<double> number = take_real(rest);
   std::string unit(rest);
   for (char& c : unit) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  if (number && std::isfinite(*number) && unit.empty() && *number >= 0.0) return {.apart_px = *number};
+  if (number && std::isfinite(*number) && unit.empty() && *number >= 0.0) return {.spacing_px = *number};
   if (number && unit == "db" && *number >= 20.0 && *number <= 80.0) return {.db = *number};
   fail("{} {}: expected pixels as in 5, or decibels from 20 to 80 as in 40dB", option, text);
 }
 
 std::string text_of(const DetailRequest& detail) {
-  return detail.db ? fmt::format("{:g}dB", *detail.db) : fmt::format("{:g}px", detail.apart_px);
+  return detail.db ? fmt::format("{:g}dB", *detail.db) : fmt::format("{:g}px", detail.spacing_px);
 }
 
-Row named(const BenchSettings& s) {
+Row row_of_settings(const BenchSettings& s) {
   Row row = row_of("tiles", tiles_choices[s.tiles].name, "tile", s.tile_size);
   if (s.precision != PRECISION_FULL) put(row, "precision", precision_choices[s.precision].name);
   put(row, "th", th_choices[s.th].name);
@@ -95,7 +95,7 @@ void check(const std::string& place, const BenchSettings& s) {
     render::check_choice(s);
     if (s.foveation) stereo::check(*s.foveation);
   } catch (const Error& error) {
-    fail("{}: {}: {}", place, named(s).dump(), error.what());
+    fail("{}: {}: {}", place, row_of_settings(s).dump(), error.what());
   }
 }
 

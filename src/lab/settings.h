@@ -33,7 +33,7 @@ struct BenchSettings : render::FrameSettings {
 };
 
 /// All values that affect the picture and its time, under their names in files.
-Row named(const BenchSettings& settings);
+Row row_of_settings(const BenchSettings& settings);
 
 /// One line for legends: "ellipse", "peripheral, last, 0.5", "ellipse, inset 20, context 0.4". Omits tiles of
 /// `ellipse` (unless exact) and of 16 px.

@@ -48,7 +48,7 @@ void put_cpu_times(const std::vector<CpuUse>& repeats, Row& row);
 /// Draws for `ms` to raise the clock of a GPU that was idle; a second or less suffices. Does nothing for a
 /// software renderer.
 template <typename Draw>
-void wake(const gl::Context& context, double ms, const Draw& draw) {
+void raise_clock(const gl::Context& context, double ms, const Draw& draw) {
   if (context.software()) return;
   const auto start = Clock::now();
   while (ms_since(start) < ms) draw();

@@ -55,14 +55,14 @@ struct Renderer::Impl {
 
   ModelId add(std::shared_ptr<const Model> model) {
     if (model == nullptr) fail("model was moved from: expected a valid SplatModel");
-    const gl::KeptState kept(*context);
+    const gl::SavedState saved(*context);
     auto on_gpu = std::make_shared<render::GpuModel>(*context, *model, precision);
     return hold({.model = std::move(model), .on_gpu = std::move(on_gpu)});
   }
   ModelId add(std::shared_ptr<SplatStream::Impl> stream) {
     if (stream == nullptr) fail("stream was moved from: expected a valid SplatStream");
     if (stream->context != nullptr) fail("a stream has one renderer at a time: destroy the other one first");
-    const gl::KeptState kept(*context);
+    const gl::SavedState saved(*context);
     auto on_gpu = stream->stream->gpu_model(*context, precision);
     stream->context = context.get();
     stream->precision = precision;
@@ -114,11 +114,12 @@ struct Renderer::Impl {
       library::check_numbers(instance, name);
       if (!instance.is_shown || instance.opacity == 0.0f) continue;
       const ModelAxes& axes = model.on_gpu->model().axes;
-      render::InstancePlace place{.rotation = instance.rotation * world_from_axes(axes.letters),
-                                  .scale = instance.scale,
-                                  .opacity = instance.opacity,
-                                  .depth_table = instance.depth_table};
-      place.translation = instance.translation + place.scale * (place.rotation * axes.origin);
+      render::InstancePlace place = render::in_frame({.rotation = instance.rotation,
+                                                      .translation = instance.translation,
+                                                      .scale = instance.scale,
+                                                      .opacity = instance.opacity,
+                                                      .depth_table = instance.depth_table},
+                                                     axes, ModelAxes{});
       if (scene.origin == glm::dvec3(0.0) && axes.origin != glm::dvec3(0.0)) scene.origin = place.translation;
       scene.instances.push_back({model.on_gpu, std::move(place)});
       if (model.stream) scene.streams.push_back(model.stream.get());
@@ -127,8 +128,8 @@ struct Renderer::Impl {
     return scene;
   }
 
-  void hand_over(std::span<const View> views, const Placement& placement, Scene scene,
-                 const Settings& settings, bool prepares);
+  void submit_or_prepare(std::span<const View> views, const Placement& placement, Scene scene,
+                         const Settings& settings, bool prepares);
 
   /// Logs and returns the errors that OpenGL has recorded since the last call. They are the caller's.
   std::vector<std::uint32_t> callers_errors() const {
@@ -176,7 +177,7 @@ Renderer::Renderer(GetProcAddress get_proc_address, SplatStream& stream, Precisi
 }
 Renderer::Renderer(GetProcAddress get_proc_address, Precision precision)
     : impl_(std::make_unique<Impl>(get_proc_address, precision)) {
-  const gl::KeptState kept(*impl_->context);
+  const gl::SavedState saved(*impl_->context);
   impl_->next_id = 1;  // the first is the model that a renderer is made with
   impl_->draw_with(std::make_shared<render::GpuModel>(*impl_->context, impl_->no_model, impl_->precision));
 }
@@ -201,7 +202,7 @@ void Renderer::remove(ModelId model) {
   Impl& impl = usable(impl_);
   if (impl.submitted) fail("a frame is under way: call finish() before remove()");
   impl.model_of(model, "model");
-  const gl::KeptState kept(*impl.context);
+  const gl::SavedState saved(*impl.context);
   impl.frame->frame().place({});
   impl.drop(model);
 }
@@ -218,24 +219,24 @@ Placement Renderer::in_model(const Placement& placement, const Instance& instanc
 
 void Renderer::submit(std::span<const View> views, const Placement& placement, const Settings& settings) {
   Impl& impl = usable(impl_);
-  impl.hand_over(views, placement, impl.own_scene(), settings, false);
+  impl.submit_or_prepare(views, placement, impl.own_scene(), settings, false);
 }
 void Renderer::submit(std::span<const View> views, const World& world, const Settings& settings) {
   Impl& impl = usable(impl_);
-  impl.hand_over(views, world.placement, impl.scene_of(world), settings, false);
+  impl.submit_or_prepare(views, world.placement, impl.scene_of(world), settings, false);
 }
 void Renderer::prepare(std::span<const View> views, const Placement& placement, const Settings& settings) {
   Impl& impl = usable(impl_);
-  impl.hand_over(views, placement, impl.own_scene(), settings, true);
+  impl.submit_or_prepare(views, placement, impl.own_scene(), settings, true);
 }
 void Renderer::prepare(std::span<const View> views, const World& world, const Settings& settings) {
   Impl& impl = usable(impl_);
-  impl.hand_over(views, world.placement, impl.scene_of(world), settings, true);
+  impl.submit_or_prepare(views, world.placement, impl.scene_of(world), settings, true);
 }
 
 // To the frame that draws the views, or compiles what drawing them takes.
-void Renderer::Impl::hand_over(std::span<const View> views, const Placement& placement, Scene scene,
-                               const Settings& settings, bool prepares) {
+void Renderer::Impl::submit_or_prepare(std::span<const View> views, const Placement& placement, Scene scene,
+                                       const Settings& settings, bool prepares) {
   if (submitted) fail("a frame is under way: call finish() before the next submit()");
   Submitted to{.layout = library::layout_of(settings.layout), .background = settings.background};
   to.callers_errors = callers_errors();
@@ -281,8 +282,8 @@ void Renderer::Impl::hand_over(std::span<const View> views, const Placement& pla
     fail("foveation with depth targets: composed pictures have no depths");
   const auto head = library::views_of(views, placement, scene.origin, settings);
 
-  const gl::KeptState kept(*context);
-  std::optional<gl::KeptTextures> textures;
+  const gl::SavedState saved(*context);
+  std::optional<gl::SavedTextures> textures;
   if (to.has_meshes()) textures.emplace(*context);
   if (to.layout == LAYOUT_SEPARATE)
     to.canvases = presenter->canvases(to.targets, to.background, to.has_meshes());
@@ -316,8 +317,8 @@ Report Renderer::finish() {
   const Impl::Submitted frame = std::move(*impl_->submitted);
   impl_->submitted.reset();
   for (SplatStream::Impl* stream : frame.streams) stream->is_drawn = false;
-  const gl::KeptState kept(*impl_->context);
-  std::optional<gl::KeptTextures> textures;
+  const gl::SavedState saved(*impl_->context);
+  std::optional<gl::SavedTextures> textures;
   if (frame.has_meshes()) textures.emplace(*impl_->context);
   stereo::Presenter& presenter = *impl_->presenter;
   stereo::FoveatedFrame& drawn = *impl_->frame;

@@ -17,7 +17,7 @@ StreamSettings settings_of(const StreamOptions& options) {
   if (!(options.quality >= render::quality_least && options.quality <= render::quality_most))
     fail("StreamOptions::quality {}: expected {} to {} dB", options.quality, render::quality_least,
          render::quality_most);
-  StreamSettings settings{.all_up_to = few_gaussians};
+  StreamSettings settings{.finest_up_to = few_gaussians};
   settings.detail.db = options.quality;
   settings.detail.most = options.most.value_or(any_number);
   settings.reserve = std::min(options.reserve, settings.detail.most);
@@ -52,7 +52,7 @@ bool SplatStream::begin_frame(std::span<const View> views, const Placement& plac
   if (!(ms >= 0.0)) fail("begin_frame of {} ms: expected zero or more", ms);
   library::check_numbers(views, placement);
   const render::FrameSettings of_frame = library::frame_settings(settings, views, impl_->precision);
-  const gl::KeptState kept(*impl_->context);
+  const gl::SavedState saved(*impl_->context);
   return stream.begin_frame(library::views_of(views, placement, stream.model().axes.origin, settings).views,
                             of_frame, ms);
 }

@@ -12,7 +12,7 @@ bool is_see_through(const Image& image) {
   return false;
 }
 
-Image before(const glm::vec3& background, const Image& image) {
+Image composite_over(const glm::vec3& background, const Image& image) {
   const auto channels = static_cast<std::size_t>(image.channels);
   Image rgb(image.width, image.height, 3);
   for (std::size_t i = 0; i < rgb.data.size(); ++i) {
@@ -24,15 +24,15 @@ Image before(const glm::vec3& background, const Image& image) {
   return rgb;
 }
 
-bool make_shown(Image& a, Image& b, const Background& background) {
+bool prepare_comparison(Image& a, Image& b, const Background& background) {
   const bool see_through = is_see_through(a) || is_see_through(b);
   const bool keeps_alpha = see_through && !background && a.channels == b.channels;
   const glm::vec3 behind = background.value_or(glm::vec3(0.0f));
   for (Image* image : {&a, &b}) {
-    if (image->channels == 4 && !keeps_alpha) *image = before(behind, *image);
+    if (image->channels == 4 && !keeps_alpha) *image = composite_over(behind, *image);
   }
   for (Image* image : {&a, &b}) {
-    if (image->channels == 1 && a.channels != b.channels) *image = before(behind, *image);
+    if (image->channels == 1 && a.channels != b.channels) *image = composite_over(behind, *image);
     // An EXR may hold values outside 0 to 1, which a PNG of the same picture lacks.
     for (float& value : image->data) value = std::isfinite(value) ? value : NAN;
     *image = clamped(*image);

@@ -19,13 +19,13 @@ struct Comparison {
 bool is_see_through(const Image& image);
 
 /// RGB of any image: grey as three equal channels, transparent pixels over a background.
-Image before(const glm::vec3& background, const Image& image);
+Image composite_over(const glm::vec3& background, const Image& image);
 
 /// Prepares two pictures for a comparison as on a screen. Clamps values to [0, 1], turns infinite ones into
 /// NaN, and repeats grey if the other picture has colour. Drops alpha that is 1 everywhere. With a
 /// background, or if only one picture is transparent, composites over it (default black). Else keeps alpha,
 /// which then counts as a channel. Returns whether it composited transparent pixels.
-bool make_shown(Image& a, Image& b, const Background& background = {});
+bool prepare_comparison(Image& a, Image& b, const Background& background = {});
 
 /// PSNR in dB between a picture with its exposure (exposed() of base/image.h) and a photo, both rounded to 8
 /// bits.

@@ -45,7 +45,7 @@ shared::Splat to_shared(const reference::Splat& s) {
 // The views that decode the model for view v.
 reference::Decoding decoding_for(const FramePlan& plan, std::uint32_t v) {
   const std::uint32_t begin = v - v % plan.views_per_decoding;
-  const std::uint32_t end = std::min(begin + plan.views_per_decoding, plan.asked);
+  const std::uint32_t end = std::min(begin + plan.views_per_decoding, plan.requested_views);
   return {{plan.views.begin() + begin, plan.views.begin() + end}, plan.settings.anchor_cull};
 }
 
@@ -279,8 +279,8 @@ void upload_projection(const FramePlan& plan, const std::vector<Slots>& slots,
   }
   const auto count = static_cast<std::uint32_t>(large.size());
   const std::uint32_t rows = (count + LARGE_VIEWS * LARGE_ROW - 1) / (LARGE_VIEWS * LARGE_ROW);
-  buffers.counters.upload(std::vector{
-      shared::Counters{.large = count, .large_x = LARGE_ROW, .large_y = std::max(rows, 1u), .large_z = 1}});
+  buffers.counters.upload(std::vector{shared::Counters{
+      .large_splats = count, .large_x = LARGE_ROW, .large_y = std::max(rows, 1u), .large_z = 1}});
   buffers.projected.large.upload(large);
 }
 

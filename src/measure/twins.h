@@ -2,7 +2,7 @@
 // --reference-until: replaces the results of the first stages by the float64 reference's, to locate the stage
 // of a fault.
 
-#include "render/workings.h"
+#include "render/debug_options.h"
 
 namespace binosplat::measure {
 

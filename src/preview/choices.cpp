@@ -35,7 +35,7 @@ void make_consistent(Choices& choices) {
   const render::ThresholdRule& rule = render::threshold_rules[s.th];
   if (rule.exact) s.quality = 0.0f;
   if (rule.exact || s.quality > 0.0f) s.tolerance = 0.0f;
-  if (!render::takes(s.th, s.transmittance)) s.transmittance = TRANSMITTANCE_ONE;
+  if (!render::can_use(s.th, s.transmittance)) s.transmittance = TRANSMITTANCE_ONE;
   const bool given = s.tolerance > 0.0f || s.quality > 0.0f;
   if (!rule.exact && !given && !choices.policy.has_entry(s))
     s.tolerance = static_cast<float>(rule.careful_tolerance);

@@ -32,9 +32,9 @@ void MarkDrawing::draw_lines(Eye& eye, const Camera& camera, double near_plane, 
   // About two px, more in large pictures.
   const double px = std::max(1.5, camera.height / 400.0);
   const std::vector<MarkVertex> corners = triangles(lines, camera, near_plane, px);
-  const gl::KeptState kept(context);
-  kept.set_plain();
-  const gl::KeptDrawing drawing(context, eye.framebuffer, no_vertices_, camera.width, camera.height);
+  const gl::SavedState saved(context);
+  saved.set_plain();
+  const gl::SavedDrawing drawing(context, eye.framebuffer, no_vertices_, camera.width, camera.height);
   gl.DepthFunc(GL_LESS);
   gl.ClearColor(0.0f, 0.0f, 0.0f, 0.0f);
   gl.Clear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
@@ -71,10 +71,10 @@ render::FrameReport MarkDrawing::draw(render::Frame& frame, std::span<const shar
   }
   if (render::measures(settings.transmittance)) settings.transmittance = TRANSMITTANCE_ONE;
   if (settings.depth == Depth::none) settings.depth = Depth::mean;
-  render::Workings workings;
-  workings.then = [&](gl::Dispatcher& dispatcher) { put_behind(dispatcher, frame); };
-  workings.then_called = "lines";
-  return frame.draw(views, settings, workings, {.mesh_depths = depths});
+  render::DebugOptions debug;
+  debug.extra_stage = [&](gl::Dispatcher& dispatcher) { put_behind(dispatcher, frame); };
+  debug.extra_stage_name = "lines";
+  return frame.draw(views, settings, debug, {.mesh_depths = depths});
 }
 
 }  // namespace binosplat::preview

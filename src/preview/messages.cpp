@@ -13,13 +13,13 @@ constexpr std::size_t messages_most = 4;
 
 }  // namespace
 
-void Messages::tell(const std::string& text, bool trouble, double now) {
+void Messages::add(const std::string& text, bool trouble, double now) {
   std::erase_if(messages_, [&](const Message& m) { return m.text == text || (!trouble && !m.trouble); });
   if (messages_.size() == messages_most) messages_.erase(messages_.begin());
   messages_.push_back({text, trouble, now + (trouble ? seconds_of_trouble : seconds_read)});
 }
 
-const std::vector<Message>& Messages::at(double now) {
+const std::vector<Message>& Messages::current(double now) {
   std::erase_if(messages_, [now](const Message& m) { return m.until <= now; });
   return messages_;
 }

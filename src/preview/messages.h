@@ -18,9 +18,9 @@ struct Message {
 class Messages {
  public:
   /// Adds a message. An action replaces the previous action. A repeated failure only extends its time.
-  void tell(const std::string& text, bool trouble, double now);
+  void add(const std::string& text, bool trouble, double now);
   /// Current messages, the oldest first.
-  const std::vector<Message>& at(double now);
+  const std::vector<Message>& current(double now);
   /// Time until a message ends, in s; none: there are no messages.
   std::optional<double> next_change(double now) const;
 

@@ -151,7 +151,7 @@ bool Panel::draw_view(Session& session) {
   bool changed = false;
   if (ImGui::Button("reset view")) session.reset_view();
   ImGui::SameLine();
-  if (ImGui::Button("this is up")) session.set_up();
+  if (ImGui::Button("this is up")) session.set_up_direction();
   ImGui::SameLine();
   if (ImGui::Button("save pose")) requests.save_pose();
   ImGui::TextWrapped("camera: %s", session.place_name().c_str());

@@ -127,7 +127,7 @@ Camera Session::head_camera(int divisor) const {
   return resized(head.camera(), size.x, size.y);
 }
 
-void Session::set_up() {
+void Session::set_up_direction() {
   start_.up = -head.camera().rotation[1];
   head = Navigator(head.camera(), start_.up, head.distance());
   mark_ground_.reset();
@@ -195,7 +195,7 @@ render::FrameSettings Session::settings(std::span<const shared::View> views) con
   // Before the measurement, assume full transmittance.
   if (of_frame.transmittance == TRANSMITTANCE_DEPTH && !choices.policy.is_calibrated())
     of_frame.depth_table = depth_table_.value_or(DepthTable{1.0f, {1.0f}});
-  if (loaded_.stream) of_frame.quality = static_cast<float>(loaded_.stream->quality_left(of_frame.quality));
+  if (loaded_.stream) of_frame.quality = static_cast<float>(loaded_.stream->frame_quality(of_frame.quality));
   return of_frame;
 }
 

@@ -94,7 +94,7 @@ class Session {
   /// Requests a single frame, after a change of the debug view only.
   void change_show() { pending_ = std::max(pending_, 1); }
   /// Makes the picture's upward direction the world's up.
-  void set_up();
+  void set_up_direction();
   /// Sets the framebuffer's size in px. The layout determines the size of an eye.
   void resize(const glm::ivec2& framebuffer);
   /// Goes to the next camera (`by` 1) or the previous one (-1).

@@ -89,7 +89,7 @@ void Window::run() {
     wait();
     take_loaded();
     reload_shaders();
-    take_turn();
+    show_next_model();
     if (session_ && announced_) {
       go();
       play();
@@ -108,11 +108,12 @@ void Window::run() {
     context_->check_alive();
   }
   if (loading_.loaded.valid() || levels_move()) {
-    // Nobody will see the model, and the reading thread holds only memory: quit without waiting for it.
+    // Nobody will see the model, and the reading thread holds nothing but memory: quit without waiting for
+    // it.
     log_info("left while {} was being read", loading_.loaded.valid() ? loading_.scene.name : scene_.name);
     std::quick_exit(0);
   }
-  if (turn_.next.valid()) turn_.next.wait();
+  if (sequence_.next.valid()) sequence_.next.wait();
   log_info("{} frames were drawn, {} shown", session_ ? session_->frames_drawn() : 0, shown_);
 }
 
@@ -126,7 +127,7 @@ void Window::wait() {
   if (levels_.moved || levels_move()) at_most(0.02);
   if (is_measuring_) at_most(0.001);
   if (session_ && session_->moving()) at_most(seconds_to_rest);
-  if (turns()) at_most(std::max(0.005, turn_.due - glfwGetTime()));
+  if (plays_sequence()) at_most(std::max(0.005, sequence_.due - glfwGetTime()));
   if (!settings_.shader_folder.empty()) at_most(0.5);
   if (!seconds) return glfwWaitEvents();
   glfwWaitEventsTimeout(std::max(*seconds, 1e-3));
@@ -146,7 +147,7 @@ void Window::take_loaded() {
   try {
     show_model(loading_.scene, loading_.loaded.get(), loading_.is_same);
     scene_ = std::move(loading_.scene);
-    turn_ = {};
+    sequence_ = {};
     recording_.reset();
     playing_.reset();
     announced_ = false;
@@ -154,7 +155,7 @@ void Window::take_loaded() {
     glfwSetWindowTitle(window_, ("binosplat - " + scene_.name).c_str());
   } catch (const Error& error) {
     if (!session_) throw;
-    tell(error.what(), true);
+    show_message(error.what(), true);
   }
   ui_frames_ = 3;
 }
@@ -179,20 +180,21 @@ void Window::show_model(const Opened& scene, Loaded loaded, bool is_same) {
 }
 
 // Shows the next model of a moving scene when it is due; a thread reads it meanwhile.
-void Window::take_turn() {
-  if (!turns()) return;
-  const std::size_t next = (turn_.shown + 1) % (scene_.more.size() + 1);
-  if (!turn_.next.valid())
-    turn_.next = std::async(std::launch::async, next == 0 ? scene_.load : scene_.more[next - 1]);
+void Window::show_next_model() {
+  if (!plays_sequence()) return;
+  const std::size_t next = (sequence_.shown + 1) % (scene_.more.size() + 1);
+  if (!sequence_.next.valid())
+    sequence_.next = std::async(std::launch::async, next == 0 ? scene_.load : scene_.more[next - 1]);
   const double now = glfwGetTime();
-  if (now < turn_.due || turn_.next.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return;
-  turn_.shown = next;
-  turn_.due = std::max(now, turn_.due + 1.0 / scene_.fps);
+  if (now < sequence_.due || sequence_.next.wait_for(std::chrono::seconds(0)) != std::future_status::ready)
+    return;
+  sequence_.shown = next;
+  sequence_.due = std::max(now, sequence_.due + 1.0 / scene_.fps);
   try {
-    show_model(scene_, turn_.next.get(), true);
+    show_model(scene_, sequence_.next.get(), true);
   } catch (const Error& error) {
-    turn_.is_held = true;
-    tell(error.what(), true);
+    sequence_.is_held = true;
+    show_message(error.what(), true);
   }
 }
 
@@ -217,7 +219,7 @@ void Window::follow_levels() {
     // If the GPU's memory was exhausted, a part of the model is lost.
     if (error.code() == ExitCode::no_gl || error.code() == ExitCode::out_of_memory) throw;
     levels_.follow = false;
-    tell(error.what(), true);
+    show_message(error.what(), true);
   }
   if (moved) ui_frames_ = 3;
 }
@@ -232,12 +234,12 @@ void Window::measure_depth_table() {
     if (error.code() == ExitCode::no_gl || error.code() == ExitCode::out_of_memory) throw;
     session_->choices.settings.transmittance = TRANSMITTANCE_ONE;  // otherwise it would fail again
     session_->change();
-    return tell(error.what(), true);
+    return show_message(error.what(), true);
   }
   if (is_measuring_ && !was_under_way)
-    tell("measuring the transmittance by depth from the cameras: until then it is 1");
+    show_message("measuring the transmittance by depth from the cameras: until then it is 1");
   if (!session_->needs_depth_table()) {
-    tell("measured the transmittance by depth");
+    show_message("measured the transmittance by depth");
     log_info("{}: measured the transmittance by depth", scene_.name);
   }
   ui_frames_ = std::max(ui_frames_, 1);
@@ -250,7 +252,7 @@ void Window::reload_shaders() {
   shaders_changed_ = time;
   context_->set_shader_folder(settings_.shader_folder);
   session_->change();
-  tell("shaders were read again");
+  show_message("shaders were read again");
 }
 
 // Draws the picture in the window's area beside the panel. Returns false if nothing changed.
@@ -269,7 +271,7 @@ bool Window::draw() {
         "another, or inf)",
         *session_->screen_found());
     log_info("{}", text);
-    tell(text);
+    show_message(text);
   }
   return drawn;
 }
@@ -294,7 +296,7 @@ void Window::show() {
   const float across = ImGui::GetIO().DisplaySize.x;
   const float beside = session_ ? across - panel_.width(across) : across;
   const double now = glfwGetTime();
-  std::vector<Message> messages = messages_.at(now);
+  std::vector<Message> messages = messages_.current(now);
   if (session_) {
     if (session_->most_shown()) draw_legend(session_->choices.show, *session_->most_shown(), beside);
     if (!session_->trouble().empty()) messages.push_back({session_->trouble(), true});
@@ -333,8 +335,8 @@ void Window::rescale() {
   ImGui_ImplOpenGL3_DestroyDeviceObjects();  // recreated with the next frame, with the fonts' texture
 }
 
-void Window::tell(const std::string& message, bool trouble) {
-  messages_.tell(message, trouble, glfwGetTime());
+void Window::show_message(const std::string& message, bool trouble) {
+  messages_.add(message, trouble, glfwGetTime());
   if (trouble) log_warning("{}", message);
   ui_frames_ = std::max(ui_frames_, 1);
 }

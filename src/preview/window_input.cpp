@@ -99,11 +99,12 @@ void Window::click() {
 
 void Window::open_file(const std::string& file) {
   ui_frames_ = 3;
-  if (loading_.loaded.valid()) return tell(fmt::format("{} is still being read", loading_.scene.name), true);
+  if (loading_.loaded.valid())
+    return show_message(fmt::format("{} is still being read", loading_.scene.name), true);
   try {
     load(open_(file));
   } catch (const Error& error) {
-    tell(error.what(), true);
+    show_message(error.what(), true);
   }
 }
 
@@ -139,44 +140,45 @@ void Window::key_of_scene(int key, int by) {
   Choices& c = session_->choices;
   if (key == GLFW_KEY_G) {
     panel_.walking = !panel_.walking;
-    tell(panel_.walking ? "walking" : "flying");
+    show_message(panel_.walking ? "walking" : "flying");
   }
   if (key == GLFW_KEY_N) session_->step_camera(1);
   if (key == GLFW_KEY_P) session_->step_camera(-1);
-  if (key == GLFW_KEY_N || key == GLFW_KEY_P) tell(session_->camera_name());
+  if (key == GLFW_KEY_N || key == GLFW_KEY_P) show_message(session_->camera_name());
   if (key == GLFW_KEY_R) session_->reset_view();
   if (key == GLFW_KEY_F5) read_again();
   if (key == GLFW_KEY_L) {
     panel_.next_layout(c.layout, by);
-    tell(fmt::format("layout {}: {}", layout_choices[c.layout].name, layout_choices[c.layout].help));
+    show_message(fmt::format("layout {}: {}", layout_choices[c.layout].name, layout_choices[c.layout].help));
   }
   if (key == GLFW_KEY_V) {
     next(c.show, static_cast<int>(std::size(show_choices)), by);
     session_->change_show();
-    tell(fmt::format("{}: {}", show_choices[c.show].name, show_choices[c.show].help));
+    show_message(fmt::format("{}: {}", show_choices[c.show].name, show_choices[c.show].help));
   }
   if (key == GLFW_KEY_T) {
     next_tiles(c.settings, by);
-    tell(fmt::format("tiles {}: {}", tiles_choices[c.settings.tiles].name,
-                     tiles_choices[c.settings.tiles].help));
+    show_message(fmt::format("tiles {}: {}", tiles_choices[c.settings.tiles].name,
+                             tiles_choices[c.settings.tiles].help));
   }
   if (key == GLFW_KEY_H) {
     next(c.settings.th, static_cast<int>(std::size(th_choices)), by);
     choose_threshold(c.settings, c.settings.th);
     c.flipped = false;
-    tell(fmt::format("threshold {}: {}", th_choices[c.settings.th].name, th_choices[c.settings.th].help));
+    show_message(
+        fmt::format("threshold {}: {}", th_choices[c.settings.th].name, th_choices[c.settings.th].help));
   }
   if (key == GLFW_KEY_X && is_exact(c.settings)) {
-    tell("the picture is exact: choose a threshold (H), or less quality");
+    show_message("the picture is exact: choose a threshold (H), or less quality");
   } else if (key == GLFW_KEY_X) {
     c.flipped = !c.flipped;
     session_->change();
-    tell(c.flipped ? "the exact picture" : "the picture as it is drawn");
+    show_message(c.flipped ? "the exact picture" : "the picture as it is drawn");
   }
   if (key == GLFW_KEY_B || key == GLFW_KEY_C) key_of_marks(key);
   if (key == GLFW_KEY_L || key == GLFW_KEY_T || key == GLFW_KEY_H) session_->change();
   if (key == GLFW_KEY_SPACE && !scene_.more.empty())
-    turn_.is_held = !turn_.is_held;
+    sequence_.is_held = !sequence_.is_held;
   else if (key == GLFW_KEY_SPACE)
     play_or_stop();
   if (key == GLFW_KEY_K) save_in_folder([this] { return session_->add_key(); });
@@ -189,17 +191,17 @@ void Window::key_of_scene(int key, int by) {
 void Window::key_of_marks(int key) {
   Choices& c = session_->choices;
   if (key == GLFW_KEY_C && !session_->has_cameras())
-    return tell(scene_.name + " comes without cameras", true);
+    return show_message(scene_.name + " comes without cameras", true);
   bool& shown = key == GLFW_KEY_B ? c.grid : c.cameras;
   shown = !shown;
   session_->change();
   const char* const name = key == GLFW_KEY_B ? "grid" : "cameras";
-  if (!shown) return tell(fmt::format("no {}", name));
+  if (!shown) return show_message(fmt::format("no {}", name));
   std::string text = name;
   if (key == GLFW_KEY_B)
     text += fmt::format(": lines {:.3g} m apart", session_->mark_places().spacing / c.rig.units_per_metre);
   if (c.show != SHOW_PICTURE) text += fmt::format(", with the {} (V)", show_choices[SHOW_PICTURE].name);
-  tell(text);
+  show_message(text);
 }
 
 void Window::play_or_stop() {
@@ -209,7 +211,7 @@ void Window::play_or_stop() {
     session_->go_to(playing_->path.at(0.0));
     playing_->head = session_->head.camera();
   } catch (const Error& error) {
-    tell(error.what(), true);
+    show_message(error.what(), true);
   }
 }
 
@@ -238,10 +240,10 @@ void Window::save(const std::function<std::string()>& write) {
   try {
     draw();  // applies changes since the last frame, such as the size
     const std::string file = write();
-    tell("saved " + file);
+    show_message("saved " + file);
     log_info("saved {}", file);
   } catch (const Error& error) {
-    tell(error.what(), true);
+    show_message(error.what(), true);
   }
 }
 
@@ -260,11 +262,11 @@ void Window::record_or_stop() {
     recording_.emplace(
         Recording{{*context_, 1000.0 / panel_.budget_ms, std::make_shared<gl::GpuClock>(*context_)},
                   glfwGetTime() + seconds});
-    return tell(fmt::format("recording {:.0f} s: F8 ends it", seconds));
+    return show_message(fmt::format("recording {:.0f} s: F8 ends it", seconds));
   }
   render::Recording recording = recording_->recorder.finish();
   recording_.reset();
-  if (recording.frames.empty()) return tell("no frame was drawn meanwhile", true);
+  if (recording.frames.empty()) return show_message("no frame was drawn meanwhile", true);
   save_in_folder([&] {
     const std::filesystem::path folder = free_name(scene_.folder, "profile", "");
     settings_.save_recording(folder, scene_.name, *context_, std::move(recording),

@@ -35,8 +35,8 @@ class Window {
   void wait();
   void take_loaded();
   void show_model(const Opened& scene, Loaded loaded, bool is_same);
-  bool turns() const { return session_ && announced_ && !scene_.more.empty() && !turn_.is_held; }
-  void take_turn();
+  bool plays_sequence() const { return session_ && announced_ && !scene_.more.empty() && !sequence_.is_held; }
+  void show_next_model();
   bool levels_move() const;
   void follow_levels();
   void measure_depth_table();
@@ -45,7 +45,7 @@ class Window {
   void measure_pace();
   void show();
   void rescale();
-  void tell(const std::string& message, bool trouble = false);
+  void show_message(const std::string& message, bool trouble = false);
 
   // Input.
   bool down(int key) const { return glfwGetKey(window_, key) == GLFW_PRESS; }
@@ -91,13 +91,13 @@ class Window {
   };
   Loading loading_;
   /// The models of a moving scene.
-  struct Turn {
+  struct Sequence {
     std::size_t shown = 0;     // 0: that of scene_.load; then those of scene_.more
     std::future<Loaded> next;  // a thread reads it
     double due = 0.0;
     bool is_held = false;
   };
-  Turn turn_;
+  Sequence sequence_;
   /// Levels of detail of the current scene.
   struct Levels {
     bool follow = false;        // false after a failed read

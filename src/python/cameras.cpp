@@ -14,7 +14,7 @@
 #include "formats/lens.h"
 #include "formats/view_files.h"
 #include "python/module.h"
-#include "python/unlocked.h"
+#include "python/released_gil.h"
 #include "scene/axes.h"
 #include "scene/framing.h"
 
@@ -87,13 +87,13 @@ Camera framing(const std::shared_ptr<Model>& model, int width, int height, const
   check_size(width, height);
   check_fov(fov);
   const glm::dvec3 upwards = vector_of("up", up);
-  const Unlocked unlocked;
+  const ReleasedGil released;
   return frame_model(*model, width, height, fov, {upwards});
 }
 
 std::vector<Camera> cameras_at(const std::filesystem::path& path,
                                const std::optional<std::filesystem::path>& model) {
-  const Unlocked unlocked;
+  const ReleasedGil released;
   std::vector<Camera> cameras = load_cameras(path);
   const auto dataparser = model ? find_dataparser(*model) : std::nullopt;
   if (dataparser) move_into_training(*dataparser, path, cameras);

@@ -1,7 +1,7 @@
 #pragma once
 // A thread that owns an OpenGL context. A context is current on one thread only, but Python may call
-// functions and collect garbage on any thread. A context that the caller made current on its own thread
-// stays current.
+// functions and collect garbage on any thread. A context that the caller made current on its own thread stays
+// current.
 
 #include <condition_variable>
 #include <deque>
@@ -12,7 +12,7 @@
 #include <thread>
 #include <utility>
 
-#include "python/unlocked.h"
+#include "python/released_gil.h"
 
 namespace binosplat::python {
 
@@ -37,7 +37,7 @@ class GlThread {
     // Shared, because the caller may have the result before the thread leaves the call.
     const auto task = std::make_shared<std::packaged_task<decltype(work())()>>(std::move(work));
     auto result = task->get_future();
-    hand_over([task, lives = std::make_shared<const Outlived>()] { (*task)(); });
+    hand_over([task, lives = std::make_shared<const ProcessKeepAlive>()] { (*task)(); });
     return result;
   }
 

@@ -12,7 +12,7 @@
 #include "formats/model_file.h"
 #include "measure/comparison.h"
 #include "python/module.h"
-#include "python/unlocked.h"
+#include "python/released_gil.h"
 
 namespace binosplat::python {
 
@@ -31,7 +31,7 @@ Image image_of(const Dense<>& array) {
 py::array image_at(const std::filesystem::path& path) {
   Image image;
   {
-    const Unlocked unlocked;
+    const ReleasedGil released;
     image = load_image(path);
   }
   return array_of(std::move(image));
@@ -39,18 +39,18 @@ py::array image_at(const std::filesystem::path& path) {
 
 void write_png(const std::filesystem::path& path, const Dense<>& picture, int bits) {
   const Image image = image_of(picture);
-  const Unlocked unlocked;
+  const ReleasedGil released;
   save_png(path, image, {.bits = bits});
 }
 
 measure::Comparison compare_images(Image& first, Image& second, double pixels_per_degree,
                                    const std::optional<std::array<float, 3>>& background) {
-  const Unlocked unlocked;
+  const ReleasedGil released;
   Background behind;
   if (background) behind = glm::vec3((*background)[0], (*background)[1], (*background)[2]);
   if (behind && glm::clamp(*behind, 0.0f, 1.0f) != *behind)
     fail("background: expected three numbers from 0 to 1");
-  measure::make_shown(first, second, behind);
+  measure::prepare_comparison(first, second, behind);
   return measure::compare(first, second, pixels_per_degree);
 }
 

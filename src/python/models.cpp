@@ -9,7 +9,7 @@
 #include "base/error.h"
 #include "formats/model_file.h"
 #include "python/module.h"
-#include "python/unlocked.h"
+#include "python/released_gil.h"
 #include "scene/axes.h"
 #include "scene/framing.h"
 #include "scene/model.h"
@@ -24,7 +24,7 @@ std::shared_ptr<Model> model_at(const std::filesystem::path& path, const std::op
                                 const std::optional<std::string>& axes,
                                 const std::optional<bool>& antialiased) {
   if (axes) world_from_axes(*axes);
-  const Unlocked unlocked;
+  const ReleasedGil released;
   auto model = std::make_shared<Model>(load_model(path, {lod, appearance}));
   model->axes.letters = axes.value_or(model->axes.letters);
   if (antialiased) {
@@ -51,7 +51,7 @@ std::shared_ptr<Model> model_of(const Dense<double>& means, const Dense<>& quats
                           sh.data() + coefficients * i};
   };
   const auto count = static_cast<std::size_t>(means.shape(0));
-  const Unlocked unlocked;
+  const ReleasedGil released;
   auto model = std::make_shared<Model>(model_of_rows(count, degree, axes, row));
   model->name = name;
   model->antialiased = antialiased;
@@ -99,7 +99,7 @@ void add_models(py::module_& module) {
   py::class_<Model, std::shared_ptr<Model>>(module, "Model")
       .def(py::init(&model_of))
       .def("facts", &facts_of)
-      .def_property_readonly("near", [](const Model& model) { return near_for(model); })
+      .def_property_readonly("near", [](const Model& model) { return near_plane_for(model); })
       .def("column", &column_of);
   module.def("load_model", &model_at, py::arg("path"), py::arg("lod"), py::arg("appearance"), py::arg("axes"),
              py::arg("antialiased"));

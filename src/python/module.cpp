@@ -8,7 +8,7 @@
 
 #include "base/error.h"
 #include "base/memory.h"
-#include "python/unlocked.h"
+#include "python/released_gil.h"
 
 namespace binosplat::python {
 
@@ -49,7 +49,7 @@ PYBIND11_MODULE(_binosplat, module) {
   using namespace binosplat::python;
   module.attr("__version__") = BINOSPLAT_VERSION;
   module.def("memory_bytes", &binosplat::memory_bytes);
-  Unlocked::outlive_all();
+  ReleasedGil::outlive_all();
   add_errors();
   add_images(module);
   add_models(module);

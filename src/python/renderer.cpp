@@ -2,7 +2,9 @@
 
 #include <cmath>
 #include <filesystem>
+#include <glm/gtc/type_ptr.hpp>
 #include <memory>
+#include <tuple>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -11,8 +13,8 @@
 #include "base/error.h"
 #include "formats/calibration_file.h"
 #include "python/module.h"
+#include "python/released_gil.h"
 #include "python/renderer.h"
-#include "python/unlocked.h"
 #include "scene/axes.h"
 
 namespace binosplat::python {
@@ -27,7 +29,7 @@ std::shared_ptr<Renderer> open(std::shared_ptr<Model> model, const std::string& 
     fail("device {}: backend {} has none", *device, backend);
   if (device && *device < 0) fail("device {}: devices are numbered from 0", *device);
   const int kept = find_choice("precision", precision, precision_choices);
-  const Unlocked unlocked;
+  const ReleasedGil released;
   return std::make_shared<Renderer>(std::move(model), chosen, device.value_or(-1), kept);
 }
 
@@ -167,8 +169,28 @@ class Frames {
   bool has_begun_ = false;
 };
 
+/// Models, their matrices row by row, and their opacities.
+using Instances = std::vector<std::tuple<std::shared_ptr<Model>, std::array<double, 16>, float>>;
+
+void place(const std::shared_ptr<Renderer>& renderer, const Instances& instances) {
+  std::vector<Placed> placed;
+  for (std::size_t k = 0; k < instances.size(); ++k) {
+    const auto& [model, numbers, opacity] = instances[k];
+    auto place = render::place_of(glm::transpose(glm::make_mat4(numbers.data())));
+    if (!place)
+      fail(
+          "instances[{}]: its matrix is not a rotation, a scale above 0 and a translation, with 0 0 0 1 "
+          "below",
+          k);
+    if (!(opacity >= 0.0f && opacity <= 1.0f)) fail("instances[{}]: opacity {}: expected 0 to 1", k, opacity);
+    place->opacity = opacity;
+    placed.push_back({model, *place});
+  }
+  awaited(renderer->place(std::move(placed)));
+}
+
 void close(const std::shared_ptr<Renderer>& renderer) {
-  const Unlocked unlocked;
+  const ReleasedGil released;
   renderer->close();
 }
 
@@ -178,7 +200,7 @@ void add_renderer(py::module_& module) {
   const py::class_<Settings> settings(module, "Settings");
   py::class_<render::ThresholdPolicy>(module, "Calibration")
       .def(py::init([](const std::filesystem::path& path, const std::shared_ptr<Model>& model) {
-        const Unlocked unlocked;
+        const ReleasedGil released;
         render::ThresholdPolicy policy(path.string(), load_calibration(path));
         policy.check_model(*model);
         return policy;
@@ -191,6 +213,7 @@ void add_renderer(py::module_& module) {
            py::arg("decode"), py::arg("background"), py::arg("near"), py::arg("depth"), py::arg("follow"),
            py::arg("calibration"))
       .def("draw", &draw, py::arg("view"), py::arg("settings"))
+      .def("place", &place, py::arg("instances"))
       .def("close", &close);
   py::class_<Frames>(module, "Path")
       .def(py::init<std::shared_ptr<Renderer>, const Settings&>())

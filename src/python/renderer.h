@@ -59,12 +59,19 @@ inline render::FrameSettings frame_of(const Settings& settings, const Views& vie
   return settings.policy.settings(settings.frame, views.front(), model.axes);
 }
 
+/// A model and its place in the cameras' world.
+struct Placed {
+  std::shared_ptr<const Model> model;
+  render::InstancePlace place;
+};
+
 /// A sequence of frames. The GPU draws the next one while Python uses the last one.
 struct Path {
   Path(gl::Context& context, std::shared_ptr<render::GpuModel> model)
       : frame(std::move(model)), read_back(context) {}
 
-  void submit(const Views& views, const Settings& settings) {
+  void submit(const Views& views, const Settings& settings, const std::vector<render::Instance>& instances) {
+    frame.place(instances);
     if (!settings.follow) frame.start_over();
     frame.submit(views, frame_of(settings, views, frame.model()->model()));
   }
@@ -83,7 +90,7 @@ class Renderer {
   }
   ~Renderer() {
     const bool is_here = GlThread::in_its_process();  // in a fork, thread and context are gone
-    if (is_here && !(Unlocked::ends_by_interrupt() && thread_->is_busy())) {
+    if (is_here && !(ReleasedGil::ends_by_interrupt() && thread_->is_busy())) {
       close();
     } else {
       // Leak all that the thread may still use.
@@ -97,6 +104,12 @@ class Renderer {
 
   void close() {
     thread_->run([this] { on_gpu_.reset(); });
+  }
+
+  /// Sets the models that later frames draw, and their places.
+  std::future<void> place(std::vector<Placed> placed) {
+    return thread_->start(
+        [this, placed = std::move(placed)] { on_gpu().place(placed, *model_, precision_); });
   }
 
   std::future<Drawn> draw(const Views& views, const Settings& settings) {
@@ -118,7 +131,7 @@ class Renderer {
     return thread_->start([this, number, views, settings] {
       OnGpu& on = on_gpu();
       Path& path = on.paths.try_emplace(number, *on.context, on.frame.model()).first->second;
-      path.submit(views, settings);
+      path.submit(views, settings, on.instances);
     });
   }
 
@@ -131,7 +144,7 @@ class Renderer {
       Path& path = found->second;
       render::FrameReport report = path.frame.finish();
       const auto pictures = path.read_back.start(path.frame);
-      if (following) path.submit(*following, settings);
+      if (following) path.submit(*following, settings, on_gpu().instances);
       pictures->wait();
       return drawn_of(std::move(report), pictures->take(), settings.frame.background);
     });
@@ -153,9 +166,39 @@ class Renderer {
 
   struct OnGpu {
     OnGpu(gl::Backend backend, int number, const Model& model, int precision)
-        : context(gl::Context::open(backend, number)), frame(*context, model, precision) {}
+        : context(gl::Context::open(backend, number)),
+          frame(*context, model, precision),
+          instances{{frame.model(), {}}} {}
+
+    /// Uploads each model once, and drops those that are not placed any more.
+    void place(const std::vector<Placed>& placed, const Model& own, int precision) {
+      struct Owner {
+        Owner(std::shared_ptr<const Model> owned, gl::Context& context, int precision)
+            : model(std::move(owned)), on_gpu(context, *model, precision) {}
+        std::shared_ptr<const Model> model;
+        render::GpuModel on_gpu;
+      };
+      std::map<const Model*, std::shared_ptr<render::GpuModel>> held = {{&own, frame.model()}};
+      std::vector<render::Instance> next;
+      for (const auto& [model, place] : placed) {
+        std::shared_ptr<render::GpuModel>& on_gpu = held[model.get()];
+        if (const auto before = models.find(model.get()); !on_gpu && before != models.end())
+          on_gpu = before->second;
+        if (!on_gpu) {
+          const auto owner = std::make_shared<Owner>(model, *context, precision);
+          on_gpu = {owner, &owner->on_gpu};
+        }
+        next.push_back({on_gpu, render::in_frame(place, model->axes, own.axes)});
+      }
+      frame.place(next);
+      instances = std::move(next);
+      models = std::move(held);
+    }
+
     std::unique_ptr<gl::Context> context;
+    std::map<const Model*, std::shared_ptr<render::GpuModel>> models;  // of the instances
     render::Frame frame;
+    std::vector<render::Instance> instances;
     std::map<std::uint64_t, Path> paths;
   };
 

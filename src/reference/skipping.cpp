@@ -30,7 +30,7 @@ struct Fragment {
 };
 
 /// A view's splats by tile, and the assumed transmittance of each Gaussian; empty: the true one.
-struct Listed {
+struct BlendInput {
   const std::vector<Splat>& splats;
   const TileLists& lists;
   const shared::View& view;
@@ -39,8 +39,8 @@ struct Listed {
 
 /// Calls visit(pixel, its fragments front to back) for every pixel of tiles [begin, end).
 template <typename Visit>
-void for_each_pixel(const Listed& listed, std::size_t begin, std::size_t end, const Visit& visit) {
-  const auto& [splats, lists, view, transmittances] = listed;
+void for_each_pixel(const BlendInput& input, std::size_t begin, std::size_t end, const Visit& visit) {
+  const auto& [splats, lists, view, transmittances] = input;
   for (std::size_t t = begin; t < end; ++t) {
     const auto tx = static_cast<std::uint32_t>(t % lists.tiles_x),
                ty = static_cast<std::uint32_t>(t / lists.tiles_x);
@@ -54,7 +54,7 @@ void for_each_pixel(const Listed& listed, std::size_t begin, std::size_t end, co
         const auto keep = [&](std::uint32_t i, double alpha, const PixelSum& before, Verdict verdict) {
           if (verdict != Verdict::blended) return;
           const double transmittance =
-              listed.transmittances.empty() ? before.transmittance : listed.transmittances[i];
+              input.transmittances.empty() ? before.transmittance : input.transmittances[i];
           const double score = alpha * transmittance;
           fragments.push_back({i, alpha, score, bin_of(score)});
         };
@@ -114,7 +114,7 @@ std::vector<DistanceBin> contributions_by_distance(const std::vector<Splat>& spl
 std::vector<Skipped> skip_lowest(const std::vector<Splat>& splats, const TileLists& lists,
                                  const shared::View& view, std::span<const double> bounds,
                                  std::span<const double> shares) {
-  const Listed listed{splats, lists, view, bounds};
+  const BlendInput input{splats, lists, view, bounds};
   const std::size_t tiles = lists.begin.size() - 1;
   std::array<std::uint64_t, bins + 1> below{};  // fragments in lower bins
   std::mutex adding;
@@ -123,7 +123,7 @@ std::vector<Skipped> skip_lowest(const std::vector<Splat>& splats, const TileLis
     const auto count = [&](std::size_t, const std::vector<Fragment>& fragments) {
       for (const Fragment& fragment : fragments) ++counts[static_cast<std::size_t>(fragment.bin)];
     };
-    for_each_pixel(listed, begin, end, count);
+    for_each_pixel(input, begin, end, count);
     const std::lock_guard lock(adding);
     for (std::size_t b = 0; b < bins; ++b) below[b + 1] += counts[b];
   });
@@ -153,7 +153,7 @@ std::vector<Skipped> skip_lowest(const std::vector<Splat>& splats, const TileLis
     }
   };
   parallel_chunks(tiles, 1,
-                  [&](std::size_t begin, std::size_t end) { for_each_pixel(listed, begin, end, blend); });
+                  [&](std::size_t begin, std::size_t end) { for_each_pixel(input, begin, end, blend); });
   return results;
 }
 

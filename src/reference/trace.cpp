@@ -13,7 +13,7 @@ namespace binosplat::reference {
 namespace {
 
 /// An entry that a pixel visited.
-struct Met {
+struct Visit {
   std::uint32_t gaussian;
   double alpha;
   PixelSum before;
@@ -33,19 +33,19 @@ void consider(NearDecision& best, double distance, const glm::dvec3& change, std
   if (better) best = candidate;
 }
 
-/// The change if Gaussian `met` fell on the other side of tau: alpha T (c - C_behind). C_behind is the colour
-/// of all splats behind it, at full transmittance (docs/method.md 5).
-glm::dvec3 change_by_alpha(const Met& met, const glm::dvec3& colour, const glm::dvec3& final_colour) {
-  const double t = met.before.transmittance;
-  const glm::dvec3 own = met.alpha * t * colour;
-  const glm::dvec3 rest = final_colour - met.before.colour;
-  return met.verdict == Verdict::skipped ? own - met.alpha * rest
-                                         : own - met.alpha * (rest - own) / (1 - met.alpha);
+/// The change if Gaussian `visit` fell on the other side of tau: alpha T (c - C_behind). C_behind is the
+/// colour of all splats behind it, at full transmittance (docs/method.md 5).
+glm::dvec3 change_by_alpha(const Visit& visit, const glm::dvec3& colour, const glm::dvec3& final_colour) {
+  const double t = visit.before.transmittance;
+  const glm::dvec3 own = visit.alpha * t * colour;
+  const glm::dvec3 rest = final_colour - visit.before.colour;
+  return visit.verdict == Verdict::skipped ? own - visit.alpha * rest
+                                           : own - visit.alpha * (rest - own) / (1 - visit.alpha);
 }
 
 /// The change if two blended neighbours swapped. If the farther one stopped the pixel, the nearer one then
 /// does.
-glm::dvec3 change_by_swap(const Met& nearer, const glm::dvec3& nearer_colour, const Met& farther,
+glm::dvec3 change_by_swap(const Visit& nearer, const glm::dvec3& nearer_colour, const Visit& farther,
                           const glm::dvec3& farther_colour) {
   const double t = nearer.before.transmittance;
   if (farther.verdict == Verdict::stopped)
@@ -56,7 +56,7 @@ glm::dvec3 change_by_swap(const Met& nearer, const glm::dvec3& nearer_colour, co
 /// The splat that stopped the pixel may have a near neighbour behind it. If that came first, it would be
 /// blended before the pixel stops. Considers the first visible one.
 void consider_behind(NearDecision& best, const std::vector<Splat>& splats,
-                     std::span<const std::uint32_t> list, const Met& last, int x, int y) {
+                     std::span<const std::uint32_t> list, const Visit& last, int x, int y) {
   const double limit = splats[last.gaussian].depth;
   auto next = std::find(list.begin(), list.end(), last.gaussian);
   for (++next; next != list.end(); ++next) {
@@ -72,39 +72,39 @@ void consider_behind(NearDecision& best, const std::vector<Splat>& splats,
 }  // namespace
 
 PixelTrace trace(const std::vector<Splat>& splats, std::span<const std::uint32_t> list, int x, int y) {
-  std::vector<Met> way;
+  std::vector<Visit> visits;
   const glm::dvec3 final_colour =
       blend_pixel(splats, list, {x, y}, {},
                   [&](std::uint32_t i, double alpha, const PixelSum& before, Verdict verdict) {
-                    way.push_back({i, alpha, before, verdict});
+                    visits.push_back({i, alpha, before, verdict});
                   })
           .colour;
 
   PixelTrace result;
-  const Met* nearer = nullptr;
-  for (const Met& met : way) {
-    const Splat& splat = splats[met.gaussian];
+  const Visit* nearer = nullptr;
+  for (const Visit& visit : visits) {
+    const Splat& splat = splats[visit.gaussian];
     ++result.walked;
-    result.visible += met.verdict == Verdict::blended;
-    if (met.verdict != Verdict::stopped) {
-      consider(result.alpha, std::abs(met.alpha / ALPHA_MIN - 1),
-               change_by_alpha(met, splat.colour, final_colour), met.gaussian, alpha_band);
+    result.visible += visit.verdict == Verdict::blended;
+    if (visit.verdict != Verdict::stopped) {
+      consider(result.alpha, std::abs(visit.alpha / ALPHA_MIN - 1),
+               change_by_alpha(visit, splat.colour, final_colour), visit.gaussian, alpha_band);
     }
-    if (met.verdict == Verdict::skipped) continue;
-    const double t = met.before.transmittance;
-    const glm::dvec3 by_stop =
-        met.verdict == Verdict::stopped ? met.alpha * t * splat.colour : final_colour - met.before.colour;
-    consider(result.stop, std::abs(t * (1 - met.alpha) / TRANSMITTANCE_MIN - 1), by_stop, met.gaussian,
+    if (visit.verdict == Verdict::skipped) continue;
+    const double t = visit.before.transmittance;
+    const glm::dvec3 by_stop = visit.verdict == Verdict::stopped ? visit.alpha * t * splat.colour
+                                                                 : final_colour - visit.before.colour;
+    consider(result.stop, std::abs(t * (1 - visit.alpha) / TRANSMITTANCE_MIN - 1), by_stop, visit.gaussian,
              stop_band);
     if (nearer != nullptr) {
       const Splat& before = splats[nearer->gaussian];
       consider(result.depth, (splat.depth - before.depth) / splat.depth,
-               change_by_swap(*nearer, before.colour, met, splat.colour), met.gaussian, depth_band);
+               change_by_swap(*nearer, before.colour, visit, splat.colour), visit.gaussian, depth_band);
     }
-    nearer = &met;
+    nearer = &visit;
   }
-  if (!way.empty() && way.back().verdict == Verdict::stopped) {
-    consider_behind(result.depth, splats, list, way.back(), x, y);
+  if (!visits.empty() && visits.back().verdict == Verdict::stopped) {
+    consider_behind(result.depth, splats, list, visits.back(), x, y);
   }
   return result;
 }

@@ -23,8 +23,8 @@ std::vector<double> measure_weights(const std::vector<Splat>& splats, const Tile
 
 /// For each Gaussian, alpha T^2, summed over the pixels that blend it at a T of at least VISIBILITY_LEAST:
 /// the visibility of its errors.
-std::vector<double> measure_seen(const std::vector<Splat>& splats, const TileLists& lists,
-                                 const shared::View& view);
+std::vector<double> measure_visibility(const std::vector<Splat>& splats, const TileLists& lists,
+                                       const shared::View& view);
 
 /// Converts a measurement for set_thresholds(): at least `floor`, and 1 for Gaussians that were not seen.
 std::vector<double> floored(std::vector<double> measured, double floor);

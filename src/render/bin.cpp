@@ -55,7 +55,7 @@ void bin(gl::Dispatcher& dispatcher, const FramePlan& plan, const Capacity& capa
                     {"Coverages", buffers.projected.coverages},
                     {"SupertileCounts", buffers.lists.supertile_counts},
                     {"Entries", buffers.lists.entries}},
-                   {{"first_entry", buffers.lists.first_large},
+                   {{"first_entry", buffers.lists.large_offset},
                     {"capacity", static_cast<std::uint32_t>(capacity.large_pairs)}});
   bin_small(dispatcher, plan, false, buffers);
   dispatcher.wait_for_writes();
@@ -81,7 +81,7 @@ void bin(gl::Dispatcher& dispatcher, const FramePlan& plan, const Capacity& capa
                     {"SupertileEnds", buffers.lists.supertile_ends},
                     {"Depths", buffers.projected.depths},
                     {"Entries", buffers.lists.entries}},
-                   {{"first_entry", buffers.lists.first_large}});
+                   {{"first_entry", buffers.lists.large_offset}});
   bin_small(dispatcher, plan, true, buffers);
   dispatcher.wait_for_writes();
 }

@@ -118,7 +118,7 @@ void blend(gl::Dispatcher& dispatcher, const FramePlan& plan, bool measures, dou
 void blend_debug_view(gl::Dispatcher& dispatcher, const FramePlan& plan, int what, FrameBuffers& buffers) {
   buffers.pictures.debug_values.reserve(plan.pixel_count * 4);
   buffers.pictures.debug_transmittance.reserve(4);  // bound by all debug views, read by one
-  if (what == SHOW_LIGHT) {                         // needs max(T), measured first
+  if (what == SHOW_TRANSMITTANCE) {                 // needs max(T), measured first
     buffers.pictures.debug_transmittance.reserve_zeros(std::int64_t{buffers.slots} * plan.view_count() * 4);
     run(dispatcher, plan, buffers, {.measure = MEASURE_TRANSMITTANCE, .debug_view = SHOW_VISIBLE},
         buffers.pictures.debug_transmittance);
@@ -147,7 +147,7 @@ void blend_visibility(gl::Dispatcher& dispatcher, const FramePlan& plan, FrameBu
   run(dispatcher, plan, buffers, {.measure = MEASURE_VISIBILITY}, sums);
 }
 
-void refuse_truncated(const gl::Context& context, const shared::Counters& counters) {
+void throw_if_truncated(const gl::Context& context, const shared::Counters& counters) {
   if (counters.truncated_lists == 0) return;
   throw Error(ExitCode::out_of_memory,
               fmt::format("{} ended a tile's list early: too many Gaussians in one tile for this driver. Use "
@@ -155,7 +155,7 @@ void refuse_truncated(const gl::Context& context, const shared::Counters& counte
                           context.renderer()));
 }
 
-void keep_measured(gl::Dispatcher& dispatcher, const FramePlan& plan, bool measures, FrameBuffers& buffers) {
+void store_measured(gl::Dispatcher& dispatcher, const FramePlan& plan, bool measures, FrameBuffers& buffers) {
   if (!measures) return;
   const gl::Program& program = dispatcher.context().program("blend_measured.comp");
   for (std::size_t group = 0; group < plan.groups.size(); ++group) {
@@ -169,7 +169,7 @@ void keep_measured(gl::Dispatcher& dispatcher, const FramePlan& plan, bool measu
          {"Measured", buffers.transmittance.measured},
          {"NextBounds", *buffers.transmittance.next_bounds}},
         {{"view_begin", plan.groups[group].begin},
-         {"view_end", std::min(plan.groups[group].end, plan.asked)}});
+         {"view_end", std::min(plan.groups[group].end, plan.requested_views)}});
   }
 }
 

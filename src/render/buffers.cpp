@@ -15,8 +15,8 @@ shared::FrameParameters parameters_of(const FramePlan& plan, std::uint32_t slots
           .tolerance = plan.tolerance,
           .has_bounds = uses_measured,
           .view_count = plan.view_count(),
-          .asked = plan.asked,
-          .probed = plan.probe ? plan.probe->view : MAX_VIEWS,
+          .requested_views = plan.requested_views,
+          .probed_view = plan.probe ? plan.probe->view : MAX_VIEWS,
           .gaussian_count = plan.gaussian_count,
           .slots = slots,
           .tile_count = plan.tile_count(),
@@ -111,8 +111,8 @@ void FrameBuffers::reserve(const FramePlan& plan, std::span<const std::shared_pt
     group->indices.reserve(capacity.slots * 4);
   }
   if (measures(plan.settings.transmittance)) {
-    transmittance.bounds->reserve(gaussians * plan.asked * 4);
-    transmittance.next_bounds->reserve(gaussians * plan.asked * 4);
+    transmittance.bounds->reserve(gaussians * plan.requested_views * 4);
+    transmittance.next_bounds->reserve(gaussians * plan.requested_views * 4);
     transmittance.measured.reserve(capacity.slots * plan.view_count() * 4);
   }
   for (std::size_t page = 0; plan.offset_count > 0 && page < models.front()->pages.size(); ++page) {
@@ -125,7 +125,7 @@ void FrameBuffers::reserve(const FramePlan& plan, std::span<const std::shared_pt
   projected.splats.reserve(splats * splat_bytes(plan.settings.precision));
   projected.coverages.reserve(splats * 4);
   projected.large.reserve(splats * 4);
-  lists.first_large = static_cast<std::uint32_t>(capacity.pairs);
+  lists.large_offset = static_cast<std::uint32_t>(capacity.pairs);
   // Splitting long lists needs a second place for each entry.
   const std::int64_t behind =
       capacity.rounds > 0 ? std::max(capacity.large_pairs, capacity.pairs) : capacity.large_pairs;
@@ -158,7 +158,7 @@ std::vector<DrawnGaussian> FrameBuffers::read_drawn(const FramePlan& plan, std::
   return found;
 }
 
-void FrameBuffers::keep_last(bool measured_now) {
+void FrameBuffers::swap_bounds(bool measured_now) {
   if (measured_now) std::swap(transmittance.bounds, transmittance.next_bounds);
 }
 

@@ -44,7 +44,7 @@ struct FrameBuffers {
 
   /// Call it once a frame is complete. If the frame measured, swaps `next_bounds` with `bounds` for the next
   /// one.
-  void keep_last(bool measured_now);
+  void swap_bounds(bool measured_now);
 
   /// The Gaussians that the last frame drew in its view `v`, in index order.
   std::vector<DrawnGaussian> read_drawn(const FramePlan& plan, std::uint32_t v) const;
@@ -92,7 +92,7 @@ struct FrameBuffers {
 
   /// The lists of supertiles and tiles.
   struct Lists {
-    std::uint32_t first_large = 0;  // index of the first entry of large splats, after all others
+    std::uint32_t large_offset = 0;  // index of the first entry of large splats, after all others
     gl::Buffer entries;  // uvec2 (depth, entry) by supertile; then (supertile, entry) of large splats
     gl::Buffer supertile_counts;  // uint; 0 between frames
     gl::Buffer supertile_ends;    // uint: the place of each list's next entry

@@ -14,7 +14,7 @@ namespace {
 constexpr int drawings_max = 8 + SORT_ROUNDS;
 
 void check(const CallersTextures& textures, std::size_t views, const FrameSettings& settings,
-           const Workings& workings) {
+           const DebugOptions& debug) {
   const std::size_t canvases = textures.canvases.size(), meshes = textures.mesh_depths.size();
   if (canvases != 0 && (canvases != views || canvases > MAX_CANVASES))
     fail("{} canvases for {} views: expected one each, at most {}", canvases, views, MAX_CANVASES);
@@ -23,7 +23,7 @@ void check(const CallersTextures& textures, std::size_t views, const FrameSettin
     fail("mesh depths for {} views of {}: expected all or none, at most {}", meshes, views, MAX_CANVASES);
   if (measures(settings.transmittance))
     fail("mesh depths with a measured transmittance: Gaussians behind a mesh are not measured");
-  if (workings.stand_in) fail("mesh depths with a stand-in, which ignores meshes");
+  if (debug.stand_in) fail("mesh depths with a stand-in, which ignores meshes");
 }
 
 // Adds an earlier attempt's times to the last one, which is the frame.
@@ -75,22 +75,23 @@ void Frame::place(std::vector<Instance> instances) {
   };
   if (std::ranges::equal(drawn, drawn_, same)) return;  // and what was noted of their uploads holds
   drawn_ = std::move(drawn);
+  model_buffers_.clear();  // frees the models that are gone
   is_placed_anew_ = true;
 }
 
-void Frame::take(std::span<const shared::View> views, const FrameSettings& settings, const Workings& workings,
-                 const CallersTextures& textures) {
-  check(textures, views.size(), settings, workings);
-  submitted_ = {.views = {views.begin(), views.end()}, .settings = settings, .workings = workings};
-  if (workings.stand_in) return;
+void Frame::store_submission(std::span<const shared::View> views, const FrameSettings& settings,
+                             const DebugOptions& debug, const CallersTextures& textures) {
+  check(textures, views.size(), settings, debug);
+  submitted_ = {.views = {views.begin(), views.end()}, .settings = settings, .debug = debug};
+  if (debug.stand_in) return;
   submitted_.canvases.assign(textures.canvases.begin(), textures.canvases.end());
   submitted_.mesh_depths.assign(textures.mesh_depths.begin(), textures.mesh_depths.end());
   submitted_.depth_rows = textures.depth_rows;
 }
 
 void Frame::prepare(std::span<const shared::View> views, const FrameSettings& settings,
-                    const Workings& workings, const CallersTextures& textures) {
-  take(views, settings, workings, textures);
+                    const DebugOptions& debug, const CallersTextures& textures) {
+  store_submission(views, settings, debug, textures);
   // With a quality, frames that sample their error have a probe, and no canvases.
   const bool searches = settings.quality > 0.0f;
   for (const bool samples : {false, true}) {
@@ -102,7 +103,7 @@ void Frame::prepare(std::span<const shared::View> views, const FrameSettings& se
     for (const bool measures_too : {false, true}) {
       if (measures_too && !measures(settings.transmittance)) continue;
       measuring_ = {.measures = measures_too};
-      capacity_.start(plan_, workings);
+      capacity_.start(plan_, debug);
       reserve();
       dispatcher_.context().prepare([this] { record_stages(); });
     }
@@ -112,15 +113,16 @@ void Frame::prepare(std::span<const shared::View> views, const FrameSettings& se
 }
 
 void Frame::submit(std::span<const shared::View> views, const FrameSettings& settings,
-                   const Workings& workings, const CallersTextures& textures) {
-  take(views, settings, workings, textures);
-  note_begin();
+                   const DebugOptions& debug, const CallersTextures& textures) {
+  store_submission(views, settings, debug, textures);
+  start_report();
   const PlanRequest request{.textures = submitted_textures(true)};
   begin(request);
-  is_cut_ = (settings.quality > 0.0f || measures(settings.transmittance)) && !history_.goes_on(plan_);
+  is_cut_ = (settings.quality > 0.0f || measures(settings.transmittance)) && !history_.continues_last(plan_);
   if (settings.quality > 0.0f) {
-    if (!history_.goes_on(plan_)) tolerance_control_.forget();
-    if (!tolerance_control_.knows(views, settings) || !history_.probed_lately(plan_)) return start_search();
+    if (!history_.continues_last(plan_)) tolerance_control_.forget();
+    if (!tolerance_control_.is_settled(views, settings) || !history_.has_recent_probe(plan_))
+      return start_search();
     PlanRequest with = request;
     with.tolerance = tolerance_control_.tolerance();
     begin(with);
@@ -133,9 +135,9 @@ FrameReport Frame::finish() {
   if (submitted_.searches) {
     for (;;) {
       add(finish_attempt(), report);
-      tolerance_control_.measured(probed(plan_, counters_),
+      tolerance_control_.measured(probe_result(plan_, counters_),
                                   measuring_.uses_last || !measures(submitted_.settings.transmittance));
-      if (tolerance_control_.holds()) break;
+      if (tolerance_control_.is_final()) break;
       start_search();
     }
   } else {
@@ -150,16 +152,15 @@ FrameReport Frame::finish() {
   return report;
 }
 
-void Frame::note_begin() {
+void Frame::start_report() {
   cpu_ = {};
   programs_before_ = dispatcher_.context().programs_made();
 }
 
 FrameReport Frame::draw_until(Stage last, std::span<const shared::View> views, const FrameSettings& settings,
-                              const Workings& workings, const std::optional<Probe>& probe) {
-  note_begin();
-  submitted_ = {
-      .views = {views.begin(), views.end()}, .settings = settings, .workings = workings, .last = last};
+                              const DebugOptions& debug, const std::optional<Probe>& probe) {
+  start_report();
+  submitted_ = {.views = {views.begin(), views.end()}, .settings = settings, .debug = debug, .last = last};
   begin({.probe = probe});
   start_attempt();
   return finish_attempt();
@@ -169,9 +170,9 @@ void Frame::begin(PlanRequest request) {
   const TimedSpan span("plan", &cpu_.plan);
   const std::vector<shared::View>& views = submitted_.views;
   const FrameSettings& settings = submitted_.settings;
-  const Workings& workings = submitted_.workings;
-  check(workings, settings);
-  if (workings.stand_in && !is_plain()) fail("a stand-in: only for one model in its own world");
+  const DebugOptions& debug = submitted_.debug;
+  check(debug, settings);
+  if (debug.stand_in && !is_plain()) fail("a stand-in: only for one model in its own world");
   if (!model_buffers_.empty() && model_buffers_.front()->precision != settings.precision) {
     model_buffers_.clear();  // first, because both precisions may not fit together
     history_.forget_measured();
@@ -179,7 +180,7 @@ void Frame::begin(PlanRequest request) {
   bool is_other = std::exchange(is_placed_anew_, false);
   std::vector<std::shared_ptr<ModelBuffers>> held;
   for (Drawn& drawn : drawn_) {
-    held.push_back(drawn.model->in(settings.precision));
+    held.push_back(drawn.model->buffers_in(settings.precision));
     PlannedModel& model = request.models.emplace_back(planned(drawn.model->model(), drawn.model->size()));
     model.instances = drawn.instances;
     if (request.models.size() > 1) {
@@ -192,7 +193,7 @@ void Frame::begin(PlanRequest request) {
   model_buffers_ = std::move(held);
   request.instances = places_;
   const GpuModel& first = drawn_.empty() ? *model_ : *drawn_.front().model;
-  plan_ = make_plan(views, settings, first.model(), first.size(), workings, request);
+  plan_ = make_plan(views, settings, first.model(), first.size(), debug, request);
   if (is_other) history_.follow(plan_);
 }
 
@@ -214,7 +215,7 @@ void Frame::start_search() {
 
 void Frame::start_attempt() {
   measuring_ = history_.decide(plan_);
-  capacity_.start(plan_, submitted_.workings);
+  capacity_.start(plan_, submitted_.debug);
   record();
 }
 
@@ -230,11 +231,11 @@ FrameReport Frame::finish_attempt() {
   }
   if (counters_.truncated_lists != 0) {
     forget();  // the results of this frame are invalid
-    refuse_truncated(dispatcher_.context(), counters_);
+    throw_if_truncated(dispatcher_.context(), counters_);
   }
   if (submitted_.last == Stage::probe) {
-    history_.keep(plan_, measuring_, counters_);
-    buffers_.keep_last(measuring_.measures);
+    history_.store(plan_, measuring_, counters_);
+    buffers_.swap_bounds(measuring_.measures);
   }
   fill(report);
   const double splats = static_cast<double>(report.visible) * plan_.view_count();
@@ -255,7 +256,7 @@ void Frame::wait_and_read(FrameReport& report) {
 }
 
 void Frame::reserve() {
-  if (!submitted_.workings.stand_in) share_lists(plan_, capacity_.slots, middle_depth(counters_));
+  if (!submitted_.debug.stand_in) share_lists(plan_, capacity_.slots, middle_depth(counters_));
   const TimedSpan span("upload", &cpu_.upload);
   buffers_.reserve(plan_, model_buffers_, capacity_);
   buffers_.upload(plan_, measuring_.uses_last);
@@ -264,15 +265,15 @@ void Frame::reserve() {
 }
 
 void Frame::record() {
-  const Workings& workings = submitted_.workings;
+  const DebugOptions& debug = submitted_.debug;
   reserve();
-  pictures_stood_in_.clear();
+  stand_in_pictures_.clear();
   if (!std::exchange(is_prepared_, true)) {
     const TimedSpan span("prepare programs", &cpu_.submit);
     dispatcher_.context().prepare([this] { record_stages(); });
   }
-  if (workings.stand_in)
-    pictures_stood_in_ = workings.stand_in->fill(model_->model(), plan_, *model_buffers_.front(), buffers_);
+  if (debug.stand_in)
+    stand_in_pictures_ = debug.stand_in->fill(model_->model(), plan_, *model_buffers_.front(), buffers_);
   const TimedSpan span("submit", &cpu_.submit);
   dispatcher_.begin_frame();
   record_stages();
@@ -283,9 +284,9 @@ void Frame::record() {
 
 // Records the stages in order, without a read-back between them.
 void Frame::record_stages() {
-  const Workings& workings = submitted_.workings;
+  const DebugOptions& debug = submitted_.debug;
   const auto run = [&](Stage stage, const auto& dispatches) {
-    if (stage > submitted_.last || (workings.stand_in && stage <= workings.stand_in->until)) return;
+    if (stage > submitted_.last || (debug.stand_in && stage <= debug.stand_in->until)) return;
     dispatcher_.begin_stage(name_of(stage));
     dispatches();
   };
@@ -299,13 +300,13 @@ void Frame::record_stages() {
   run(Stage::sort, [&] { sort(dispatcher_, plan_, capacity_, buffers_); });
   run(Stage::blend, [&] {
     blend(dispatcher_, plan_, measuring_.measures, tiles_a_splat_, buffers_);
-    keep_measured(dispatcher_, plan_, measuring_.measures, buffers_);
+    store_measured(dispatcher_, plan_, measuring_.measures, buffers_);
   });
-  if (plan_.probe && pictures_stood_in_.empty())
+  if (plan_.probe && stand_in_pictures_.empty())
     run(Stage::probe, [&] { probe(dispatcher_, plan_, buffers_); });
-  if (workings.then && submitted_.last == Stage::probe) {
-    dispatcher_.begin_stage(workings.then_called);
-    workings.then(dispatcher_);
+  if (debug.extra_stage && submitted_.last == Stage::probe) {
+    dispatcher_.begin_stage(debug.extra_stage_name);
+    debug.extra_stage(dispatcher_);
   }
 }
 

@@ -10,12 +10,12 @@
 #include "base/image.h"
 #include "gl/dispatch.h"
 #include "render/buffers.h"
+#include "render/debug_options.h"
 #include "render/gpu_model.h"
 #include "render/history.h"
 #include "render/memory.h"
 #include "render/settings.h"
 #include "render/tolerance_control.h"
-#include "render/workings.h"
 
 namespace binosplat::render {
 
@@ -90,20 +90,20 @@ class Frame {
   /// With mesh depths, splats behind meshes are not drawn, and z_sums() always has depths. A pixel that is at
   /// most half covered has the mesh's. Excludes measured transmittance and stand-ins.
   FrameReport draw(std::span<const shared::View> views, const FrameSettings& settings = {},
-                   const Workings& workings = {}, const CallersTextures& textures = {}) {
-    submit(views, settings, workings, textures);
+                   const DebugOptions& debug = {}, const CallersTextures& textures = {}) {
+    submit(views, settings, debug, textures);
     return finish();
   }
 
   /// Passes a frame as of draw() to the driver and returns while the GPU draws. Call finish() before the next
   /// frame of this Frame, and before reading anything of this one.
   void submit(std::span<const shared::View> views, const FrameSettings& settings = {},
-              const Workings& workings = {}, const CallersTextures& textures = {});
+              const DebugOptions& debug = {}, const CallersTextures& textures = {});
 
   /// Compiles every program that frames of these settings may need, including those that measure, and
   /// allocates their memory. Draws nothing. The next frame uses no earlier measurements.
   void prepare(std::span<const shared::View> views, const FrameSettings& settings,
-               const Workings& workings = {}, const CallersTextures& textures = {});
+               const DebugOptions& debug = {}, const CallersTextures& textures = {});
 
   /// Whether the GPU has finished the frame. finish() may still have to draw it again.
   bool is_done() { return dispatcher_.is_done(); }
@@ -114,14 +114,14 @@ class Frame {
   /// Same as draw() with settings.tolerance, but ends after stage `last`, whose results are in buffers(). The
   /// next frame uses measurements of complete frames only.
   FrameReport draw_until(Stage last, std::span<const shared::View> views, const FrameSettings& settings = {},
-                         const Workings& workings = {}, const std::optional<Probe>& probe = {});
+                         const DebugOptions& debug = {}, const std::optional<Probe>& probe = {});
 
   /// The pictures of the last frame, one per view. If a stand-in replaced the blend, they have the mean
   /// depth, whatever the settings say.
   std::vector<Picture> read_pictures() const;
 
   /// The pictures of a stand-in for the blend, which never were on the GPU.
-  const std::vector<Picture>& pictures_stood_in() const { return pictures_stood_in_; }
+  const std::vector<Picture>& stand_in_pictures() const { return stand_in_pictures_; }
 
   /// The next frame uses no earlier measurements.
   void forget() { history_.forget(); }
@@ -159,7 +159,7 @@ class Frame {
   struct Submitted {
     std::vector<shared::View> views;
     FrameSettings settings;
-    Workings workings;
+    DebugOptions debug;
     std::vector<Canvas> canvases;
     std::vector<MeshDepth> mesh_depths;
     int depth_rows = 1;
@@ -168,9 +168,9 @@ class Frame {
   };
 
   CallersTextures submitted_textures(bool with_canvases) const;
-  void take(std::span<const shared::View> views, const FrameSettings& settings, const Workings& workings,
-            const CallersTextures& textures);
-  void note_begin();
+  void store_submission(std::span<const shared::View> views, const FrameSettings& settings,
+                        const DebugOptions& debug, const CallersTextures& textures);
+  void start_report();
   void begin(PlanRequest request);
   void start_search();
   void start_attempt();
@@ -209,7 +209,7 @@ class Frame {
   Capacity capacity_;
   FrameHistory history_;
   ToleranceControl tolerance_control_;
-  std::vector<Picture> pictures_stood_in_;  // of a stand-in for the blend
+  std::vector<Picture> stand_in_pictures_;  // of a stand-in for the blend
 };
 
 }  // namespace binosplat::render

@@ -124,7 +124,8 @@ void share_lists(FramePlan& plan, std::int64_t slots, double middle_depth) {
   constexpr std::int64_t splats_max = std::int64_t{1} << (32 - 2 * SUPERTILE_SIDE * SUPERTILE_SIDE);
   const std::int64_t firsts_end = (plan.view_count() - 1) | 1;  // views whose splats the lists store
   plan.list_views =
-      plan.asked >= 2 && slots * firsts_end <= splats_max && plan.settings.tiles != TILES_ALL ? 2 : 1;
+      plan.requested_views >= 2 && slots * firsts_end <= splats_max && plan.settings.tiles != TILES_ALL ? 2
+                                                                                                        : 1;
   for (std::size_t v = 0; v + 1 < plan.view_count(); v += 2) {
     const shared::View &first = plan.views[v], &second = plan.views[v + 1];
     if (first.order_group != second.order_group || first.tiles_x != second.tiles_x ||
@@ -169,7 +170,7 @@ PlannedModel planned(const Model& model, const ModelSize& size) {
 }
 
 FramePlan make_plan(std::span<const shared::View> views, const FrameSettings& settings, const Model& model,
-                    const ModelSize& size, const Workings& workings, const PlanRequest& request) {
+                    const ModelSize& size, const DebugOptions& debug, const PlanRequest& request) {
   if (views.empty() || views.size() > MAX_VIEWS)
     fail("a frame has 1 to {} views, not {}", MAX_VIEWS, views.size());
   check(settings);
@@ -178,8 +179,8 @@ FramePlan make_plan(std::span<const shared::View> views, const FrameSettings& se
   FramePlan plan;
   plan.settings = settings;
   plan.tolerance = request.tolerance.value_or(settings.tolerance);
-  plan.between_pixels = workings.between_pixels;
-  plan.visibility_as_depth = workings.visibility_as_depth;
+  plan.between_pixels = debug.between_pixels;
+  plan.visibility_as_depth = debug.visibility_as_depth;
   plan.perspective = perspective_of(settings, model);
   plan.instances = request.instances;
   add_models(plan, request.models.empty() ? std::vector{planned(model, size)} : request.models);
@@ -188,7 +189,7 @@ FramePlan make_plan(std::span<const shared::View> views, const FrameSettings& se
     plan.views_per_decoding = settings.decode == DECODE_CYCLOPEAN ? 2 : 1;
     plan.anchor_bytes = anchor_bytes(*model.scaffold);
   }
-  plan.asked = static_cast<std::uint32_t>(views.size());
+  plan.requested_views = static_cast<std::uint32_t>(views.size());
   const CallersTextures& textures = request.textures;
   if (settings.tile_size == TILE_SIZE_DEFAULT)
     plan.canvases.assign(textures.canvases.begin(), textures.canvases.end());

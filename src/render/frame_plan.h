@@ -9,10 +9,10 @@
 #include <span>
 #include <vector>
 
+#include "render/debug_options.h"
 #include "render/instance.h"
 #include "render/mesh_depth.h"
 #include "render/settings.h"
-#include "render/workings.h"
 #include "scene/model.h"
 #include "shared/types.h"
 
@@ -34,7 +34,7 @@ struct Probe {
 };
 
 /// The result of a probe.
-struct Probed {
+struct ProbeResult {
   double squared_error = 0.0;  // mean over its pixels and channels, in squared steps of 8 bits
   double unevenness = 0.0;     // variance of its tiles' errors over their squared mean
 };
@@ -65,15 +65,15 @@ PlannedModel planned(const Model& model, const ModelSize& size);
 struct FramePlan {
   FrameSettings settings;
   float tolerance = 0.0f;            // K or kappa, of the settings or found for a quality
-  bool between_pixels = false;       // Workings::between_pixels
-  bool visibility_as_depth = false;  // Workings::visibility_as_depth
+  bool between_pixels = false;       // DebugOptions::between_pixels
+  bool visibility_as_depth = false;  // DebugOptions::visibility_as_depth
   Perspective perspective;
   std::vector<PlannedModel> models;
   std::vector<InstancePlace> instances;  // by model; empty: one model, once, in its own world
   std::uint32_t gaussian_count = 0;      // of all instances
   std::uint32_t gaussian_room = 0;       // at least gaussian_count; larger if a model may grow
   std::vector<shared::View> views;       // the requested views, then the probe's
-  std::uint32_t asked = 0;
+  std::uint32_t requested_views = 0;
   std::optional<Probe> probe;
   std::vector<OrderGroup> groups;
   std::vector<glm::uvec2>
@@ -93,7 +93,7 @@ struct FramePlan {
   /// DEPTH_ of shared/limits.h: the depth that the blend computes.
   int depth() const;
   /// Whether `z_sums` holds final depths instead of sums.
-  bool tells_depths() const { return !canvases.empty() || !meshes.depths.empty(); }
+  bool has_final_depths() const { return !canvases.empty() || !meshes.depths.empty(); }
   /// How much nearer a splat may be than its predecessors in a list, in world units; infinite: no limit.
   float depth_slack() const;
   /// Whether splats are blended by blocks, which end once their pixels are opaque (docs/method.md 5.2).
@@ -106,7 +106,9 @@ struct FramePlan {
            views[view].supertile_offset;
   }
   /// How many times each anchor is decoded. A probe shares the Gaussians of its view.
-  std::uint32_t decoding_count() const { return (asked + views_per_decoding - 1) / views_per_decoding; }
+  std::uint32_t decoding_count() const {
+    return (requested_views + views_per_decoding - 1) / views_per_decoding;
+  }
   std::uint32_t decoding_of_probe() const { return probe ? probe->view / views_per_decoding : 0; }
 };
 
@@ -131,11 +133,11 @@ void share_lists(FramePlan& plan, std::int64_t slots, double middle_depth);
 /// Throws Error(bad_input) for no views, more than MAX_VIEWS, an empty or huge picture, and settings that
 /// contradict each other or the views.
 FramePlan make_plan(std::span<const shared::View> views, const FrameSettings& settings, const Model& model,
-                    const ModelSize& size, const Workings& workings, const PlanRequest& request = {});
+                    const ModelSize& size, const DebugOptions& debug, const PlanRequest& request = {});
 inline FramePlan make_plan(std::span<const shared::View> views, const FrameSettings& settings,
-                           const Model& model, const Workings& workings = {},
+                           const Model& model, const DebugOptions& debug = {},
                            const PlanRequest& request = {}) {
-  return make_plan(views, settings, model, size_of(model), workings, request);
+  return make_plan(views, settings, model, size_of(model), debug, request);
 }
 
 }  // namespace binosplat::render

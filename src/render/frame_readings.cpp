@@ -10,7 +10,7 @@
 namespace binosplat::render {
 
 std::vector<Picture> Frame::read_pictures() const {
-  if (!pictures_stood_in_.empty()) return pictures_stood_in_;
+  if (!stand_in_pictures_.empty()) return stand_in_pictures_;
   if (!plan_.canvases.empty()) fail("the pictures are on the caller's canvases: read them there");
   const auto pixels = static_cast<std::size_t>(plan_.pixel_count);
   const auto colours = buffers_.pictures.colours.read<glm::vec4>(pixels);
@@ -18,7 +18,7 @@ std::vector<Picture> Frame::read_pictures() const {
   std::vector<float> z_sums;
   if (has_depth) z_sums = buffers_.pictures.z_sums.read<float>(pixels);
   std::vector<Picture> pictures;
-  for (const shared::View& view : std::span(plan_.views).first(plan_.asked)) {
+  for (const shared::View& view : std::span(plan_.views).first(plan_.requested_views)) {
     Picture& picture = pictures.emplace_back(static_cast<int>(view.width), static_cast<int>(view.height));
     std::copy_n(colours.begin() + view.pixel_offset, picture.colour.size(), picture.colour.begin());
     if (has_depth)
@@ -28,12 +28,12 @@ std::vector<Picture> Frame::read_pictures() const {
 }
 
 std::vector<Image> Frame::read_debug_view(int what) {
-  if (!pictures_stood_in_.empty())
+  if (!stand_in_pictures_.empty())
     fail("--show {} with --reference-until blend: the GPU lacks its lists", show_choices[what].name);
   blend_debug_view(dispatcher_, plan_, what, buffers_);
   const auto values = buffers_.pictures.debug_values.read<float>(static_cast<std::size_t>(plan_.pixel_count));
   std::vector<Image> images;
-  for (const shared::View& view : std::span(plan_.views).first(plan_.asked)) {
+  for (const shared::View& view : std::span(plan_.views).first(plan_.requested_views)) {
     Image& image = images.emplace_back(static_cast<int>(view.width), static_cast<int>(view.height), 1);
     std::copy_n(values.begin() + view.pixel_offset, image.data.size(), image.data.begin());
   }

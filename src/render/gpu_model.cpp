@@ -129,7 +129,7 @@ void ModelBuffers::upload(gl::Context& context, const Model& model) {
   for (Page& page : pages) {
     page.gaussians->reserve(room_in(page, model) * gaussian_bytes(precision));
     page.harmonics->reserve(room_in(page, model) * harmonic_bytes(model.degree, precision));
-    hide(page, page.count);
+    clear_from(page, page.count);
     upload_page(packing_of_gaussians(model, precision), page, *page.gaussians);
     upload_page(packing_of_harmonics(model, precision), page, *page.harmonics);
   }
@@ -142,7 +142,7 @@ void ModelBuffers::upload(gl::Context& context, const Model& model, const ModelC
     const std::int64_t before = page.gaussians->bytes() / each;
     page.gaussians->grow(room_in(page, model) * each);
     page.harmonics->grow(room_in(page, model) * harmonic_bytes(model.degree, precision));
-    hide(page, before);
+    clear_from(page, before);
     std::vector<std::uint32_t> places;
     add_places(page, changes.filled, places);
     const std::size_t filled = places.size();
@@ -169,7 +169,7 @@ std::int64_t ModelBuffers::room_in(const Page& page, const Model& model) const {
 
 // Writes zeros (opacity 0) from a Gaussian of the page on. Uses uploads, because later uploads to the same
 // place must not overtake this one.
-void ModelBuffers::hide(const Page& page, std::int64_t first) const {
+void ModelBuffers::clear_from(const Page& page, std::int64_t first) const {
   constexpr std::int64_t piece = std::int64_t{1} << 22;  // bytes
   const std::int64_t begin = first * gaussian_bytes(precision), end = page.gaussians->bytes();
   const std::vector<std::byte> zeros(
@@ -220,11 +220,11 @@ void ModelBuffers::reserve(const FramePlan& plan) {
 
 GpuModel::GpuModel(gl::Context& context, const Model& model, int precision, std::uint32_t page_gaussians)
     : context_(context), model_(model), page_gaussians_(page_gaussians) {
-  in(precision);
+  buffers_in(precision);
 }
 
-std::shared_ptr<ModelBuffers> GpuModel::in(int precision) {
-  std::weak_ptr<ModelBuffers>& wanted = all_.at(static_cast<std::size_t>(precision));
+std::shared_ptr<ModelBuffers> GpuModel::buffers_in(int precision) {
+  std::weak_ptr<ModelBuffers>& wanted = by_precision_.at(static_cast<std::size_t>(precision));
   if (const auto found = wanted.lock()) {
     latest_ = found;
   } else {
@@ -240,10 +240,10 @@ template <typename Upload>
 void GpuModel::upload_all(const Upload& upload) {
   size_ = size_of(model_);
   const auto other_is_held = [&] {
-    return !all_.at(static_cast<std::size_t>(1 - latest_->precision)).expired();
+    return !by_precision_.at(static_cast<std::size_t>(1 - latest_->precision)).expired();
   };
   if (latest_.use_count() == 1 && other_is_held()) latest_.reset();  // no frame draws it any more
-  for (const auto& each : all_) {
+  for (const auto& each : by_precision_) {
     if (const auto held = each.lock()) upload(*held);
   }
 }

@@ -48,7 +48,7 @@ struct ModelBuffers {
  private:
   std::size_t page_step(gl::Context& context, const Model& model) const;
   void set_pages(gl::Context& context, const Model& model);
-  void hide(const Page& page, std::int64_t first) const;
+  void clear_from(const Page& page, std::int64_t first) const;
   std::int64_t room_in(const Page& page, const Model& model) const;  // Gaussians
   void upload_pages(gl::Context& context, const Scaffold& scaffold, std::size_t step);
 
@@ -73,7 +73,7 @@ class GpuModel {
   /// Returns the model in that precision, and uploads it if no frame holds it. It stays on the GPU as long as
   /// a frame holds it. The last requested precision also stays, until a reload while frames hold only the
   /// other precision. Throws as the constructor does.
-  std::shared_ptr<ModelBuffers> in(int precision);
+  std::shared_ptr<ModelBuffers> buffers_in(int precision);
 
   /// Uploads the model again after a change: the same scene at other levels of detail. Reuses buffers that
   /// are large enough. Frames compare `uploads` to detect that their measurements belong to another state.
@@ -94,7 +94,7 @@ class GpuModel {
   int uploads_ = 0;
   ModelSize size_;
   std::shared_ptr<ModelBuffers> latest_;
-  std::array<std::weak_ptr<ModelBuffers>, 2> all_;  // by precision
+  std::array<std::weak_ptr<ModelBuffers>, 2> by_precision_;  // by precision
 };
 
 }  // namespace binosplat::render

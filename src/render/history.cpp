@@ -40,9 +40,9 @@ bool is_near(const shared::View& a, const shared::View& b, double middle_depth, 
 
 // The rows of tiles of the requested views. Other rows are a camera cut: undrawn tiles measure nothing.
 std::span<const glm::uvec2> rows_asked(const FramePlan& plan) {
-  const bool has_probe = plan.draws_regions() && plan.view_count() > plan.asked;
+  const bool has_probe = plan.draws_regions() && plan.view_count() > plan.requested_views;
   return std::span(plan.region_rows)
-      .first(has_probe ? plan.views[plan.asked].first_row : plan.region_rows.size());
+      .first(has_probe ? plan.views[plan.requested_views].first_row : plan.region_rows.size());
 }
 
 }  // namespace
@@ -56,10 +56,10 @@ double middle_depth(const shared::Counters& counters) {
 
 bool continues(const FramePlan& before, const FramePlan& now, double middle_depth, double share) {
   if (!std::ranges::equal(rows_asked(before), rows_asked(now))) return false;
-  if (before.asked != now.asked || before.gaussian_count != now.gaussian_count ||
+  if (before.requested_views != now.requested_views || before.gaussian_count != now.gaussian_count ||
       before.instances.size() != now.instances.size())
     return false;
-  for (std::size_t v = 0; v < now.asked; ++v) {
+  for (std::size_t v = 0; v < now.requested_views; ++v) {
     const shared::View& a = before.views[v];
     const shared::View& b = now.views[v];
     if (a.width != b.width || a.height != b.height || a.lens != b.lens || a.left != b.left || a.top != b.top)
@@ -80,7 +80,7 @@ void FrameHistory::follow(const FramePlan& now) {
   last_.instances = now.instances;
 }
 
-bool FrameHistory::probed_lately(const FramePlan& now) {
+bool FrameHistory::has_recent_probe(const FramePlan& now) {
   return ++since_probed_ < probe_every && continues(probed_, now, middle_depth_, probe_share);
 }
 
@@ -97,8 +97,8 @@ Measuring FrameHistory::decide(const FramePlan& now) {
   return measuring;
 }
 
-void FrameHistory::keep(const FramePlan& drawn, const Measuring& measuring,
-                        const shared::Counters& counters) {
+void FrameHistory::store(const FramePlan& drawn, const Measuring& measuring,
+                         const shared::Counters& counters) {
   last_ = drawn;
   middle_depth_ = middle_depth(counters);
   if (measuring.measures) {

@@ -32,18 +32,18 @@ class FrameHistory {
   void follow(const FramePlan& now);
 
   /// Whether `now` follows the last frame without a camera cut.
-  bool goes_on(const FramePlan& now) const { return continues(last_, now, middle_depth_); }
+  bool continues_last(const FramePlan& now) const { return continues(last_, now, middle_depth_); }
 
   /// Whether `now` needs no probe. Every fourth frame needs one. So does a frame in which an eye has gone a
   /// fifteenth of the way to a camera cut since the last probe, such as a turn by a degree. Each call counts
   /// as a frame.
-  bool probed_lately(const FramePlan& now);
+  bool has_recent_probe(const FramePlan& now);
 
   /// Decides whether the frame uses measurements, and whether it measures (FrameSettings::measure_every).
   Measuring decide(const FramePlan& now);
 
   /// Stores a frame that was drawn.
-  void keep(const FramePlan& drawn, const Measuring& measuring, const shared::Counters& counters);
+  void store(const FramePlan& drawn, const Measuring& measuring, const shared::Counters& counters);
 
  private:
   FramePlan last_;

@@ -1,6 +1,37 @@
 #include "render/instance.h"
 
+#include <cmath>
+
+#include "scene/axes.h"
+
 namespace binosplat::render {
+
+InstancePlace in_frame(const InstancePlace& in_world, const ModelAxes& model, const ModelAxes& frame) {
+  const glm::dmat3 into_frame = glm::transpose(world_from_axes(frame.letters));
+  InstancePlace place = in_world;
+  place.rotation = into_frame * in_world.rotation * world_from_axes(model.letters);
+  place.translation =
+      into_frame * in_world.translation + place.scale * (place.rotation * model.origin) - frame.origin;
+  return place;
+}
+
+std::optional<InstancePlace> place_of(const glm::dmat4& matrix) {
+  constexpr double rounding = 1e-4;
+  const glm::dmat3 linear(matrix);
+  InstancePlace place{.translation = glm::dvec3(matrix[3]), .scale = std::cbrt(glm::determinant(linear))};
+  if (!(place.scale > 0.0) || !std::isfinite(place.scale)) return std::nullopt;
+  place.rotation = linear / place.scale;
+  const glm::dmat3 products = glm::transpose(place.rotation) * place.rotation;
+  for (int i = 0; i < 3; ++i) {
+    for (int k = 0; k < 3; ++k) {
+      if (!(std::abs(products[i][k] - (i == k ? 1.0 : 0.0)) < rounding)) return std::nullopt;
+    }
+  }
+  const bool is_affine =
+      glm::dvec4(matrix[0].w, matrix[1].w, matrix[2].w, matrix[3].w) == glm::dvec4(0, 0, 0, 1);
+  const bool is_finite = std::isfinite(glm::dot(place.translation, place.translation));
+  return is_affine && is_finite ? std::optional(place) : std::nullopt;
+}
 
 shared::View view_of_instance(const shared::View& view, const InstancePlace& place) {
   const glm::dmat3 into_model = glm::transpose(place.rotation);

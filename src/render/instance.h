@@ -3,9 +3,11 @@
 
 #include <glm/glm.hpp>
 #include <memory>
+#include <optional>
 
 #include <binosplat/settings.h>
 
+#include "scene/model.h"
 #include "shared/types.h"
 
 namespace binosplat::render {
@@ -27,6 +29,13 @@ struct InstancePlace {
            depth_table.bounds.empty();
   }
 };
+
+/// Returns the place of a model in a frame whose positions have the axes and the origin of `frame`, from its
+/// place in the cameras' world (scene/axes.h).
+InstancePlace in_frame(const InstancePlace& in_world, const ModelAxes& model, const ModelAxes& frame);
+
+/// Splits a matrix into a rotation, a scale above 0 and a translation; none for any other matrix.
+std::optional<InstancePlace> place_of(const glm::dmat4& matrix);
 
 struct Instance {
   std::shared_ptr<GpuModel> model;

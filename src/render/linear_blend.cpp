@@ -19,12 +19,12 @@ void LinearBlend::run(const Record& record) {
   record();
   dispatcher_.end_frame();
   dispatcher_.wait_and_time();
-  refuse_truncated(dispatcher_.context(), frame_.buffers().counters.read<shared::Counters>(1).front());
+  throw_if_truncated(dispatcher_.context(), frame_.buffers().counters.read<shared::Counters>(1).front());
 }
 
 void LinearBlend::set_view(const shared::View& view, const FrameSettings& settings,
-                           const Workings& workings) {
-  frame_.draw_until(Stage::sort, std::span(&view, 1), exact_of(settings), workings);
+                           const DebugOptions& debug) {
+  frame_.draw_until(Stage::sort, std::span(&view, 1), exact_of(settings), debug);
   drawn_ = frame_.buffers().read_drawn(frame_.plan(), 0);
 }
 

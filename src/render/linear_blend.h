@@ -22,7 +22,7 @@ class LinearBlend {
 
   /// Sets W to that of a view; the picture becomes undefined. Uses the settings that exact_of() keeps. Throws
   /// as Frame::draw() does.
-  void set_view(const shared::View& view, const FrameSettings& settings = {}, const Workings& workings = {});
+  void set_view(const shared::View& view, const FrameSettings& settings = {}, const DebugOptions& debug = {});
 
   /// The Gaussians that the view draws, in index order; each has a column in W.
   const std::vector<DrawnGaussian>& drawn() const { return drawn_; }

@@ -45,7 +45,7 @@ MemoryNeeds memory_needs(const FramePlan& plan) {
   }
   const bool measured = measures(plan.settings.transmittance);
   const std::int64_t bytes_a_splat = splat_bytes(precision) + (measured ? 12 : 8);
-  const std::int64_t bytes_a_gaussian = 4 + (measured ? plan.asked * 8 : 0);
+  const std::int64_t bytes_a_gaussian = 4 + (measured ? plan.requested_views * 8 : 0);
   const Capacity room = starting_room(plan);
   const std::int64_t slot_bytes = plan.view_count() * bytes_a_splat + 2 * 4;  // index and depth
   needs.frame = plan.gaussian_room * bytes_a_gaussian + room.slots * slot_bytes + plan.pixel_count * 20 +
@@ -54,13 +54,13 @@ MemoryNeeds memory_needs(const FramePlan& plan) {
   return needs;
 }
 
-void Capacity::start(const FramePlan& plan, const Workings& asked) {
+void Capacity::start(const FramePlan& plan, const DebugOptions& debug) {
   Capacity first = starting_room(plan);
   // A stand-in needs all of its room at once.
-  if (asked.stand_in) first.slots = plan.gaussian_room;
-  slots = asked.slots > 0 ? asked.slots : std::max(slots, first.slots);
-  if (asked.pairs > 0) {
-    pairs = large_pairs = tile_pairs = asked.pairs;
+  if (debug.stand_in) first.slots = plan.gaussian_room;
+  slots = debug.slots > 0 ? debug.slots : std::max(slots, first.slots);
+  if (debug.pairs > 0) {
+    pairs = large_pairs = tile_pairs = debug.pairs;
     return;
   }
   pairs = std::max(pairs, first.pairs);
@@ -76,8 +76,8 @@ void Capacity::grow(const FramePlan& plan, const shared::Counters& counters) {
                 "more than two billion Gaussian-tile pairs in one frame: use a smaller picture");
   }
   if (lacks(OVERFLOW_ORDER)) {
-    log_info("drawn again: {} Gaussians in view, room for {}", counters.order_wanted, slots);
-    slots = std::min<std::int64_t>(larger(counters.order_wanted), plan.gaussian_room);
+    log_info("drawn again: {} Gaussians in view, room for {}", counters.slots_wanted, slots);
+    slots = std::min<std::int64_t>(larger(counters.slots_wanted), plan.gaussian_room);
   }
   if (lacks(OVERFLOW_LARGE)) {
     log_info("drawn again: {} pairs of large Gaussians, room for {}", counters.large_entries, large_pairs);

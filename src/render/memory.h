@@ -3,8 +3,8 @@
 
 #include <cstdint>
 
+#include "render/debug_options.h"
 #include "render/frame_plan.h"
-#include "render/workings.h"
 
 namespace binosplat::render {
 
@@ -28,7 +28,7 @@ struct Capacity {
   std::int64_t rounds = 0;       // rounds that split lists too long to sort at once
 
   /// Starts with at least the sizes for a frame of this plan, or exactly the sizes that `asked` names.
-  void start(const FramePlan& plan, const Workings& asked);
+  void start(const FramePlan& plan, const DebugOptions& debug);
 
   /// Enlarges the overflowed buffers to the size they needed and a margin, and logs it. Throws
   /// Error(out_of_memory) for more pairs than can be counted.

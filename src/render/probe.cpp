@@ -29,7 +29,7 @@ void probe(gl::Dispatcher& dispatcher, const FramePlan& plan, FrameBuffers& buff
        {"FrameCounters", buffers.counters}});
 }
 
-Probed probed(const FramePlan& plan, const shared::Counters& counters) {
+ProbeResult probe_result(const FramePlan& plan, const shared::Counters& counters) {
   const auto sum_of = [](std::uint32_t low, std::uint32_t high) {
     return (high * 0x1p32 + low) / PROBE_SCALE;
   };

@@ -36,7 +36,8 @@ constexpr std::uint32_t fills_a_gpu = 1u << 20;  // Gaussians: several times an 
 void cull(gl::Dispatcher& dispatcher, const FramePlan& plan, OrderGroup views, PairVariant variant,
           std::span<const DrawnPage> pages, FrameBuffers& buffers) {
   // A probe has the Gaussians of its view, unless it is alone in its group.
-  const std::uint32_t end = views.begin < plan.asked ? std::min(views.end, plan.asked) : views.end;
+  const std::uint32_t end =
+      views.begin < plan.requested_views ? std::min(views.end, plan.requested_views) : views.end;
   // If a model does not fill the GPU, an invocation per eye takes no longer. In larger models one invocation
   // tests both eyes, and one eye may decide for both.
   const bool asks_both = !variant.measures && plan.gaussian_count >= fills_a_gpu;

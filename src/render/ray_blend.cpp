@@ -32,7 +32,7 @@ double RayBlend::blend(std::uint32_t v, const gl::Buffer& rays, std::uint32_t co
                   {{"ray_count", count}, {"view_index", v}});
   dispatcher_.end_frame();
   const double ms = dispatcher_.wait_and_time().front().ms;
-  refuse_truncated(context(), buffers.counters.read<shared::Counters>(1).front());
+  throw_if_truncated(context(), buffers.counters.read<shared::Counters>(1).front());
   return ms;
 }
 

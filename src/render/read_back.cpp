@@ -22,10 +22,10 @@ ReadBack::Pictures::~Pictures() {
 
 std::unique_ptr<ReadBack::Pictures> ReadBack::start(const Frame& frame) {
   auto pictures = std::make_unique<Pictures>(*this);
-  pictures->stood_in_ = frame.pictures_stood_in();
+  pictures->stood_in_ = frame.stand_in_pictures();
   if (!pictures->stood_in_.empty()) return pictures;
   const FramePlan& plan = frame.plan();
-  pictures->views_.assign(plan.views.begin(), plan.views.begin() + plan.asked);
+  pictures->views_.assign(plan.views.begin(), plan.views.begin() + plan.requested_views);
   pictures->has_depth_ = plan.depth() != DEPTH_NONE;
   const auto copy = [&](gl::Buffer& to, const gl::Buffer& from, std::int64_t bytes) {
     to.reserve(bytes);

@@ -7,8 +7,8 @@ namespace binosplat::render {
 namespace {
 
 // Reads the GPU's clock between two readings of the CPU's, and keeps the closest of three tries.
-SameTime same_time(const gl::Context& context) {
-  SameTime best;
+ClockPair clock_pair(const gl::Context& context) {
+  ClockPair best;
   Clock::duration least = Clock::duration::max();
   for (int k = 0; k < 3; ++k) {
     const auto begin = Clock::now();
@@ -36,7 +36,7 @@ Recorder::Recorder(const gl::Context& context, double fps, std::shared_ptr<const
   recording_.fps = fps;
   if (!clock_) recording_.no_clock = "nobody asked";
   if (clock_) recording_.no_clock = clock_->problem();
-  recording_.first = same_time(context);
+  recording_.first = clock_pair(context);
   keep_spans();
 }
 
@@ -47,7 +47,7 @@ void Recorder::add(FrameRecord frame) {
 
 Recording Recorder::finish() {
   recording_.spans = take_spans();
-  recording_.last = same_time(context_);
+  recording_.last = clock_pair(context_);
   return std::move(recording_);
 }
 

@@ -12,7 +12,7 @@
 namespace binosplat::render {
 
 /// One moment on two clocks.
-struct SameTime {
+struct ClockPair {
   Clock::time_point cpu = {};
   std::int64_t gpu_ns = 0;
 };
@@ -21,7 +21,7 @@ struct SameTime {
 struct Recording {
   std::vector<FrameRecord> frames;
   std::vector<Span> spans;    // of the CPU's threads
-  SameTime first, last;       // at the begin and the end
+  ClockPair first, last;      // at the begin and the end
   double fps = 0.0;           // scheduled frames per second; 0: each begins when the last one is done
   std::string no_clock = {};  // why frames lack `mhz`; empty: they have it
 

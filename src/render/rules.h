@@ -34,7 +34,7 @@ constexpr bool has_every_pair(int tiles) {
 }
 
 /// Whether a rule can use the bounds of a TRANSMITTANCE_.
-constexpr bool takes(int th, int transmittance) {
+constexpr bool can_use(int th, int transmittance) {
   return transmittance == TRANSMITTANCE_ONE || threshold_rules[th].uses_bound;
 }
 

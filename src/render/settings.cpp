@@ -33,7 +33,7 @@ void check_choice(const FrameSettings& s, std::string_view prefix) {
   check(s, prefix);
   if (s.quality > 0.0f && !(s.quality >= quality_least && s.quality <= quality_most))
     fail("{}quality {}: expected decibels from {} to {}", prefix, s.quality, quality_least, quality_most);
-  if (!takes(s.th, s.transmittance)) {
+  if (!can_use(s.th, s.transmittance)) {
     fail("{0}transmittance has no effect with {0}th {1}, which uses no transmittance bound", prefix,
          th_choices[s.th].name);
   }

@@ -40,7 +40,7 @@ void sort(gl::Dispatcher& dispatcher, const FramePlan& plan, const Capacity& cap
                    {{"item_room", buffers.lists.item_room},
                     {"rounds", rounds},
                     {"round", round},
-                    {"first_entry", buffers.lists.first_large},
+                    {"first_entry", buffers.lists.large_offset},
                     {"capacity", tile_pairs}});
   }
   const auto sort_kind = [&](std::uint32_t kind) {

@@ -56,15 +56,15 @@ void blend_visibility(gl::Dispatcher& dispatcher, const FramePlan& plan, FrameBu
                       const gl::Buffer& sums);
 
 /// Throws Error(out_of_memory) if the driver truncated a list of splats.
-void refuse_truncated(const gl::Context& context, const shared::Counters& counters);
+void throw_if_truncated(const gl::Context& context, const shared::Counters& counters);
 
 /// Stores the frame's measurements for the next one. Does nothing in a frame that does not measure.
-void keep_measured(gl::Dispatcher& dispatcher, const FramePlan& plan, bool measures, FrameBuffers& buffers);
+void store_measured(gl::Dispatcher& dispatcher, const FramePlan& plan, bool measures, FrameBuffers& buffers);
 
 /// Sums the squared error in the probe's tiles. Does nothing without a probe.
 void probe(gl::Dispatcher& dispatcher, const FramePlan& plan, FrameBuffers& buffers);
 
 /// The result of probe().
-Probed probed(const FramePlan& plan, const shared::Counters& counters);
+ProbeResult probe_result(const FramePlan& plan, const shared::Counters& counters);
 
 }  // namespace binosplat::render

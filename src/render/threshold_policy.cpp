@@ -14,9 +14,9 @@ namespace {
 
 constexpr double tolerance_power = 1.25;  // exponent of the focal length
 
-const CalibrationEntry* entry_for(const ThresholdCalibration& calibration, const FrameSettings& asked) {
+const CalibrationEntry* entry_for(const ThresholdCalibration& calibration, const FrameSettings& requested) {
   for (const CalibrationEntry& entry : calibration.entries)
-    if (entry.th == asked.th && entry.transmittance == asked.transmittance) return &entry;
+    if (entry.th == requested.th && entry.transmittance == requested.transmittance) return &entry;
   return nullptr;
 }
 
@@ -27,18 +27,18 @@ std::string text_of(const Perspective& perspective) {
 
 }  // namespace
 
-bool ThresholdPolicy::has_entry(const FrameSettings& asked) const {
-  return calibration_ && entry_for(*calibration_, asked) != nullptr;
+bool ThresholdPolicy::has_entry(const FrameSettings& requested) const {
+  return calibration_ && entry_for(*calibration_, requested) != nullptr;
 }
 
-void ThresholdPolicy::check(const FrameSettings& asked) const {
-  if (!calibration_ || has_entry(asked)) return;
-  fail("calibration {} has no entry for threshold {} with transmittance {}", name_, th_choices[asked.th].name,
-       transmittance_choices[asked.transmittance].name);
+void ThresholdPolicy::check(const FrameSettings& requested) const {
+  if (!calibration_ || has_entry(requested)) return;
+  fail("calibration {} has no entry for threshold {} with transmittance {}", name_,
+       th_choices[requested.th].name, transmittance_choices[requested.transmittance].name);
 }
 
-void ThresholdPolicy::check_perspective(const FrameSettings& asked, const Model& model) const {
-  const Perspective drawn = perspective_of(asked, model);
+void ThresholdPolicy::check_perspective(const FrameSettings& requested, const Model& model) const {
+  const Perspective drawn = perspective_of(requested, model);
   if (!calibration_ || calibration_->perspective == drawn) return;
   fail("calibration {} is for {}, but the frame uses {}: calibrate with these settings", name_,
        text_of(calibration_->perspective), text_of(drawn));
@@ -56,22 +56,22 @@ bool ThresholdPolicy::covers(const shared::View& view, const ModelAxes& axes) co
   return binosplat::covers(*calibration_, into_world(eye, axes), reach_);
 }
 
-FrameSettings ThresholdPolicy::settings(FrameSettings asked, const shared::View& view,
+FrameSettings ThresholdPolicy::settings(FrameSettings requested, const shared::View& view,
                                         const ModelAxes& axes) const {
-  if (!calibration_ || is_exact(asked.th)) return asked;
+  if (!calibration_ || is_exact(requested.th)) return requested;
   if (!covers(view, axes)) {
-    asked.th = TH_TAU;
-    asked.tolerance = asked.quality = 0.0f;
-    asked.transmittance = TRANSMITTANCE_ONE;
-    return asked;
+    requested.th = TH_TAU;
+    requested.tolerance = requested.quality = 0.0f;
+    requested.transmittance = TRANSMITTANCE_ONE;
+    return requested;
   }
-  asked.depth_table = calibration_->depth_table;
-  if (asked.tolerance > 0.0f || asked.quality > 0.0f) return asked;
-  check(asked);
+  requested.depth_table = calibration_->depth_table;
+  if (requested.tolerance > 0.0f || requested.quality > 0.0f) return requested;
+  check(requested);
   const double focal = static_cast<double>(view.lens.x) / calibration_->focal;
-  asked.tolerance =
-      static_cast<float>(entry_for(*calibration_, asked)->tolerance * std::pow(focal, tolerance_power));
-  return asked;
+  requested.tolerance =
+      static_cast<float>(entry_for(*calibration_, requested)->tolerance * std::pow(focal, tolerance_power));
+  return requested;
 }
 
 }  // namespace binosplat::render

@@ -18,17 +18,19 @@ class ThresholdPolicy {
   ThresholdPolicy() = default;
   /// `name` identifies the calibration in errors: its file.
   ThresholdPolicy(std::string name, ThresholdCalibration calibration)
-      : name_(std::move(name)), calibration_(std::move(calibration)), reach_(reach_of(*calibration_)) {}
+      : name_(std::move(name)),
+        calibration_(std::move(calibration)),
+        reach_(validity_distance(*calibration_)) {}
 
   bool is_calibrated() const { return calibration_.has_value(); }
   /// Whether the calibration has a tolerance for the rule and the transmittance of these settings.
-  bool has_entry(const FrameSettings& asked) const;
+  bool has_entry(const FrameSettings& requested) const;
   const ThresholdCalibration& calibration() const { return *calibration_; }
 
   /// Throws Error(bad_input) if has_entry() is false.
-  void check(const FrameSettings& asked) const;
+  void check(const FrameSettings& requested) const;
   /// Throws Error(bad_input) if the calibration has another order or projection than frames of the model.
-  void check_perspective(const FrameSettings& asked, const Model& model) const;
+  void check_perspective(const FrameSettings& requested, const Model& model) const;
   /// Throws Error(bad_input) if the calibration belongs to another model. Reads all of the model's numbers.
   void check_model(const Model& model) const;
 
@@ -40,7 +42,7 @@ class ThresholdPolicy {
   /// (focal length / calibrated focal length)^1.25. That is 2.4 at twice the focal length, where K grew 2.2-
   /// and 3.3-fold on two scenes and kappa 1.6- and 2.7-fold. Exact for a view that the calibration does not
   /// cover. Throws as check() does.
-  FrameSettings settings(FrameSettings asked, const shared::View& view, const ModelAxes& axes) const;
+  FrameSettings settings(FrameSettings requested, const shared::View& view, const ModelAxes& axes) const;
 
  private:
   std::string name_;

@@ -62,13 +62,13 @@ bool same_rule(const FrameSettings& a, const FrameSettings& b) {
 
 void ToleranceControl::forget() {
   for (Estimate& view : views_) view.weight = 0.0;
-  fresh_ = cut_ = holds_ = true;
+  whole_probe_ = after_cut_ = is_final_ = true;
 }
 
-bool ToleranceControl::knows(std::span<const shared::View> views, const FrameSettings& settings) const {
+bool ToleranceControl::is_settled(std::span<const shared::View> views, const FrameSettings& settings) const {
   const bool saw_all =
       std::all_of(views_.begin(), views_.end(), [](const Estimate& v) { return v.weight > 0.0; });
-  return saw_all && !fresh_ && holds_ && !exact_ && same_rule(settings, settings_) &&
+  return saw_all && !whole_probe_ && is_final_ && !exact_ && same_rule(settings, settings_) &&
          settings.quality <= settings_.quality + unnoticed && !is_small(views.front(), settings);
 }
 
@@ -84,16 +84,16 @@ void ToleranceControl::begin(const FrameSettings& settings, double focal) {
 Probe ToleranceControl::next_probe(std::span<const shared::View> views, const FrameSettings& settings) {
   if (views_.size() != views.size()) {
     views_.assign(views.size(), {});
-    fresh_ = cut_ = true;
+    whole_probe_ = after_cut_ = true;
   }
   if (!same_rule(settings, settings_)) begin(settings, views.front().lens.y);
   settings_.quality = settings.quality;
   const auto count = static_cast<std::uint32_t>(views.size());
-  if (holds_) {
-    found_ = 0;
+  if (is_final_) {
+    views_held_ = 0;
     for (Estimate& view : views_) view.measured = false;
   }
-  probe_ = {.view = static_cast<std::uint32_t>(next_ + found_) % count};
+  probe_ = {.view = static_cast<std::uint32_t>(next_ + views_held_) % count};
   const shared::View& view = views[probe_.view];
   is_small_ = is_small(view, settings);
   const auto side = static_cast<std::uint32_t>(settings.tile_size);
@@ -102,7 +102,7 @@ Probe ToleranceControl::next_probe(std::span<const shared::View> views, const Fr
   const double all = static_cast<double>(across) * down;
   const double wanted = std::max(
       {static_cast<double>(settings.probe_tiles), all / share_max, unevenness_ / (deviation * deviation)});
-  while (!fresh_ && (probe_.step + 1.0) * (probe_.step + 1.0) * wanted <= all) ++probe_.step;
+  while (!whole_probe_ && (probe_.step + 1.0) * (probe_.step + 1.0) * wanted <= all) ++probe_.step;
   // The golden ratio spreads the offsets of a few probes evenly.
   const std::uint32_t places = probe_.step * probe_.step;
   std::uint32_t stride = std::max(1u, static_cast<std::uint32_t>(std::lround(0.618 * places)));
@@ -115,7 +115,7 @@ Probe ToleranceControl::next_probe(std::span<const shared::View> views, const Fr
 }
 
 float ToleranceControl::next_tolerance() {
-  if (holds_) {
+  if (is_final_) {
     attempts_ = 0;
     bracket_ = {};
   }
@@ -123,7 +123,7 @@ float ToleranceControl::next_tolerance() {
   if (exact_) return 0.0f;
   if (attempts_ > 1) {
     tolerance_ = std::clamp(searched_tolerance(target()), tolerance_min, tolerance_max);
-  } else if (!fresh_ && found_ == 0) {
+  } else if (!whole_probe_ && views_held_ == 0) {
     tolerance_ = std::clamp(followed_tolerance(target()), tolerance_min, tolerance_max);
   }
   return static_cast<float>(tolerance_);
@@ -152,22 +152,22 @@ double ToleranceControl::searched_tolerance(double target) const {
          std::clamp(std::pow(target / error, 1.0 / slope_), 1.0 / step_searching, step_searching);
 }
 
-void ToleranceControl::take(const Probed& probed) {
+void ToleranceControl::add_probe(const ProbeResult& probed) {
   Estimate& view = views_[probe_.view];
   const double expected = error_now(view);
   const double error = probed.squared_error;
   const bool whole = probe_.step == 1;
   // A new view has no expected error. Some tiles with a small error promise nothing about the others.
-  if (view.weight > 0.0 && !fresh_ &&
+  if (view.weight > 0.0 && !whole_probe_ &&
       (error > surprise * expected || (whole && surprise * error < expected))) {
     for (Estimate& any : views_) any.weight = any.measured ? any.weight : 0.0;
   }
   unevenness_ = std::max(probed.unevenness, fading * unevenness_);
   // These tiles may be sky: the next probe is larger.
-  const bool doubtful = view.weight > 0.0 && !fresh_ && !whole && surprise * error < expected;
+  const bool doubtful = view.weight > 0.0 && !whole_probe_ && !whole && surprise * error < expected;
   if (doubtful) unevenness_ = std::max(unevenness_, 16.0 * deviation * deviation * probe_tiles_);
   const bool follows = view.weight > 0.0 && expected > 0.0;
-  view.weight *= fresh_ || whole ? 0.0 : fading;
+  view.weight *= whole_probe_ || whole ? 0.0 : fading;
   if (!doubtful) view.weight = std::min(view.weight, carried_max * probe_tiles_);
   const double together = view.weight + probe_tiles_;
   view.error = view.weight > 0.0 ? (view.weight * expected + probe_tiles_ * error) / together : error;
@@ -204,32 +204,32 @@ void ToleranceControl::learn(double target) {
   }
 }
 
-void ToleranceControl::measured(const Probed& probed, bool settled) {
-  holds_ = exact_;
+void ToleranceControl::measured(const ProbeResult& probed, bool settled) {
+  is_final_ = exact_;
   if (!exact_) {
-    take(probed);
-    if (fresh_) {
+    add_probe(probed);
+    if (whole_probe_) {
       // A quality that is too good only costs time: the last attempts accept it.
       const double above = quality() - settings_.quality - margin;
-      const bool too_good = above > fresh_above && found_ == 0 && attempts_ <= attempts_max - 3;
-      holds_ = settled && above >= -fresh_below && !too_good;
+      const bool too_good = above > fresh_above && views_held_ == 0 && attempts_ <= attempts_max - 3;
+      is_final_ = settled && above >= -fresh_below && !too_good;
       if (settled) learn(target());
     } else {
       const double wanted = std::pow(10.0, -0.1 * settings_.quality);
-      holds_ = settled && worst() <= wanted * std::pow(10.0, 0.1 * miss) &&
-               probed.squared_error <= wanted * std::pow(10.0, 0.1 * miss_of_one);
+      is_final_ = settled && worst() <= wanted * std::pow(10.0, 0.1 * miss) &&
+                  probed.squared_error <= wanted * std::pow(10.0, 0.1 * miss_of_one);
     }
   }
-  const bool goes_on = holds_ && (cut_ || is_small_) && !exact_ && ++found_ < views_.size();
+  const bool goes_on = is_final_ && (after_cut_ || is_small_) && !exact_ && ++views_held_ < views_.size();
   if (goes_on) {  // other views may have a larger error at this tolerance
-    holds_ = false;
+    is_final_ = false;
     attempts_ = 0;
     bracket_ = {};
   }
   // Further attempts probe the whole of this view: two views do not share an exponent.
-  fresh_ = !holds_ && (!goes_on || cut_);
-  if (holds_) {
-    cut_ = false;
+  whole_probe_ = !is_final_ && (!goes_on || after_cut_);
+  if (is_final_) {
+    after_cut_ = false;
     ++next_;
   }
 }

@@ -22,7 +22,7 @@ namespace binosplat::render {
 /// A frame that misses the quality must be drawn again. After a camera cut, the frame is drawn again until
 /// every view holds. Later this happens if a probe shows much more error than expected. If a view is so small
 /// that a probe has all its tiles, the frame is drawn again until all views were measured. Each attempt is
-///   next_probe(), next_tolerance(), the drawing, measured(), and again unless holds().
+///   next_probe(), next_tolerance(), the drawing, measured(), and again unless is_final().
 class ToleranceControl {
  public:
   /// Forgets the measurements, because the views changed. The tolerance stays as a first guess.
@@ -30,7 +30,7 @@ class ToleranceControl {
 
   /// Whether a frame of these settings can be drawn at tolerance() without a probe. False for views whose
   /// probe has all tiles: single Gaussians may change their error by some dB per frame.
-  bool knows(std::span<const shared::View> views, const FrameSettings& settings) const;
+  bool is_settled(std::span<const shared::View> views, const FrameSettings& settings) const;
   float tolerance() const { return static_cast<float>(tolerance_); }
 
   /// The tiles that the next attempt also draws exactly: after a cut all of a view's.
@@ -41,10 +41,10 @@ class ToleranceControl {
 
   /// Stores the result of the attempt's probe. `settled` is false if later frames will use measured
   /// transmittance, but this one did not.
-  void measured(const Probed& probed, bool settled);
+  void measured(const ProbeResult& probed, bool settled);
 
   /// Whether the last attempt is final.
-  bool holds() const { return holds_; }
+  bool is_final() const { return is_final_; }
 
   /// The estimated PSNR in dB of the worst view at the last tolerance; infinite for no error.
   double quality() const;
@@ -67,27 +67,27 @@ class ToleranceControl {
   void begin(const FrameSettings& settings, double focal);
   double searched_tolerance(double target) const;
   double followed_tolerance(double target) const;
-  void take(const Probed& probed);
+  void add_probe(const ProbeResult& probed);
   void learn(double target);
   double error_now(const Estimate& view) const;  // at the last tolerance
   double worst() const;                          // the largest error of the estimates
   double target() const;
 
-  FrameSettings settings_;  // of the last frame
-  double slope_ = 1.0;      // the squared error grows about as tolerance^slope_ here
-  double tolerance_ = 0.0;  // of the last attempt that was not exact
-  bool is_small_ = false;   // a probe has all tiles of a view
-  bool cut_ = true;         // no frame was completed since the cut
-  bool fresh_ = true;       // after a cut or a miss: the next probe has all tiles of a view
-  std::size_t found_ = 0;   // views that hold in the frame after a cut
-  bool holds_ = true;
+  FrameSettings settings_;      // of the last frame
+  double slope_ = 1.0;          // the squared error grows about as tolerance^slope_ here
+  double tolerance_ = 0.0;      // of the last attempt that was not exact
+  bool is_small_ = false;       // a probe has all tiles of a view
+  bool after_cut_ = true;       // no frame was completed since the cut
+  bool whole_probe_ = true;     // after a cut or a miss: the next probe has all tiles of a view
+  std::size_t views_held_ = 0;  // views that hold in the frame after a cut
+  bool is_final_ = true;
   bool exact_ = false;  // whether this attempt is exact
   int attempts_ = 0;    // at this frame, for this view's tolerance
   Bracket bracket_;
   std::uint32_t next_ = 0;    // index of the next probe, one per frame
   Probe probe_;               // of this attempt
   double probe_tiles_ = 0.0;  // its number of tiles
-  double unevenness_ = 0.0;   // Probed::unevenness over the last probes
+  double unevenness_ = 0.0;   // ProbeResult::unevenness over the last probes
   std::vector<Estimate> views_;
 };
 

@@ -37,20 +37,20 @@ shared::View make_view(const Camera& camera, const glm::vec3& anchor, double nea
 shared::View make_view(const Camera& camera, double near_plane = near_default);
 
 /// A point in a camera's picture.
-struct PointSeen {
-  double ahead = 0.0;    // depth: distance along the camera's axis, world units; below 0 behind the camera
-  glm::dvec2 at{0.0};    // px from the picture's upper left corner; valid if `ahead` is above 0
+struct ProjectedPoint {
+  double depth = 0.0;    // distance along the camera's axis, world units; below 0 behind the camera
+  glm::dvec2 at{0.0};    // px from the picture's upper left corner; valid if `depth` is above 0
   glm::dvec2 size{0.0};  // size of the picture, px
 
   /// Returns whether the point lies in the picture, at least `margin` px from its sides. The caller checks
-  /// `ahead`.
+  /// `depth`.
   bool is_within(double margin) const {
     return at.x >= margin && at.x < size.x - margin && at.y >= margin && at.y < size.y - margin;
   }
 };
 
 /// Projects a point, in the frame of the camera's position, into its picture.
-inline PointSeen see(const Camera& camera, const glm::vec3& point) {
+inline ProjectedPoint project_point(const Camera& camera, const glm::vec3& point) {
   const glm::dvec3 v = glm::transpose(camera.rotation) * (glm::dvec3(point) - camera.position);
   return {v.z,
           {camera.fx * v.x / v.z + camera.cx, camera.fy * v.y / v.z + camera.cy},

@@ -28,9 +28,9 @@ double mean_in_view(const Model& model, std::span<const Camera> cameras, const M
     const Camera camera = into_axes(cameras[k], axes);
     std::size_t looked_at = 0, seen = 0;
     for (std::size_t i = 0; i < model.count(); i += model.count() / most_gaussians + 1) {
-      const PointSeen middle = see(camera, model.position[i]);
+      const ProjectedPoint middle = project_point(camera, model.position[i]);
       ++looked_at;
-      if (middle.ahead > 0.0 && middle.is_within(0.0)) ++seen;
+      if (middle.depth > 0.0 && middle.is_within(0.0)) ++seen;
     }
     shares[k] = static_cast<double>(seen) / static_cast<double>(looked_at);
   });

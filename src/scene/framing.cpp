@@ -192,7 +192,7 @@ Camera frame_model(const CoredModel& cored, int width, int height, double fov_de
   return camera;
 }
 
-double near_for(const CoredModel& cored) {
+double near_plane_for(const CoredModel& cored) {
   // A framed model starts about one radius from the camera; a tenth of it leaves room to come closer.
   return std::min(near_default, 0.1 * cored.core.radius);
 }

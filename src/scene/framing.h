@@ -61,6 +61,6 @@ std::vector<Camera> orbit(const CoredModel& cored, int count, int width, int hei
                           double fov_degrees = default_fov_degrees, const Capture& capture = {});
 
 /// Returns near_default, or less for a model so small that near_default would cut into it when framed.
-double near_for(const CoredModel& cored);
+double near_plane_for(const CoredModel& cored);
 
 }  // namespace binosplat

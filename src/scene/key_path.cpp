@@ -85,11 +85,12 @@ KeyPath::KeyPath(std::span<const Camera> keys, const std::optional<double>& seco
   for (const Camera& key : keys) {
     // All at one size: otherwise pixels between keys of different aspects would not be square.
     Knot knot{.place = key.position,
-              .turned = glm::normalize(glm::quat_cast(key.rotation)),
+              .orientation = glm::normalize(glm::quat_cast(key.rotation)),
               .lens = lens_of(resized(key, first_.width, first_.height))};
     if (!seconds) knot.at = *key.time - *keys[0].time;
     // q and -q are one orientation: the nearer one avoids the long way round.
-    if (!knots_.empty() && glm::dot(knot.turned, knots_.back().turned) < 0.0) knot.turned = -knot.turned;
+    if (!knots_.empty() && glm::dot(knot.orientation, knots_.back().orientation) < 0.0)
+      knot.orientation = -knot.orientation;
     knots_.push_back(knot);
   }
   if (seconds) pace(*seconds);
@@ -103,7 +104,8 @@ void KeyPath::pace(double seconds) {
   double all = 0.0;
   for (std::size_t k = 1; k < knots_.size(); ++k) {
     ways.push_back(glm::distance(knots_[k].place, knots_[k - 1].place));
-    turns.push_back(glm::length(rotation_vector(glm::conjugate(knots_[k - 1].turned) * knots_[k].turned)));
+    turns.push_back(
+        glm::length(rotation_vector(glm::conjugate(knots_[k - 1].orientation) * knots_[k].orientation)));
     all += ways.back();
   }
   const double usual = all > 0.0 ? all / static_cast<double>(ways.size()) : 1.0;
@@ -119,24 +121,24 @@ void KeyPath::find_slopes() {
   // From each knot to the next.
   struct Chord {
     double apart;
-    glm::dvec3 going, turning;
-    glm::dvec4 zooming;
+    glm::dvec3 velocity, angular_velocity;
+    glm::dvec4 lens_velocity;
   };
   std::vector<Chord> chords;
   for (std::size_t k = 1; k < knots_.size(); ++k) {
     const Knot &a = knots_[k - 1], &b = knots_[k];
     const double apart = b.at - a.at;
     chords.push_back({apart, (b.place - a.place) / apart,
-                      rotation_vector(glm::conjugate(a.turned) * b.turned) / apart,
+                      rotation_vector(glm::conjugate(a.orientation) * b.orientation) / apart,
                       (b.lens - a.lens) / apart});
   }
   for (std::size_t k = 0; k < knots_.size(); ++k) {
     const Chord& in = chords[k == 0 ? 0 : k - 1];
     const Chord& out = chords[std::min(k, chords.size() - 1)];
     Knot& knot = knots_[k];
-    knot.going = slope_between(in.going, out.going, in.apart, out.apart);
-    knot.turning = slope_between(in.turning, out.turning, in.apart, out.apart);
-    knot.zooming = slope_between(in.zooming, out.zooming, in.apart, out.apart);
+    knot.velocity = slope_between(in.velocity, out.velocity, in.apart, out.apart);
+    knot.angular_velocity = slope_between(in.angular_velocity, out.angular_velocity, in.apart, out.apart);
+    knot.lens_velocity = slope_between(in.lens_velocity, out.lens_velocity, in.apart, out.apart);
   }
 }
 
@@ -148,16 +150,16 @@ Camera KeyPath::at(double seconds) const {
   const double apart = b.at - a.at, u = (time - a.at) / apart;
   Camera camera = first_;
   camera.time = seconds;
-  camera.position = cubic_between(a.place, a.going, b.place, b.going, apart, u);
+  camera.position = cubic_between(a.place, a.velocity, b.place, b.velocity, apart, u);
   // glm::slerp takes the shorter arc, so it would jump if a section turns by more than half a turn.
   const auto spherical = [](const glm::dquat& from, const glm::dquat& to, double share) {
     // Opposite quaternions are one orientation; glm::mix would divide by 0.
     return glm::dot(from, to) <= -1.0 ? from : glm::mix(from, to, share);
   };
-  camera.rotation = glm::mat3_cast(
-      glm::normalize(cubic(a.turned, a.turned * turn_by(a.turning * (apart / 3.0)),
-                           b.turned * turn_by(b.turning * (-apart / 3.0)), b.turned, u, spherical)));
-  const glm::dvec4 lens = cubic_between(a.lens, a.zooming, b.lens, b.zooming, apart, u);
+  camera.rotation = glm::mat3_cast(glm::normalize(
+      cubic(a.orientation, a.orientation * turn_by(a.angular_velocity * (apart / 3.0)),
+            b.orientation * turn_by(b.angular_velocity * (-apart / 3.0)), b.orientation, u, spherical)));
+  const glm::dvec4 lens = cubic_between(a.lens, a.lens_velocity, b.lens, b.lens_velocity, apart, u);
   camera.fx = std::exp(lens.x) * camera.width;
   camera.fy = std::exp(lens.y) * camera.height;
   camera.cx = lens.z * camera.width;

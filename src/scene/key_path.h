@@ -37,10 +37,10 @@ class KeyPath {
  private:
   struct Knot {
     double at = 0.0;  // s
-    glm::dvec3 place{0.0}, going{0.0};
-    glm::dquat turned{1, 0, 0, 0};  // the camera's axes in the world
-    glm::dvec3 turning{0.0};        // radians a second, in the camera's axes
-    glm::dvec4 lens{0.0}, zooming{0.0};
+    glm::dvec3 place{0.0}, velocity{0.0};
+    glm::dquat orientation{1, 0, 0, 0};  // the camera's axes in the world
+    glm::dvec3 angular_velocity{0.0};    // radians a second, in the camera's axes
+    glm::dvec4 lens{0.0}, lens_velocity{0.0};
   };
 
   void pace(double seconds);

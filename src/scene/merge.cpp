@@ -44,20 +44,20 @@ double opacity_of(const Model& model, std::uint32_t i) {
 }
 
 /// `area` is its shadow's.
-MergedPart part_of(const Model& model, std::uint32_t i, double area) {
+Cluster single_cluster(const Model& model, std::uint32_t i, double area) {
   const glm::vec4& q = model.rotation[i];
   const glm::dmat3 turn = glm::mat3_cast(glm::dquat(q.x, q.y, q.z, q.w));
   const glm::dvec3 s(model.scale[i]);
   const glm::dmat3 scaled(turn[0] * s.x, turn[1] * s.y, turn[2] * s.z);
-  MergedPart part{.mean = model.position[i], .covariance = scaled * glm::transpose(scaled)};
-  part.weight = opacity_of(model, i) * area;
+  Cluster cluster{.mean = model.position[i], .covariance = scaled * glm::transpose(scaled)};
+  cluster.weight = opacity_of(model, i) * area;
   const std::size_t first = std::size_t{i} * 3 * static_cast<std::size_t>(sh_count(model.degree));
-  for (int c = 0; c < 3; ++c) part.colour[c] = sh_c0 * model.sh[first + static_cast<std::size_t>(c)];
-  return part;
+  for (int c = 0; c < 3; ++c) cluster.colour[c] = sh_c0 * model.sh[first + static_cast<std::size_t>(c)];
+  return cluster;
 }
 
-MergedPart sum_of(const MergedPart& a, const MergedPart& b) {
-  MergedPart sum{.weight = a.weight + b.weight};
+Cluster sum_of(const Cluster& a, const Cluster& b) {
+  Cluster sum{.weight = a.weight + b.weight};
   const double share = b.weight / sum.weight;
   const glm::dvec3 apart = b.mean - a.mean;
   sum.mean = a.mean + share * apart;
@@ -73,8 +73,8 @@ double log_det(glm::dmat3 covariance, double least) {
   return std::log(std::max(glm::determinant(covariance), least * least * least));
 }
 
-double cost_of(const MergedPart& a, const MergedPart& b) {
-  const MergedPart sum = sum_of(a, b);
+double cost_of(const Cluster& a, const Cluster& b) {
+  const Cluster sum = sum_of(a, b);
   const double trace = sum.covariance[0][0] + sum.covariance[1][1] + sum.covariance[2][2];
   const double least = std::max(thinnest * thinnest * trace, 1e-40);
   const double shape =
@@ -85,12 +85,12 @@ double cost_of(const MergedPart& a, const MergedPart& b) {
 }
 
 struct Means {
-  const std::vector<MergedPart>& parts;
+  const std::vector<Cluster>& clusters;
   const std::vector<std::uint32_t>& chosen;
 
   std::size_t kdtree_get_point_count() const { return chosen.size(); }
   double kdtree_get_pt(std::size_t i, std::size_t axis) const {
-    return parts[chosen[i]].mean[static_cast<glm::length_t>(axis)];
+    return clusters[chosen[i]].mean[static_cast<glm::length_t>(axis)];
   }
   template <typename Box>
   bool kdtree_get_bbox(Box&) const {
@@ -108,15 +108,15 @@ void append_merged(Model& merged, const Model& model, std::span<const std::uint3
     append(merged, model, members.front(), 1);
     return;
   }
-  MergedPart sum;
+  Cluster sum;
   double depth = 0.0;  // optical depth times area
   std::vector<double> sh(values);
   for (const std::uint32_t i : members) {
     const double area = seen_area(model, model.scale[i], pixel);
-    const MergedPart part = part_of(model, i, area);
-    sum = i == members.front() ? part : sum_of(sum, part);
+    const Cluster cluster = single_cluster(model, i, area);
+    sum = i == members.front() ? cluster : sum_of(sum, cluster);
     depth -= std::log(1.0 - opacity_of(model, i)) * area;
-    for (std::size_t k = 0; k < values; ++k) sh[k] += part.weight * model.sh[i * values + k];
+    for (std::size_t k = 0; k < values; ++k) sh[k] += cluster.weight * model.sh[i * values + k];
   }
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(
       Eigen::Map<const Eigen::Matrix3d>(&sum.covariance[0][0]));
@@ -135,23 +135,27 @@ void append_merged(Model& merged, const Model& model, std::span<const std::uint3
 }
 
 Merger::Merger(const Model& model, double pixel)
-    : model_(model), next_(model.count()), ages_(model.count()), near_(model.count()), left_(model.count()) {
+    : model_(model),
+      next_(model.count()),
+      merge_counts_(model.count()),
+      near_(model.count()),
+      left_(model.count()) {
   std::iota(next_.begin(), next_.end(), 0u);
-  last_ = into_ = next_;
+  last_ = parent_ = next_;
   for (const std::uint32_t i : next_)
-    parts_.push_back(part_of(model, i, seen_area(model, model.scale[i], pixel)));
+    clusters_.push_back(single_cluster(model, i, seen_area(model, model.scale[i], pixel)));
 }
 
-void Merger::bring_to(std::size_t target) {
+void Merger::merge_to(std::size_t target) {
   while (left_ > std::max<std::size_t>(target, 1)) {
     if (cheapest_.empty()) find_neighbours();
-    const Offer offer = cheapest_.top();
+    const MergeCandidate candidate = cheapest_.top();
     cheapest_.pop();
-    if (into_[offer.a] != offer.a || ages_[offer.a] != offer.age_a) continue;
-    if (into_[offer.b] != offer.b || ages_[offer.b] != offer.age_b) {
-      make_offer(offer.a);
+    if (parent_[candidate.a] != candidate.a || merge_counts_[candidate.a] != candidate.age_a) continue;
+    if (parent_[candidate.b] != candidate.b || merge_counts_[candidate.b] != candidate.age_b) {
+      add_candidate(candidate.a);
     } else {
-      merge(std::min(offer.a, offer.b), std::max(offer.a, offer.b));
+      merge(std::min(candidate.a, candidate.b), std::max(candidate.a, candidate.b));
     }
   }
 }
@@ -170,21 +174,21 @@ Model Merger::result(double pixel) const {
 
 std::vector<std::uint32_t> Merger::living() const {
   std::vector<std::uint32_t> all;
-  for (std::uint32_t i = 0; i < into_.size(); ++i) {
-    if (into_[i] == i) all.push_back(i);
+  for (std::uint32_t i = 0; i < parent_.size(); ++i) {
+    if (parent_[i] == i) all.push_back(i);
   }
   return all;
 }
 
 void Merger::find_neighbours() {
   const std::vector<std::uint32_t> all = living();
-  const Means means{parts_, all};
+  const Means means{clusters_, all};
   const Tree tree(3, means, nanoflann::KDTreeSingleIndexAdaptorParams(16));
   std::array<std::uint32_t, neighbours + 1> found{};
   std::array<double, neighbours + 1> distances{};
   for (const std::uint32_t i : all) {
     const std::size_t count =
-        tree.knnSearch(&parts_[i].mean[0], found.size(), found.data(), distances.data());
+        tree.knnSearch(&clusters_[i].mean[0], found.size(), found.data(), distances.data());
     for (std::size_t k = 0; k < count; ++k) {
       if (all[found[k]] != i) near_[i].push_back(all[found[k]]);
     }
@@ -195,24 +199,25 @@ void Merger::find_neighbours() {
       if (std::find(others.begin(), others.end(), i) == others.end()) others.push_back(i);
     }
   }
-  for (const std::uint32_t i : all) make_offer(i);
+  for (const std::uint32_t i : all) add_candidate(i);
 }
 
-void Merger::make_offer(std::uint32_t a) {
-  Offer best{INFINITY, a, a, ages_[a], 0};
+void Merger::add_candidate(std::uint32_t a) {
+  MergeCandidate best{INFINITY, a, a, merge_counts_[a], 0};
   for (std::uint32_t& k : near_[a]) {
     k = cluster_of(k);
     if (k == a) continue;
-    const double cost = cost_of(parts_[std::min(a, k)], parts_[std::max(a, k)]);
-    if (std::tie(cost, k) < std::tie(best.cost, best.b)) best = {cost, a, k, ages_[a], ages_[k]};
+    const double cost = cost_of(clusters_[std::min(a, k)], clusters_[std::max(a, k)]);
+    if (std::tie(cost, k) < std::tie(best.cost, best.b))
+      best = {cost, a, k, merge_counts_[a], merge_counts_[k]};
   }
   if (best.b != a) cheapest_.push(best);
 }
 
 void Merger::merge(std::uint32_t a, std::uint32_t b) {
-  parts_[a] = sum_of(parts_[a], parts_[b]);
-  ++ages_[a];
-  into_[b] = a;
+  clusters_[a] = sum_of(clusters_[a], clusters_[b]);
+  ++merge_counts_[a];
+  parent_[b] = a;
   next_[last_[a]] = b;
   last_[a] = last_[b];
   --left_;
@@ -221,7 +226,7 @@ void Merger::merge(std::uint32_t a, std::uint32_t b) {
   for (const std::uint32_t of : {a, b}) {
     for (const std::uint32_t k : near_[of]) {
       const std::uint32_t now = cluster_of(k);
-      const glm::dvec3 apart = parts_[now].mean - parts_[a].mean;
+      const glm::dvec3 apart = clusters_[now].mean - clusters_[a].mean;
       if (now != a) all.emplace_back(glm::dot(apart, apart), now);
     }
   }
@@ -231,11 +236,11 @@ void Merger::merge(std::uint32_t a, std::uint32_t b) {
   near_[a].clear();
   for (const auto& [distance, k] : all) near_[a].push_back(k);
   near_[b] = {};
-  make_offer(a);
+  add_candidate(a);
 }
 
 std::uint32_t Merger::cluster_of(std::uint32_t k) {
-  while (into_[k] != k) k = into_[k] = into_[into_[k]];
+  while (parent_[k] != k) k = parent_[k] = parent_[parent_[k]];
   return k;
 }
 

@@ -26,7 +26,7 @@ namespace binosplat {
 void append_merged(Model& merged, const Model& model, std::span<const std::uint32_t> members, double pixel);
 
 /// One Gaussian, or a cluster of merged Gaussians.
-struct MergedPart {
+struct Cluster {
   glm::dvec3 mean{0.0};
   glm::dmat3 covariance{0.0};
   double weight = 0.0;     // opacity times area
@@ -42,7 +42,7 @@ class Merger {
   Merger(const Model& model, double pixel);
 
   /// Merges until at most `target` clusters are left, or one.
-  void bring_to(std::size_t target);
+  void merge_to(std::size_t target);
 
   /// Returns one Gaussian for each cluster, computed from all of its members (append_merged), in the order of
   /// their first members.
@@ -50,11 +50,11 @@ class Merger {
 
  private:
   /// The cheapest merge of cluster `a`. A cluster's number is that of its first member.
-  struct Offer {
+  struct MergeCandidate {
     double cost;
     std::uint32_t a, b;
-    std::uint32_t age_a, age_b;                 // ages of both clusters when this was computed
-    bool operator<(const Offer& other) const {  // the cheapest on top
+    std::uint32_t age_a, age_b;                          // ages of both clusters when this was computed
+    bool operator<(const MergeCandidate& other) const {  // the cheapest on top
       return std::tie(other.cost, other.a, other.b) < std::tie(cost, a, b);
     }
   };
@@ -62,17 +62,17 @@ class Merger {
   std::vector<std::uint32_t> living() const;
   /// Finds the neighbours of all clusters: at first, and again when no cluster has a neighbour left.
   void find_neighbours();
-  void make_offer(std::uint32_t a);
+  void add_candidate(std::uint32_t a);
   void merge(std::uint32_t a, std::uint32_t b);
   std::uint32_t cluster_of(std::uint32_t k);
 
   const Model& model_;
-  std::vector<MergedPart> parts_;
-  std::vector<std::uint32_t> next_, last_;  // the members of each cluster as a linked list from its first
-  std::vector<std::uint32_t> into_;         // itself, or the cluster it was merged into
-  std::vector<std::uint32_t> ages_;         // merges of each cluster so far
+  std::vector<Cluster> clusters_;
+  std::vector<std::uint32_t> next_, last_;   // the members of each cluster as a linked list from its first
+  std::vector<std::uint32_t> parent_;        // itself, or the cluster it was merged into
+  std::vector<std::uint32_t> merge_counts_;  // merges of each cluster so far
   std::vector<std::vector<std::uint32_t>> near_;
-  std::priority_queue<Offer> cheapest_;
+  std::priority_queue<MergeCandidate> cheapest_;
   std::size_t left_;
 };
 

@@ -144,7 +144,7 @@ Bounds core_bounds(const Model& model) {
   return bounds;
 }
 
-Box reach_of(const Model& model, std::span<const std::uint32_t> indices) {
+Box bounds_of(const Model& model, std::span<const std::uint32_t> indices) {
   Box box;
   for (const std::uint32_t i : indices) {
     const glm::vec4& q = model.rotation[i];
@@ -156,10 +156,10 @@ Box reach_of(const Model& model, std::span<const std::uint32_t> indices) {
   return box;
 }
 
-Box reach_of(const Model& model) {
+Box bounds_of(const Model& model) {
   std::vector<std::uint32_t> all(model.count());
   std::iota(all.begin(), all.end(), 0u);
-  return reach_of(model, all);
+  return bounds_of(model, all);
 }
 
 }  // namespace binosplat

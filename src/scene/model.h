@@ -124,7 +124,7 @@ struct Box {
 };
 
 /// Return the box around the one-sigma ellipsoids of all or some Gaussians, relative to the origin.
-Box reach_of(const Model& model);
-Box reach_of(const Model& model, std::span<const std::uint32_t> indices);
+Box bounds_of(const Model& model);
+Box bounds_of(const Model& model, std::span<const std::uint32_t> indices);
 
 }  // namespace binosplat

@@ -21,7 +21,7 @@ void hide(Model& model, std::size_t first, std::size_t count) {
 
 // Returns the first free block, so that used ones stay together. New blocks also get a position of the model,
 // so that no bounding box grows.
-std::size_t ModelChunks::take_block(Model& model, const glm::vec3& where) {
+std::size_t ModelChunks::allocate_block(Model& model, const glm::vec3& where) {
   if (free_.empty()) {
     const std::size_t before = owners_.size();
     const std::size_t more = std::clamp<std::size_t>(before / 8, 1, blocks_at_once);
@@ -66,8 +66,8 @@ void ModelChunks::replace(Model& model, std::size_t chunk, const Model& by) {
 
 void ModelChunks::replace(Model& model, std::span<const Replacement> all) {
   std::vector<std::vector<std::size_t>> before;  // earlier blocks of the chunks
-  for (const Replacement& each : all) before.push_back(give_back(each.chunk));
-  for (const auto& [chunk, by] : all) take_place(model, chunk, *by);
+  for (const Replacement& each : all) before.push_back(free_blocks(each.chunk));
+  for (const auto& [chunk, by] : all) fill_blocks(model, chunk, *by);
   const auto fill = [&](std::size_t k) {
     for (const std::size_t b : before[k])
       if (changes_[b] == Change::emptied) hide(model, b * block, block);
@@ -90,7 +90,7 @@ void ModelChunks::replace(Model& model, std::span<const Replacement> all) {
   frame_chunks(all.size(), all.size() * frame_chunk_numbers / numbers + 1, fill_some);
 }
 
-std::vector<std::size_t> ModelChunks::give_back(std::size_t chunk) {
+std::vector<std::size_t> ModelChunks::free_blocks(std::size_t chunk) {
   for (const std::size_t b : blocks_[chunk]) {
     note(b, Change::emptied);
     free_.push(b);
@@ -98,10 +98,10 @@ std::vector<std::size_t> ModelChunks::give_back(std::size_t chunk) {
   return std::exchange(blocks_[chunk], {});
 }
 
-void ModelChunks::take_place(Model& model, std::size_t chunk, const Model& by) {
+void ModelChunks::fill_blocks(Model& model, std::size_t chunk, const Model& by) {
   blocks_[chunk].reserve((by.count() + block - 1) / block);
   for (std::size_t first = 0; first < by.count(); first += block) {
-    const std::size_t b = take_block(model, by.position.front());
+    const std::size_t b = allocate_block(model, by.position.front());
     owners_[b] = static_cast<std::uint32_t>(chunk);
     note(b, Change::filled);
     blocks_[chunk].push_back(b);

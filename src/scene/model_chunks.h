@@ -56,9 +56,9 @@ class ModelChunks {
 
  private:
   enum class Change : std::uint8_t { none, filled, emptied };
-  std::vector<std::size_t> give_back(std::size_t chunk);
-  void take_place(Model& model, std::size_t chunk, const Model& by);
-  std::size_t take_block(Model& model, const glm::vec3& where);
+  std::vector<std::size_t> free_blocks(std::size_t chunk);
+  void fill_blocks(Model& model, std::size_t chunk, const Model& by);
+  std::size_t allocate_block(Model& model, const glm::vec3& where);
   void note(std::size_t b, Change change);
 
   std::vector<std::vector<std::size_t>> blocks_;  // by chunk

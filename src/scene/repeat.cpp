@@ -69,7 +69,7 @@ Model repeat(Model model, int nx, int nz, double spacing) {
   }
   const std::vector<glm::dvec3> moves = moves_of(nx, nz, spacing, model.axes);
   if (model.scaffold) {
-    Model repeated = stand_in(repeat(*model.scaffold, moves));
+    Model repeated = placeholder_model(repeat(*model.scaffold, moves));
     repeated.kernel_px2 = model.kernel_px2;
     repeated.antialiased = model.antialiased;
     repeated.antialiased_by = model.antialiased_by;

@@ -14,7 +14,7 @@ constexpr float usual_opacity = 0.5f;
 
 }  // namespace
 
-Model stand_in(std::shared_ptr<Scaffold> scaffold) {
+Model placeholder_model(std::shared_ptr<Scaffold> scaffold) {
   Model model;
   model.name = scaffold->name;
   model.format = describe(*scaffold);

@@ -56,7 +56,7 @@ bool is_of(const ThresholdCalibration& calibration, const Model& model) {
   return calibration.gaussians == model.count() && calibration.hash == model_hash(model);
 }
 
-double reach_of(const ThresholdCalibration& calibration) {
+double validity_distance(const ThresholdCalibration& calibration) {
   if (calibration.views.size() < 2) return INFINITY;
   double reach = 0.0;
   for (const CalibratedView& view : calibration.views)

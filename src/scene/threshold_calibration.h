@@ -63,7 +63,7 @@ bool is_of(const ThresholdCalibration& calibration, const Model& model);
 /// Returns how far from a calibrated view the calibration applies, world units: twice the largest distance
 /// between a view and its nearest neighbour. It is infinite for fewer than two views. Compares all pairs of
 /// views.
-double reach_of(const ThresholdCalibration& calibration);
+double validity_distance(const ThresholdCalibration& calibration);
 
 /// Returns whether a camera at `position`, world units, is within `reach` of a calibrated view.
 bool covers(const ThresholdCalibration& calibration, const glm::dvec3& position, double reach);

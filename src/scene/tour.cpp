@@ -76,7 +76,7 @@ std::vector<Camera> stops_of(const std::vector<Camera>& heads, double units_per_
 }
 
 /// Distance between two stops for ordering, in metres.
-double way_between(const Camera& a, const Camera& b) {
+double distance_between(const Camera& a, const Camera& b) {
   return glm::distance(a.position, b.position) + metres_a_radian * turn_between(a, b);
 }
 
@@ -86,13 +86,13 @@ void shorten(std::vector<Camera>& stops) {
   for (bool shorter = true; shorter;) {
     shorter = false;
     for (std::size_t i = 0; i + 2 < stops.size(); ++i) {
-      double into = way_between(stops[i], stops[i + 1]);
+      double into = distance_between(stops[i], stops[i + 1]);
       for (std::size_t j = i + 2; j < stops.size(); ++j) {
         const bool last = j + 1 == stops.size();
-        const double now = into + (last ? 0.0 : way_between(stops[j], stops[j + 1]));
-        const double turned_into = way_between(stops[i], stops[j]);
+        const double now = into + (last ? 0.0 : distance_between(stops[j], stops[j + 1]));
+        const double turned_into = distance_between(stops[i], stops[j]);
         if (turned_into > now - worth) continue;
-        if (turned_into + (last ? 0.0 : way_between(stops[i + 1], stops[j + 1])) > now - worth) continue;
+        if (turned_into + (last ? 0.0 : distance_between(stops[i + 1], stops[j + 1])) > now - worth) continue;
         std::reverse(stops.begin() + static_cast<std::ptrdiff_t>(i) + 1,
                      stops.begin() + static_cast<std::ptrdiff_t>(j) + 1);
         into = turned_into;
@@ -104,7 +104,7 @@ void shorten(std::vector<Camera>& stops) {
 
 /// Velocity and angular velocity between two poses, as shares of the motion's limits.
 struct Velocity {
-  glm::dvec3 going, turning;
+  glm::dvec3 velocity, angular_velocity;
 };
 
 Velocity velocity(const Camera& a, const Camera& b, const Motion& motion) {
@@ -117,7 +117,7 @@ Velocity velocity(const Camera& a, const Camera& b, const Motion& motion) {
 
 /// Returns the factor by which a section must be slower to keep speed and change of velocity within the
 /// limits; below 1 if it may be faster.
-double haste(const KeyPath& path, double begin, double end, const Motion& motion) {
+double slowdown(const KeyPath& path, double begin, double end, const Motion& motion) {
   constexpr int samples = 16;
   const double step = (end - begin) / samples;
   double most = 0.0;
@@ -126,10 +126,10 @@ double haste(const KeyPath& path, double begin, double end, const Motion& motion
   for (int n = 1; n <= samples; ++n) {
     const Camera next = path.at(begin + n * step);
     const Velocity now = velocity(last, next, motion);
-    most = std::max({most, glm::length(now.going), glm::length(now.turning)});
+    most = std::max({most, glm::length(now.velocity), glm::length(now.angular_velocity)});
     if (before) {
-      const double change =
-          std::hypot(glm::distance(now.going, before->going), glm::distance(now.turning, before->turning));
+      const double change = std::hypot(glm::distance(now.velocity, before->velocity),
+                                       glm::distance(now.angular_velocity, before->angular_velocity));
       most = std::max(most, std::sqrt(seconds_to_full_speed * change / step));
     }
     last = next;
@@ -161,7 +161,7 @@ std::vector<Camera> keys_through(std::vector<Camera> stops, const Motion& motion
   }
   stops[0].time = 0.0;
   for (std::size_t k = 1; k < stops.size(); ++k)
-    stops[k].time = *stops[k - 1].time + std::sqrt(way_between(stops[k - 1], stops[k]));
+    stops[k].time = *stops[k - 1].time + std::sqrt(distance_between(stops[k - 1], stops[k]));
   const KeyPath way(stops);
   std::vector<Camera> keys = {stops[0]};
   for (std::size_t k = 1; k < stops.size(); ++k) {
@@ -173,7 +173,7 @@ std::vector<Camera> keys_through(std::vector<Camera> stops, const Motion& motion
 }
 
 /// Sets the keys' times, as short as the limits of speed and change of velocity allow.
-void give_times(std::vector<Camera>& keys, const Motion& motion) {
+void set_times(std::vector<Camera>& keys, const Motion& motion) {
   constexpr int rounds = 16;      // a section's speed affects its neighbours
   constexpr double least = 1e-6;  // s
   std::vector<double> seconds = seconds_between(keys, motion);
@@ -184,7 +184,7 @@ void give_times(std::vector<Camera>& keys, const Motion& motion) {
     const KeyPath path(keys);
     double most = 1.0;
     for (std::size_t k = 1; k < keys.size(); ++k) {
-      const double factor = haste(path, *keys[k - 1].time, *keys[k].time, motion);
+      const double factor = slowdown(path, *keys[k - 1].time, *keys[k].time, motion);
       seconds[k - 1] *= factor;
       most = std::max(most, factor);
     }
@@ -195,7 +195,7 @@ void give_times(std::vector<Camera>& keys, const Motion& motion) {
 
 }  // namespace
 
-std::vector<Camera> heads_of(std::span<const Camera> cameras) {
+std::vector<Camera> heads_from_pairs(std::span<const Camera> cameras) {
   constexpr std::string_view left_end = "_left", right_end = "_right";
   std::map<std::string, const Camera*, std::less<>> by_name;
   for (const Camera& camera : cameras) by_name.emplace(camera.name, &camera);
@@ -224,8 +224,8 @@ const std::vector<Motion>& head_motions() {
   return motions;
 }
 
-double metre_of(std::span<const Camera> cameras) {
-  const std::vector<Camera> heads = heads_of(cameras);
+double estimated_metre(std::span<const Camera> cameras) {
+  const std::vector<Camera> heads = heads_from_pairs(cameras);
   double extent = 0.0;
   for (const Camera& head : heads) extent = std::max(extent, glm::distance(head.position, heads[0].position));
   std::vector<double> nearest;
@@ -241,7 +241,7 @@ double metre_of(std::span<const Camera> cameras) {
 }
 
 std::vector<Camera> tour(std::span<const Camera> cameras, const TourSettings& settings) {
-  const std::vector<Camera> heads = heads_of(cameras);
+  const std::vector<Camera> heads = heads_from_pairs(cameras);
   if (heads.size() < 2) {
     fail(
         "a tour needs two cameras or more, and there is {}: name a file with more by --cameras, or go around "
@@ -257,7 +257,7 @@ std::vector<Camera> tour(std::span<const Camera> cameras, const TourSettings& se
   }
   shorten(stops);
   std::vector<Camera> keys = keys_through(std::move(stops), settings.motion);
-  give_times(keys, settings.motion);
+  set_times(keys, settings.motion);
   std::vector<Camera> frames = frames_of(KeyPath(keys), settings.frames_per_second, settings.seconds);
   for (std::size_t n = 0; n < frames.size(); ++n) {
     frames[n].name = fmt::format("tour_{:05}", n);

@@ -12,7 +12,7 @@ namespace binosplat {
 
 /// Returns the cameras in their order. The head between the eyes replaces each pair, NAME_left and
 /// NAME_right, at the index of the first eye.
-std::vector<Camera> heads_of(std::span<const Camera> cameras);
+std::vector<Camera> heads_from_pairs(std::span<const Camera> cameras);
 
 /// The highest speed and rotation rate of a head. It accelerates from rest to full speed or rate in at least
 /// 0.15 s, and no other change of its velocity is quicker.
@@ -28,8 +28,8 @@ const std::vector<Motion>& head_motions();
 
 /// Estimates a metre in world units if no scale is known: photographers move about a step between two photos.
 /// Returns the median distance of a camera to its nearest neighbour at another place, or 1 for fewer than two
-/// places. Eyes of a pair count as one head (heads_of()), as in tours.
-double metre_of(std::span<const Camera> cameras);
+/// places. Eyes of a pair count as one head (heads_from_pairs()), as in tours.
+double estimated_metre(std::span<const Camera> cameras);
 
 struct TourSettings {
   Motion motion;

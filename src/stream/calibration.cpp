@@ -32,7 +32,7 @@ std::vector<std::size_t> sample_of(const LevelChoice& choice, std::span<const st
   std::vector<std::pair<double, std::size_t>> keys;  // and chunks
   for (std::size_t c = 0; c < levels.size(); ++c) {
     if (levels[c] == 0) continue;
-    const double lost = choice.lost(0, c, levels[c]);
+    const double lost = choice.error_of_chunk(0, c, levels[c]);
     keys.emplace_back(std::log(random.uniform(1e-12, 1.0)) / std::sqrt(std::max(lost, nothing)), c);
   }
   const std::size_t count = std::min(keys.size(), most);
@@ -42,7 +42,7 @@ std::vector<std::size_t> sample_of(const LevelChoice& choice, std::span<const st
   return chunks;
 }
 
-void keep_what_fits(ChunkModels& others, const Model& model, const ModelChunks& chunks) {
+void drop_beyond_room(ChunkModels& others, const Model& model, const ModelChunks& chunks) {
   std::size_t taken = chunks.gaussians() + chunks.size() * ModelChunks::block, kept = 0;  // half empty blocks
   for (; kept < others.chunks.size(); ++kept) {
     taken += others.models[kept].count();
@@ -52,7 +52,7 @@ void keep_what_fits(ChunkModels& others, const Model& model, const ModelChunks& 
   others.models.resize(kept);
 }
 
-ChunkModels exchange(const ChunkModels& others, Model& model, ModelChunks& chunks) {
+ChunkModels swap_chunks(const ChunkModels& others, Model& model, ModelChunks& chunks) {
   ChunkModels before{others.chunks, {}};
   std::vector<ModelChunks::Replacement> replacements;
   for (std::size_t k = 0; k < others.chunks.size(); ++k) {
@@ -66,7 +66,7 @@ ChunkModels exchange(const ChunkModels& others, Model& model, ModelChunks& chunk
 SampleError sample_error(const LevelChoice& choice, std::span<const std::size_t> levels,
                          std::span<const std::size_t> sample, double measured) {
   SampleError error{.measured = measured, .all = choice.error_of_view(0, levels), .chunks = sample.size()};
-  for (const std::size_t chunk : sample) error.predicted += choice.lost(0, chunk, levels[chunk]);
+  for (const std::size_t chunk : sample) error.predicted += choice.error_of_chunk(0, chunk, levels[chunk]);
   return error;
 }
 

@@ -14,7 +14,7 @@
 
 namespace binosplat {
 
-/// Largest sample for which a model keeps room (LodFiles::spare).
+/// Largest sample for which a model keeps room (LodFiles::extra_room).
 inline constexpr std::size_t sample_room = 24;
 
 /// Draws up to `most` random chunks that are not at their finest level. A chunk's likelihood grows with the
@@ -30,10 +30,10 @@ struct ChunkModels {
 };
 
 /// Drops the last chunks of `others` for which the model's `room` may be too small.
-void keep_what_fits(ChunkModels& others, const Model& model, const ModelChunks& chunks);
+void drop_beyond_room(ChunkModels& others, const Model& model, const ModelChunks& chunks);
 
 /// Replaces these chunks of the model by `others`, and returns their former Gaussians.
-ChunkModels exchange(const ChunkModels& others, Model& model, ModelChunks& chunks);
+ChunkModels swap_chunks(const ChunkModels& others, Model& model, ModelChunks& chunks);
 
 /// The error of a sample of chunks in a view: squared, mean over pixels and channels.
 struct SampleError {
@@ -54,7 +54,7 @@ class LevelCalibration {
   double factor() const { return measured_ / chunks_; }
   /// The factor for choosing levels, at least 1/8. Otherwise a sample with hardly any error would allow
   /// levels so coarse that the next sample refutes them.
-  double to_choose_by() const { return std::max(factor(), 1.0 / 8.0); }
+  double factor_for_choice() const { return std::max(factor(), 1.0 / 8.0); }
 
  private:
   static constexpr double prior = 8.0;  // chunks that initially count as measured to be as predicted

@@ -37,9 +37,9 @@ glm::dvec3 detail_direction(std::size_t d) {
   return direction;
 }
 
-std::vector<std::size_t> choose_apart(const std::vector<LodChunk>& chunks,
-                                      const std::vector<glm::dvec3>& eyes, std::size_t most, double enough,
-                                      std::span<const std::size_t> before) {
+std::vector<std::size_t> choose_by_spacing(const std::vector<LodChunk>& chunks,
+                                           const std::vector<glm::dvec3>& eyes, std::size_t most,
+                                           double spacing_wanted, std::span<const std::size_t> before) {
   struct Coarse {
     double apart;  // spacing of its Gaussians, radians
     std::size_t chunk;
@@ -55,7 +55,7 @@ std::vector<std::size_t> choose_apart(const std::vector<LodChunk>& chunks,
     const double diagonal = glm::distance(chunk.low, chunk.high);
     const double stays = inertia_of(before, p, chosen[p] - 1);
     const double apart = stays * diagonal / std::sqrt(count) / distance_to(chunk, eyes);
-    if (apart > enough) coarse.push({apart, p});
+    if (apart > spacing_wanted) coarse.push({apart, p});
   };
   for (std::size_t p = 0; p < chunks.size(); ++p) {
     if (chunks[p].levels.empty()) continue;
@@ -93,8 +93,8 @@ LevelChoice choose_levels(const std::vector<LodChunk>& chunks, std::span<const s
   const std::vector<DetailView> detail = detail_views(views);
   if (request.db && !views.empty()) {
     const double error = error_of_psnr(*request.db) / request.calibration;
-    return choose_within(chunks, detail, {error, request.most, request.heads_turn, request.most_new}, visible,
-                         before);
+    return choose_by_error(chunks, detail, {error, request.most, request.heads_turn, request.read_most},
+                           visible, before);
   }
   std::vector<glm::dvec3> eyes;
   double focal = 0.0;
@@ -102,17 +102,17 @@ LevelChoice choose_levels(const std::vector<LodChunk>& chunks, std::span<const s
     eyes.push_back(view.eye);
     focal = std::max(focal, view.focal);
   }
-  const double enough = views.empty() ? INFINITY : request.apart_px / focal;
-  return {.levels = choose_apart(chunks, eyes, request.most, enough, before)};
+  const double spacing_wanted = views.empty() ? INFINITY : request.spacing_px / focal;
+  return {.levels = choose_by_spacing(chunks, eyes, request.most, spacing_wanted, before)};
 }
 
 double psnr_of_error(double squared) { return -10.0 * std::log10(squared); }
 
 double error_of_psnr(double db) { return std::pow(10.0, -0.1 * db); }
 
-double levels_share(double together_db) { return psnr_of_error(0.5 * error_of_psnr(together_db)); }
+double levels_target_db(double together_db) { return psnr_of_error(0.5 * error_of_psnr(together_db)); }
 
-double left_of(double together_db, double levels_db) {
+double frame_target_db(double together_db, double levels_db) {
   constexpr double least = 0.1;
   const double all = error_of_psnr(together_db);
   return psnr_of_error(std::max(all - error_of_psnr(levels_db), least * all));

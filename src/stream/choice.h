@@ -24,22 +24,22 @@ inline constexpr std::size_t any_number = std::numeric_limits<std::size_t>::max(
 
 /// The request for a frame's levels.
 struct DetailRequest {
-  double apart_px = 0.0;  // a chunk is fine enough if its Gaussians are at most this far apart; 0: never
-  std::size_t most = any_number;      // Gaussians of the model
-  std::optional<double> db = {};      // replaces apart_px: each view's PSNR against the finest levels
-  bool heads_turn = true;             // with db: also refine chunks out of view
-  double calibration = 1.0;           // with db: the ratio of the loss of levels to the predicted loss
-  std::size_t most_new = any_number;  // with db: Gaussians to read; one chunk always may be read
+  double spacing_px = 0.0;  // a chunk is fine enough if its Gaussians are at most this far apart; 0: never
+  std::size_t most = any_number;       // Gaussians of the model
+  std::optional<double> db = {};       // replaces spacing_px: each view's PSNR against the finest levels
+  bool heads_turn = true;              // with db: also refine chunks out of view
+  double calibration = 1.0;            // with db: the ratio of the loss of levels to the predicted loss
+  std::size_t read_most = any_number;  // with db: Gaussians to read; one chunk always may be read
 };
 
 // Levels and frames (FrameSettings::quality) share a budget: their squared errors add up.
 
 /// Returns the dB that levels must reach so that levels and frame together reach `together_db`: levels may
 /// use half of the squared error.
-double levels_share(double together_db);
+double levels_target_db(double together_db);
 /// Returns the dB that the frame must reach if levels reach `levels_db`: it may use the rest of the squared
 /// error. That rest counts as at least a tenth of the whole.
-double left_of(double together_db, double levels_db);
+double frame_target_db(double together_db, double levels_db);
 /// Returns the PSNR of two errors together, each given by its PSNR alone, dB.
 double psnr_of_both(double a_db, double b_db);
 /// Convert between a squared error of colours up to 1 and its PSNR in dB.
@@ -78,7 +78,7 @@ struct VisibleChunks {
 /// The level chosen for each chunk, as its index in LodChunk::levels, and the errors of all other levels.
 struct LevelChoice {
   std::vector<std::size_t> levels;
-  bool is_limited = false;  // more Gaussians are needed than may be read (DetailRequest::most_new)
+  bool is_limited = false;  // more Gaussians are needed than may be read (DetailRequest::read_most)
   // Set if levels are chosen by dB:
   std::vector<double> pixels;  // of each view
   double sphere_pixels = 0.0;  // of the sphere around the views
@@ -87,7 +87,7 @@ struct LevelChoice {
   std::vector<double> errors;
   std::vector<std::size_t> first;
 
-  bool knows_errors() const { return !first.empty(); }
+  bool has_errors() const { return !first.empty(); }
   /// Returns the error of the worst view if the chunks have these levels: squared, mean over pixels and
   /// channels.
   double error_of(std::span<const std::size_t> any_levels) const;
@@ -95,21 +95,21 @@ struct LevelChoice {
   /// The same for one view.
   double error_of_view(std::size_t view, std::span<const std::size_t> any_levels) const;
   /// Returns the part of it that one chunk at a level causes.
-  double lost(std::size_t view, std::size_t chunk, std::size_t level) const {
+  double error_of_chunk(std::size_t view, std::size_t chunk, std::size_t level) const {
     return errors[first[chunk] + view * levels_of(chunk) + level] / pixels[view];
   }
   /// Returns the error that a chunk saves at level `to` instead of `from`, in the view (or the sphere) that
   /// gains most. It is squared, mean over pixels and channels.
-  double saved(std::size_t chunk, std::size_t from, std::size_t to) const;
+  double error_saved(std::size_t chunk, std::size_t from, std::size_t to) const;
 
   std::size_t levels_of(std::size_t chunk) const {
     return (first[chunk + 1] - first[chunk]) / (pixels.size() + 1);
   }
 };
 
-/// Chooses levels for the views of one frame, in the model's frame: by choose_within() if dB are requested,
-/// otherwise by choose_apart() with the longest focal length. Without views it chooses the coarsest levels.
-/// `before` is the previous choice.
+/// Chooses levels for the views of one frame, in the model's frame: by choose_by_error() if dB are requested,
+/// otherwise by choose_by_spacing() with the longest focal length. Without views it chooses the coarsest
+/// levels. `before` is the previous choice.
 LevelChoice choose_levels(const std::vector<LodChunk>& chunks, std::span<const shared::View> views,
                           const DetailRequest& request, const VisibleChunks& visible = {},
                           std::span<const std::size_t> before = {});
@@ -117,20 +117,21 @@ LevelChoice choose_levels(const std::vector<LodChunk>& chunks, std::span<const s
 /// Chooses levels by the spacing of Gaussians. All chunks begin with their coarsest level. While there is
 /// room, the chunk with the largest spacing for its nearest eye gets its next finer level. The spacing in
 /// radians is the box's diagonal, divided by the root of the count of Gaussians and by the distance. A chunk
-/// whose spacing is at most `enough` stays as it is. The choice is shared by all eyes. It exceeds `most`
-/// Gaussians only if the coarsest levels do. Hysteresis keeps levels steady. Spacings count as a tenth larger
-/// for steps to levels no finer than the chunk's in `before` (a choice for the same chunks). For steps to
-/// finer levels they count as a tenth smaller.
-std::vector<std::size_t> choose_apart(const std::vector<LodChunk>& chunks,
-                                      const std::vector<glm::dvec3>& eyes, std::size_t most,
-                                      double enough = 0.0, std::span<const std::size_t> before = {});
+/// whose spacing is at most `spacing_wanted` stays as it is. The choice is shared by all eyes. It exceeds
+/// `most` Gaussians only if the coarsest levels do. Hysteresis keeps levels steady. Spacings count as a tenth
+/// larger for steps to levels no finer than the chunk's in `before` (a choice for the same chunks). For steps
+/// to finer levels they count as a tenth smaller.
+std::vector<std::size_t> choose_by_spacing(const std::vector<LodChunk>& chunks,
+                                           const std::vector<glm::dvec3>& eyes, std::size_t most,
+                                           double spacing_wanted = 0.0,
+                                           std::span<const std::size_t> before = {});
 
 struct ErrorBudget {
   double error = 0.0;  // allowed in each view: squared, mean over pixels and channels
   // As in DetailRequest:
   std::size_t most = any_number;
   bool heads_turn = true;
-  std::size_t most_new = any_number;
+  std::size_t read_most = any_number;
 };
 
 /// Chooses few Gaussians such that no view loses more than budget.error. All chunks begin with their coarsest
@@ -143,12 +144,12 @@ struct ErrorBudget {
 /// chunk without errors in the file gets the finest level that fits.
 ///
 /// The choice exceeds budget.most Gaussians only if the coarsest levels do. It exceeds the error only if less
-/// does not fit, or if more than budget.most_new must be read; the last thousandth of the Gaussians may stay
+/// does not fit, or if more than budget.read_most must be read; the last thousandth of the Gaussians may stay
 /// unused. Hysteresis keeps levels steady. Errors count as a tenth larger for steps to levels no finer than
 /// the chunk's in `before`. For steps to finer levels they count as a tenth smaller.
-LevelChoice choose_within(const std::vector<LodChunk>& chunks, const std::vector<DetailView>& views,
-                          const ErrorBudget& budget, const VisibleChunks& visible = {},
-                          std::span<const std::size_t> before = {});
+LevelChoice choose_by_error(const std::vector<LodChunk>& chunks, const std::vector<DetailView>& views,
+                            const ErrorBudget& budget, const VisibleChunks& visible = {},
+                            std::span<const std::size_t> before = {});
 
 /// Returns the ratio of a level's squared error to the visible area of its chunk (ChunkVisibility::area). The
 /// eye looks `along` a vector of any length, and a pixel covers `width` world units. Between the file's

@@ -1,5 +1,5 @@
 #pragma once
-// The visibility of chunks in views and the errors of their levels of detail, for choose_within().
+// The visibility of chunks in views and the errors of their levels of detail, for choose_by_error().
 
 #include <cstddef>
 #include <glm/glm.hpp>

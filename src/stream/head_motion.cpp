@@ -66,7 +66,7 @@ void HeadMotion::note(std::span<const shared::View> views, Clock::time_point now
   poses_[0] = {views_, now};
 }
 
-std::vector<shared::View> HeadMotion::ahead(double seconds) const {
+std::vector<shared::View> HeadMotion::predicted(double seconds) const {
   std::vector<shared::View> views = views_;
   const auto& [latest, middle, first] = poses_;
   if (first.views.empty()) return views;

@@ -18,7 +18,7 @@ class HeadMotion {
   void note(std::span<const shared::View> views, Clock::time_point now = Clock::now());
 
   /// Returns the views noted last, extrapolated by `seconds`; the same bits if nothing moves.
-  std::vector<shared::View> ahead(double seconds) const;
+  std::vector<shared::View> predicted(double seconds) const;
 
  private:
   struct Pose {

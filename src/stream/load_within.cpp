@@ -19,20 +19,20 @@ Model load_within(const std::filesystem::path& path, const DetailBudget& budget)
   if (!root)
     fail("--gpu-memory: {} has no levels of detail; name the lod-meta.json of a streamed SOG", path.string());
   const SogLevels levels(lod_meta, *root);
-  const std::vector<LodChunk> leaves = levels.leaves(*root);
-  check_leaves(lod_meta, leaves);
+  const std::vector<LodChunk> chunks = levels.chunks(*root);
+  check_chunks(lod_meta, chunks);
   std::size_t file = 0;
-  while (!levels.there(file)) ++file;
-  std::size_t most = budget.gaussians(open_part(levels.files()[file]).degree());
-  const std::size_t around = levels.environment() ? open_part(*levels.environment()).count() : 0;
+  while (!levels.exists(file)) ++file;
+  std::size_t most = budget.gaussians(open_sog(levels.files()[file]).degree());
+  const std::size_t around = levels.environment() ? open_sog(*levels.environment()).count() : 0;
   most -= std::min(most, around);
-  const std::vector<std::size_t> chosen = choose_apart(leaves, budget.eyes, most);
+  const std::vector<std::size_t> chosen = choose_by_spacing(chunks, budget.eyes, most);
   std::vector<std::size_t> of_level(static_cast<std::size_t>(levels.count()), 0);
   std::size_t total = 0;
-  std::vector<int> numbers(leaves.size(), no_level);
-  for (std::size_t i = 0; i < leaves.size(); ++i) {
-    if (leaves[i].levels.empty()) continue;
-    const LodChunk::Level& level = leaves[i].levels[chosen[i]];
+  std::vector<int> numbers(chunks.size(), no_level);
+  for (std::size_t i = 0; i < chunks.size(); ++i) {
+    if (chunks[i].levels.empty()) continue;
+    const LodChunk::Level& level = chunks[i].levels[chosen[i]];
     numbers[i] = level.number;
     of_level[static_cast<std::size_t>(level.number)] += level.count;
     total += level.count;
@@ -44,8 +44,9 @@ Model load_within(const std::filesystem::path& path, const DetailBudget& budget)
       parts += fmt::format("{}{} Gaussians of level {}", parts.empty() ? "" : ", ", of_level[level], level);
   }
   log_info("{}: {}", lod_meta.string(), parts);
-  return load_taken(lod_meta, levels, levels.taken([&](std::size_t leaf) { return numbers[leaf]; }),
-                    format_of_chosen(levels));
+  return load_ranges(lod_meta, levels,
+                     levels.ranges_in_use([&](std::size_t chunk) { return numbers[chunk]; }),
+                     format_of_chosen(levels));
 }
 
 }  // namespace binosplat

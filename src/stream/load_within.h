@@ -17,7 +17,7 @@ struct DetailBudget {
   std::vector<glm::dvec3> eyes;                      // in the model's frame; empty: from far away
 };
 
-/// Reads each chunk of a streamed SOG at its own level (choose_apart), from existing files. `path` is a
+/// Reads each chunk of a streamed SOG at its own level (choose_by_spacing), from existing files. `path` is a
 /// lod-meta.json or its folder. Throws Error as load_streamed_sog() does, and for other files.
 Model load_within(const std::filesystem::path& path, const DetailBudget& budget);
 

@@ -57,9 +57,9 @@ struct LodFiles::Source {
   Source(const fs::path& lod_meta, const nlohmann::json& json) : path(lod_meta), levels(path, json) {
     files.resize(levels.files().size());
     parallel_for(files.size(), [&](std::size_t i) {
-      if (levels.there(i)) files[i] = open_part(levels.files()[i]);
+      if (levels.exists(i)) files[i] = open_sog(levels.files()[i]);
     });
-    if (levels.environment()) environment = open_part(*levels.environment());
+    if (levels.environment()) environment = open_sog(*levels.environment());
     for (const auto& file : files) bytes += file ? file->bytes() : 0;
     bytes += environment ? environment->bytes() : 0;
   }
@@ -68,41 +68,41 @@ struct LodFiles::Source {
 struct LodFiles::Reading {
   std::span<const std::size_t> from;
   const LevelChoice& choice;
-  const std::function<bool()>& goes_on;
+  const std::function<bool()>& may_continue;
 
   std::size_t level(std::size_t chunk) const { return choice.levels[chunk]; }
-  /// With `goes_on` the order depends on the cached files; without, it is always the same.
-  bool is_in_a_hurry() const { return goes_on != nullptr; }
-  bool ends() const { return goes_on && !goes_on(); }
+  /// With `may_continue` the order depends on the cached files; without, it is always the same.
+  bool may_be_interrupted() const { return may_continue != nullptr; }
+  bool ends() const { return may_continue && !may_continue(); }
 };
 
 LodFiles::LodFiles(const fs::path& path) {
   const fs::path lod_meta = lod_meta_of(path);
   const nlohmann::json json = levels_json(lod_meta, path);
   source_ = std::make_unique<Source>(lod_meta, json);
-  chunks_ = source_->levels.leaves(json);
-  check_leaves(source_->path, chunks_);
+  chunks_ = source_->levels.chunks(json);
+  check_chunks(source_->path, chunks_);
   Model middles;
   for (const LodChunk& chunk : chunks_) {
     middles.position.emplace_back(0.5 * (chunk.low + chunk.high));
     middles.scale.emplace_back(chunk.high - chunk.low);
   }
-  if (choose_origin(middles)) like_.axes = middles.axes;
+  if (choose_origin(middles)) properties_.axes = middles.axes;
   for (LodChunk& chunk : chunks_) {
-    chunk.low -= like_.axes.origin;
-    chunk.high -= like_.axes.origin;
+    chunk.low -= properties_.axes.origin;
+    chunk.high -= properties_.axes.origin;
   }
   for (int level = 0; level < source_->levels.count(); ++level)
-    static_cast<void>(source_->levels.taken(level));  // throws if leaves share Gaussians
-  spare_ = (chunks_.size() + 1) * ModelChunks::block;
-  if (has_errors()) spare_ += std::min(sample_room * largest_of(chunks_), finest() / 8);
-  like_.name = source_->path.filename().string();
-  like_.format = format_of_chosen(source_->levels);
+    static_cast<void>(source_->levels.ranges_in_use(level));  // throws if chunks share Gaussians
+  extra_room_ = (chunks_.size() + 1) * ModelChunks::block;
+  if (has_errors()) extra_room_ += std::min(sample_room * largest_of(chunks_), finest() / 8);
+  properties_.name = source_->path.filename().string();
+  properties_.format = format_of_chosen(source_->levels);
   const auto add = [&](const std::optional<SogSource>& file) {
     if (!file) return;
-    like_.degree = std::max(like_.degree, file->degree());
-    like_.antialiased = like_.antialiased || file->antialiased();
-    like_.perspective = file->perspective();
+    properties_.degree = std::max(properties_.degree, file->degree());
+    properties_.antialiased = properties_.antialiased || file->antialiased();
+    properties_.perspective = file->perspective();
   };
   for (const auto& file : source_->files) add(file);
   add(source_->environment);
@@ -123,11 +123,11 @@ void LodFiles::check(const DetailRequest& request) const {
 }
 
 Model LodFiles::environment() const {
-  if (!source_->environment) return like_;
+  if (!source_->environment) return properties_;
   const SogSource& file = *source_->environment;
-  const SogLevels::TakenOfFile all = {{chunks_.size(), {0, file.count(), 0}}};
-  check_taken(source_->path, *source_->levels.environment(), file, all);
-  return std::move(file.decode_each(like_, ranges_of(all), *file.textures()).front());
+  const SogLevels::FileRanges all = {{chunks_.size(), {0, file.count(), 0}}};
+  check_ranges(source_->path, *source_->levels.environment(), file, all);
+  return std::move(file.decode_each(properties_, ranges_of(all), *file.textures()).front());
 }
 
 std::size_t LodFiles::environment_count() const {
@@ -143,49 +143,49 @@ std::size_t LodFiles::count(std::span<const std::size_t> levels) const {
 
 std::size_t LodFiles::finest() const { return count(std::vector<std::size_t>(chunks_.size(), 0)); }
 
-void LodFiles::read(std::span<const std::size_t> from, const LevelChoice& choice, const Take& take,
-                    const std::function<bool()>& goes_on) const {
-  const Reading reading{from, choice, goes_on};
-  const TakenOfAll shrinking = taken_of(reading, true), growing = taken_of(reading, false);
-  check_taken_of(shrinking);
-  check_taken_of(growing);
+void LodFiles::read(std::span<const std::size_t> from, const LevelChoice& choice, const OnChunk& on_chunk,
+                    const std::function<bool()>& may_continue) const {
+  const Reading reading{from, choice, may_continue};
+  const RangesByFile shrinking = ranges_to_read(reading, true), growing = ranges_to_read(reading, false);
+  check_ranges_of(shrinking);
+  check_ranges_of(growing);
   const std::size_t total = count(choice.levels);
-  if (total == 0) fail("{} holds no Gaussians ({})", name(), like_.format);
+  if (total == 0) fail("{} holds no Gaussians ({})", name(), properties_.format);
   check_total(source_->path, total, source_->bytes);
   for (std::size_t c = 0; c < chunks_.size(); ++c) {
     const auto& levels = chunks_[c].levels;
     if (!levels.empty() && from[c] != reading.level(c) && levels[reading.level(c)].count == 0)
-      take({.chunk = c, .level = reading.level(c), .model = like_});
+      on_chunk({.chunk = c, .level = reading.level(c), .model = properties_});
   }
-  read_some(reading, shrinking, take);
-  if (!reading.ends()) read_some(reading, growing, take);
+  read_some(reading, shrinking, on_chunk);
+  if (!reading.ends()) read_some(reading, growing, on_chunk);
 }
 
-// A slow file does not delay decoding of others. Without `goes_on` it only delays passing on the files after
-// it.
-void LodFiles::read_some(const Reading& reading, const TakenOfAll& taken, const Take& take) const {
+// A slow file does not delay decoding of others. Without `may_continue` it only delays passing on the files
+// after it.
+void LodFiles::read_some(const Reading& reading, const RangesByFile& ranges, const OnChunk& on_chunk) const {
   std::vector<std::size_t> files;
-  for (std::size_t i = 0; i < taken.size(); ++i)
-    if (!taken[i].empty()) files.push_back(i);
+  for (std::size_t i = 0; i < ranges.size(); ++i)
+    if (!ranges[i].empty()) files.push_back(i);
   // Few Gaussians that save much error come before many that save little.
-  std::vector<double> first(taken.size());
-  for (const std::size_t i : files) first[i] = worth(reading, i, taken[i]);
+  std::vector<double> first(ranges.size());
+  for (const std::size_t i : files) first[i] = worth(reading, i, ranges[i]);
   std::ranges::stable_sort(files, std::greater<>(), [&](std::size_t i) { return first[i]; });
-  std::vector<std::vector<Piece>> of_files(files.size());
+  std::vector<std::vector<LoadedChunk>> of_files(files.size());
   const auto begins = [&](std::size_t k) { return k < files.size() && (k == 0 || !reading.ends()); };
   const auto decode = [&](std::size_t k) {
-    of_files[k] = read_file(files[k], taken[files[k]], reading.choice.levels);
+    of_files[k] = read_file(files[k], ranges[files[k]], reading.choice.levels);
   };
   const auto hand_over = [&](std::size_t k) {
-    for (Piece& piece : std::exchange(of_files[k], {})) take(std::move(piece));
+    for (LoadedChunk& loaded : std::exchange(of_files[k], {})) on_chunk(std::move(loaded));
   };
   if (files.empty()) return;
   parallel_stages(files_at_a_time, begins, decode, hand_over,
-                  reading.is_in_a_hurry() ? HandOver::as_done : HandOver::in_order);
+                  reading.may_be_interrupted() ? HandOver::as_done : HandOver::in_order);
 }
 
-LodFiles::TakenOfAll LodFiles::taken_of(const Reading& reading, bool shrinks) const {
-  return source_->levels.taken([&](std::size_t c) {
+LodFiles::RangesByFile LodFiles::ranges_to_read(const Reading& reading, bool shrinks) const {
+  return source_->levels.ranges_in_use([&](std::size_t c) {
     const auto& levels = chunks_[c].levels;
     if (levels.empty() || reading.from[c] == reading.level(c)) return no_level;
     const std::size_t before = reading.from[c] == not_read ? 0 : levels[reading.from[c]].count;
@@ -194,56 +194,57 @@ LodFiles::TakenOfAll LodFiles::taken_of(const Reading& reading, bool shrinks) co
   });
 }
 
-double LodFiles::worth(const Reading& reading, std::size_t file, const SogLevels::TakenOfFile& taken) const {
-  if (!reading.choice.knows_errors())
-    return chunks_[taken.front().leaf].levels[reading.level(taken.front().leaf)].number;
-  const bool is_decoded = reading.is_in_a_hurry() && source_->cache.has(file);
+double LodFiles::worth(const Reading& reading, std::size_t file, const SogLevels::FileRanges& ranges) const {
+  if (!reading.choice.has_errors())
+    return chunks_[ranges.front().chunk].levels[reading.level(ranges.front().chunk)].number;
+  const bool is_decoded = reading.may_be_interrupted() && source_->cache.has(file);
   std::size_t count = is_decoded ? 0 : source_->files[file]->count() / decoded_for_one;
   double sum = 0.0;
-  for (const SogLevels::Taken& of_chunk : taken) {
-    const std::size_t c = of_chunk.leaf, from = reading.from[c];
-    sum += from == not_read ? INFINITY : reading.choice.saved(c, from, reading.level(c));
-    count += of_chunk.range.count;
+  for (const SogLevels::ChunkRange& used : ranges) {
+    const std::size_t c = used.chunk, from = reading.from[c];
+    sum += from == not_read ? INFINITY : reading.choice.error_saved(c, from, reading.level(c));
+    count += used.range.count;
   }
   return sum / static_cast<double>(std::max<std::size_t>(count, 1));
 }
 
-void LodFiles::check_taken_of(const TakenOfAll& taken) const {
-  for (std::size_t i = 0; i < taken.size(); ++i)
-    if (!taken[i].empty())
-      check_taken(source_->path, source_->levels.files()[i], *source_->files[i], taken[i]);
+void LodFiles::check_ranges_of(const RangesByFile& ranges) const {
+  for (std::size_t i = 0; i < ranges.size(); ++i)
+    if (!ranges[i].empty())
+      check_ranges(source_->path, source_->levels.files()[i], *source_->files[i], ranges[i]);
 }
 
-ChunkModels LodFiles::finest_of(std::span<const std::size_t> chunks) const {
+ChunkModels LodFiles::read_finest(std::span<const std::size_t> chunks) const {
   std::vector<int> numbers(chunks_.size(), no_level);
   for (const std::size_t c : chunks) numbers[c] = chunks_[c].levels.front().number;
-  const TakenOfAll taken = source_->levels.taken([&](std::size_t c) { return numbers[c]; });
+  const RangesByFile ranges = source_->levels.ranges_in_use([&](std::size_t c) { return numbers[c]; });
   const std::vector<std::size_t> levels(chunks_.size(), 0);
-  std::vector<std::vector<Piece>> of_files(taken.size());
-  parallel_for(taken.size(), [&](std::size_t i) {
-    if (taken[i].empty()) return;
-    check_taken(source_->path, source_->levels.files()[i], *source_->files[i], taken[i]);
-    of_files[i] = read_file(i, taken[i], levels);
+  std::vector<std::vector<LoadedChunk>> of_files(ranges.size());
+  parallel_for(ranges.size(), [&](std::size_t i) {
+    if (ranges[i].empty()) return;
+    check_ranges(source_->path, source_->levels.files()[i], *source_->files[i], ranges[i]);
+    of_files[i] = read_file(i, ranges[i], levels);
   });
   ChunkModels finest;
-  for (std::vector<Piece>& of_file : of_files) {
-    for (Piece& piece : of_file) {
-      finest.chunks.push_back(piece.chunk);
-      finest.models.push_back(std::move(piece.model));
+  for (std::vector<LoadedChunk>& of_file : of_files) {
+    for (LoadedChunk& loaded : of_file) {
+      finest.chunks.push_back(loaded.chunk);
+      finest.models.push_back(std::move(loaded.model));
     }
   }
   return finest;
 }
 
-std::vector<LodFiles::Piece> LodFiles::read_file(std::size_t file, const SogLevels::TakenOfFile& taken,
-                                                 std::span<const std::size_t> levels) const {
+std::vector<LodFiles::LoadedChunk> LodFiles::read_file(std::size_t file, const SogLevels::FileRanges& ranges,
+                                                       std::span<const std::size_t> levels) const {
   const SogSource& source = *source_->files[file];
   std::vector<Model> models =
-      source.decode_each(like_, ranges_of(taken), *source_->cache.textures(file, source));
-  std::vector<Piece> pieces;
-  for (std::size_t i = 0; i < taken.size(); ++i)
-    pieces.push_back({.chunk = taken[i].leaf, .level = levels[taken[i].leaf], .model = std::move(models[i])});
-  return pieces;
+      source.decode_each(properties_, ranges_of(ranges), *source_->cache.textures(file, source));
+  std::vector<LoadedChunk> loaded_chunks;
+  for (std::size_t i = 0; i < ranges.size(); ++i)
+    loaded_chunks.push_back(
+        {.chunk = ranges[i].chunk, .level = levels[ranges[i].chunk], .model = std::move(models[i])});
+  return loaded_chunks;
 }
 
 }  // namespace binosplat

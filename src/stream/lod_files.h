@@ -30,8 +30,8 @@ class LodFiles {
   /// The path of lod-meta.json, for messages.
   std::string name() const;
   /// The model's properties, without Gaussians.
-  const Model& like() const { return like_; }
-  /// The leaves of the file's tree, with boxes relative to the model's origin.
+  const Model& properties() const { return properties_; }
+  /// The chunks of the file's tree, with boxes relative to the model's origin.
   const std::vector<LodChunk>& chunks() const { return chunks_; }
   /// Returns the Gaussians that are part of every level.
   Model environment() const;
@@ -44,48 +44,48 @@ class LodFiles {
   /// Gaussians for which a model needs room beside its levels. They fill up half empty blocks and,
   /// if the files have errors, hold a calibration sample at its finest levels (at most an eighth of all
   /// Gaussians).
-  std::size_t spare() const { return spare_; }
+  std::size_t extra_room() const { return extra_room_; }
   /// Returns whether the files have the errors of their levels, so that levels can be chosen by dB.
   bool has_errors() const;
   /// Throws Error if dB are requested and the file has no errors.
   void check(const DetailRequest& request) const;
 
   /// The Gaussians of a chunk at a level.
-  struct Piece {
+  struct LoadedChunk {
     std::size_t chunk = 0, level = 0;
     Model model;
   };
-  using Take = std::function<void(Piece piece)>;
+  using OnChunk = std::function<void(LoadedChunk loaded)>;
 
-  /// Reads the chunks whose level in `from` differs from the choice's, and passes them to `take`, one at a
-  /// time, on any thread. The order is:
+  /// Reads the chunks whose level in `from` differs from the choice's, and passes them to `on_chunk`, one at
+  /// a time, on any thread. The order is:
   /// - first chunks that get fewer Gaussians, so that the model never has more than before or after;
   /// - then, for a choice by dB, files that save the most error per Gaussian; otherwise coarse levels before
   ///   fine levels.
   ///
-  /// With `goes_on`, each file is passed on as soon as it is decoded, and no further file is begun after
-  /// `goes_on` returned false. Throws Error if a file has become unreadable.
-  void read(std::span<const std::size_t> from, const LevelChoice& choice, const Take& take,
-            const std::function<bool()>& goes_on = {}) const;
+  /// With `may_continue`, each file is passed on as soon as it is decoded, and no further file is begun after
+  /// `may_continue` returned false. Throws Error if a file has become unreadable.
+  void read(std::span<const std::size_t> from, const LevelChoice& choice, const OnChunk& on_chunk,
+            const std::function<bool()>& may_continue = {}) const;
   /// Reads the finest levels of some chunks.
-  ChunkModels finest_of(std::span<const std::size_t> chunks) const;
+  ChunkModels read_finest(std::span<const std::size_t> chunks) const;
 
  private:
   struct Source;
   struct Reading;
   /// The ranges to read from each file, by the file's number.
-  using TakenOfAll = std::vector<SogLevels::TakenOfFile>;
-  std::vector<Piece> read_file(std::size_t file, const SogLevels::TakenOfFile& taken,
-                               std::span<const std::size_t> levels) const;
-  void read_some(const Reading& reading, const TakenOfAll& taken, const Take& take) const;
-  TakenOfAll taken_of(const Reading& reading, bool shrinks) const;
-  double worth(const Reading& reading, std::size_t file, const SogLevels::TakenOfFile& taken) const;
-  void check_taken_of(const TakenOfAll& taken) const;
+  using RangesByFile = std::vector<SogLevels::FileRanges>;
+  std::vector<LoadedChunk> read_file(std::size_t file, const SogLevels::FileRanges& ranges,
+                                     std::span<const std::size_t> levels) const;
+  void read_some(const Reading& reading, const RangesByFile& ranges, const OnChunk& on_chunk) const;
+  RangesByFile ranges_to_read(const Reading& reading, bool shrinks) const;
+  double worth(const Reading& reading, std::size_t file, const SogLevels::FileRanges& ranges) const;
+  void check_ranges_of(const RangesByFile& ranges) const;
 
   std::unique_ptr<Source> source_;
-  Model like_;
+  Model properties_;
   std::vector<LodChunk> chunks_;
-  std::size_t spare_ = 0;
+  std::size_t extra_room_ = 0;
 };
 
 }  // namespace binosplat

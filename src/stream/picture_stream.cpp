@@ -25,11 +25,11 @@ bool PictureStream::settle(std::span<const shared::View> views, const render::Fr
     samples_ = 0;
   }
   const DetailRequest request = request_for(views);
-  if (settings_.room) model_.room = std::min(request.most, files_.finest()) + files_.spare();
+  if (settings_.room) model_.room = std::min(request.most, files_.finest()) + files_.extra_room();
   bool changed = false;
   const auto change = [&](const LevelChoice& choice) {
     if (!std::exchange(changed, true) && before_change) before_change();
-    bring_to(choice);
+    read_levels(choice);
   };
   if (!settings_.detail.heads_turn) {
     if (request.db) {  // the first measurement uses the coarsest levels

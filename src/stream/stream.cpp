@@ -21,7 +21,7 @@ constexpr double requests_at_once = 2.0, requested_least = 1 << 14;
 // The loss of levels is measured while the views rest. When a head has moved on, this factor multiplies it
 // (README.md lists other factors). Along walks the true factor was 0.7 to 1.6, and missing the request is
 // worse than exceeding it.
-constexpr double lost_elsewhere = 1.3;
+constexpr double extrapolation_factor = 1.3;
 // ms of a frame that are neither drawing nor levels
 constexpr double apart_ms = 1.2;
 
@@ -35,16 +35,16 @@ std::optional<double> Stream::reported_db() const {
   const StreamWorker::Chosen chosen = worker_.chosen();
   if (!chosen.error) return std::nullopt;
   chosen.error->follow(drawn_);
-  const double here = chosen.error->error(0, chosen.here);
-  if (chosen.here == chosen.error->views()) return reported(here, lost_now());
+  const double current = chosen.error->error(0, chosen.current_views);
+  if (chosen.current_views == chosen.error->views()) return reported(current, loss_factor());
   // The loss of approaching chunks grows faster when they are near.
   const double share = std::min(1e-3 * ms_since(chosen.at) / lead_s, 1.0);
-  const double ahead = chosen.error->error(chosen.here, chosen.error->views());
-  return reported(std::lerp(here, ahead, share * share), lost_now());
+  const double predicted = chosen.error->error(chosen.current_views, chosen.error->views());
+  return reported(std::lerp(current, predicted, share * share), loss_factor());
 }
 
 // The factor for views at which the loss was not measured.
-double Stream::lost_now() const { return is_calibrated_ ? 1.0 : lost_elsewhere; }
+double Stream::loss_factor() const { return is_calibrated_ ? 1.0 : extrapolation_factor; }
 
 bool Stream::begin_frame(std::span<const shared::View> views, const render::FrameSettings& settings,
                          double ms) {
@@ -60,17 +60,17 @@ bool Stream::begin_frame(std::span<const shared::View> views, const render::Fram
     is_calibrated_ = false;
   }
   is_due_ = is_due_ || needs_another_pass();
-  if (is_due_ && !db_for(quality_)) {
+  if (is_due_ && !levels_db_for(quality_)) {
     request({.views = views_});
     is_due_ = false;
   }
-  could_put_ += put_share * ms * put_a_ms_;
+  uploads_in_time_ += put_share * ms * uploads_per_ms_;
   const bool made_pass = std::exchange(made_pass_, false), is_due = pass_is_due();
   // A frame has no time for both, so they alternate.
-  if ((!is_due || made_pass) && put_some(ms)) return true;
+  if ((!is_due || made_pass) && upload_some(ms)) return true;
   if (is_due) {
     make_pass(settings);
-  } else if (db_for(quality_) && !is_calibrated_ && has_all()) {
+  } else if (levels_db_for(quality_) && !is_calibrated_ && has_all()) {
     calibrate_at_rest(settings);
   }
   return false;
@@ -79,14 +79,14 @@ bool Stream::begin_frame(std::span<const shared::View> views, const render::Fram
 void Stream::prepare(std::span<const shared::View> views, const render::FrameSettings& settings) {
   // Reloads one Gaussian unchanged, with the shader for levels.
   gpu_model_->reload({.filled = {{0, 1}}, .emptied = {}});
-  if (!db_for(settings.quality)) return;
+  if (!levels_db_for(settings.quality)) return;
   measure(views.first(1), settings);  // as in a pass
   measure(views, settings);           // as in calibration at rest
   visibility_->keep_picture(views.front(), settings);
   visibility_->picture_error(views.front(), settings);
 }
 
-bool Stream::settled() const { return has_all() && (is_calibrated_ || !db_for(quality_)); }
+bool Stream::settled() const { return has_all() && (is_calibrated_ || !levels_db_for(quality_)); }
 
 bool Stream::has_all() const {
   return worker_.is_idle() && !is_due_ && pass_.views.empty() && !needs_another_pass();
@@ -94,12 +94,12 @@ bool Stream::has_all() const {
 
 // Coarse chunks hide more than fine ones, so visibility changes with the levels.
 bool Stream::needs_another_pass() const {
-  return db_for(quality_) && worker_.is_idle() &&
+  return levels_db_for(quality_) && worker_.is_idle() &&
          (worker_.chosen().is_limited || (pass_.is_outdated && passes_ < passes_most));
 }
 
 bool Stream::pass_is_due() const {
-  if (!db_for(quality_)) return false;
+  if (!levels_db_for(quality_)) return false;
   if (!pass_.views.empty()) return true;
   return is_due_ && !worker_.is_choosing() && ms_since(worker_.chosen().made_at) >= between_passes_ms;
 }
@@ -107,14 +107,14 @@ bool Stream::pass_is_due() const {
 // Measures one more view, current or predicted, as it is now.
 void Stream::make_pass(const render::FrameSettings& settings) {
   const TimedSpan span("visibility pass");
-  const std::vector<shared::View> ahead = motion_.ahead(lead_s);
+  const std::vector<shared::View> predicted = motion_.predicted(lead_s);
   if (pass_.views.empty()) {
-    const bool moves = !are_last(ahead);
+    const bool moves = !are_last(predicted);
     pass_ = {.all = std::max<std::size_t>(views_.size(), moves ? 2 : 1), .began = Clock::now()};
-    pass_.here = moves ? (pass_.all + 1) / 2 : pass_.all;
+    pass_.current_views = moves ? (pass_.all + 1) / 2 : pass_.all;
   }
   const std::size_t k = pass_.views.size();
-  const shared::View view = k < pass_.here ? views_[k] : ahead[k % ahead.size()];
+  const shared::View view = k < pass_.current_views ? views_[k] : predicted[k % predicted.size()];
   pass_.views.push_back(view);
   pass_.visible.by_view.push_back(std::move(measure({&view, 1}, settings).by_view.front()));
   made_pass_ = true;
@@ -123,7 +123,7 @@ void Stream::make_pass(const render::FrameSettings& settings) {
   pass_.visible.drawn = drawn_;
   request({.views = std::exchange(pass_.views, {}),
            .visible = std::move(pass_.visible),
-           .here = pass_.here,
+           .current_views = pass_.current_views,
            .at = pass_.began});
   ++passes_;
 }
@@ -131,27 +131,28 @@ void Stream::make_pass(const render::FrameSettings& settings) {
 // While a head moves, a request is limited to what frames can upload in time. Then all visible chunks improve
 // a little before some are complete.
 void Stream::request(StreamWorker::Request request) {
-  request.detail = request_for(views_, lost_now());
-  const double in_time = requests_at_once * std::exchange(could_put_, 0.0);
+  request.detail = request_for(views_, loss_factor());
+  const double in_time = requests_at_once * std::exchange(uploads_in_time_, 0.0);
   if (passes_ == 0 && worker_.chosen().error)
-    request.detail.most_new = static_cast<std::size_t>(std::clamp(in_time, requested_least, 1e15));
+    request.detail.read_most = static_cast<std::size_t>(std::clamp(in_time, requested_least, 1e15));
   worker_.request(std::move(request));
 }
 
-bool Stream::put_some(double ms) {
+bool Stream::upload_some(double ms) {
   const auto start = Clock::now();
-  const auto most = static_cast<std::size_t>(put_share * ms * put_a_ms_);
-  std::vector<LodFiles::Piece> pieces = worker_.take(std::max(most, put_least));
-  if (pieces.empty()) return false;
+  const auto most = static_cast<std::size_t>(put_share * ms * uploads_per_ms_);
+  std::vector<LodFiles::LoadedChunk> loaded_chunks = worker_.take(std::max(most, put_least));
+  if (loaded_chunks.empty()) return false;
   const TimedSpan span("upload levels");
-  put(pieces);
+  put(loaded_chunks);
   gpu_model_->reload(chunks_.take_changes());
   std::size_t gaussians = 0;
-  for (const LodFiles::Piece& piece : pieces) gaussians += piece.model.count();
+  for (const LodFiles::LoadedChunk& loaded : loaded_chunks) gaussians += loaded.model.count();
   times_.put += gaussians;
-  pieces.clear();  // destruction takes time, too
+  loaded_chunks.clear();  // destruction takes time, too
   if (gaussians >= put_least)
-    put_a_ms_ = std::lerp(put_a_ms_, static_cast<double>(gaussians) / std::max(ms_since(start), 1e-3), 0.2);
+    uploads_per_ms_ =
+        std::lerp(uploads_per_ms_, static_cast<double>(gaussians) / std::max(ms_since(start), 1e-3), 0.2);
   pass_.is_outdated = true;
   return true;
 }

@@ -36,30 +36,30 @@ class Stream : public StreamedModel {
   std::optional<double> reported_db() const;
 
  private:
-  bool put_some(double ms);
+  bool upload_some(double ms);
   void calibrate_at_rest(const render::FrameSettings& settings);
   bool pass_is_due() const;
   void make_pass(const render::FrameSettings& settings);
   void request(StreamWorker::Request request);
   bool has_all() const;
   bool needs_another_pass() const;
-  double lost_now() const;
+  double loss_factor() const;
 
   struct Pass {
-    std::vector<shared::View> views;  // measured so far: current views, then predicted views
-    std::size_t here = 0, all = 0;    // number of current views in the pass, and of all
-    VisibleChunks visible;            // visibility in `views`
+    std::vector<shared::View> views;         // measured so far: current views, then predicted views
+    std::size_t current_views = 0, all = 0;  // number of current views in the pass, and of all
+    VisibleChunks visible;                   // visibility in `views`
     Clock::time_point began = {};
     bool is_outdated = false;  // the model has changed since then
   };
   HeadMotion motion_;
-  Pass pass_;                   // the last one, or the present one
-  int passes_ = 0;              // complete passes at views_
-  bool is_due_ = false;         // whether a request for views_ is due
-  bool is_calibrated_ = false;  // for views_
-  bool made_pass_ = false;      // whether the last frame drew a view of a pass
-  double could_put_ = 0.0;      // Gaussians for which there was time since the last request
-  double put_a_ms_ = 1 << 14;   // Gaussians uploaded per ms, measured in the last frames
+  Pass pass_;                        // the last one, or the present one
+  int passes_ = 0;                   // complete passes at views_
+  bool is_due_ = false;              // whether a request for views_ is due
+  bool is_calibrated_ = false;       // for views_
+  bool made_pass_ = false;           // whether the last frame drew a view of a pass
+  double uploads_in_time_ = 0.0;     // Gaussians for which there was time since the last request
+  double uploads_per_ms_ = 1 << 14;  // Gaussians uploaded per ms, measured in the last frames
   StreamWorker worker_;
 };
 

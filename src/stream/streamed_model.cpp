@@ -26,21 +26,21 @@ void show_more(VisibleChunks& visible, const VisibleChunks& other) {
 StreamedModel::StreamedModel(const std::filesystem::path& path, StreamSettings settings)
     : settings_(std::move(settings)),
       files_(path),
-      model_(files_.like()),
+      model_(files_.properties()),
       chunks_(files_.chunks().size() + 1),
       chooser_(files_) {
   files_.check(settings_.detail);
   const std::size_t most = request_for({}).most, finest = files_.finest();
-  shows_all_ = finest <= std::min(settings_.all_up_to, most);
+  draws_finest_ = finest <= std::min(settings_.finest_up_to, most);
   if (settings_.reserve > 0) {
-    model_.room = std::min(finest, most < finest ? most : settings_.reserve) + files_.spare();
+    model_.room = std::min(finest, most < finest ? most : settings_.reserve) + files_.extra_room();
     // Touched now: the system provides memory page by page, slowly while other threads decode (10 ms a
     // frame).
     model_.reserve(model_.room);
     model_.resize(std::min(model_.room, settings_.reserve));
   }
   start_over();
-  bring_to(chooser_.choose({}, {}, {}));
+  read_levels(chooser_.choose({}, {}, {}));
 }
 
 std::shared_ptr<render::GpuModel> StreamedModel::gpu_model(gl::Context& context, int precision) {
@@ -48,9 +48,9 @@ std::shared_ptr<render::GpuModel> StreamedModel::gpu_model(gl::Context& context,
   return gpu_model_;
 }
 
-std::optional<double> StreamedModel::db_for(double quality) const {
-  if (shows_all_) return std::nullopt;
-  if (settings_.shares && quality > 0.0 && files_.has_errors()) return levels_share(quality);
+std::optional<double> StreamedModel::levels_db_for(double quality) const {
+  if (draws_finest_) return std::nullopt;
+  if (settings_.shares_quality && quality > 0.0 && files_.has_errors()) return levels_target_db(quality);
   return settings_.detail.db;
 }
 
@@ -60,29 +60,29 @@ bool StreamedModel::are_last(std::span<const shared::View> views) const {
 
 DetailRequest StreamedModel::request_for(std::span<const shared::View> views, double lost) const {
   DetailRequest request = settings_.detail;
-  request.db = db_for(quality_);
-  request.calibration = lost * calibration_.to_choose_by();
+  request.db = levels_db_for(quality_);
+  request.calibration = lost * calibration_.factor_for_choice();
   if (settings_.room) {
     const std::size_t fit = settings_.room(views, model_.degree);
-    request.most = std::min(request.most, fit - std::min(fit, files_.spare()));
+    request.most = std::min(request.most, fit - std::min(fit, files_.extra_room()));
   }
   return request;
 }
 
-double StreamedModel::quality_left(double together_db) const {
-  const auto levels_db = db_for(together_db);
-  return together_db > 0.0 && levels_db ? left_of(together_db, *levels_db) : together_db;
+double StreamedModel::frame_quality(double together_db) const {
+  const auto levels_db = levels_db_for(together_db);
+  return together_db > 0.0 && levels_db ? frame_target_db(together_db, *levels_db) : together_db;
 }
 
 double StreamedModel::reported(double error, double lost) const {
   return psnr_of_error(std::max(lost * calibration_.factor() * error, sample_error_));
 }
 
-void StreamedModel::put(std::span<const LodFiles::Piece> pieces) {
+void StreamedModel::put(std::span<const LodFiles::LoadedChunk> loaded_chunks) {
   std::vector<ModelChunks::Replacement> replacements;
-  for (const LodFiles::Piece& piece : pieces) {
-    replacements.push_back({piece.chunk, &piece.model});
-    drawn_[piece.chunk] = piece.level;
+  for (const LodFiles::LoadedChunk& loaded : loaded_chunks) {
+    replacements.push_back({loaded.chunk, &loaded.model});
+    drawn_[loaded.chunk] = loaded.level;
   }
   chunks_.replace(model_, replacements);
 }
@@ -97,17 +97,17 @@ VisibleChunks StreamedModel::calibrate(std::span<const shared::View> views,
   const std::size_t most =
       std::max<std::size_t>(gaussians * chunks_.size() / std::max<std::size_t>(files_.finest(), 1), 1);
   sample_error_ = 0.0;
-  ChunkModels finest = files_.finest_of(sample_of(choice, drawn_, most, samples_++));
-  if (settings_.room) keep_what_fits(finest, model_, chunks_);
+  ChunkModels finest = files_.read_finest(sample_of(choice, drawn_, most, samples_++));
+  if (settings_.room) drop_beyond_room(finest, model_, chunks_);
   if (finest.chunks.empty()) return {};
   visibility_->keep_picture(views.front(), settings);
   VisibleChunks visible = measure(views, settings);
-  const ChunkModels before = exchange(finest, model_, chunks_);
+  const ChunkModels before = swap_chunks(finest, model_, chunks_);
   gpu_model_->reload(chunks_.take_changes());
   sample_error_ = visibility_->picture_error(views.front(), settings);
   const auto finest_already = static_cast<std::size_t>(std::ranges::count(drawn_, 0u));
   if (finest.chunks.size() + finest_already == drawn_.size()) show_more(visible, measure(views, settings));
-  exchange(before, model_, chunks_);
+  swap_chunks(before, model_, chunks_);
   gpu_model_->reload(chunks_.take_changes());
   choice = chooser_.choose(views, request_for(views), visible);
   choice.levels = drawn_;
@@ -130,10 +130,10 @@ void StreamedModel::start_over() {
   chunks_.replace(model_, files_.chunks().size(), files_.environment());
 }
 
-void StreamedModel::bring_to(const LevelChoice& choice) {
+void StreamedModel::read_levels(const LevelChoice& choice) {
   const auto reading = Clock::now();
   const std::vector<std::size_t> from = drawn_;
-  files_.read(from, choice, [&](const LodFiles::Piece& piece) { put({&piece, 1}); });
+  files_.read(from, choice, [&](const LodFiles::LoadedChunk& loaded) { put({&loaded, 1}); });
   times_.read_ms += ms_since(reading);
   const ModelChunks::Changes changes = chunks_.take_changes();
   if (!gpu_model_) return;

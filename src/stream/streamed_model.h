@@ -24,10 +24,10 @@ struct StreamSettings {
   DetailRequest detail;  // the stream sets `calibration`, and limits `most` by `room`
   /// With FrameSettings::quality, levels are chosen by dB and may use half of the squared error that it
   /// allows.
-  bool shares = false;
+  bool shares_quality = false;
   /// If the finest levels have at most this many Gaussians and fit, the model is drawn at these instead of
   /// choosing levels by dB.
-  std::size_t all_up_to = 0;
+  std::size_t finest_up_to = 0;
   /// Returns how many Gaussians with harmonics of a degree fit beside a frame of these views (no views: a
   /// typical pair). Empty: any number fits.
   std::function<std::size_t(std::span<const shared::View> views, int degree)> room = {};
@@ -60,7 +60,7 @@ class StreamedModel {
   /// Gaussians of the model.
   std::size_t gaussians() const { return chunks_.gaussians(); }
   /// Returns the dB that a frame itself must reach, so that frame and levels together reach `together_db`.
-  double quality_left(double together_db) const;
+  double frame_quality(double together_db) const;
 
   /// Since the last call: ms of reading and uploading in settle(), and Gaussians that begin_frame() added to
   /// the model.
@@ -78,16 +78,16 @@ class StreamedModel {
 
   /// `lost` multiplies the predicted loss of levels.
   DetailRequest request_for(std::span<const shared::View> views, double lost = 1.0) const;
-  std::optional<double> db_for(double quality) const;
+  std::optional<double> levels_db_for(double quality) const;
   /// Returns whether the last frame or picture had these views, bit for bit.
   bool are_last(std::span<const shared::View> views) const;
   /// Puts chunks that were read into the model.
-  void put(std::span<const LodFiles::Piece> pieces);
+  void put(std::span<const LodFiles::LoadedChunk> loaded_chunks);
   /// Resets the model to the Gaussians that are part of every level.
   void start_over();
   /// Reads a choice's levels, and uploads the model if it is on the GPU. Single pictures upload all of it,
   /// since their Gaussians change places each time.
-  void bring_to(const LevelChoice& choice);
+  void read_levels(const LevelChoice& choice);
   VisibleChunks measure(std::span<const shared::View> views, const render::FrameSettings& settings);
   /// Measures the loss of the drawn levels in the first view, from a second picture with a sample of chunks
   /// at their finest levels. Updates the choice. Returns the visibility in both pictures; empty without a
@@ -113,7 +113,7 @@ class StreamedModel {
   Times times_;
 
  private:
-  bool shows_all_ = false;
+  bool draws_finest_ = false;
 };
 
 }  // namespace binosplat

@@ -94,9 +94,9 @@ std::vector<std::int64_t> Visibility::sum_up(std::size_t views, int precision, c
   dispatcher_.begin_frame();
   dispatcher_.begin_stage("blend");
   render::blend_visibility(dispatcher_, plan, buffers, sums_);
-  const auto model_buffers = frame_.model()->in(precision);
-  const gl::Program& program =
-      dispatcher_.context().program("parts_seen.comp", gl::Number{"HALF", precision == PRECISION_HALF, 2});
+  const auto model_buffers = frame_.model()->buffers_in(precision);
+  const gl::Program& program = dispatcher_.context().program(
+      "chunk_visibility.comp", gl::Number{"HALF", precision == PRECISION_HALF, 2});
   for (std::size_t group = 0; group < plan.groups.size(); ++group) {
     for (const render::ModelBuffers::Page& page : model_buffers->pages) {
       const render::DrawnBuffers& drawn = *buffers.drawn[group];
@@ -110,10 +110,10 @@ std::vector<std::int64_t> Visibility::sum_up(std::size_t views, int precision, c
            {"Indices", drawn.indices},
            {"Sums", sums_},
            {"Owners", owners_},
-           {"OfParts", of_chunks_}},
+           {"ChunkSums", of_chunks_}},
           {{"page_first", page.first},
            {"page_count", page.count},
-           {"part_count", static_cast<std::uint32_t>(chunks.size())},
+           {"chunk_count", static_cast<std::uint32_t>(chunks.size())},
            {"block_size", static_cast<std::uint32_t>(ModelChunks::block)},
            {"view_begin", plan.groups[group].begin},
            {"view_end", plan.groups[group].end}});
@@ -121,7 +121,7 @@ std::vector<std::int64_t> Visibility::sum_up(std::size_t views, int precision, c
   }
   dispatcher_.end_frame();
   dispatcher_.wait_and_time();
-  render::refuse_truncated(dispatcher_.context(), buffers.counters.read<shared::Counters>(1).front());
+  render::throw_if_truncated(dispatcher_.context(), buffers.counters.read<shared::Counters>(1).front());
   return of_chunks_.read<std::int64_t>(2 * chunks.size() * views);
 }
 

@@ -16,8 +16,8 @@ constexpr double cores_share = 0.5;  // the others draw frames
 
 }  // namespace
 
-StreamWorker::StreamWorker(const LodFiles& files, std::vector<std::size_t> there)
-    : files_(files), chooser_(files), there_(std::move(there)) {
+StreamWorker::StreamWorker(const LodFiles& files, std::vector<std::size_t> present)
+    : files_(files), chooser_(files), present_(std::move(present)) {
   thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
 }
 
@@ -27,15 +27,15 @@ void StreamWorker::request(Request request) {
   changed_.notify_all();
 }
 
-std::vector<LodFiles::Piece> StreamWorker::take(std::size_t gaussians) {
-  std::vector<LodFiles::Piece> taken;
+std::vector<LodFiles::LoadedChunk> StreamWorker::take(std::size_t gaussians) {
+  std::vector<LodFiles::LoadedChunk> taken;
   const std::lock_guard lock(mutex_);
-  for (std::size_t count = 0; !pieces_.empty() && count < gaussians;) {
-    LodFiles::Piece& piece = taken.emplace_back(std::move(pieces_.front()));
-    pieces_.pop_front();
-    there_[piece.chunk] = piece.level;
-    count += piece.model.count();
-    waiting_ -= piece.model.count();
+  for (std::size_t count = 0; !loaded_.empty() && count < gaussians;) {
+    LodFiles::LoadedChunk& loaded = taken.emplace_back(std::move(loaded_.front()));
+    loaded_.pop_front();
+    present_[loaded.chunk] = loaded.level;
+    count += loaded.model.count();
+    waiting_gaussians_ -= loaded.model.count();
   }
   if (!taken.empty()) changed_.notify_all();
   return taken;
@@ -43,7 +43,7 @@ std::vector<LodFiles::Piece> StreamWorker::take(std::size_t gaussians) {
 
 bool StreamWorker::is_idle() const {
   const std::lock_guard lock(mutex_);
-  return !request_ && !is_at_work_ && pieces_.empty() && !trouble_;
+  return !request_ && !is_at_work_ && loaded_.empty() && !error_;
 }
 
 StreamWorker::Chosen StreamWorker::chosen() const {
@@ -58,7 +58,7 @@ bool StreamWorker::is_choosing() const {
 
 void StreamWorker::check() const {
   const std::lock_guard lock(mutex_);
-  if (trouble_) std::rethrow_exception(trouble_);
+  if (error_) std::rethrow_exception(error_);
 }
 
 void StreamWorker::run(const std::stop_token& stop) {
@@ -68,16 +68,16 @@ void StreamWorker::run(const std::stop_token& stop) {
     const Request request = *std::exchange(request_, std::nullopt);
     is_at_work_ = is_choosing_ = true;
     lock.unlock();
-    std::exception_ptr trouble;
+    std::exception_ptr error;
     try {
       on_some_cores(cores_share, [&] { work(request, stop); });
     } catch (...) {
-      trouble = std::current_exception();
+      error = std::current_exception();
     }
     lock.lock();
     is_at_work_ = is_choosing_ = false;
-    trouble_ = trouble;
-    if (trouble) return;
+    error_ = error;
+    if (error) return;
   }
 }
 
@@ -86,8 +86,8 @@ void StreamWorker::work(const Request& request, const std::stop_token& stop) {
   const auto choice =
       std::make_shared<const LevelChoice>(chooser_.choose(request.views, request.detail, request.visible));
   add_span("choose levels", begin);
-  Chosen chosen{.is_limited = choice->is_limited, .here = request.here, .at = request.at};
-  if (choice->knows_errors()) chosen.error = std::make_shared<RunningError>(choice, request.visible.drawn);
+  Chosen chosen{.is_limited = choice->is_limited, .current_views = request.current_views, .at = request.at};
+  if (choice->has_errors()) chosen.error = std::make_shared<RunningError>(choice, request.visible.drawn);
   chosen.made_at = Clock::now();
   {
     const std::lock_guard lock(mutex_);
@@ -96,7 +96,7 @@ void StreamWorker::work(const Request& request, const std::stop_token& stop) {
   }
   const TimedSpan span("read levels");
   files_.read(
-      keep_wanted(*choice), *choice, [&](LodFiles::Piece piece) { add(std::move(piece), stop); },
+      keep_wanted(*choice), *choice, [&](LodFiles::LoadedChunk loaded) { add(std::move(loaded), stop); },
       [&] {
         const std::lock_guard lock(mutex_);
         return !stop.stop_requested() && !request_;
@@ -106,21 +106,21 @@ void StreamWorker::work(const Request& request, const std::stop_token& stop) {
 // Drops chunks that were read for another choice. Returns the chunks' levels once the others are taken.
 std::vector<std::size_t> StreamWorker::keep_wanted(const LevelChoice& choice) {
   const std::lock_guard lock(mutex_);
-  std::erase_if(pieces_, [&](const LodFiles::Piece& piece) {
-    const bool is_wanted = choice.levels[piece.chunk] == piece.level;
-    if (!is_wanted) waiting_ -= piece.model.count();
+  std::erase_if(loaded_, [&](const LodFiles::LoadedChunk& loaded) {
+    const bool is_wanted = choice.levels[loaded.chunk] == loaded.level;
+    if (!is_wanted) waiting_gaussians_ -= loaded.model.count();
     return !is_wanted;
   });
-  std::vector<std::size_t> levels = there_;
-  for (const LodFiles::Piece& piece : pieces_) levels[piece.chunk] = piece.level;
+  std::vector<std::size_t> levels = present_;
+  for (const LodFiles::LoadedChunk& loaded : loaded_) levels[loaded.chunk] = loaded.level;
   return levels;
 }
 
-void StreamWorker::add(LodFiles::Piece piece, const std::stop_token& stop) {
+void StreamWorker::add(LodFiles::LoadedChunk loaded, const std::stop_token& stop) {
   std::unique_lock lock(mutex_);
-  changed_.wait(lock, stop, [&] { return waiting_ < waiting_most || request_; });
-  waiting_ += piece.model.count();
-  pieces_.push_back(std::move(piece));
+  changed_.wait(lock, stop, [&] { return waiting_gaussians_ < waiting_most || request_; });
+  waiting_gaussians_ += loaded.model.count();
+  loaded_.push_back(std::move(loaded));
 }
 
 }  // namespace binosplat

@@ -27,27 +27,27 @@ class StreamWorker {
     std::vector<shared::View> views;
     DetailRequest detail;
     VisibleChunks visible;
-    std::size_t here = 0;       // number of current views, which precede predicted views
-    Clock::time_point at = {};  // time of the current views
+    std::size_t current_views = 0;  // number of current views, which precede predicted views
+    Clock::time_point at = {};      // time of the current views
   };
   /// The last choice.
   struct Chosen {
     std::shared_ptr<RunningError> error;  // of its views; null if levels are not chosen by dB
     bool is_limited = false;              // the request needs more than it allows to read
-    std::size_t here = 0;                 // as in the request, also `at`
+    std::size_t current_views = 0;        // as in the request, also `at`
     Clock::time_point at = {};
     Clock::time_point made_at = {};
   };
 
-  /// The files must outlive this object. `there` has the level of each chunk in the model.
-  StreamWorker(const LodFiles& files, std::vector<std::size_t> there);
+  /// The files must outlive this object. `present` has the level of each chunk in the model.
+  StreamWorker(const LodFiles& files, std::vector<std::size_t> present);
   StreamWorker(const StreamWorker&) = delete;
   StreamWorker& operator=(const StreamWorker&) = delete;
 
   /// Replaces the previous request. Does nothing after an error.
   void request(Request request);
   /// Returns chunks that were read, until they have `gaussians` Gaussians; empty if none are ready.
-  std::vector<LodFiles::Piece> take(std::size_t gaussians);
+  std::vector<LodFiles::LoadedChunk> take(std::size_t gaussians);
   /// Returns whether all requested chunks have been taken.
   bool is_idle() const;
   Chosen chosen() const;
@@ -60,20 +60,20 @@ class StreamWorker {
   void run(const std::stop_token& stop);
   void work(const Request& request, const std::stop_token& stop);
   std::vector<std::size_t> keep_wanted(const LevelChoice& choice);
-  void add(LodFiles::Piece piece, const std::stop_token& stop);
+  void add(LodFiles::LoadedChunk loaded, const std::stop_token& stop);
 
   const LodFiles& files_;
   Chooser chooser_;
 
   mutable std::mutex mutex_;  // guards the following members
   std::condition_variable_any changed_;
-  std::vector<std::size_t> there_;  // levels of the chunks taken so far
+  std::vector<std::size_t> present_;  // levels of the chunks taken so far
   std::optional<Request> request_;
   bool is_at_work_ = false, is_choosing_ = false;
-  std::deque<LodFiles::Piece> pieces_;
-  std::size_t waiting_ = 0;  // Gaussians of pieces_
+  std::deque<LodFiles::LoadedChunk> loaded_;
+  std::size_t waiting_gaussians_ = 0;  // Gaussians of loaded_
   Chosen chosen_;
-  std::exception_ptr trouble_;
+  std::exception_ptr error_;
   std::jthread thread_;  // last, so that it ends first
 };
 

@@ -32,8 +32,9 @@ Eye head_of(const std::vector<XrView>& views) {
 
 class Viewer {
  public:
-  Viewer(const Instance& instance, Renderer& renderer, const HeadsetSettings& settings, const Beside& beside)
-      : instance_(instance), renderer_(renderer), settings_(settings), beside_(beside) {}
+  Viewer(const Instance& instance, Renderer& renderer, const HeadsetSettings& settings,
+         const Callbacks& callbacks)
+      : instance_(instance), renderer_(renderer), settings_(settings), callbacks_(callbacks) {}
 
   /// Runs a session to its end. Returns false if it was lost.
   bool run_session() try {
@@ -44,7 +45,7 @@ class Viewer {
     last_.reset();
     while (session.poll()) {
       if (session.running()) draw(session, hands, projection);
-      if (!beside_.step() && !leaving_) {
+      if (!callbacks_.step() && !leaving_) {
         leaving_ = true;
         session.request_exit();
       }
@@ -96,17 +97,17 @@ class Viewer {
     const Placement& placement = walk_->placement();
     drawing.near_plane *= std::min(1.0, placement.units_per_metre / settings_.start.units_per_metre);
     frame.views = projection.begin(views, placement, effort.scale, drawing);
-    if (beside_.levels) {
+    if (callbacks_.levels) {
       const TimedSpan span("levels", &frame.levels_ms);
       const double drawn_ms = times_.empty() ? 0.0 : times_.back();
-      beside_.levels(frame.views, placement, drawing, frame.period_ms, drawn_ms);
+      callbacks_.levels(frame.views, placement, drawing, frame.period_ms, drawn_ms);
     }
     if (settings_.calibration) drawing = settings_.calibration->settings(frame.views, placement, drawing);
     frame.report = renderer_.draw(frame.views, placement, drawing);
     times_.push_back(frame.report.gpu_ms);
     if (budget_) budget_->took(frame.report.gpu_ms, frame.period_ms);
     const View& left = frame.views[instance_.has_insets() ? 1 : 0];
-    if (beside_.show) beside_.show(left.target, left.size);
+    if (callbacks_.show) callbacks_.show(left.target, left.size);
     projection.end(display, views, frame.views, placement);
     tell_drawn(std::move(frame), display);
   }
@@ -119,7 +120,7 @@ class Viewer {
     frame.display_ms = ms_of(display - first_shown_);
     frame.missed = static_cast<int>(std::max(periods - 1, 0LL));
     last_shown_ = display;
-    beside_.drawn(std::move(frame));
+    callbacks_.drawn(std::move(frame));
   }
 
   /// Moves the placement by the hands' input.
@@ -134,7 +135,7 @@ class Viewer {
   const Instance& instance_;
   Renderer& renderer_;
   const HeadsetSettings& settings_;
-  const Beside& beside_;
+  const Callbacks& callbacks_;
   std::optional<Walk> walk_;  // continues after a lost session
   std::optional<FrameBudget> budget_;
   std::optional<XrTime> last_;               // display time of the last step
@@ -145,8 +146,9 @@ class Viewer {
 
 }  // namespace
 
-void run(Instance& instance, Renderer& renderer, const HeadsetSettings& settings, const Beside& beside) {
-  Viewer viewer(instance, renderer, settings, beside);
+void run(Instance& instance, Renderer& renderer, const HeadsetSettings& settings,
+         const Callbacks& callbacks) {
+  Viewer viewer(instance, renderer, settings, callbacks);
   std::size_t drawn = 0;
   for (int in_vain = 0; !viewer.run_session();) {
     in_vain = viewer.frames() > drawn ? 0 : in_vain + 1;
@@ -156,7 +158,7 @@ void run(Instance& instance, Renderer& renderer, const HeadsetSettings& settings
     auto waited = milliseconds(0);
     do {
       std::this_thread::sleep_for(between_sessions);
-      if (!beside.step()) return viewer.tell();
+      if (!callbacks.step()) return viewer.tell();
       waited += between_sessions;
       if (waited > wait_most) refuse("{} lost the headset: connect it and switch it on", instance.runtime);
     } while (XR_FAILED(instance.find_headset()));

@@ -31,7 +31,7 @@ struct Drawn {
 };
 
 /// Callbacks of the program that shows a headset.
-struct Beside {
+struct Callbacks {
   /// Called after each frame, and repeatedly while no frames are requested. Returning false ends the session.
   std::function<bool()> step;
   /// Shows the left eye's picture, which is in the lower left corner of the target. May be empty.
@@ -48,6 +48,6 @@ struct Beside {
 /// Draws in the current OpenGL context, the renderer's. If the runtime loses a session, starts another once
 /// the headset is back, within some seconds. Throws Error(no_gl) for failures of the runtime, and as
 /// Renderer::submit does.
-void run(Instance& instance, Renderer& renderer, const HeadsetSettings& settings, const Beside& beside);
+void run(Instance& instance, Renderer& renderer, const HeadsetSettings& settings, const Callbacks& callbacks);
 
 }  // namespace binosplat::xr

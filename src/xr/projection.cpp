@@ -172,13 +172,14 @@ Projection::Projection(const Session& session, double scale, bool composed)
                           side(view.recommendedImageRectHeight, view.maxImageRectHeight));
     // Compute shaders write in place, through a view of the sRGB texture. If the runtime forbids that,
     // through a copy.
-    OfView of{Swapchain(session, GL_SRGB8_ALPHA8, size,
-                        XR_SWAPCHAIN_USAGE_COLOR_ATTACHMENT_BIT | XR_SWAPCHAIN_USAGE_SAMPLED_BIT,
-                        XR_SWAPCHAIN_USAGE_UNORDERED_ACCESS_BIT | XR_SWAPCHAIN_USAGE_MUTABLE_FORMAT_BIT)};
+    ViewTextures of{
+        Swapchain(session, GL_SRGB8_ALPHA8, size,
+                  XR_SWAPCHAIN_USAGE_COLOR_ATTACHMENT_BIT | XR_SWAPCHAIN_USAGE_SAMPLED_BIT,
+                  XR_SWAPCHAIN_USAGE_UNORDERED_ACCESS_BIT | XR_SWAPCHAIN_USAGE_MUTABLE_FORMAT_BIT)};
     if (has_depths)
       of.depths.emplace(session, *depth_format, (size + depth_step - 1) / depth_step,
                         XR_SWAPCHAIN_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT);
-    of_views_.push_back(std::move(of));
+    view_textures_.push_back(std::move(of));
   }
   take_masks();
 }
@@ -187,7 +188,7 @@ void Projection::take_masks() {
   const Instance& instance = session_.instance();
   if (composed_ || !instance.has(XR_KHR_VISIBILITY_MASK_EXTENSION_NAME)) return;
   const auto get = instance.function<PFN_xrGetVisibilityMaskKHR>("xrGetVisibilityMaskKHR");
-  for (std::size_t k = 0; k < of_views_.size(); ++k) {
+  for (std::size_t k = 0; k < view_textures_.size(); ++k) {
     XrVisibilityMaskKHR mask{XR_TYPE_VISIBILITY_MASK_KHR};
     const auto ask = [&] {
       check(get(session_.handle(), instance.views, static_cast<std::uint32_t>(k),
@@ -195,7 +196,7 @@ void Projection::take_masks() {
             "xrGetVisibilityMaskKHR");
     };
     ask();
-    auto& [vertices, indices] = of_views_[k].mask;
+    auto& [vertices, indices] = view_textures_[k].mask;
     vertices.resize(mask.vertexCountOutput);
     indices.resize(mask.indexCountOutput);
     mask.vertexCapacityInput = mask.vertexCountOutput;
@@ -204,19 +205,19 @@ void Projection::take_masks() {
     mask.indices = indices.data();
     if (!indices.empty()) ask();
     // An invalid mask hides nothing.
-    const auto is_none = [&](std::uint32_t index) { return index >= of_views_[k].mask.vertices.size(); };
+    const auto is_none = [&](std::uint32_t index) { return index >= view_textures_[k].mask.vertices.size(); };
     if (indices.size() % 3 != 0 || std::any_of(indices.begin(), indices.end(), is_none)) indices.clear();
   }
 }
 
 std::vector<View> Projection::begin(std::span<const XrView> located, const Placement& placement, double scale,
                                     const Settings& settings) {
-  const std::size_t count = of_views_.size();
+  const std::size_t count = view_textures_.size();
   if (located.size() != count)
     refuse("{} located {} views of {}", session_.instance().runtime, located.size(), count);
   std::vector<View> views(count);
   for (std::size_t k = 0; k < count; ++k) {
-    const OfView& of = of_views_[k];
+    const ViewTextures& of = view_textures_[k];
     View& view = views[place_of(k, count)];
     view.eye = eye_of(located[k].pose, located[k].fov);
     view.size = glm::max(glm::ivec2(1), glm::ivec2(glm::round(scale * glm::dvec2(of.colours.size))));
@@ -236,14 +237,14 @@ std::vector<View> Projection::begin(std::span<const XrView> located, const Place
 
 void Projection::end(XrTime display, std::span<const XrView> located, std::span<const View> drawn,
                      const Placement& placement) const {
-  const std::size_t count = of_views_.size();
+  const std::size_t count = view_textures_.size();
   std::vector<XrCompositionLayerProjectionView> views(count, {XR_TYPE_COMPOSITION_LAYER_PROJECTION_VIEW});
   std::vector<XrCompositionLayerDepthInfoKHR> depths(count);
   const auto part = [](const Swapchain& of, const glm::ivec2& size) {
     return XrSwapchainSubImage{of.handle.get(), {{0, 0}, {size.x, size.y}}, 0};
   };
   for (std::size_t k = 0; k < count; ++k) {
-    const OfView& of = of_views_[k];
+    const ViewTextures& of = view_textures_[k];
     const View& view = drawn[place_of(k, count)];
     views[k].pose = located[k].pose;
     views[k].fov = located[k].fov;
@@ -266,9 +267,9 @@ void Projection::end(XrTime display, std::span<const XrView> located, std::span<
 
 std::string Projection::description() const {
   std::string text;
-  for (const OfView& view : of_views_)
+  for (const ViewTextures& view : view_textures_)
     text += fmt::format("{}{} x {}", text.empty() ? "" : ", ", view.colours.size.x, view.colours.size.y);
-  return fmt::format("{} px, GL_SRGB8_ALPHA8{}", text, of_views_[0].depths ? ", with depths" : "");
+  return fmt::format("{} px, GL_SRGB8_ALPHA8{}", text, view_textures_[0].depths ? ", with depths" : "");
 }
 
 }  // namespace binosplat::xr

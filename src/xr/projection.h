@@ -60,14 +60,14 @@ class Projection {
 
  private:
   /// The textures and mask of a view.
-  struct OfView {
+  struct ViewTextures {
     Swapchain colours;
     std::optional<Swapchain> depths = {};
     Mask mask = {};
   };
   const Session& session_;
   const bool composed_;
-  std::vector<OfView> of_views_;
+  std::vector<ViewTextures> view_textures_;
 };
 
 /// Converts a pose to the library's eye.

@@ -84,7 +84,7 @@ constexpr AmdRun amd_runs[] = {
     {"render trained -o out.png --decode cyclopean --appearance 2"},
     {"render trained -o out.png --precision half --projection tangent --mono"},
     {"render trained -o out.png --frames 3 --tolerance 0.1 --transmittance last"},
-    {"levels model.ply -o levels --leaf 64 --levels 3"},
+    {"levels model.ply -o levels --chunk 64 --levels 3"},
     {"render levels -o out.png --detail 2"},
     {"render levels -o out.png --detail 40dB --detail-report"},
     {"render levels -o out.png --gpu-memory 30 --precision half"},

@@ -165,7 +165,7 @@ struct BenchLevelsCommand : SceneTest {
   /// A folder of levels, with cameras in it.
   std::string make_levels(const std::string& name, bool cameras = true) {
     std::string made = folder / name;
-    EXPECT_TRUE(good(run_program({"levels", model, "-o", made, "--leaf", "64", "--levels", "4"})));
+    EXPECT_TRUE(good(run_program({"levels", model, "-o", made, "--chunk", "64", "--levels", "4"})));
     if (cameras) {
       add_row_of_cameras(3);
       fs::rename(folder / "cameras.json", folder / (name + "/cameras.json"));

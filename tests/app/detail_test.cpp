@@ -1,5 +1,5 @@
 // --gpu-memory for models whose parts come later.
-#include "app/followed.h"
+#include "app/level_options.h"
 
 #include <gtest/gtest.h>
 

@@ -86,7 +86,7 @@ TEST_F(FarWorld, HasLevels) {
   write_text(folder / "far.ply", to_bytes(far_model()));
   for (const char* name : {"model", "far"})
     EXPECT_TRUE(good(run_program({"levels", folder / (std::string(name) + ".ply"), "-o",
-                                  folder / "levels" / name, "--leaf", "64", "--levels", "2"})));
+                                  folder / "levels" / name, "--chunk", "64", "--levels", "2"})));
   for (const Words& how : {Words{}, Words{"--detail", "0.01"}, Words{"--detail", "45dB"}}) {
     const double of_near = measure::psnr(drawn(folder / "levels/model", "near.json", how), expected);
     EXPECT_GT(of_near, 35.0);

@@ -53,7 +53,7 @@ TEST_F(Info, OfABuiltInScene) {
 TEST(InfoOfFixtures, KnowsTheirFormats) {
   REQUIRE_FIXTURES(folder);
   const std::vector<std::pair<std::string, std::string>> expected = {
-      {"spz/adobe-train-v4-sh3-rdf2rub-aa.spz", "(spz 4, axes not said)"},
+      {"spz/adobe-train-v4-sh3-rdf2rub-aa.spz", "(spz 4, axes assumed)"},
       {"spz/st-train-v3-sh3.spz", "x right, y up, z back"},
       {"cply/st-train-sh1.compressed.ply", "(compressed ply)"},
       {"splat/minimal.splat", "(.splat)"},

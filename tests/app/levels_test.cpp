@@ -10,7 +10,7 @@ namespace {
 
 struct LevelsTest : SceneTest {
   Words line(const std::string& to, const Words& more = {}) const {
-    return joined({"levels", model, "-o", to, "--leaf", "64", "--levels", "3"}, more);
+    return joined({"levels", model, "-o", to, "--chunk", "64", "--levels", "3"}, more);
   }
   Outcome levels(const std::string& to, const Words& more = {}) const { return run_program(line(to, more)); }
 };
@@ -66,7 +66,7 @@ TEST_F(LevelsTest, TakeNoFolderOfOthers) {
   ASSERT_TRUE(good(levels(out)));
   const auto before = contents_of(out);
   EXPECT_TRUE(ended(levels(out, {"--axes", "rub"}), 2, "differs in axes"));
-  EXPECT_TRUE(ended(run_program({"levels", model, "-o", out}), 2, "differs in leaf, levels"));
+  EXPECT_TRUE(ended(run_program({"levels", model, "-o", out}), 2, "differs in chunk, levels"));
   std::string other = read_text(model);
   ++other[other.size() - 100];
   write_text(model, other);
@@ -137,7 +137,7 @@ TEST_F(LevelsTest, SayWhatTheyCannotTake) {
   test::write_scaffold(folder / "scaffold", test::random_scaffold(1, {.anchors = 10}));
   expect_refused_after(
       {"levels"}, {{{model, "--levels", "0"}, "--levels"},
-                   {{model, "--leaf", "1"}, "--leaf"},
+                   {{model, "--chunk", "1"}, "--chunk"},
                    {{model, "--lod", "1"}, "level of detail 1: "},
                    {{model, "--count", "10000"}, "--count is for demo:city"},
                    {{folder / "none.ply"}, "none.ply"},

@@ -60,7 +60,7 @@ struct LevelsTruth : SceneTest {
   void make_levels(std::uint32_t seed) const {
     save_ply(model, wild_model(seed));
     fs::remove_all(out);
-    ASSERT_TRUE(good(run_program({"levels", model, "-o", out, "--leaf", "64", "--levels", "4"})));
+    ASSERT_TRUE(good(run_program({"levels", model, "-o", out, "--chunk", "64", "--levels", "4"})));
   }
 
   /// A picture from 4 units away.
@@ -83,9 +83,9 @@ struct LevelsTruth : SceneTest {
     const auto number = [](const json& of, const char* name) {
       return of.contains(name) && of[name].is_number() ? of[name].get<double>() : INFINITY;
     };
-    return {
-        view.contains("told_psnr_db") ? number(view, "told_psnr_db") : number(levels, "predicted_psnr_db"),
-        number(levels, "finest_psnr_db")};
+    return {view.contains("reported_psnr_db") ? number(view, "reported_psnr_db")
+                                              : number(levels, "predicted_psnr_db"),
+            number(levels, "finest_psnr_db")};
   }
 };
 

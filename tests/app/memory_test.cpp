@@ -33,7 +33,7 @@ struct Memory : SceneTest {
 };
 
 TEST_F(Memory, LevelsSayWhatTheyLeaveOut) {
-  const Words line = {"levels", model, "-o", out, "--leaf", "64", "--levels", "3"};
+  const Words line = {"levels", model, "-o", out, "--chunk", "64", "--levels", "3"};
   ASSERT_TRUE(good(run_program(line)));
   const std::string whole = read_text(out + "/lod-meta.json");
   int short_of_memory = 0;

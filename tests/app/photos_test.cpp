@@ -79,7 +79,7 @@ TEST_F(Photos, MayBeGreyOrOpenExr) {
   for (std::size_t i = 0; i < grey.data.size(); ++i) grey.data[i] = exact.data[3 * i];
   save_png(photo, grey);
   Image a = exact, b = grey;
-  measure::make_shown(a, b);
+  measure::prepare_comparison(a, b);
   EXPECT_NEAR(psnr(), measure::psnr(a, b), 1e-3);
   fs::remove(photo);
   ASSERT_TRUE(good(render(joined(front, {"--exr", "float", "-o", photos + "/front.exr"}))));

@@ -14,7 +14,7 @@ struct Runs : SceneTest {
   Runs() { add_row_of_cameras(3); }
 
   Words levels_of(const std::string& of) const {
-    return {"levels", of, "-o", out, "--leaf", "64", "--levels", "2"};
+    return {"levels", of, "-o", out, "--chunk", "64", "--levels", "2"};
   }
   Words pictures(const Words& more = {}) const {
     return joined({"render", model, "--view", "all", "--mono", "--size", "36x24", "--resume", "-o", out},

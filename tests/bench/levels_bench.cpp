@@ -36,7 +36,7 @@ struct Plan {
   int judged = 8;      // of the frames, evenly spread, against the finest
   int shrink = 1;
   std::size_t most = any_number;
-  std::size_t all_up_to = few_gaussians;
+  std::size_t finest_up_to = few_gaussians;
   render::FrameSettings settings;
 };
 
@@ -106,15 +106,15 @@ struct Numbers {
 };
 
 StreamSettings stream_settings(const Plan& plan, const std::string& detail) {
-  StreamSettings settings{.all_up_to = plan.all_up_to, .reserve = std::size_t{1} << 22};
+  StreamSettings settings{.finest_up_to = plan.finest_up_to, .reserve = std::size_t{1} << 22};
   char* end = nullptr;
   const double number = std::strtod(detail.c_str(), &end);
   if (end != detail.c_str() && std::string_view(end) == "dB") {
     settings.detail.db = number;
   } else if (end != detail.c_str() && *end == '\0') {
-    settings.detail.apart_px = number;
+    settings.detail.spacing_px = number;
   } else if (detail == "shared") {
-    settings.shares = true;
+    settings.shares_quality = true;
   } else {
     fail("--detail {}: expected px, or dB as in 40dB, or shared", detail);
   }
@@ -160,7 +160,7 @@ class Flight {
  private:
   render::FrameSettings settings() const {
     render::FrameSettings of_frame = plan_.settings;
-    of_frame.quality = static_cast<float>(stream_.quality_left(of_frame.quality));
+    of_frame.quality = static_cast<float>(stream_.frame_quality(of_frame.quality));
     return of_frame;
   }
 
@@ -358,7 +358,7 @@ int main(int argc, char** argv) {
       ->check(CLI::Range(0, 1000));
   app.add_option("--rate", plan.rate, "Frames a second (90)")->check(CLI::Range(1.0, 1000.0));
   app.add_option("--most", plan.most, "Gaussians of the model, at most");
-  app.add_option("--all-up-to", plan.all_up_to, "By dB: Gaussians of which all are drawn (524288)");
+  app.add_option("--all-up-to", plan.finest_up_to, "By dB: Gaussians of which all are drawn (524288)");
   app.add_option("--quality", plan.settings.quality, "dB, as of `render`");
   app.add_option("--json", plan.json, "Append the rows to this file, a line each");
   app.add_option("--timeline", plan.timeline,

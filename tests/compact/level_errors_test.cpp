@@ -25,7 +25,7 @@ Model ball(float scale, float opacity, const glm::vec3& at) {
 }
 
 /// What is seen of a ball, alpha over pixels of a width.
-double shown(const LeafErrors& errors, double scale, double opacity, std::size_t width) {
+double shown(const LevelErrors& errors, double scale, double opacity, std::size_t width) {
   const double deviation = scale / errors.pixels[width];
   return 2.0 * opacity * std::numbers::pi * (deviation * deviation + KERNEL_PX2);
 }
@@ -62,7 +62,7 @@ TEST(LevelErrors, AreTheIntegralOfTheSquaredDifference) {
       EXPECT_EQ(errors[0].of_level[1][d][width], 0.0) << "nothing of its neighbours";
       for (const std::size_t i : {0u, 1u, 2u}) EXPECT_EQ(errors[i].of_level[0][d][width], 0.0);
       // White over a grey of a half, give or take as much, since the part is black and white; less of it.
-      const auto expected = [&](double scale, double less, const LeafErrors& of) {
+      const auto expected = [&](double scale, double less, const LevelErrors& of) {
         const double deviation = scale / of.pixels[width];
         return (0.25 + 0.25) * less * less * std::numbers::pi * (deviation * deviation + KERNEL_PX2);
       };

@@ -39,7 +39,7 @@ Image drawn(const Model& model, const Camera& camera) {
 }
 
 /// Of the model of which `judged` is as many dB below 0, in a view that is not fitted.
-RefitJudge judge_of(const Model& right) {
+ValidationLoss validation_loss_of(const Model& right) {
   Camera between = cameras_to_fit()[2];
   between.position.x = 0.2;
   return [between, wanted = drawn(right, between)](const Model& model) {
@@ -49,7 +49,7 @@ RefitJudge judge_of(const Model& right) {
 
 Refitted fitted(const Model& start, const Model& right, RefitSettings settings) {
   const RefitTargets targets{right, cameras_to_fit(), {}, near_default};
-  return refit(test::gl_context(), start, targets, settings, judge_of(right));
+  return refit(test::gl_context(), start, targets, settings, validation_loss_of(right));
 }
 
 TEST(Refit, FindsTheColoursThatThePicturesAreOf) {
@@ -57,19 +57,19 @@ TEST(Refit, FindsTheColoursThatThePicturesAreOf) {
   const RefitSettings settings{.rounds = 40, .rounds_linear = 40, .damping = 0.0},
       few{.rounds = 8, .rounds_linear = 8, .damping = 0.0};
   const Refitted found = fitted(start, right, settings);
-  const double best = found.judged[static_cast<std::size_t>(found.best_round)];
-  EXPECT_LT(best, found.judged[0] - 25.0);
-  EXPECT_EQ(best, *std::min_element(found.judged.begin(), found.judged.end()));
+  const double best = found.losses[static_cast<std::size_t>(found.best_round)];
+  EXPECT_LT(best, found.losses[0] - 25.0);
+  EXPECT_EQ(best, *std::min_element(found.losses.begin(), found.losses.end()));
   Model after = start;
   after.sh = found.sh;
-  EXPECT_EQ(judge_of(right)(after), best);
+  EXPECT_EQ(validation_loss_of(right)(after), best);
   const Refitted once = fitted(start, right, few);
   EXPECT_EQ(once.sh, fitted(start, right, few).sh) << "not the same bits twice";
-  EXPECT_LT(once.judged[static_cast<std::size_t>(once.best_round)], once.judged[0] - 10.0);
+  EXPECT_LT(once.losses[static_cast<std::size_t>(once.best_round)], once.losses[0] - 10.0);
 
   const test::FaultyShaders faulty("blend_measure.glsl", "sum < 0 ? 0xffffffffu", "false ? 0xffffffffu");
   const Refitted wrong = fitted(start, right, few);
-  EXPECT_GT(wrong.judged[static_cast<std::size_t>(wrong.best_round)], found.judged[0] - 5.0);
+  EXPECT_GT(wrong.losses[static_cast<std::size_t>(wrong.best_round)], found.losses[0] - 5.0);
 }
 
 // Pictures in one order and projection, to be drawn in another; with colours that are cut off at 0, too.
@@ -78,7 +78,7 @@ TEST(Refit, GetsNearThePicturesInAnotherOrderAndProjection) {
   Model start = right;
   start.perspective = {ORDER_DISTANCE, PROJECTION_TANGENT};
   const Refitted found = fitted(start, right, {});
-  EXPECT_LT(found.judged[static_cast<std::size_t>(found.best_round)], found.judged[0] - 1.5);
+  EXPECT_LT(found.losses[static_cast<std::size_t>(found.best_round)], found.losses[0] - 1.5);
 }
 
 // From one side a colour is cut off at 0, before and after: that view must have no say, or the first step,
@@ -105,8 +105,8 @@ TEST(Refit, ViewsOfColoursThatAreCutOffHaveNoSay) {
   };
   const RefitTargets targets{right, around, {}, near_default};
   const Refitted found = refit(test::gl_context(), start, targets, {.rounds = 1, .damping = 0.0}, error);
-  EXPECT_GT(found.judged[0], -45.0);
-  EXPECT_LT(found.judged[1], -90.0);
+  EXPECT_GT(found.losses[0], -45.0);
+  EXPECT_LT(found.losses[1], -90.0);
 }
 
 TEST(Refit, PhotosArePreferredAndWhatNothingShowsStays) {
@@ -128,10 +128,11 @@ TEST(Refit, PhotosArePreferredAndWhatNothingShowsStays) {
   const Refitted found = refit(test::gl_context(), start, targets, {.rounds = 7, .keep_zeros = true}, {});
   EXPECT_EQ(asked, 2 * cameras_to_fit().size()) << "linearised twice";
   EXPECT_EQ(found.best_round, 7);
-  EXPECT_TRUE(found.judged.empty());
+  EXPECT_TRUE(found.losses.empty());
   Model after = start;
   after.sh = found.sh;
-  EXPECT_LT(judge_of(right)(after), judge_of(right)(start) - 6.0) << "the original is no target";
+  EXPECT_LT(validation_loss_of(right)(after), validation_loss_of(right)(start) - 6.0)
+      << "the original is no target";
   const std::size_t unseen = start.sh.size() - 12;
   EXPECT_TRUE(std::equal(start.sh.begin() + static_cast<std::ptrdiff_t>(unseen), start.sh.end(),
                          found.sh.begin() + static_cast<std::ptrdiff_t>(unseen)));
@@ -149,7 +150,7 @@ TEST(Refit, TheBestRoundIsKeptAndThreeWithoutABetterEndIt) {
   };
   const Refitted third = best_of({5, 6, 6, 4, 4, 6, 6});
   EXPECT_EQ(third.best_round, 3);
-  EXPECT_EQ(third.judged.size(), 7u);
+  EXPECT_EQ(third.losses.size(), 7u);
   const Refitted none = best_of({5, 6, 6, 6});
   EXPECT_EQ(none.best_round, 0);
   EXPECT_EQ(none.sh, start.sh);

@@ -47,30 +47,30 @@ struct StreamedSogWriter : testing::Test {
            EXPECT_FALSE(files.contains(name)) << name << " is written twice";
            files[name] = as_text(bytes);
          }},
-        {[&](std::span<const std::vector<Model>> leaves) {
-           for (const std::vector<Model>& levels : leaves) {
+        {[&](std::span<const std::vector<Model>> chunks) {
+           for (const std::vector<Model>& levels : chunks) {
              for (std::size_t k = 0; k < levels.size(); ++k)
                append(judged[k], levels[k], 0, levels[k].count());
            }
-           return errors_of(leaves);
+           return errors_of(chunks);
          },
-         [&](std::span<const std::vector<Model>> leaves, std::span<const LeafErrors> errors, int of_scene) {
-           EXPECT_EQ(leaves.size(), errors.size());
+         [&](std::span<const std::vector<Model>> chunks, std::span<const LevelErrors> errors, int of_scene) {
+           EXPECT_EQ(chunks.size(), errors.size());
            EXPECT_EQ(errors.back().pixels.at(1), 1000.0);
            pictures.push_back(of_scene);
-           return together ? *together : of_all(leaves, errors);
+           return joint ? *joint : of_all(chunks, errors);
          }});
   }
 
   /// By what can be told apart in lod-meta.json.
-  static std::vector<LeafErrors> errors_of(std::span<const std::vector<Model>> leaves) {
-    std::vector<LeafErrors> errors;
-    for (const std::vector<Model>& levels : leaves) {
-      LeafErrors& leaf = errors.emplace_back();
-      leaf.pixels = {levels[0].position[0].x + 100.0, 1000.0};
-      leaf.seen.assign(detail_directions, {levels[0].position[0].y + 100.0, 4.0});
+  static std::vector<LevelErrors> errors_of(std::span<const std::vector<Model>> chunks) {
+    std::vector<LevelErrors> errors;
+    for (const std::vector<Model>& levels : chunks) {
+      LevelErrors& chunk = errors.emplace_back();
+      chunk.pixels = {levels[0].position[0].x + 100.0, 1000.0};
+      chunk.seen.assign(detail_directions, {levels[0].position[0].y + 100.0, 4.0});
       for (std::size_t level = 0; level < levels.size(); ++level)
-        leaf.of_level.emplace_back(
+        chunk.of_level.emplace_back(
             detail_directions,
             std::vector{0.123456 * static_cast<double>(level), static_cast<double>(levels[level].count())});
     }
@@ -78,12 +78,12 @@ struct StreamedSogWriter : testing::Test {
   }
 
   /// By what can be told apart in the factor that errors get.
-  static std::vector<LossTogether> of_all(std::span<const std::vector<Model>> leaves,
-                                          std::span<const LeafErrors> errors) {
+  static std::vector<JointLoss> of_all(std::span<const std::vector<Model>> chunks,
+                                       std::span<const LevelErrors> errors) {
     double sum = 0.0;
-    for (std::size_t k = 0; k < leaves.size(); ++k) {
+    for (std::size_t k = 0; k < chunks.size(); ++k) {
       sum = 0.7 * sum + errors[k].seen[0][0];
-      for (const Model& level : leaves[k]) sum = 0.7 * sum + level.position[0].x;
+      for (const Model& level : chunks[k]) sum = 0.7 * sum + level.position[0].x;
     }
     return {{1.0, 1.0 + 0.4 * std::sin(sum)}};
   }
@@ -99,15 +99,15 @@ struct StreamedSogWriter : testing::Test {
 
   Model model = test::random_model(1, 3000, 1);
   mutable std::vector<Model> judged = std::vector(4, without_gaussians(model));  // by level, all that was
-  mutable std::vector<int> pictures;                  // that were asked for, by scene
-  std::optional<std::vector<LossTogether>> together;  // of each
-  LevelSettings settings{.leaf = 200, .levels = 4};
+  mutable std::vector<int> pictures;            // that were asked for, by scene
+  std::optional<std::vector<JointLoss>> joint;  // of each
+  LevelSettings settings{.chunk = 200, .levels = 4};
 };
 
-/// Calls see(leaf) for each.
-void for_leaves(const json& node, const std::function<void(const json&)>& see) {
+/// Calls see(chunk) for each.
+void for_chunks(const json& node, const std::function<void(const json&)>& see) {
   if (node.contains("lods")) see(node);
-  for (const json& child : node.value("children", json::array())) for_leaves(child, see);
+  for (const json& child : node.value("children", json::array())) for_chunks(child, see);
 }
 
 TEST_F(StreamedSogWriter, JudgesWhatTheFilesHave) {
@@ -132,21 +132,21 @@ bool within(const json& bound, const glm::vec3& p, double slack) {
   return true;
 }
 
-/// How many Gaussians of a level that was read lie beyond the bounds of their leaf, where the offsets say
+/// How many Gaussians of a level that was read lie beyond the bounds of their chunk, where the offsets say
 /// that it is theirs. All of a level are in one file.
 int outside(const json& meta, const Model& level, int lod) {
   int count = 0;
-  for_leaves(meta["tree"], [&](const json& leaf) {
-    const json& part = leaf["lods"][std::to_string(lod)];
+  for_chunks(meta["tree"], [&](const json& chunk) {
+    const json& part = chunk["lods"][std::to_string(lod)];
     const std::size_t first = part["offset"];
     for (std::size_t i = first; i < first + part["count"].get<std::size_t>(); ++i)
-      count += i < level.count() && within(leaf["bound"], level.position[i], 1e-3) ? 0 : 1;
+      count += i < level.count() && within(chunk["bound"], level.position[i], 1e-3) ? 0 : 1;
   });
   return count;
 }
 
 TEST_F(StreamedSogWriter, HalvesEachLevelWithinItsLeaves) {
-  together.emplace();  // no pictures
+  joint.emplace();  // no pictures
   WrittenFiles files;
   const LevelsWritten written = write(files);
   json meta = json::parse(files.at("lod-meta.json"));
@@ -164,32 +164,32 @@ TEST_F(StreamedSogWriter, HalvesEachLevelWithinItsLeaves) {
     EXPECT_EQ(outside(meta, level, lod), 0);
   }
   EXPECT_EQ(meta["count"], total);
-  int leaves = 0;
-  for_leaves(meta["tree"], [&](const json& leaf) {
-    ++leaves;
-    const std::size_t finest = leaf["lods"]["0"]["count"];
+  int chunks = 0;
+  for_chunks(meta["tree"], [&](const json& chunk) {
+    ++chunks;
+    const std::size_t finest = chunk["lods"]["0"]["count"];
     EXPECT_LE(finest, 200u);
     for (std::size_t lod = 0; lod < 4; ++lod) {
-      const json& part = leaf["lods"][std::to_string(lod)];
+      const json& part = chunk["lods"][std::to_string(lod)];
       EXPECT_EQ(part["count"], (finest + (1u << lod) - 1) >> lod);
       const double error = lod == 1 ? 0.123 : lod == 2 ? 0.247 : lod == 3 ? 0.37 : 0.0;
       EXPECT_EQ(part["errors"],
                 json(std::vector(detail_directions, std::vector{error, part["count"].get<double>()})))
           << "three digits";
     }
-    EXPECT_EQ(leaf["pixels"][1], 1000.0);
-    EXPECT_EQ(leaf["seen"][1][1], 4.0);
-    const std::array of_leaf = {leaf["pixels"][0].get<double>(), leaf["seen"][1][0].get<double>()};
+    EXPECT_EQ(chunk["pixels"][1], 1000.0);
+    EXPECT_EQ(chunk["seen"][1][1], 4.0);
+    const std::array of_chunk = {chunk["pixels"][0].get<double>(), chunk["seen"][1][0].get<double>()};
     for (std::size_t axis = 0; axis < 2; ++axis) {
-      EXPECT_GE(of_leaf[axis] - 100.0, leaf["bound"]["min"][axis].get<double>() - 0.5) << "of this leaf";
-      EXPECT_LE(of_leaf[axis] - 100.0, leaf["bound"]["max"][axis].get<double>() + 0.5);
+      EXPECT_GE(of_chunk[axis] - 100.0, chunk["bound"]["min"][axis].get<double>() - 0.5) << "of this chunk";
+      EXPECT_LE(of_chunk[axis] - 100.0, chunk["bound"]["max"][axis].get<double>() + 0.5);
     }
   });
-  EXPECT_GT(leaves, 16);
+  EXPECT_GT(chunks, 16);
   EXPECT_EQ(written.gaussians[0], model.count());
   EXPECT_THROW(read(files, 4), Error);
 
-  // Planted: the offsets of two leaves are exchanged.
+  // Planted: the offsets of two chunks are exchanged.
   std::vector<json*> parts;
   const std::function<void(json&)> walk = [&](json& node) {
     if (node.contains("lods")) parts.push_back(&node["lods"]["0"]);
@@ -201,9 +201,9 @@ TEST_F(StreamedSogWriter, HalvesEachLevelWithinItsLeaves) {
 }
 
 TEST_F(StreamedSogWriter, TellsErrorsByWhatPicturesLoseTogether) {
-  settings.piece = 700;
-  settings.together = 1500;  // two pieces
-  together = {{1e-4, 2e-4}, {1e-4, 9e-4}, {1e-4, 1e-6}, {0.0, 0.0}};
+  settings.batch = 700;
+  settings.joint_gaussians = 1500;  // two batches
+  joint = {{1e-4, 2e-4}, {1e-4, 9e-4}, {1e-4, 1e-6}, {0.0, 0.0}};
   WrittenFiles files;
   write(files);
   const auto scenes = pictures.size();
@@ -211,24 +211,23 @@ TEST_F(StreamedSogWriter, TellsErrorsByWhatPicturesLoseTogether) {
   EXPECT_LE(scenes, 3u);
   for (const int of_scene : pictures) EXPECT_TRUE(of_scene >= 1 && of_scene <= 12 / int(scenes)) << of_scene;
   const auto expect_errors = [&](double expected) {
-    for_leaves(json::parse(files.at("lod-meta.json"))["tree"], [&](const json& leaf) {
-      EXPECT_EQ(leaf["lods"]["2"]["errors"][0][0], expected);
-      EXPECT_EQ(leaf["seen"][1][1], 4.0) << "the finest is as it was";
+    for_chunks(json::parse(files.at("lod-meta.json"))["tree"], [&](const json& chunk) {
+      EXPECT_EQ(chunk["lods"]["2"]["errors"][0][0], expected);
+      EXPECT_EQ(chunk["seen"][1][1], 4.0) << "the finest is as it was";
     });
   };
   expect_errors(0.494);  // twice 0.247
-  for (const auto& absurd :
-       {std::vector<LossTogether>{{1e-9, 1e-3}}, std::vector<LossTogether>{{0.0, 0.0}}, {}}) {
+  for (const auto& absurd : {std::vector<JointLoss>{{1e-9, 1e-3}}, std::vector<JointLoss>{{0.0, 0.0}}, {}}) {
     files.clear();
-    together = absurd;
+    joint = absurd;
     write(files);
     expect_errors(!absurd.empty() && absurd[0].predicted > 0.0 ? 0.988 : 0.247);
   }
 }
 
 TEST_F(StreamedSogWriter, GoesOnWithThePicturesThatAreLeft) {
-  settings.piece = 700;
-  settings.together = 1500;  // two pieces, or more
+  settings.batch = 700;
+  settings.joint_gaussians = 1500;  // two batches, or more
   WrittenFiles files;
   write(files);
   EXPECT_FALSE(files.contains("together_2.json"));
@@ -312,15 +311,15 @@ TEST_F(StreamedSogWriter, GoesOnAfterAnInterruption) {
 }
 
 TEST_F(StreamedSogWriter, WritesAFewLeavesAFile) {
-  settings.file = 1000;   // five leaves of the finest level, or more
-  settings.piece = 1500;  // seven leaves, or more
+  settings.file = 1000;   // five chunks of the finest level, or more
+  settings.batch = 1500;  // seven chunks, or more
   WrittenFiles files;
   const std::size_t count = write(files).files;
   EXPECT_GT(count, 4u * 2);
   const json meta = json::parse(files.at("lod-meta.json"));
   std::map<std::string, std::size_t> ends;
-  for_leaves(meta["tree"], [&](const json& leaf) {
-    for (const auto& [lod, part] : leaf["lods"].items()) {
+  for_chunks(meta["tree"], [&](const json& chunk) {
+    for (const auto& [lod, part] : chunk["lods"].items()) {
       const std::string file = meta["filenames"][part["file"].get<std::size_t>()];
       EXPECT_EQ(file[0], lod[0]);
       EXPECT_EQ(part["offset"], ends[file]);

@@ -189,7 +189,7 @@ TEST(CameraNames, NoTwoViewsTakeOnePhoto) {
   const auto check = [&](const CameraNames& names) {
     std::vector<Camera> views(names.size());
     for (std::size_t i = 0; i < names.size(); ++i) views[i].name = names[i];
-    check_photos_apart(folder.path(), views);
+    check_photos_unique(folder.path(), views);
   };
   fs::create_directories(folder / "left");
   fs::create_directories(folder / "right");

@@ -115,8 +115,9 @@ TEST(StreamedSogArchives, AreTheSameAsFolders) {
       const LodFiles files(path);
       const std::vector<std::size_t> none(files.chunks().size(), LodFiles::not_read);
       Model all = files.environment();
-      files.read(none, choose_levels(files.chunks(), {}, {}),
-                 [&](const LodFiles::Piece& piece) { append(all, piece.model, 0, piece.model.count()); });
+      files.read(none, choose_levels(files.chunks(), {}, {}), [&](const LodFiles::LoadedChunk& loaded) {
+        append(all, loaded.model, 0, loaded.model.count());
+      });
       return all;
     };
     EXPECT_TRUE(is_streamed_sog(archives.path()));

@@ -254,7 +254,8 @@ TEST(SogErrors, ManyFilesThatPromiseMuch) {
   const LodFiles files(folder / "lod-meta.json");
   const LevelChoice choice = choose_levels(files.chunks(), {}, {});
   const std::vector<std::size_t> none(2, LodFiles::not_read);
-  EXPECT_TRUE(test::fails_saying([&] { files.read(none, choice, [](const LodFiles::Piece&) {}); }, parts));
+  EXPECT_TRUE(
+      test::fails_saying([&] { files.read(none, choice, [](const LodFiles::LoadedChunk&) {}); }, parts));
 }
 
 TEST(SogErrors, Archives) {

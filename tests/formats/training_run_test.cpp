@@ -116,7 +116,7 @@ struct TrainingRunTest : testing::Test {
 
   static std::string otherwise(const std::optional<TrainingRun>& run) {
     std::string all;
-    for (const std::string& sentence : run->otherwise) all += sentence + "\n";
+    for (const std::string& sentence : run->differences) all += sentence + "\n";
     return all;
   }
 
@@ -140,9 +140,9 @@ TEST_F(TrainingRunTest, OfGsplatSaysWhatIsDrawnOtherwise) {
   EXPECT_EQ(plain->trainer, "gsplat");
   EXPECT_EQ(plain->file, folder / "run/cfg.yml");
   EXPECT_EQ(plain->antialiased, false);
-  EXPECT_TRUE(plain->otherwise.empty()) << otherwise(plain);
+  EXPECT_TRUE(plain->differences.empty()) << otherwise(plain);
   const std::pair<std::string, std::string> degree("sh_degree", "3");
-  EXPECT_EQ(std::ranges::count(plain->said, degree), 1);
+  EXPECT_EQ(std::ranges::count(plain->settings, degree), 1);
   EXPECT_TRUE(plain->advice.empty());
   const auto moved = found(gsplat_ply, "run/cfg.yml", gsplat_with("normalize_world_space: true\n"));
   ASSERT_EQ(moved->advice.size(), 1u);
@@ -158,8 +158,8 @@ TEST_F(TrainingRunTest, OfGsplatSaysWhatIsDrawnOtherwise) {
       {"pose_opt: true", "cameras were optimised"}};
   for (const auto& [line, part] : changed) {
     const auto run = found(gsplat_ply, "run/cfg.yml", gsplat_with(std::string(line) + "\n"));
-    ASSERT_EQ(run->otherwise.size(), 1u) << line << otherwise(run);
-    EXPECT_TRUE(says(run->otherwise[0], part)) << run->otherwise[0];
+    ASSERT_EQ(run->differences.size(), 1u) << line << otherwise(run);
+    EXPECT_TRUE(says(run->differences[0], part)) << run->differences[0];
   }
   EXPECT_EQ(found(gsplat_ply, "run/cfg.yml", gsplat_with("antialiased: true\n"))->antialiased, true);
 }
@@ -191,7 +191,7 @@ TEST_F(TrainingRunTest, OfNerfstudioIsNested) {
   const auto plain = found(ply, "run/config.yml", config("off", "    rasterize_mode: classic\n"));
   ASSERT_TRUE(plain);
   EXPECT_EQ(plain->antialiased, false);
-  EXPECT_TRUE(plain->otherwise.empty()) << otherwise(plain);
+  EXPECT_TRUE(plain->differences.empty()) << otherwise(plain);
   const auto all = found(ply, "run/config.yml",
                          config("SO3xR3",
                                 "    rasterize_mode: antialiased\n    use_bilateral_grid: true\n"
@@ -215,14 +215,14 @@ TEST_F(TrainingRunTest, OfOthers) {
   EXPECT_EQ(args->advice.size(), 1u);
   EXPECT_TRUE(says(otherwise(args), "their exposure.json is missing"));
   test::write_text(folder / "run/exposure.json", "{}");
-  EXPECT_TRUE(find_training_run(folder / inria)->otherwise.empty());
+  EXPECT_TRUE(find_training_run(folder / inria)->differences.empty());
   EXPECT_EQ(found(inria, "run/cfg_args", "Namespace(antialiasing=True, sh_degree=3)")->antialiased, true);
   const auto lichtfeld = found("run/splat_30000.ply", "run/training_config.json",
                                R"({"dataset": {}, "optimization": {"antialiasing": true, "gut": true,
                                    "pose_optimization": "none", "sh_degree": 3}})");
   ASSERT_TRUE(lichtfeld);
   EXPECT_EQ(lichtfeld->antialiased, true);
-  EXPECT_EQ(lichtfeld->otherwise.size(), 1u) << otherwise(lichtfeld);
+  EXPECT_EQ(lichtfeld->differences.size(), 1u) << otherwise(lichtfeld);
   const std::string grut = "model:\n  background:\n    color: black\nrender:\n  method: ";
   const auto traced =
       found("run/export_last.ply", "run/parsed.yaml", grut + "3dgrt\n  particle_kernel_degree: 4\n");

@@ -13,13 +13,13 @@ namespace binosplat::fuzz {
 namespace {
 
 void check(const SogLevels& levels, const nlohmann::json& json) {
-  std::vector<LodChunk> leaves = levels.leaves(json);
+  std::vector<LodChunk> chunks = levels.chunks(json);
   for (int level = 0; level < std::min(levels.count(), 3); ++level) {
-    const auto taken = levels.taken(level);
+    const auto taken = levels.ranges_in_use(level);
     demand(taken.size() == levels.files().size(), "a file without a list");
     for (const auto& of_file : taken) {
       for (std::size_t k = 0; k < of_file.size(); ++k) {
-        demand(of_file[k].leaf < leaves.size(), "a leaf that there is not");
+        demand(of_file[k].chunk < chunks.size(), "a chunk that there is not");
         const SogSource::Range& range = of_file[k].range;
         demand(range.count > 0, "nothing taken");
         demand(k == 0 || of_file[k - 1].range.first + of_file[k - 1].range.count <= range.first,
@@ -28,28 +28,30 @@ void check(const SogLevels& levels, const nlohmann::json& json) {
     }
   }
   // Its files are not there; as if they were:
-  for (LodChunk& leaf : leaves) {
-    const auto losing = [&](double error) { return std::vector<double>(leaf.seen.size(), error); };
-    leaf.levels = {{0, 1000, losing(0.0)}, {1, 100, losing(1.0)}, {2, 10, losing(9.0)}};
+  for (LodChunk& chunk : chunks) {
+    const auto losing = [&](double error) { return std::vector<double>(chunk.seen.size(), error); };
+    chunk.levels = {{0, 1000, losing(0.0)}, {1, 100, losing(1.0)}, {2, 10, losing(9.0)}};
   }
-  const std::size_t most = 500 * leaves.size();
+  const std::size_t most = 500 * chunks.size();
   const auto follow = [&](const auto& choose) {
     std::vector<std::size_t> before;
     for (const double x : {0.0, 10.0, 1e9}) {
       const std::vector<std::size_t> chosen = choose(x, before);
       std::size_t total = 0;
-      demand(chosen.size() == leaves.size(), "a leaf without a choice");
-      for (std::size_t i = 0; i < leaves.size(); ++i) total += leaves[i].levels.at(chosen[i]).count;
+      demand(chosen.size() == chunks.size(), "a chunk without a choice");
+      for (std::size_t i = 0; i < chunks.size(); ++i) total += chunks[i].levels.at(chosen[i]).count;
       demand(total <= most, "more than there is room for");
       before = chosen;
     }
   };
-  follow([&](double x, const auto& before) { return choose_apart(leaves, {{x, 0, 0}}, most, 0.01, before); });
+  follow([&](double x, const auto& before) {
+    return choose_by_spacing(chunks, {{x, 0, 0}}, most, 0.01, before);
+  });
   follow([&](double x, const auto& before) {
     VisibleChunks visible;
-    if (!before.empty()) visible = {{std::vector<ChunkVisibility>(leaves.size(), {x, x + 1.0})}, before};
-    const ErrorBudget budget{.error = 1e-4, .most = most, .most_new = 700};
-    return choose_within(leaves, {{.eye = {x, 0, 0}}}, budget, visible, before).levels;
+    if (!before.empty()) visible = {{std::vector<ChunkVisibility>(chunks.size(), {x, x + 1.0})}, before};
+    const ErrorBudget budget{.error = 1e-4, .most = most, .read_most = 700};
+    return choose_by_error(chunks, {{.eye = {x, 0, 0}}}, budget, visible, before).levels;
   });
 }
 

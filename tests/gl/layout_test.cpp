@@ -75,10 +75,11 @@ using Offsets = std::map<std::string, int>;
   }
 
 Offsets offsets_of_counters() {
-  Offsets counters = OFFSETS_OF(
-      Counters, visible, order_wanted, pairs, tile_pairs, overflow, truncated_lists, depths_low, depths_high,
-      probe_low, probe_high, probe_squares_low, probe_squares_high, long_lists, long_x, long_y, long_z, large,
-      large_x, large_y, large_z, large_entries, fill_x, fill_y, fill_z, slabs, unused_1, unused_2, unused_3);
+  Offsets counters =
+      OFFSETS_OF(Counters, visible, slots_wanted, pairs, tile_pairs, overflow, truncated_lists, depths_low,
+                 depths_high, probe_low, probe_high, probe_squares_low, probe_squares_high, long_lists,
+                 long_x, long_y, long_z, large_splats, large_x, large_y, large_z, large_entries, fill_x,
+                 fill_y, fill_z, slabs, unused_1, unused_2, unused_3);
   for (std::size_t kind = 0; kind < SORT_KINDS; ++kind) {
     const int at = static_cast<int>(offsetof(shared::Counters, lists) + kind * sizeof(shared::ListCount));
     const std::string name = fmt::format("lists[{}].", kind);
@@ -94,9 +95,9 @@ const std::map<std::string, Offsets> shared_structs = {
                         is_probe, left, top, first_row, tolerance_share, low_pass_share, lists_shift, opacity,
                         table_far, table_first, table_bins, unused_1, unused_2, unused_3)},
     {"FrameParameters",
-     OFFSETS_OF(FrameParameters, background, tolerance, has_bounds, view_count, asked, probed, gaussian_count,
-                slots, tile_count, list_per_view, has_regions, offset_count, views_per_decoding,
-                decoding_of_probe, anchor_cull, depth_slack, unused)},
+     OFFSETS_OF(FrameParameters, background, tolerance, has_bounds, view_count, requested_views, probed_view,
+                gaussian_count, slots, tile_count, list_per_view, has_regions, offset_count,
+                views_per_decoding, decoding_of_probe, anchor_cull, depth_slack, unused)},
     {"Gaussian", OFFSETS_OF(Gaussian, position, rotation, scale)},
     {"Splat", OFFSETS_OF(Splat, mean, depth, opacity, conic, colour)},
     {"PlacedRay", OFFSETS_OF(PlacedRay, pixel, place, unused)},

@@ -73,21 +73,21 @@ TEST(ProgramCache, CompilesAgainWhatIsDamaged) {
 TEST(ProgramCache, KeepsWhatWasFoundOfOneDriver) {
   const test::TempFolder folder;
   const ProgramCache cache(folder.path(), "driver 1");
-  EXPECT_EQ(cache.recall("shader"), std::nullopt);
-  cache.remember("shader", "");
-  cache.remember("other", "its subgroups vote");
-  EXPECT_EQ(cache.recall("shader"), "");
-  EXPECT_EQ(cache.recall("other"), "its subgroups vote");
-  EXPECT_EQ(cache.recall("another"), std::nullopt);
-  EXPECT_EQ(ProgramCache(folder.path(), "driver 2").recall("other"), std::nullopt);
+  EXPECT_EQ(cache.load_result("shader"), std::nullopt);
+  cache.store_result("shader", "");
+  cache.store_result("other", "its subgroups vote");
+  EXPECT_EQ(cache.load_result("shader"), "");
+  EXPECT_EQ(cache.load_result("other"), "its subgroups vote");
+  EXPECT_EQ(cache.load_result("another"), std::nullopt);
+  EXPECT_EQ(ProgramCache(folder.path(), "driver 2").load_result("other"), std::nullopt);
   for (const std::string& file : folder.names()) {
     const std::string kept = test::read_text(folder / file);
     test::write_text(folder / file, kept.substr(0, kept.size() - 1));
   }
-  EXPECT_EQ(cache.recall("shader"), std::nullopt) << "damaged";
-  EXPECT_EQ(cache.recall("other"), std::nullopt) << "damaged";
-  ProgramCache({}, "driver 1").remember("shader", "");
-  EXPECT_EQ(ProgramCache({}, "driver 1").recall("shader"), std::nullopt) << "no folder";
+  EXPECT_EQ(cache.load_result("shader"), std::nullopt) << "damaged";
+  EXPECT_EQ(cache.load_result("other"), std::nullopt) << "damaged";
+  ProgramCache({}, "driver 1").store_result("shader", "");
+  EXPECT_EQ(ProgramCache({}, "driver 1").load_result("shader"), std::nullopt) << "no folder";
 }
 
 TEST(ProgramCache, AFolderThatCannotBeWrittenOnlyCostsTime) {

@@ -75,7 +75,7 @@ std::string check_with(const Driver& driver) {
   test::write_text(folder / "subgroups_check.comp", shader);
   Context& context = test::gl_context();
   context.set_shader_folder(folder.path());
-  std::string found = found_in_subgroups(context);
+  std::string found = run_subgroup_tests(context);
   context.set_shader_folder({});
   return found;
 }

@@ -259,7 +259,7 @@ TEST(Pages, LinkToFilesAndHeadingsThatExist) {
 TEST(Pages, BeginNoSentenceWithWhat) {
   for (const fs::path& page : pages_with_those_of_folders())
     EXPECT_EQ(beginning_with_what(paragraphs_of_page(text_of(page))), std::vector<std::string>()) << page;
-  for (const char* folder : {"include"}) {  // next: src, stereo
+  for (const char* folder : {"include", "src", "stereo"}) {
     for (const auto& entry : fs::recursive_directory_iterator(root / folder)) {
       if (entry.path().extension() != ".h") continue;
       EXPECT_EQ(beginning_with_what(comments_of(text_of(entry.path()))), std::vector<std::string>())

@@ -32,7 +32,7 @@ TEST(Axes, AreEveryCombination) {
                                 "aabb, tile 8", "aabb", "ellipse, tile 8", "ellipse", "peripheral, 0.5",
                                 "peripheral, 2", "peripheral, last, 0.5", "peripheral, last, 2",
                                 "squared, 0.5", "squared, 2", "squared, last, 0.5", "squared, last, 2"}));
-  EXPECT_EQ(named(axes.settings.back()).dump(),
+  EXPECT_EQ(row_of_settings(axes.settings.back()).dump(),
             R"({"tiles":"ellipse","tile":16,"th":"squared","transmittance":"last","tolerance":2.0})");
 }
 
@@ -44,7 +44,8 @@ TEST(Axes, HalfPrecisionIsOneAndNotExact) {
   EXPECT_TRUE(is_exact(axes.settings[0]));
   EXPECT_FALSE(is_exact(axes.settings[1]));
   EXPECT_EQ(describe(axes.settings[1]), "ellipse, half");
-  EXPECT_EQ(named(axes.settings[1]).dump(), R"({"tiles":"ellipse","tile":16,"precision":"half","th":"tau"})");
+  EXPECT_EQ(row_of_settings(axes.settings[1]).dump(),
+            R"({"tiles":"ellipse","tile":16,"precision":"half","th":"tau"})");
 }
 
 TEST(Axes, InsetsAreExactAndTheirPicturesAreNot) {
@@ -56,7 +57,7 @@ TEST(Axes, InsetsAreExactAndTheirPicturesAreNot) {
                                       "squared, inset 30, context 0.4, 0.3"}));
   EXPECT_TRUE(is_exact(axes.settings[0]));
   EXPECT_FALSE(is_exact(axes.settings[1]));
-  EXPECT_EQ(named(axes.settings[1]).dump(),
+  EXPECT_EQ(row_of_settings(axes.settings[1]).dump(),
             R"({"tiles":"ellipse","tile":16,"th":"tau","inset":20.0,"context":0.25})");
 }
 
@@ -76,7 +77,7 @@ TEST(Axes, QualitiesTargetsLevelsAndPerspectivesAreAxesToo) {
                 "peripheral, asked for 37 dB", "peripheral, asked for 40 dB", "ellipse, levels for 30dB",
                 "ellipse, levels for 2px", "ellipse, by distance, tangent"}));
   EXPECT_EQ(
-      named(axes.settings[3]).dump(),
+      row_of_settings(axes.settings[3]).dump(),
       R"({"tiles":"ellipse","tile":16,"th":"squared","transmittance":"depth","far":100.0,"max_drop":0.1,)"
       R"("found_on":"training"})");
   EXPECT_FALSE(is_exact(axes.settings[8]));

@@ -151,7 +151,7 @@ struct BenchLevels : BenchPoint {
     what.follow = [this](const DetailRequest&) {
       return FollowingModel{std::make_shared<render::GpuModel>(test::gl_context(), brighter),
                             [](std::span<const shared::View>) {
-                              return LevelsBrought{100, 33.0};
+                              return LoadedLevels{100, 33.0};
                             }};
     };
   }

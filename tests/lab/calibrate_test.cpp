@@ -111,7 +111,7 @@ TEST_F(Calibrating, GoesOnFromWhatWasMeasured) {
   std::map<std::string, ordered_json> kept;
   std::size_t measured = 0, most = 1000;
   const auto run = [&](const std::vector<Rule>& rules) {
-    const Keep keep = [&](const std::string& step, const std::function<ordered_json()>& measure) {
+    const StepCache cache = [&](const std::string& step, const std::function<ordered_json()>& measure) {
       if (kept.contains(step)) return kept[step];
       if (measured == most) throw std::runtime_error("ended");
       ++measured;
@@ -119,7 +119,7 @@ TEST_F(Calibrating, GoesOnFromWhatWasMeasured) {
     };
     ordered_json json =
         json_of(calibrate(test::gl_context(), model, views, near_default,
-                          {{CalibrationTarget::Kind::quality, 40.0}, {.bins = 5}, rules, keep}));
+                          {{CalibrationTarget::Kind::quality, 40.0}, {.bins = 5}, rules, cache}));
     json["depth_table"].erase("seconds");
     for (ordered_json& entry : json["entries"]) entry.erase("seconds");
     return json;

@@ -91,7 +91,7 @@ TEST(ProfileRun, NamesAFrameThatIsDrawnAgainAndOneThatCompiles) {
 TEST(ProfileRun, NamesAFrameForWhichLevelsWereUploaded) {
   const test::TempFolder folder;
   test::write_levels(folder, 600);
-  Stream stream(folder / "lod-meta.json", {.detail = {.apart_px = 2.0}, .reserve = 1000});
+  Stream stream(folder / "lod-meta.json", {.detail = {.spacing_px = 2.0}, .reserve = 1000});
   ProfileRun run;
   for (int n = 0; n < 12; ++n) run.frames.push_back(pair_at(n < 4 ? -900.0 : 0.0, 48, 32));
   run.settings.th = TH_SQUARED;

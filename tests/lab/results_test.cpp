@@ -41,12 +41,12 @@ Results some_results() {
                  point("obb", NAN, NAN),
                  point("snug", NAN, NAN)};
   put(made.points[5].row, "device", "llvmpipe", "problem", "0001: two frames differ");
-  put_beside_others(made.points);
+  add_relative_columns(made.points);
   return made;
 }
 
 std::vector<bool> front_of(std::vector<Point> points) {
-  put_beside_others(points);
+  add_relative_columns(points);
   std::vector<bool> front;
   for (const Point& one : points) front.push_back(one.row.value("pareto", false));
   return front;
@@ -142,7 +142,7 @@ TEST(Results, ScenesAreJoinedByGeometricMeans) {
       points.push_back(one);
     }
   }
-  put_beside_others(points);
+  add_relative_columns(points);
   add_means(points);
   ASSERT_EQ(points.size(), 6u);
   EXPECT_EQ(text(points[5].row, "scene"), "mean of 2 scenes");
@@ -233,7 +233,7 @@ TEST(ResultsPage, ThePapersOwnNumbersStandBesideDropsAlone) {
             200 * target, "drop_db", target + 0.03);
       }
     }
-    put_beside_others(made.points);
+    add_relative_columns(made.points);
     const Page page = results_page(made);
     const Section& removed = section_of(page, "chart-1-removed");
     EXPECT_NE(removed.sentence.find("removes the most pairs of the exact ellipse test: 40.0 % at 0.2 dB"),

@@ -313,7 +313,7 @@ TEST_F(State, AProgramThatWasDeletedInUseLeavesNoError) {
   gl.UseProgram(caller.context->program("recolour.comp").id());
   caller.context->set_shader_folder({});  // which deletes it
   {
-    const gl::KeptState kept(*caller.context);
+    const gl::SavedState kept(*caller.context);
     gl.UseProgram(0);
   }
   EXPECT_EQ(gl.GetError(), GLenum{GL_NO_ERROR});
@@ -322,7 +322,7 @@ TEST_F(State, AProgramThatWasDeletedInUseLeavesNoError) {
 TEST_F(State, DrawingWithoutCareIsNoticedInEveryPiece) {
   const Model model = test::random_model(1, 200, 1);
   render::Frame frame(*caller.context, model);
-  const gl::KeptState kept(*caller.context);  // of the caller's before the test sets its own: ends it all
+  const gl::SavedState kept(*caller.context);  // of the caller's before the test sets its own: ends it all
   const auto careless = changed_by([&] {
     frame.draw(stereo::make_rig(test::front_camera(40, 32, 40.0), {.ipd = 0.1}).views);
     kept.set_plain();

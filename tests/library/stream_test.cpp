@@ -27,7 +27,7 @@ struct Levels : Library {
     write_ply(file, test::random_model(3, 2000, 0));
     file.commit();
     ASSERT_EQ(
-        test::run_program({"levels", model, "-o", levels().string(), "--leaf", "64", "--levels", "3"}).code,
+        test::run_program({"levels", model, "-o", levels().string(), "--chunk", "64", "--levels", "3"}).code,
         0);
   }
   static void TearDownTestSuite() { folder.reset(); }
@@ -90,7 +90,7 @@ TEST_F(Levels, CompileNothingOnceTheyArePrepared) {
     return names;
   };
   EXPECT_TRUE(std::ranges::any_of(programs_made(false, over_black, Precision::full), [](const auto& name) {
-    return name.ends_with("parts_seen.comp");
+    return name.ends_with("chunk_visibility.comp");
   })) << "there is nothing to prepare";
   const std::vector<std::string> none;
   EXPECT_EQ(programs_made(true, over_black, Precision::full), none);

@@ -23,7 +23,7 @@ const glm::vec3 green(0.1f, 0.8f, 0.2f);
 
 TEST(MadeShown, WhatIsSeenThroughIsBeforeTheBackground) {
   const Image image = noise_pair(4, 1);
-  const Image shown = measure::before(green, image);
+  const Image shown = measure::composite_over(green, image);
   ASSERT_EQ(shown.channels, 3);
   for (int y = 0; y < 11; ++y) {
     for (int x = 0; x < 13; ++x) {
@@ -36,7 +36,7 @@ TEST(MadeShown, WhatIsSeenThroughIsBeforeTheBackground) {
   // Planted fault: premultiplied, as OpenEXR has it.
   EXPECT_GT(std::abs(shown.at(3, 3, 0) - (image.at(3, 3, 0) + (1 - image.at(3, 3, 3)) * green[0])), 1e-3);
   const Image grey = noise_pair(1, 2);
-  const Image colour = measure::before(green, grey);
+  const Image colour = measure::composite_over(green, grey);
   for (std::size_t i = 0; i < colour.data.size(); ++i) EXPECT_EQ(colour.data[i], grey.data[i / 3]);
 }
 
@@ -46,12 +46,12 @@ struct Made {
   bool before_background = false;
 };
 Made made(Image a, Image b, const Background& background = {}) {
-  const bool before_background = measure::make_shown(a, b, background);
+  const bool before_background = measure::prepare_comparison(a, b, background);
   return {std::move(a), std::move(b), before_background};
 }
 
 TEST(MadeShown, AlphaOfOneIsLeftOut) {
-  const Image opaque = with_alpha(noise_pair(4, 1), 1.0f), rgb = measure::before(green, opaque);
+  const Image opaque = with_alpha(noise_pair(4, 1), 1.0f), rgb = measure::composite_over(green, opaque);
   const Image grey = noise_pair(1, 3);
   for (const Image& other : {rgb, grey, with_alpha(noise_pair(4, 4), 1.0f)}) {
     for (const bool first : {true, false}) {
@@ -69,10 +69,10 @@ TEST(MadeShown, AlphaOfOnePictureIsBeforeBlackOrAsAsked) {
   for (const Image& other : {noise_pair(3, 2), noise_pair(1, 3)}) {
     const Made of = made(see_through, other);
     EXPECT_TRUE(of.before_background);
-    const Image black = measure::before(glm::vec3(0.0f), see_through);
+    const Image black = measure::composite_over(glm::vec3(0.0f), see_through);
     EXPECT_EQ(of.a.data, made(black, black).a.data);
     EXPECT_EQ(of.b.channels, 3);
-    const Image on_green = measure::before(green, see_through);
+    const Image on_green = measure::composite_over(green, see_through);
     EXPECT_EQ(made(see_through, other, green).a.data, made(on_green, on_green).a.data);
   }
 }

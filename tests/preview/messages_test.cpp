@@ -7,7 +7,7 @@ namespace {
 
 std::vector<std::string> texts(Messages& messages, double now) {
   std::vector<std::string> out;
-  for (const Message& message : messages.at(now)) out.push_back(message.text);
+  for (const Message& message : messages.current(now)) out.push_back(message.text);
   return out;
 }
 
@@ -15,19 +15,19 @@ using Texts = std::vector<std::string>;
 
 TEST(Messages, WhatWasDoneIsOneLineAndTroubleStays) {
   Messages messages;
-  messages.tell("saved a.png", false, 0.0);
-  messages.tell("b.ply: no such file", true, 0.5);
-  messages.tell("saved c.png", false, 1.0);
+  messages.add("saved a.png", false, 0.0);
+  messages.add("b.ply: no such file", true, 0.5);
+  messages.add("saved c.png", false, 1.0);
   EXPECT_EQ(texts(messages, 1.0), (Texts{"b.ply: no such file", "saved c.png"}));
-  messages.tell("b.ply: no such file", true, 2.0);
+  messages.add("b.ply: no such file", true, 2.0);
   EXPECT_EQ(texts(messages, 2.0), (Texts{"saved c.png", "b.ply: no such file"})) << "told twice";
 }
 
 TEST(Messages, GoByThemselves) {
   Messages messages;
   EXPECT_FALSE(messages.next_change(0.0));
-  messages.tell("saved a.png", false, 10.0);
-  messages.tell("trouble", true, 10.0);
+  messages.add("saved a.png", false, 10.0);
+  messages.add("trouble", true, 10.0);
   const auto first = messages.next_change(10.0);
   ASSERT_TRUE(first);
   EXPECT_EQ(texts(messages, 10.0 + *first - 1e-3).size(), 2U);
@@ -38,8 +38,8 @@ TEST(Messages, GoByThemselves) {
 
 TEST(Messages, AreNeverMany) {
   Messages messages;
-  for (int k = 0; k < 20; ++k) messages.tell(std::to_string(k), true, 0.0);
-  EXPECT_LE(messages.at(0.0).size(), 5U);
+  for (int k = 0; k < 20; ++k) messages.add(std::to_string(k), true, 0.0);
+  EXPECT_LE(messages.current(0.0).size(), 5U);
   EXPECT_EQ(texts(messages, 0.0).back(), "19");
 }
 

@@ -392,7 +392,7 @@ TEST_F(SessionTest, ThePoseHasWhatIsUpAndHowLargeTheWorldIs) {
   session.head.look(0.3, 0.4);
   session.choices.rig.units_per_metre = 3.0;
   session.choices.rig.ipd = 0.07;
-  session.set_up();
+  session.set_up_direction();
   session.save_pose(pose_path(folder / "model.ply"));
   const auto saved = find_pose(folder / "model.ply");
   ASSERT_TRUE(saved);

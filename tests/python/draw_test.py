@@ -128,6 +128,34 @@ def test_wrong_settings_are_refused(renderer, cameras, settings, words):
     assert issubclass(binosplat.InputError, binosplat.Error) and issubclass(binosplat.InputError, ValueError)
 
 
+def moved(x, scale=1.0):
+    matrix = np.diag([scale, scale, scale, 1.0])
+    matrix[0, 3] = x
+    return matrix
+
+
+def test_models_are_drawn_at_their_places(renderer, model, cameras):
+    alone = renderer.draw(cameras["front"])
+    with binosplat.Renderer([(model, np.eye(4))], backend="surfaceless") as several:
+        assert same(several.draw(cameras["front"]).colour, alone.colour)
+        several.place([(model, moved(0.5))])  # as the camera sees it from -0.5
+        shifted = several.draw(cameras["side"])
+        np.testing.assert_allclose(shifted.colour, alone.colour, atol=2e-3)
+        several.place([(model, np.eye(4)), (model, moved(1.0, 0.5), 0.5)])
+        both = several.draw(cameras["front"])
+        assert both.report.visible > alone.report.visible and not same(both.colour, alone.colour)
+        for picture in several.draw_all([cameras["front"]] * 2):
+            assert same(picture.colour, both.colour)
+        several.place([])
+        assert (several.draw(cameras["front"]).transmittance == 1).all()
+        for wrong, words in (((model, np.eye(3)), "(4, 4)"), ((model, np.zeros((4, 4))), "instances[0]"),
+                             ((model, np.diag([1, 2, 1, 1])), "rotation"), ((model, np.eye(4), 2.0), "opacity 2")):
+            with pytest.raises(binosplat.InputError, match=re.escape(words)):
+                several.place([wrong])
+        with pytest.raises(TypeError):
+            several.place([("model.ply", np.eye(4))])
+
+
 def test_what_is_no_view_is_refused(renderer):
     for view in (None, "front", 3):
         with pytest.raises(TypeError):

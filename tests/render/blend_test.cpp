@@ -5,7 +5,7 @@
 namespace binosplat {
 namespace {
 
-const render::Workings only_blend = test::given(render::Stage::sort);
+const render::DebugOptions only_blend = test::given(render::Stage::sort);
 
 // Many opaque layers, so that most pixels end early.
 Model layers_of_light() {

@@ -81,7 +81,9 @@ shared::View front_view(double x = 0.0) {
   return make_view(camera, glm::vec3(0.0f), near_default);
 }
 
-Model model_of(Scaffold scaffold) { return stand_in(std::make_shared<Scaffold>(std::move(scaffold))); }
+Model model_of(Scaffold scaffold) {
+  return placeholder_model(std::make_shared<Scaffold>(std::move(scaffold)));
+}
 
 Difference difference_of(const Model& model, const std::vector<shared::View>& views,
                          const render::FrameSettings& settings = {}) {
@@ -174,11 +176,11 @@ TEST(DecodeStage, MatchesTheTrainersFixtureAndARealModel) {
   REQUIRE_FIXTURES(formats);
   REQUIRE_SCENE("scaffold", scenes);
   const Model fixture =
-      stand_in(load_scaffold(formats.parent_path() / "scaffold" / "fixture" / "point_cloud.ply"));
+      placeholder_model(load_scaffold(formats.parent_path() / "scaffold" / "fixture" / "point_cloud.ply"));
   const Difference of_fixture = difference_of(fixture, {front_view()}, {.anchor_cull = false});
   EXPECT_LT(of_fixture.value, 1e-3);
   EXPECT_EQ(of_fixture.alone, 0u);
-  const Model fox = stand_in(load_scaffold(scenes / "fox" / "point_cloud.ply"));
+  const Model fox = placeholder_model(load_scaffold(scenes / "fox" / "point_cloud.ply"));
   Camera camera = test::front_camera(518, 944, 687.28);
   camera.position = {-2.63, 0.9, -3.28};
   const std::vector<shared::View> views{make_view(camera)};

@@ -179,8 +179,8 @@ TEST(Frame, ALossIsNotTakenForDarkness) {
     return count;
   };
   EXPECT_EQ(darkened(), 0);
-  const test::FaultyShaders faulty("blend_measure.glsl", "is_met[p][k] = alpha >= float(ALPHA_MIN)",
-                                   "is_met[p][k] = weights[p][k] > 0.0");
+  const test::FaultyShaders faulty("blend_measure.glsl", "is_marked[p][k] = alpha >= float(ALPHA_MIN)",
+                                   "is_marked[p][k] = weights[p][k] > 0.0");
   EXPECT_GT(darkened(), 3);
 }
 
@@ -250,8 +250,9 @@ TEST(Frame, BuffersTooSmallGiveTheSamePicture) {
   const auto rig = stereo::make_rig(test::front_camera(150, 90, 140), {.ipd = 0.1, .cant_degrees = 3});
   const std::vector views(rig.views.begin(), rig.views.end());
   const std::vector<Picture> ample = draw(model, views);
-  for (const render::Workings& little : {render::Workings{.slots = 10}, render::Workings{.pairs = 10},
-                                         render::Workings{.slots = 10, .pairs = 10}}) {
+  for (const render::DebugOptions& little :
+       {render::DebugOptions{.slots = 10}, render::DebugOptions{.pairs = 10},
+        render::DebugOptions{.slots = 10, .pairs = 10}}) {
     render::Frame frame(test::gl_context(), model);
     testing::internal::CaptureStderr();
     const render::FrameReport report = frame.draw(views, {}, little);
@@ -350,15 +351,15 @@ TEST(Frame, IsTimedWithoutTheMakingOfItsPrograms) {
   const Model model = test::random_model(0, 100, 1);
   const shared::View view = make_view(test::front_camera(32, 24, 30));
   context.set_shader_folder({});  // every program is made again
-  const double before = context.making_ms();
+  const double before = context.compile_ms();
   render::Frame frame(context, model);
   const render::FrameReport first = frame.draw(std::span(&view, 1));
-  const double making = context.making_ms() - before;
+  const double making = context.compile_ms() - before;
   EXPECT_GT(first.programs_made, 5);
   EXPECT_LT(first.total_ms, 0.5 * making) << "of so few Gaussians";
   EXPECT_LT(making, first.cpu.submit + 1.0) << "it is told as the CPU's time";
   frame.draw(std::span(&view, 1));
-  EXPECT_EQ(context.making_ms() - before, making) << "nothing is made twice";
+  EXPECT_EQ(context.compile_ms() - before, making) << "nothing is made twice";
 }
 
 }  // namespace

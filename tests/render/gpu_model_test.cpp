@@ -37,9 +37,9 @@ TEST_F(SharedModel, IsOnTheGpuOnceInEachPrecisionThatAFrameHolds) {
   const auto gpu_model = std::make_shared<GpuModel>(test::gl_context(), model);
   const auto held = [&] { return test::gl_context().allocated_bytes() - before; };
   EXPECT_EQ(held(), needs(PRECISION_FULL));
-  auto full = gpu_model->in(PRECISION_FULL);
+  auto full = gpu_model->buffers_in(PRECISION_FULL);
   EXPECT_EQ(held(), needs(PRECISION_FULL));
-  const auto in_half = gpu_model->in(PRECISION_HALF);
+  const auto in_half = gpu_model->buffers_in(PRECISION_HALF);
   EXPECT_EQ(held(), needs(PRECISION_FULL) + needs(PRECISION_HALF));
   full.reset();
   EXPECT_EQ(held(), needs(PRECISION_HALF));
@@ -50,7 +50,7 @@ TEST_F(SharedModel, ReloadsWhatFramesHoldHoweverOften) {
   Frame frame(gpu_model);
   frame.draw(views, half_precision);
   const std::int64_t in_half = test::gl_context().allocated_bytes();
-  gpu_model->in(PRECISION_FULL);  // for a frame that is gone
+  gpu_model->buffers_in(PRECISION_FULL);  // for a frame that is gone
   EXPECT_GT(test::gl_context().allocated_bytes(), in_half);
   model = test::random_model(94, 20000, 2);
   for (int n = 0; n < 2; ++n) {
@@ -129,7 +129,7 @@ TEST(ModelOfParts, GrowsUnderFrames) {
   const auto gpu_model = std::make_shared<GpuModel>(test::gl_context(), model);
   Frame frame(gpu_model);
   frame.draw(views);
-  const auto room = [&] { return gpu_model->in(PRECISION_FULL)->pages[0].gaussians->bytes(); };
+  const auto room = [&] { return gpu_model->buffers_in(PRECISION_FULL)->pages[0].gaussians->bytes(); };
   const std::int64_t at_first = room();
   for (std::size_t p = 1; p < parts.size(); ++p) {
     parts.replace(model, p, test::random_model(120 + static_cast<std::uint32_t>(p), 10'000, 0));

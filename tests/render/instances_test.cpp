@@ -231,6 +231,19 @@ TEST_F(Instances, MayMoveAndComeAndGo) {
   EXPECT_GT(draw_next({{shown, {}}}).visible, 0u);
 }
 
+TEST_F(Instances, FreeTheModelsThatAreGone) {
+  render::Frame frame(upload(nothing));
+  const auto first = upload(model);
+  auto second = upload(model);
+  const std::weak_ptr<render::ModelBuffers> held = second->buffers_in(PRECISION_FULL);
+  frame.place({{first, {}}, {second, some_place()}});
+  frame.draw(views);
+  second.reset();
+  EXPECT_FALSE(held.expired());
+  frame.place({{first, {}}});
+  EXPECT_TRUE(held.expired());
+}
+
 // A quality is found for all of them, as if they were one model.
 TEST_F(Instances, KeepAQuality) {
   const auto shown = upload(model);

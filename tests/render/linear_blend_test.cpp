@@ -20,9 +20,9 @@ shared::View blend_view() { return make_view(test::front_camera(blend_width, ble
 
 // What a picture of one value shows of each Gaussian of the model: 0 of those that are not drawn.
 std::vector<double> shown_values(const Model& model, float value, const FrameSettings& settings = {},
-                                 const render::Workings& workings = {}) {
+                                 const render::DebugOptions& debug = {}) {
   LinearBlend blend(test::gl_context(), model);
-  blend.set_view(blend_view(), settings, workings);
+  blend.set_view(blend_view(), settings, debug);
   blend.set_picture(std::vector<glm::vec4>(pixels, {0, 0, value, 0}));
   const std::vector<glm::dvec4> sums = blend.transposed(1.0f);
   std::vector<double> found(model.count());

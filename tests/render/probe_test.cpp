@@ -20,7 +20,7 @@ struct ProbeRun {
     run.run_until(render::Stage::probe);
     const auto counters = run.frame.counters.read<shared::Counters>(1).front();
     EXPECT_EQ(counters.overflow, 0u);
-    if (probe) error = render::probed(run.plan, counters).squared_error;
+    if (probe) error = render::probe_result(run.plan, counters).squared_error;
   }
 
   Picture picture(std::uint32_t v) const {

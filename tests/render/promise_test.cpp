@@ -37,7 +37,7 @@ std::vector<Image> shown_images(render::Frame& frame) {
 }
 
 Walk walk_through(const Model& model, std::vector<Camera> cameras, const Motion& motion, std::size_t count) {
-  const double units = metre_of(cameras);
+  const double units = estimated_metre(cameras);
   for (Camera& camera : cameras) camera = resized(camera, walk_width, walk_height);
   const auto heads = tour(cameras, {.motion = motion, .units_per_metre = units});
   Walk walk;
@@ -53,7 +53,7 @@ Walk walk_through(const Model& model, std::vector<Camera> cameras, const Motion&
 
 // What was promised of frames and what came of it, in dB.
 struct Kept {
-  double mean = 0.0, worst = 1e9, told_off_mean = 0.0, told_off_most = 0.0;
+  double mean = 0.0, worst = 1e9, report_off_mean = 0.0, report_off_most = 0.0;
   double drawn = 0.0;  // times a frame
   int sampled = 0;     // frames whose probe was not the whole of a view
 };
@@ -71,31 +71,32 @@ Kept keep(const Model& model, const Walk& walk, const Draw& draw) {
   Kept kept;
   const auto count = static_cast<double>(walk.frames.size());
   for (std::size_t n = 0; n < walk.frames.size(); ++n) {
-    const Told told = draw(frame, n);
+    const Told reported = draw(frame, n);
     const auto images = shown_images(frame);
     double db = equal_pictures;  // of the worse eye
     for (std::size_t eye = 0; eye < images.size(); ++eye)
       db = std::min(db, measure::psnr(images[eye], walk.exact[n][eye]));
-    const double off = std::abs(std::min(told.db, equal_pictures) - db);
+    const double off = std::abs(std::min(reported.db, equal_pictures) - db);
     kept.mean += db / count;
     kept.worst = std::min(kept.worst, db);
-    kept.told_off_mean += off / count;
-    kept.told_off_most = std::max(kept.told_off_most, off);
-    kept.drawn += told.drawn / count;
-    kept.sampled += told.sampled ? 1 : 0;
+    kept.report_off_mean += off / count;
+    kept.report_off_most = std::max(kept.report_off_most, off);
+    kept.drawn += reported.drawn / count;
+    kept.sampled += reported.sampled ? 1 : 0;
   }
   fmt::print(
-      "mean {:.2f} dB, worst {:.2f}, told off by {:.2f} and at most {:.2f}, drawn {:.2f} times, {} sampled\n",
-      kept.mean, kept.worst, kept.told_off_mean, kept.told_off_most, kept.drawn, kept.sampled);
+      "mean {:.2f} dB, worst {:.2f}, reported off by {:.2f} and at most {:.2f}, drawn {:.2f} times, {} "
+      "sampled\n",
+      kept.mean, kept.worst, kept.report_off_mean, kept.report_off_most, kept.drawn, kept.sampled);
   return kept;
 }
 
 testing::AssertionResult promise_holds(const Kept& kept) {
   const bool holds = kept.mean >= asked - 0.5 && kept.mean <= asked + 1.0 && kept.worst >= asked - 2.0 &&
-                     kept.told_off_mean <= 0.5 && kept.told_off_most <= 1.5;
+                     kept.report_off_mean <= 0.5 && kept.report_off_most <= 1.5;
   return (holds ? testing::AssertionSuccess() : testing::AssertionFailure())
-         << "mean " << kept.mean << ", worst " << kept.worst << ", told off by " << kept.told_off_mean
-         << " and at most " << kept.told_off_most;
+         << "mean " << kept.mean << ", worst " << kept.worst << ", reported off by " << kept.report_off_mean
+         << " and at most " << kept.report_off_most;
 }
 
 // The settings that --quality stands for, with so few tiles that a probe is a sample of such small pictures.
@@ -180,9 +181,9 @@ TEST(Promise, HoldsInMistBehindFrontsAndUnderCuts) {
       // A tolerance between too much and too little need not be found in so few Gaussians: better is no
       // fault.
       EXPECT_GE(kept.worst, asked - 1.0) << model.name << cuts;
-      EXPECT_LE(kept.told_off_most, 1.5) << model.name << cuts;
+      EXPECT_LE(kept.report_off_most, 1.5) << model.name << cuts;
       const Kept planted = keep(model, walk, unsteered(walk));
-      EXPECT_TRUE(planted.worst < asked - 1.0 || planted.told_off_most > 1.5) << model.name << cuts;
+      EXPECT_TRUE(planted.worst < asked - 1.0 || planted.report_off_most > 1.5) << model.name << cuts;
     }
   }
 }
@@ -229,7 +230,7 @@ TEST(Promise, ReportsTheTruthOrAnEstimate) {
     settings.th = n % 4 == 3 ? TH_PERIPHERAL : TH_SQUARED;
     settings.quality = 35.0f + 5.0f * static_cast<float>(n % 3);
     render::Frame judge(test::gl_context(), model), frame(test::gl_context(), model);
-    double told_before = 0.0;
+    double reported_before = 0.0;
     for (std::size_t k = 0; k < 8; ++k, ++frames) {
       const auto rig = stereo::make_rig(heads.at(40 + k), {});
       const Views views(rig.views.begin(), rig.views.begin() + (n % 2 == 0 ? 2 : 1));
@@ -240,15 +241,16 @@ TEST(Promise, ReportsTheTruthOrAnEstimate) {
       double db = equal_pictures;
       for (std::size_t eye = 0; eye < views.size(); ++eye)
         db = std::min(db, measure::psnr(drawn[eye], truth[eye]));
-      const double told = std::min(report.quality, equal_pictures);
+      const double reported = std::min(report.quality, equal_pictures);
       if (report.quality_is_estimate) {
         ++estimates;
       } else {
-        off_most = std::max(off_most, std::abs(told - db));
-        if (std::abs(told - db) > 1.0) ADD_FAILURE() << n << " " << k << ": " << told << " for " << db;
+        off_most = std::max(off_most, std::abs(reported - db));
+        if (std::abs(reported - db) > 1.0)
+          ADD_FAILURE() << n << " " << k << ": " << reported << " for " << db;
       }
-      if (k > 0) stale_most = std::max(stale_most, std::abs(told_before - db));
-      told_before = told;
+      if (k > 0) stale_most = std::max(stale_most, std::abs(reported_before - db));
+      reported_before = reported;
     }
   }
   fmt::print("off by {:.2f} dB at most, {} of {} estimated\n", off_most, estimates, frames);

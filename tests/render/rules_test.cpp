@@ -8,7 +8,7 @@
 
 #include "reference/splats.h"
 #include "reference/threshold.h"
-#include "render/workings.h"
+#include "render/debug_options.h"
 #include "support/errors.h"
 
 namespace binosplat::render {
@@ -70,8 +70,8 @@ TEST(Settings, ThatContradictAreNamed) {
   EXPECT_ERROR(check({.quality = 40.0f}), "quality has no effect with th tau");
 }
 
-TEST(Workings, ThatContradictAreNamed) {
-  const render::Workings blended{.stand_in = render::StandIn{render::Stage::blend, {}}};
+TEST(DebugOptions, ThatContradictAreNamed) {
+  const render::DebugOptions blended{.stand_in = render::StandIn{render::Stage::blend, {}}};
   check(blended, {.th = TH_SQUARED, .tolerance = 1.0f}, "--");
   for (const FrameSettings& settings :
        {FrameSettings{.th = TH_SQUARED, .quality = 40.0f},
@@ -86,15 +86,15 @@ TEST(Settings, ThatGoTogetherDo) {
       FrameSettings settings{.th = th, .transmittance = source};
       settings.tolerance = static_cast<float>(threshold_rules[th].careful_tolerance);
       check(settings);  // any rule may measure
-      if (takes(th, source)) {
+      if (can_use(th, source)) {
         check_choice(settings);
       } else {
         EXPECT_ERROR(check_choice(settings), "transmittance has no effect with th");
       }
     }
   }
-  EXPECT_FALSE(takes(TH_TAU, TRANSMITTANCE_LAST));
-  EXPECT_TRUE(takes(TH_SQUARED, TRANSMITTANCE_DEPTH));
+  EXPECT_FALSE(can_use(TH_TAU, TRANSMITTANCE_LAST));
+  EXPECT_TRUE(can_use(TH_SQUARED, TRANSMITTANCE_DEPTH));
   check({.th = TH_SQUARED});  // exact, at a tolerance of 0
   check({.th = TH_SQUARED, .quality = 40.0f});
 }

@@ -134,7 +134,7 @@ TEST(ScaffoldFrame, WhatIsMeasuredIsKeptById) {
   const std::size_t few = model.count() / 500;
   const std::vector<float> measured = test::measured_on_gpu(model, view);
   EXPECT_LE(test::differing(measured, model, view), few);
-  Model fainter = stand_in(std::make_shared<Scaffold>(*model.scaffold));
+  Model fainter = placeholder_model(std::make_shared<Scaffold>(*model.scaffold));
   for (float& bias : fainter.scaffold->opacity.second_bias) bias -= 0.1f;
   EXPECT_GT(test::differing(measured, fainter, view), 10 * few);
 }

@@ -25,19 +25,21 @@ namespace binosplat::test {
 
 inline std::vector<Picture> draw(const Model& model, const std::vector<shared::View>& views,
                                  const render::FrameSettings& settings = {},
-                                 const render::Workings& workings = {}) {
+                                 const render::DebugOptions& debug = {}) {
   render::Frame frame(gl_context(), model);
-  frame.draw(views, settings, workings);
+  frame.draw(views, settings, debug);
   return frame.read_pictures();
 }
 
 inline Picture draw(const Model& model, const shared::View& view, const render::FrameSettings& settings = {},
-                    const render::Workings& workings = {}) {
-  return draw(model, std::vector{view}, settings, workings).front();
+                    const render::DebugOptions& debug = {}) {
+  return draw(model, std::vector{view}, settings, debug).front();
 }
 
 /// The float64 reference in the place of the stages up to one.
-inline render::Workings given(render::Stage until) { return {.stand_in = measure::reference_until(until)}; }
+inline render::DebugOptions given(render::Stage until) {
+  return {.stand_in = measure::reference_until(until)};
+}
 
 /// Whether two pictures are equal bit for bit; says where they are not.
 inline testing::AssertionResult same_bits(const Picture& a, const Picture& b) {
@@ -69,7 +71,7 @@ struct StageRun {
         probe(and_probe) {}
 
   void run_until(render::Stage stage) {
-    drawn.draw_until(stage, views, settings, workings, probe);
+    drawn.draw_until(stage, views, settings, debug, probe);
     indices.clear();
     for (std::size_t group = 0; stage > render::Stage::decode && group < plan.groups.size(); ++group) {
       const auto arguments = frame.drawn[group]->arguments.read<shared::DispatchArguments>(1);
@@ -128,7 +130,7 @@ struct StageRun {
   render::Frame drawn;
   std::vector<shared::View> views;
   render::FrameSettings settings;
-  render::Workings workings;
+  render::DebugOptions debug;
   std::optional<render::Probe> probe;
   const render::FramePlan& plan = drawn.plan();
   render::FrameBuffers& frame = drawn.buffers();

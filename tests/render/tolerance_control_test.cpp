@@ -51,7 +51,7 @@ class SimulatedScene {
   double error(std::size_t view, double tolerance) const {
     return at_one_.at(view) * std::pow(tolerance, power_);
   }
-  render::Probed probed(const render::Probe& probe, double tolerance) const {
+  render::ProbeResult probed(const render::Probe& probe, double tolerance) const {
     double sum = 0, squares = 0;
     int count = 0;
     for (std::size_t y = probe.row; y < down; y += probe.step) {
@@ -78,7 +78,7 @@ class SimulatedScene {
 };
 
 struct DrawnAttempts {
-  double true_db = 0.0, told_db = 0.0;
+  double true_db = 0.0, reported_db = 0.0;
   float tolerance = 0.0f;
   int attempts = 0;
   render::Probe probe;  // of the last attempt
@@ -93,23 +93,24 @@ DrawnAttempts draw_frame(ToleranceControl& control, const SimulatedScene& scene,
     drawn.tolerance = control.next_tolerance();
     control.measured(scene.probed(drawn.probe, drawn.tolerance), true);
     ++drawn.attempts;
-  } while (redraws && !control.holds());
+  } while (redraws && !control.is_final());
   drawn.true_db = scene.worse_db(drawn.tolerance);
-  drawn.told_db = control.quality();
+  drawn.reported_db = control.quality();
   return drawn;
 }
 
 // What a frame may be at, and what it may say of it.
-testing::AssertionResult keeps(const DrawnAttempts& drawn, double least, double most, double told_off) {
+testing::AssertionResult keeps(const DrawnAttempts& drawn, double least, double most, double report_off) {
   const bool good = drawn.true_db >= least && drawn.true_db <= most &&
-                    std::abs(drawn.told_db - drawn.true_db) <= told_off && drawn.attempts <= attempts_most;
+                    std::abs(drawn.reported_db - drawn.true_db) <= report_off &&
+                    drawn.attempts <= attempts_most;
   return (good ? testing::AssertionSuccess() : testing::AssertionFailure())
-         << drawn.true_db << " dB, told " << drawn.told_db << ", tolerance " << drawn.tolerance << ", drawn "
-         << drawn.attempts << " times";
+         << drawn.true_db << " dB, reported " << drawn.reported_db << ", tolerance " << drawn.tolerance
+         << ", drawn " << drawn.attempts << " times";
 }
 
 struct Course {
-  double least = 1e9, most = 0.0, mean = 0.0, told_off = 0.0;
+  double least = 1e9, most = 0.0, mean = 0.0, report_off = 0.0;
   int frames = 0, attempts = 0;
 };
 
@@ -117,7 +118,7 @@ void add(const DrawnAttempts& drawn, Course& course) {
   course.least = std::min(course.least, drawn.true_db);
   course.most = std::max(course.most, drawn.true_db);
   course.mean = (course.mean * course.frames + drawn.true_db) / (course.frames + 1);
-  course.told_off = std::max(course.told_off, std::abs(drawn.told_db - drawn.true_db));
+  course.report_off = std::max(course.report_off, std::abs(drawn.reported_db - drawn.true_db));
   course.attempts += drawn.attempts;
   ++course.frames;
 }
@@ -148,7 +149,7 @@ TEST(ToleranceControl, FindsTheToleranceForTheFirstFrameWhateverTheSceneIsLike) 
       const Course course = follow(control, scene, 60);
       EXPECT_GT(course.least, 40.0) << tolerance << " ^ " << power;
       EXPECT_LT(course.most, 40.6) << tolerance << " ^ " << power;
-      EXPECT_LT(course.told_off, 0.25) << tolerance << " ^ " << power;  // half of it is one sample
+      EXPECT_LT(course.report_off, 0.25) << tolerance << " ^ " << power;  // half of it is one sample
       EXPECT_EQ(course.attempts, 60) << tolerance << " ^ " << power;
       // Planted fault: the first tolerance that comes to mind, kept whatever it costs.
       if (std::abs(std::log10(tolerance / 0.1)) < 0.5) continue;  // for which it is right
@@ -168,7 +169,7 @@ TEST(ToleranceControl, FollowsASceneThatChanges) {
       EXPECT_GT(course.least, 39.25) << drift << " ^ " << power;  // below that a frame is drawn again
       EXPECT_LT(course.most, 41.3) << drift << " ^ " << power;
       EXPECT_NEAR(course.mean, 40.3, 0.5) << drift << " ^ " << power;
-      EXPECT_LT(course.told_off, 0.6) << drift << " ^ " << power;
+      EXPECT_LT(course.report_off, 0.6) << drift << " ^ " << power;
       EXPECT_LT(course.attempts, 320) << drift << " ^ " << power;
       // Planted fault: the same with the tolerance of the first frame ends elsewhere.
       EXPECT_GT(std::abs(scene.worse_db(0.05) - 40.0), 5.0);
@@ -223,7 +224,7 @@ TEST(ToleranceControl, TheWorseViewDecides) {
       const Course course = follow(control, scene, 60);
       EXPECT_GT(course.least, 39.9) << views[0] << " " << views[1];
       EXPECT_LT(course.most, 40.8) << views[0] << " " << views[1];
-      EXPECT_LT(course.told_off, 0.25) << views[0] << " " << views[1];
+      EXPECT_LT(course.report_off, 0.25) << views[0] << " " << views[1];
       EXPECT_EQ(course.attempts, 60) << views[0] << " " << views[1];
     }
   }
@@ -263,7 +264,7 @@ TEST(ToleranceControl, AQualityThatChangesALittleIsFollowed) {
       DrawnAttempts drawn = draw_frame(control, scene, true, settings);
       if (first == 0.0f) first = drawn.tolerance;
       drawn.true_db -= settings.quality;
-      drawn.told_db -= settings.quality;
+      drawn.reported_db -= settings.quality;
       add(drawn, course);
     };
     for (int n = 0; n < 90; ++n) {
@@ -273,12 +274,12 @@ TEST(ToleranceControl, AQualityThatChangesALittleIsFollowed) {
     EXPECT_GT(course.least, -0.75) << power;
     EXPECT_LT(course.most, 1.4) << power;
     EXPECT_NEAR(course.mean, 0.3, 0.3) << power;
-    EXPECT_LT(course.told_off, 0.4) << power;
+    EXPECT_LT(course.report_off, 0.4) << power;
     EXPECT_LT(course.attempts, 95) << power;
     settings.quality += 0.2f;
-    EXPECT_TRUE(control.knows(scene.views, settings));
+    EXPECT_TRUE(control.is_settled(scene.views, settings));
     settings.quality += 0.2f;
-    EXPECT_FALSE(control.knows(scene.views, settings)) << "of a frame that must be better";
+    EXPECT_FALSE(control.is_settled(scene.views, settings)) << "of a frame that must be better";
     settings.quality = 43.0f;  // at once
     course = {};
     draw();
@@ -344,7 +345,7 @@ TEST(ToleranceControl, ASampleThatShowsNothingIsNotTheView) {
   control.next_probe(scene.views, squared_40);
   control.next_tolerance();
   control.measured({}, true);
-  EXPECT_TRUE(control.holds());
+  EXPECT_TRUE(control.is_final());
   EXPECT_NEAR(control.quality(), 40.3, 0.6);
   EXPECT_LT(draw_frame(control, scene).probe.step, 4u);  // a larger one
   // Planted fault: of the whole view it is the truth.
@@ -363,7 +364,7 @@ int attempts_at(ToleranceControl& control, const std::vector<shared::View>& view
     control.next_probe(views, squared_40);
     const float tolerance = control.next_tolerance();
     control.measured({tolerance > 0.0f ? error : 0.0}, settled);
-  } while (++attempts < 100 && !control.holds());
+  } while (++attempts < 100 && !control.is_final());
   return attempts;
 }
 

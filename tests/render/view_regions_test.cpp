@@ -62,7 +62,7 @@ testing::AssertionResult windows_are_right(const Model& model, const FrameSettin
   return testing::AssertionSuccess();
 }
 
-TEST(Parts, WindowsAreTheWholePictureBitForBit) {
+TEST(ViewRegions, WindowsAreTheWholePictureBitForBit) {
   const Model model = test::random_model(41, 3000, 1, 0.75);
   EXPECT_TRUE(windows_are_right(model, {.th = TH_SQUARED, .tolerance = 0.05f}));
   for (int tiles = 0; tiles < std::ssize(tiles_choices); ++tiles)
@@ -108,7 +108,7 @@ Picture masked(Picture whole, const ViewRegion& part, int tile) {
   return whole;
 }
 
-TEST(Parts, WhatIsNotShownIsBackgroundAndTheRestAsBefore) {
+TEST(ViewRegions, WhatIsNotShownIsBackgroundAndTheRestAsBefore) {
   const Model model = test::random_model(42, 3000, 1, 0.75);
   const std::vector views = {view_of_centre(100), view_of_centre(70)};
   for (const FrameSettings& settings :
@@ -144,7 +144,7 @@ std::vector<std::size_t> list_sizes(const Model& model, const FrameSettings& set
   return sizes;
 }
 
-TEST(Parts, WhatIsNotShownMakesNoPairs) {
+TEST(ViewRegions, WhatIsNotShownMakesNoPairs) {
   const Model model = test::random_model(43, 3000, 1, 0.75);
   for (int tiles = 0; tiles < std::ssize(tiles_choices); ++tiles) {
     const FrameSettings whole{.tiles = tiles};
@@ -154,7 +154,7 @@ TEST(Parts, WhatIsNotShownMakesNoPairs) {
   }
 }
 
-TEST(Parts, AColumnTooFewIsCaught) {
+TEST(ViewRegions, AColumnTooFewIsCaught) {
   const Model model = test::random_model(43, 3000, 1, 0.75);
   const ViewRegion part = ragged(16);
   const auto right = list_sizes(model, {}, part);
@@ -168,7 +168,7 @@ TEST(Parts, AColumnTooFewIsCaught) {
   EXPECT_FALSE(same && said.size() == 0);
 }
 
-TEST(Parts, AHoleIsPairedOnlyByWhatReachesOverIt) {
+TEST(ViewRegions, AHoleIsPairedOnlyByWhatReachesOverIt) {
   const Model model = test::random_model(44, 3000, 0, 0.75);
   render::Frame frame(test::gl_context(), model);
   const std::vector views = {view_of_centre(100)};
@@ -180,7 +180,7 @@ TEST(Parts, AHoleIsPairedOnlyByWhatReachesOverIt) {
 }
 
 // What lay in it was not measured.
-TEST(Parts, AHoleThatMovesIsACut) {
+TEST(ViewRegions, AHoleThatMovesIsACut) {
   const Model model = test::random_model(48, 3000, 0, 0.75);
   const FrameSettings last{.th = TH_SQUARED, .transmittance = TRANSMITTANCE_LAST, .tolerance = 0.3f};
   const FrameSettings before = with(last, {{.hole_begin = {32, 32}, .hole_end = {96, 96}}});
@@ -196,7 +196,7 @@ TEST(Parts, AHoleThatMovesIsACut) {
   EXPECT_FALSE(frame.draw(views, last).used_measured) << "nor where there is none";
 }
 
-TEST(Parts, AViewGoesByItsShareOfTheTolerance) {
+TEST(ViewRegions, AViewGoesByItsShareOfTheTolerance) {
   const Model model = test::random_model(45, 4000, 1, 0.75);
   const std::vector views = {view_of_centre(100), view_of_centre(100), view_of_centre(100)};
   for (const int th : test::tolerant_rules) {
@@ -221,7 +221,7 @@ float middle_coverage(const Model& model, int width, const ViewRegion& part, int
   return 1.0f - drawn.colour[middle].a;
 }
 
-TEST(Parts, AGaussianIsAsBrightInFewerPixels) {
+TEST(ViewRegions, AGaussianIsAsBrightInFewerPixels) {
   constexpr double scale = 0.004, opacity = 0.8;
   Model model;
   test::add(model, {0, 0, 2}, glm::vec3(scale), opacity);
@@ -253,7 +253,7 @@ std::vector<shared::View> four_views(double cant) {
   return views;
 }
 
-TEST(Parts, OneDepthOrderServesFourViews) {
+TEST(ViewRegions, OneDepthOrderServesFourViews) {
   const Model model = test::random_model(46, 3000, 1, 0.75);
   const ViewRegion inset{.corner = {64, 32}, .size = {64, 64}};
   for (const double cant : {0.0, 6.0}) {
@@ -277,7 +277,7 @@ TEST(Parts, OneDepthOrderServesFourViews) {
   EXPECT_EQ(frame.draw(views, with({}, {{}, inset, {}, inset})).order_groups, 3u);
 }
 
-TEST(Parts, AQualityIsThatOfWhatIsShown) {
+TEST(ViewRegions, AQualityIsThatOfWhatIsShown) {
   const Model model = test::random_model(97, 3000, 1);
   const std::vector views = {view_of_centre(100)};
   const ViewRegion part = ragged(16);
@@ -291,7 +291,7 @@ TEST(Parts, AQualityIsThatOfWhatIsShown) {
   }
 }
 
-TEST(Parts, WrongOnesAreNamed) {
+TEST(ViewRegions, WrongOnesAreNamed) {
   const Model model = test::random_model(47, 10, 0);
   const auto said = [&](const ViewRegion& part, const FrameSettings& settings = {}) {
     return [=, &model] { draw(model, view_of_centre(100), with(settings, {part})); };

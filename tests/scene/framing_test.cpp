@@ -44,7 +44,7 @@ TEST(Framing, ABallFillsThePicture) {
     for (const glm::dvec2 size : {glm::dvec2(640, 360), glm::dvec2(360, 640)}) {
       const Model model = ball_around(radius * glm::vec3(3, -2, 7), radius);
       const Camera camera = frame_model(model, static_cast<int>(size.x), static_cast<int>(size.y));
-      const double filled = reach(model, camera, near_for(model));
+      const double filled = reach(model, camera, near_plane_for(model));
       const double fits = std::min(1.0, size.x / size.y);
       EXPECT_GT(filled, 0.7 * fits) << radius;
       EXPECT_LT(filled, 1.05 * fits) << radius;
@@ -94,14 +94,14 @@ TEST(Framing, OrbitGoesAround) {
   for (const Camera& camera : cameras) {
     middle += camera.position / 12.0;
     EXPECT_NEAR(camera.position.y, cameras[0].position.y, 1e-9);
-    EXPECT_LT(reach(model, camera, near_for(model)), 1.05);
+    EXPECT_LT(reach(model, camera, near_plane_for(model)), 1.05);
   }
   EXPECT_LT(glm::length(glm::dvec2(middle.x, middle.z) - glm::dvec2(1, 3)), 0.05);
 }
 
 TEST(Framing, NearSuitsSmallModels) {
-  EXPECT_EQ(near_for(ball_around({0, 0, 0}, 5.0f)), near_default);
-  EXPECT_NEAR(near_for(ball_around({0, 0, 0}, 0.05f)), 0.005, 1e-4);
+  EXPECT_EQ(near_plane_for(ball_around({0, 0, 0}, 5.0f)), near_default);
+  EXPECT_NEAR(near_plane_for(ball_around({0, 0, 0}, 0.05f)), 0.005, 1e-4);
 }
 
 TEST(Framing, FarFromTheOriginThereIsRoomForACamera) {
@@ -125,7 +125,7 @@ TEST(Framing, OddModels) {
   Model two;
   for (const float x : {0.0f, 10.0f}) add_ball(two, {x, 0, 0}, 0.2f);
   const Camera of_both = frame_model(two, 640, 360);
-  EXPECT_LT(reach(two, of_both, near_for(two)), 640.0 / 360.0) << "one is beside the picture";
+  EXPECT_LT(reach(two, of_both, near_plane_for(two)), 640.0 / 360.0) << "one is beside the picture";
   EXPECT_THROW(frame_model(one, 640, 360, 0.0), Error);
   EXPECT_THROW(frame_model(one, 640, 360, 60.0, {{0, 0, 0}}), Error);
 }

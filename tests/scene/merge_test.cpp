@@ -34,7 +34,7 @@ Model merged(const Model& model, double pixel = 0.0) {
 
 Model reduced(const Model& model, std::size_t target, double pixel = 0.0) {
   Merger merger(model, pixel);
-  merger.bring_to(target);
+  merger.merge_to(target);
   return merger.result(pixel);
 }
 
@@ -165,7 +165,7 @@ TEST(Merger, ComesToTheCountThatIsAsked) {
   const Model model = test::random_model(5, 300, 1);
   Merger merger(model, 0.01);
   for (const std::size_t target : {500, 300, 299, 150, 149, 38, 2, 1, 0}) {
-    merger.bring_to(target);
+    merger.merge_to(target);
     const Model fewer = merger.result(0.01);
     EXPECT_EQ(fewer.count(), std::clamp<std::size_t>(target, 1, 300));
     EXPECT_EQ(fewer.sh.size(), fewer.count() * 12);

@@ -28,10 +28,10 @@ TEST(ThresholdCalibration, KnowsItsModelAndItsViews) {
     EXPECT_FALSE(is_of(c, other)) << what;
   }
   // c is 3 from its nearest neighbour, the largest such distance: up to 6 from any view is covered.
-  EXPECT_TRUE(covers(c, {1, 8.9, 0}, reach_of(c)));
-  EXPECT_FALSE(covers(c, {1, 9.1, 0}, reach_of(c)));
+  EXPECT_TRUE(covers(c, {1, 8.9, 0}, validity_distance(c)));
+  EXPECT_FALSE(covers(c, {1, 9.1, 0}, validity_distance(c)));
   c.views.resize(1);
-  EXPECT_TRUE(covers(c, {100, 0, 0}, reach_of(c)));
+  EXPECT_TRUE(covers(c, {100, 0, 0}, validity_distance(c)));
 }
 
 }  // namespace

@@ -263,28 +263,28 @@ TEST(Tour, TheEyesOfAPairAreOneHead) {
     EXPECT_LT(glm::distance(of_pairs[9].position, of_heads[9].position), 1e-9);
     EXPECT_LT(angle(of_pairs[9].rotation, of_heads[9].rotation), 1e-6);
     EXPECT_EQ(of_pairs[9].cx, of_heads[9].cx);
-    EXPECT_NEAR(metre_of(pairs), metre_of(heads), 1e-9);
-    const Cameras merged = heads_of(pairs);
+    EXPECT_NEAR(estimated_metre(pairs), estimated_metre(heads), 1e-9);
+    const Cameras merged = heads_from_pairs(pairs);
     ASSERT_EQ(merged.size(), heads.size());
     for (std::size_t k = 0; k < heads.size(); ++k)
       EXPECT_LT(glm::distance(merged[k].position, heads[k].position), 1e-9) << k;
     for (std::size_t k = 0; k < pairs.size(); k += 2) std::swap(pairs[k], pairs[k + 1]);
   }
   for (Camera& camera : pairs) camera.name += "_eye";  // nothing says that they are pairs
-  EXPECT_NEAR(metre_of(pairs), 0.063, 1e-9);
+  EXPECT_NEAR(estimated_metre(pairs), 0.063, 1e-9);
   EXPECT_NE(tour(pairs, walk).size(), of_heads.size());
 }
 
 TEST(Tour, MetreIsTheUsualWayToTheNextCamera) {
   Cameras cameras = ring_of(6, 3.0);  // 3 apart
-  EXPECT_NEAR(metre_of(cameras), 3.0, 1e-9);
+  EXPECT_NEAR(estimated_metre(cameras), 3.0, 1e-9);
   cameras.push_back(camera_at({500, 0, 0}));                                            // one outlier
   for (int k = 0; k < 6; ++k) cameras.push_back(cameras[static_cast<std::size_t>(k)]);  // and duplicates
-  EXPECT_NEAR(metre_of(cameras), 3.0, 1e-9);
-  EXPECT_NEAR(metre_of(scaled(cameras, 0.01)), 0.03, 1e-9);
-  EXPECT_EQ(metre_of({}), 1.0);
-  EXPECT_EQ(metre_of(Cameras{camera_at({1, 2, 3})}), 1.0);
-  EXPECT_EQ(metre_of(Cameras{camera_at({1, 2, 3}), camera_at({1, 2, 3}, 90.0)}), 1.0);
+  EXPECT_NEAR(estimated_metre(cameras), 3.0, 1e-9);
+  EXPECT_NEAR(estimated_metre(scaled(cameras, 0.01)), 0.03, 1e-9);
+  EXPECT_EQ(estimated_metre({}), 1.0);
+  EXPECT_EQ(estimated_metre(Cameras{camera_at({1, 2, 3})}), 1.0);
+  EXPECT_EQ(estimated_metre(Cameras{camera_at({1, 2, 3}), camera_at({1, 2, 3}, 90.0)}), 1.0);
 }
 
 TEST(Tour, ErrorsSayWhatIsMissing) {

@@ -84,11 +84,11 @@ TEST(Comfort, NothingHasNoRange) {
 TEST(Comfort, WhatIsProposedIsComfortable) {
   const EyePair eyes = rig_for_comfort({});
   const auto range = disparity_range(eyes.cameras, walls(), {});
-  EXPECT_FALSE(comfortable(*range)) << "2 m before eyes that look infinitely far is 1.8 degrees";
+  EXPECT_FALSE(is_comfortable(*range)) << "2 m before eyes that look infinitely far is 1.8 degrees";
   const ComfortableRig better = comfortable_rig(*range, eyes.cameras);
   EXPECT_FALSE(better.ipd);
   EXPECT_NEAR(better.convergence, 3.2, 0.01) << "midway in 1/z between 2 and 8 m";
-  EXPECT_TRUE(comfortable(
+  EXPECT_TRUE(is_comfortable(
       *disparity_range(rig_for_comfort(better.convergence).cameras, walls(), better.convergence)));
 
   // A deep scene needs eyes nearer to each other.
@@ -102,8 +102,8 @@ TEST(Comfort, WhatIsProposedIsComfortable) {
                                   {.ipd = distance_between, .convergence = narrow.convergence});
     return *disparity_range(pair.cameras, deep, narrow.convergence);
   };
-  EXPECT_TRUE(comfortable(at(*narrow.ipd)));
-  EXPECT_FALSE(comfortable(at(comfort_ipd))) << "any eyes would do";
+  EXPECT_TRUE(is_comfortable(at(*narrow.ipd)));
+  EXPECT_FALSE(is_comfortable(at(comfort_ipd))) << "any eyes would do";
 }
 
 TEST(Comfort, TheScreenSuitsWhatIsSeen) {
@@ -111,10 +111,11 @@ TEST(Comfort, TheScreenSuitsWhatIsSeen) {
   for (const std::optional<double> convergence : {std::optional<double>(), std::optional<double>(1.5)}) {
     const auto metres = suitable_convergence(rig_for_comfort(convergence).cameras, walls(), 1.0);
     ASSERT_TRUE(metres);
-    EXPECT_TRUE(comfortable(*disparity_range(rig_for_comfort(metres).cameras, walls(), metres))) << *metres;
+    EXPECT_TRUE(is_comfortable(*disparity_range(rig_for_comfort(metres).cameras, walls(), metres)))
+        << *metres;
   }
-  EXPECT_FALSE(comfortable(*disparity_range(rig_for_comfort(2.0).cameras, walls(), 2.0)));
-  EXPECT_FALSE(comfortable(*disparity_range(rig_for_comfort(8.0).cameras, walls(), 8.0)));
+  EXPECT_FALSE(is_comfortable(*disparity_range(rig_for_comfort(2.0).cameras, walls(), 2.0)));
+  EXPECT_FALSE(is_comfortable(*disparity_range(rig_for_comfort(8.0).cameras, walls(), 8.0)));
 
   // In a scene that is too deep for any, it stands where most is, to three digits.
   Picture deep = walls();

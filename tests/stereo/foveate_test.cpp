@@ -120,7 +120,7 @@ double catmull_rom(double t) {
 // The largest difference of colours beyond the seam from the context, drawn by itself and brought to size.
 double around_error(const Drawn& drawn, const Model& model) {
   const stereo::FoveatedEye& part = drawn.parts[0];
-  const render::FrameSettings whole{.regions = {{.low_pass_share = part.context_part.low_pass_share}}};
+  const render::FrameSettings whole{.regions = {{.low_pass_share = part.context_region.low_pass_share}}};
   const Picture context = test::draw(model, part.context, whole);
   const Picture& shown = drawn.pictures[0];
   double worst = 0;

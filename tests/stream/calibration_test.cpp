@@ -62,11 +62,11 @@ TEST(Sample, ChangesPlacesWithWhatIsThere) {
     chunks.replace(model, c, test::random_model(static_cast<unsigned>(c), 70, 1));
   const ChunkModels finest{{2, 0}, {test::random_model(9, 300, 1), test::random_model(10, 100, 1)}};
   const Model second = chunks.chunk(model, 2);
-  const ChunkModels before = exchange(finest, model, chunks);
+  const ChunkModels before = swap_chunks(finest, model, chunks);
   EXPECT_EQ(chunks.gaussians(), 540u);
   EXPECT_EQ(chunks.chunk(model, 2).position, finest.models[0].position);
   EXPECT_EQ(before.models[0].position, second.position);
-  exchange(before, model, chunks);
+  swap_chunks(before, model, chunks);
   EXPECT_EQ(chunks.chunk(model, 2).sh, second.sh);
   EXPECT_EQ(chunks.gaussians(), 280u);
 }
@@ -77,12 +77,12 @@ TEST(Sample, HasRoom) {
   model.room = 2 * ModelChunks::block + 100 + 300;
   chunks.replace(model, 0, test::random_model(1, 100, 1));
   ChunkModels finest{{0, 1}, {test::random_model(2, 200, 1), test::random_model(3, 101, 1)}};
-  keep_what_fits(finest, model, chunks);
+  drop_beyond_room(finest, model, chunks);
   EXPECT_EQ(finest.chunks, (std::vector<std::size_t>{0}));
   EXPECT_EQ(finest.models.size(), 1u);
   model.room += 2;
   finest = {{0, 1}, {test::random_model(2, 200, 1), test::random_model(3, 101, 1)}};
-  keep_what_fits(finest, model, chunks);
+  drop_beyond_room(finest, model, chunks);
   EXPECT_EQ(finest.chunks.size(), 2u) << "planted: one less";
 }
 
@@ -111,7 +111,7 @@ TEST(LevelCalibration, IsWhatSamplesOfAllLose) {
   EXPECT_NEAR(calibration.factor(), 1e4, 1e-6) << "planted: 8 times at most, 31 dB less than was told";
   calibration.add({.predicted = 1e-4, .measured = 1e-7, .all = 1e-4, .chunks = 8});
   EXPECT_NEAR(calibration.factor(), 1e-3, 1e-9);
-  EXPECT_EQ(calibration.to_choose_by(), 0.125);
+  EXPECT_EQ(calibration.factor_for_choice(), 0.125);
 }
 
 // One of some parts may be far off.

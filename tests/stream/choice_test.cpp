@@ -20,23 +20,24 @@ std::vector<LodChunk> row_of_chunks(int count) {
 
 TEST(Choice, WhatIsNearComesFirst) {
   const std::vector<LodChunk> chunks = row_of_chunks(6);
-  const std::vector<std::size_t> chosen = choose_apart(chunks, {{-1, 0.5, 0.5}}, 899);
+  const std::vector<std::size_t> chosen = choose_by_spacing(chunks, {{-1, 0.5, 0.5}}, 899);
   EXPECT_EQ(chosen, (std::vector<std::size_t>{0, 1, 1, 1, 1, 2}));
   // From the other end, and with an eye at either end, one choice for both.
-  EXPECT_EQ(choose_apart(chunks, {{12, 0.5, 0.5}}, 899), (std::vector<std::size_t>{2, 1, 1, 1, 1, 0}));
-  EXPECT_EQ(choose_apart(chunks, {{-1, 0.5, 0.5}, {12, 0.5, 0.5}}, 1250),
+  EXPECT_EQ(choose_by_spacing(chunks, {{12, 0.5, 0.5}}, 899), (std::vector<std::size_t>{2, 1, 1, 1, 1, 0}));
+  EXPECT_EQ(choose_by_spacing(chunks, {{-1, 0.5, 0.5}, {12, 0.5, 0.5}}, 1250),
             (std::vector<std::size_t>{0, 1, 1, 1, 1, 0}));
 }
 
 TEST(Choice, KeepsToTheBudget) {
   const std::vector<LodChunk> chunks = row_of_chunks(6);
   for (std::size_t most = 150; most < 2500; most += 25) {
-    const std::size_t used = test::gaussians_of(chunks, choose_apart(chunks, {}, most));
+    const std::size_t used = test::gaussians_of(chunks, choose_by_spacing(chunks, {}, most));
     EXPECT_LE(used, most);
     EXPECT_GE(used + 300, std::min<std::size_t>(most, 2400)) << "room for one more step is left";
   }
-  EXPECT_EQ(choose_apart(chunks, {}, 2400), std::vector<std::size_t>(6, 0));
-  EXPECT_EQ(choose_apart(chunks, {}, 0), std::vector<std::size_t>(6, 2)) << "the coarsest are there anyway";
+  EXPECT_EQ(choose_by_spacing(chunks, {}, 2400), std::vector<std::size_t>(6, 0));
+  EXPECT_EQ(choose_by_spacing(chunks, {}, 0), std::vector<std::size_t>(6, 2))
+      << "the coarsest are there anyway";
 }
 
 /// Whether each part is as fine as `enough` asks, and no finer.
@@ -58,16 +59,16 @@ TEST(Choice, FineEnoughIsEnough) {
   const glm::dvec3 eye(-1, 0.5, 0.5);
   std::size_t last = 6 * 400 + 1;
   for (const double enough : {0.005, 0.02, 0.04, 0.08, 0.16, 1.0}) {
-    const std::vector<std::size_t> chosen = choose_apart(chunks, {eye}, 10000, enough);
+    const std::vector<std::size_t> chosen = choose_by_spacing(chunks, {eye}, 10000, enough);
     EXPECT_TRUE(as_needed(chunks, chosen, eye, enough)) << enough;
     EXPECT_LT(test::gaussians_of(chunks, chosen), last) << enough;
     last = test::gaussians_of(chunks, chosen);
   }
   // Planted faults: what is near as if it were far, and a part that is too fine.
-  std::vector<std::size_t> wrong = choose_apart(chunks, {eye}, 10000, 0.04);
+  std::vector<std::size_t> wrong = choose_by_spacing(chunks, {eye}, 10000, 0.04);
   std::reverse(wrong.begin(), wrong.end());
   EXPECT_FALSE(as_needed(chunks, wrong, eye, 0.04));
-  wrong = choose_apart(chunks, {eye}, 10000, 0.04);
+  wrong = choose_by_spacing(chunks, {eye}, 10000, 0.04);
   --wrong.back();
   EXPECT_FALSE(as_needed(chunks, wrong, eye, 0.04));
 }
@@ -75,7 +76,7 @@ TEST(Choice, FineEnoughIsEnough) {
 TEST(Choice, KeepsToWhatWasChosenBefore) {
   const std::vector<LodChunk> chunks = row_of_chunks(6);
   const auto choose = [&](double x, std::span<const std::size_t> before) {
-    return choose_apart(chunks, {{x, 0.5, 0.5}}, 10000, 0.04, before);
+    return choose_by_spacing(chunks, {{x, 0.5, 0.5}}, 10000, 0.04, before);
   };
   for (double x = -12.0; x < 0.0; x += 0.25) {
     const std::vector<std::size_t> here = choose(x, {});
@@ -92,18 +93,18 @@ TEST(Choice, PartsThatLackLevels) {
   std::vector<LodChunk> chunks = row_of_chunks(3);
   chunks[0].levels.clear();
   chunks[1].levels = {{1, 100}};
-  const std::vector<std::size_t> chosen = choose_apart(chunks, {{0.5, 0.5, 0.5}}, 10000);
+  const std::vector<std::size_t> chosen = choose_by_spacing(chunks, {{0.5, 0.5, 0.5}}, 10000);
   EXPECT_EQ(chosen[1], 0u);
   EXPECT_EQ(test::gaussians_of(chunks, chosen), 500u);
-  EXPECT_TRUE(choose_apart({}, {}, 10).empty());
+  EXPECT_TRUE(choose_by_spacing({}, {}, 10).empty());
 }
 
 TEST(Choice, LevelsAndFramesShareABudget) {
-  const double half = levels_share(40.0);
+  const double half = levels_target_db(40.0);
   EXPECT_NEAR(error_of_psnr(half), 0.5e-4, 1e-9);
-  EXPECT_NEAR(left_of(40.0, half), half, 1e-9);
-  EXPECT_NEAR(psnr_of_both(45.0, left_of(40.0, 45.0)), 40.0, 1e-9) << "what levels do not need";
-  EXPECT_NEAR(left_of(40.0, 40.0), 50.0, 1e-9) << "a tenth at least";
+  EXPECT_NEAR(frame_target_db(40.0, half), half, 1e-9);
+  EXPECT_NEAR(psnr_of_both(45.0, frame_target_db(40.0, 45.0)), 40.0, 1e-9) << "what levels do not need";
+  EXPECT_NEAR(frame_target_db(40.0, 40.0), 50.0, 1e-9) << "a tenth at least";
 }
 
 /// From -1 along x, with so many px for each radian.
@@ -120,10 +121,10 @@ shared::View view_along_x(float focal) {
 TEST(Choice, IsWhatIsRequested) {
   std::vector<LodChunk> chunks = row_of_chunks(6);
   const std::vector<shared::View> views = {view_along_x(100.0f)};
-  EXPECT_EQ(choose_levels(chunks, views, {.apart_px = 4.0}).levels,
-            choose_apart(chunks, {{-1, 0.5, 0.5}}, any_number, 0.04));
-  EXPECT_NE(choose_levels(chunks, views, {.apart_px = 4.0}).levels,
-            choose_levels(chunks, std::vector{view_along_x(500.0f)}, {.apart_px = 4.0}).levels)
+  EXPECT_EQ(choose_levels(chunks, views, {.spacing_px = 4.0}).levels,
+            choose_by_spacing(chunks, {{-1, 0.5, 0.5}}, any_number, 0.04));
+  EXPECT_NE(choose_levels(chunks, views, {.spacing_px = 4.0}).levels,
+            choose_levels(chunks, std::vector{view_along_x(500.0f)}, {.spacing_px = 4.0}).levels)
       << "planted: as if by a shorter lens";
   EXPECT_EQ(choose_levels(chunks, {}, {}).levels, std::vector<std::size_t>(6, 2));
   EXPECT_EQ(choose_levels(chunks, {}, {.db = 40.0}).levels, std::vector<std::size_t>(6, 2));

@@ -54,9 +54,9 @@ TEST(HeadMotion, GoesOnAsItDid) {
   for (int n = 0; n <= 60; ++n) motion.note(head_at(n / 90.0, speed, 1.0), moment(n / 90.0));
   const Views now = head_at(60 / 90.0, speed, 1.0), then = head_at(60 / 90.0 + 0.3, speed, 1.0);
   for (std::size_t v = 0; v < 2; ++v) {
-    EXPECT_LT(apart(motion.ahead(0.3)[v], then[v]), 0.012) << v;
-    EXPECT_GT(apart(motion.ahead(0.2)[v], then[v]), 0.1) << "planted: not far enough";
-    EXPECT_LT(apart(motion.ahead(0.0)[v], now[v]), 1e-5);
+    EXPECT_LT(apart(motion.predicted(0.3)[v], then[v]), 0.012) << v;
+    EXPECT_GT(apart(motion.predicted(0.2)[v], then[v]), 0.1) << "planted: not far enough";
+    EXPECT_LT(apart(motion.predicted(0.0)[v], now[v]), 1e-5);
   }
 }
 
@@ -65,7 +65,7 @@ TEST(HeadMotion, OfAHeadAtRestIsNone) {
   HeadMotion motion;
   for (int n = 0; n <= 60; ++n) motion.note(still, moment(n / 90.0));
   const auto bytes = [](const Views& views) { return std::as_bytes(std::span(views)); };
-  EXPECT_TRUE(std::ranges::equal(bytes(motion.ahead(0.3)), bytes(still)));
+  EXPECT_TRUE(std::ranges::equal(bytes(motion.predicted(0.3)), bytes(still)));
 }
 
 TEST(HeadMotion, OfAHeadThatStopsEnds) {
@@ -76,7 +76,7 @@ TEST(HeadMotion, OfAHeadThatStopsEnds) {
     motion.note(head_at(time, speed, 1.0), moment(n / 90.0));
   }
   const Views rest = head_at(20 / 90.0, speed, 1.0);
-  EXPECT_EQ(apart(motion.ahead(0.3)[0], rest[0]), 0.0);
+  EXPECT_EQ(apart(motion.predicted(0.3)[0], rest[0]), 0.0);
 }
 
 TEST(HeadMotion, AJumpIsNone) {
@@ -85,7 +85,7 @@ TEST(HeadMotion, AJumpIsNone) {
   for (int n = 0; n <= 90; ++n) {
     views = head_at(n < 45 ? 0.0 : 5.0, {4.0, 0.0, 0.0}, 0.3);
     motion.note(views, moment(n / 90.0));
-    ASSERT_EQ(apart(motion.ahead(0.3)[0], views[0]), 0.0) << n;
+    ASSERT_EQ(apart(motion.predicted(0.3)[0], views[0]), 0.0) << n;
   }
 }
 
@@ -93,7 +93,7 @@ TEST(HeadMotion, IsNotKnownOfFewFramesASecond) {
   HeadMotion motion;
   Views views;
   for (int n = 0; n <= 10; ++n) motion.note(views = head_at(n * 0.4, {1.0, 0.0, 0.0}, 0.1), moment(n * 0.4));
-  EXPECT_EQ(apart(motion.ahead(0.3)[0], views[0]), 0.0);
+  EXPECT_EQ(apart(motion.predicted(0.3)[0], views[0]), 0.0);
 }
 
 }  // namespace

@@ -33,7 +33,7 @@ struct Followed {
   Chooser chooser{files};
   LevelChoice choice;
   std::vector<std::size_t> levels = std::vector(files.chunks().size(), LodFiles::not_read);
-  std::vector<Model> chunks = std::vector(files.chunks().size(), files.like());
+  std::vector<Model> chunks = std::vector(files.chunks().size(), files.properties());
   std::size_t read_at_last = 0;
 
   explicit Followed(const fs::path& path) : files(path) {}
@@ -47,12 +47,12 @@ struct Followed {
   Model read() {
     read_at_last = 0;
     const std::vector<std::size_t> from = levels;
-    files.read(from, choice, [&](LodFiles::Piece piece) {
-      levels.at(piece.chunk) = piece.level;
-      chunks.at(piece.chunk) = std::move(piece.model);
+    files.read(from, choice, [&](LodFiles::LoadedChunk loaded) {
+      levels.at(loaded.chunk) = loaded.level;
+      chunks.at(loaded.chunk) = std::move(loaded.model);
       ++read_at_last;
     });
-    Model all = files.like();
+    Model all = files.properties();
     for (const Model& chunk : chunks) append(all, chunk, 0, chunk.count());
     const Model environment = files.environment();
     append(all, environment, 0, environment.count());
@@ -63,7 +63,7 @@ struct Followed {
     return read();
   }
   std::optional<double> predicted_db() const {
-    return choice.knows_errors() ? std::optional(psnr_of_error(choice.error())) : std::nullopt;
+    return choice.has_errors() ? std::optional(psnr_of_error(choice.error())) : std::nullopt;
   }
 };
 
@@ -77,7 +77,7 @@ TEST(LodFiles, FineWhereItIsNearCoarseWhereItIsFar) {
   const fs::path lod = folder / "sog/st-lod";
   const Model fine = load_model(lod, {.lod = 0}), coarse = load_model(lod, {.lod = 1});
   Followed scene(lod);
-  EXPECT_EQ(scene.files.like().degree, 3);
+  EXPECT_EQ(scene.files.properties().degree, 3);
   EXPECT_TRUE(scene.choose({}, {}));
   EXPECT_TRUE(test::equal(scene.read(), coarse)) << "the coarsest, unless somebody looks";
   EXPECT_FALSE(scene.choose({view_at(far_away)}, {30.0}));
@@ -117,9 +117,9 @@ TEST(LodFiles, OnlyWhatSwitchesIsReadAndWhatShrinksFirst) {
   EXPECT_EQ(scene.read_at_last, 0u);
   scene.choose({view_at(beside_first)}, {30.0});
   std::vector<std::size_t> counts;
-  const auto take = [&](const LodFiles::Piece& piece) {
-    counts.push_back(piece.model.count());
-    scene.levels[piece.chunk] = piece.level;
+  const auto take = [&](const LodFiles::LoadedChunk& loaded) {
+    counts.push_back(loaded.model.count());
+    scene.levels[loaded.chunk] = loaded.level;
   };
   scene.files.read(std::vector(scene.levels), scene.choice, take, [] { return false; });
   EXPECT_EQ(counts, std::vector<std::size_t>{65}) << "a file, and then it was asked to end";
@@ -251,7 +251,7 @@ TEST(LodFiles, WhatSavesMostIsReadFirst) {
     scene.choose({ahead({0, 0, -20})}, {.db = 80.0}, visible);
     std::vector<std::size_t> order;
     scene.files.read(scene.levels, scene.choice,
-                     [&](const LodFiles::Piece& piece) { order.push_back(piece.chunk); });
+                     [&](const LodFiles::LoadedChunk& loaded) { order.push_back(loaded.chunk); });
     ASSERT_EQ(order.size(), 3u);
     EXPECT_EQ(order[last_is_first ? 0 : 2], 2u);
   }
@@ -261,7 +261,7 @@ TEST(LodFiles, FinestLevelsOfSome) {
   REQUIRE_FIXTURES(folder);
   const LodFiles files(folder / "sog/st-lod");
   const Model fine = load_model(folder / "sog/st-lod", {.lod = 0});
-  const ChunkModels finest = files.finest_of(std::vector<std::size_t>{2, 0});
+  const ChunkModels finest = files.read_finest(std::vector<std::size_t>{2, 0});
   ASSERT_EQ(finest.chunks.size(), 2u);
   for (std::size_t k = 0; k < 2; ++k) {
     const std::size_t first = finest.chunks[k] == 0 ? 0 : 752;

@@ -12,33 +12,33 @@
 
 namespace binosplat::test {
 
-/// So many Gaussians in leaves of 200 at three levels, of which each loses more, the same from everywhere.
+/// So many Gaussians in chunks of 200 at three levels, of which each loses more, the same from everywhere.
 inline void write_levels(const TempFolder& folder, std::size_t count) {
   const auto path = [&](const std::string& name) { return folder / name; };
-  const auto learn = [](std::span<const std::vector<Model>> leaves) {
-    std::vector<LeafErrors> errors;
-    for (const std::vector<Model>& levels : leaves) {
-      LeafErrors& leaf = errors.emplace_back();
-      leaf.pixels = {0.1};
-      leaf.seen.assign(detail_directions, {100.0});
+  const auto learn = [](std::span<const std::vector<Model>> chunks) {
+    std::vector<LevelErrors> errors;
+    for (const std::vector<Model>& levels : chunks) {
+      LevelErrors& chunk = errors.emplace_back();
+      chunk.pixels = {0.1};
+      chunk.seen.assign(detail_directions, {100.0});
       for (std::size_t level = 0; level < levels.size(); ++level)
-        leaf.of_level.emplace_back(detail_directions, std::vector{2.0 * static_cast<double>(level)});
+        chunk.of_level.emplace_back(detail_directions, std::vector{2.0 * static_cast<double>(level)});
     }
     return errors;
   };
-  const auto together = [](std::span<const std::vector<Model>>, std::span<const LeafErrors>, int) {
-    return std::vector<LossTogether>{{1.0, 1.0}};
+  const auto joint = [](std::span<const std::vector<Model>>, std::span<const LevelErrors>, int) {
+    return std::vector<JointLoss>{{1.0, 1.0}};
   };
   Model model = random_model(1, static_cast<int>(count), 0);
   model.name = "model";
-  write_streamed_sog(model, {.leaf = 200, .levels = 3},
+  write_streamed_sog(model, {.chunk = 200, .levels = 3},
                      {[&](const std::string& name) { return std::filesystem::exists(path(name)); },
                       [&](const std::string& name) { return read_text(path(name)); },
                       [&](const std::string& name, std::span<const std::byte> bytes) {
                         std::filesystem::create_directories(std::filesystem::path(path(name)).parent_path());
                         write_text(path(name), std::string(as_text(bytes)));
                       }},
-                     {learn, together});
+                     {learn, joint});
 }
 
 }  // namespace binosplat::test

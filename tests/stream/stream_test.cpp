@@ -128,14 +128,14 @@ TEST(Stream, TellsLessOfAHeadThatMovesOn) {
 TEST(Stream, SharesAQuality) {
   const test::TempFolder folder;
   test::write_levels(folder, 3000);
-  Frames frames(folder.path(), {.shares = true});
+  Frames frames(folder.path(), {.shares_quality = true});
   const std::vector<shared::View> views = {before_all(40.0)};
   EXPECT_EQ(frames.rest(views), 3000u) << "nothing may be lost";
-  EXPECT_EQ(frames.stream.quality_left(0.0), 0.0);
+  EXPECT_EQ(frames.stream.frame_quality(0.0), 0.0);
   const std::size_t fewer = frames.rest(views, 20.0f);
   EXPECT_LT(fewer, 3000u);
-  EXPECT_NEAR(psnr_of_both(frames.stream.quality_left(20.0), levels_share(20.0)), 20.0, 1e-6);
-  EXPECT_GE(*frames.stream.reported_db(), levels_share(20.0) - 0.5);
+  EXPECT_NEAR(psnr_of_both(frames.stream.frame_quality(20.0), levels_target_db(20.0)), 20.0, 1e-6);
+  EXPECT_GE(*frames.stream.reported_db(), levels_target_db(20.0) - 0.5);
   EXPECT_GT(frames.rest(views, 60.0f), fewer) << "planted: as before";
 }
 
@@ -148,20 +148,20 @@ TEST(Stream, DrawsAllOfFewGaussians) {
     const std::size_t gaussians = frames.rest({before_all()}, quality);
     const bool by_db = frames.stream.reported_db().has_value();
     EXPECT_EQ(gaussians == 3000u, !by_db);
-    EXPECT_EQ(frames.stream.quality_left(quality) == quality, !by_db || quality == 0.0f);
+    EXPECT_EQ(frames.stream.frame_quality(quality) == quality, !by_db || quality == 0.0f);
     return by_db;
   };
-  EXPECT_FALSE(reports({.detail = {.db = 40.0}, .all_up_to = 3000}, 0.0f));
-  EXPECT_FALSE(reports({.shares = true, .all_up_to = 3000}, 40.0f));
-  EXPECT_TRUE(reports({.detail = {.db = 40.0}, .all_up_to = 2999}, 0.0f)) << "planted: too many";
-  EXPECT_TRUE(reports({.detail = {.most = 2999, .db = 40.0}, .all_up_to = 3000}, 0.0f)) << "no room";
+  EXPECT_FALSE(reports({.detail = {.db = 40.0}, .finest_up_to = 3000}, 0.0f));
+  EXPECT_FALSE(reports({.shares_quality = true, .finest_up_to = 3000}, 40.0f));
+  EXPECT_TRUE(reports({.detail = {.db = 40.0}, .finest_up_to = 2999}, 0.0f)) << "planted: too many";
+  EXPECT_TRUE(reports({.detail = {.most = 2999, .db = 40.0}, .finest_up_to = 3000}, 0.0f)) << "no room";
 }
 
 // A window that grows leaves less room.
 TEST(Stream, KeepsToTheRoomThatViewsLeave) {
   const test::TempFolder folder;
   test::write_levels(folder, 3000);
-  const std::size_t spare = LodFiles(folder.path()).spare();
+  const std::size_t spare = LodFiles(folder.path()).extra_room();
   const auto room = [&](std::span<const shared::View> views, int) {
     return spare + (views.empty() ? 3000u : 2000u);
   };

@@ -96,7 +96,7 @@ TEST(Visibility, TellsWhatIsHiddenFromWhatIsBeside) {
   EXPECT_LT(chunks[0].area, 1e-3);
   EXPECT_NEAR(chunks[0].distance, 3.0, 0.2);
   EXPECT_EQ(chunks[4].area, 0.0);
-  const test::FaultyShaders faulty("parts_seen.comp", "max(area.x, hidden)", "area.x");
+  const test::FaultyShaders faulty("chunk_visibility.comp", "max(area.x, hidden)", "area.x");
   EXPECT_EQ(chunked.measure({small_view()}).at(0)[0].area, 0.0);
 }
 
@@ -122,7 +122,7 @@ TEST(Visibility, IsWhatTheReferenceSees) {
   const shared::View view = small_view();
   const auto splats = reference::project_all(model, view);
   const auto lists = reference::make_lists(splats, reference::depth_order(splats), view, TILES_ELLIPSE);
-  const std::vector<double> expected = reference::measure_seen(splats, lists, view);
+  const std::vector<double> expected = reference::measure_visibility(splats, lists, view);
   const auto differing = [&](std::uint32_t page) {
     const Chunked chunked(model, each(model.count()), page);
     const auto found = chunked.measure({view}).at(0);
@@ -220,7 +220,8 @@ TEST(Visibility, ForgetsWhatItSaw) {
     return all_same;
   };
   EXPECT_TRUE(same());
-  const test::FaultyShaders faulty("parts_seen.comp", "if (sum != uvec2(0)) sums[from] = uvec2(0);", "");
+  const test::FaultyShaders faulty("chunk_visibility.comp", "if (sum != uvec2(0)) sums[from] = uvec2(0);",
+                                   "");
   EXPECT_FALSE(same());
 }
 

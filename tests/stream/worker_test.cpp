@@ -26,20 +26,20 @@ using test::view_at;
 StreamWorker::Request request_from(const glm::dvec3& eye) { return {{view_at(eye)}, {30.0}, {}}; }
 
 /// Takes all that comes; in its order.
-std::vector<LodFiles::Piece> all_of(StreamWorker& worker) {
-  std::vector<LodFiles::Piece> all;
+std::vector<LodFiles::LoadedChunk> all_of(StreamWorker& worker) {
+  std::vector<LodFiles::LoadedChunk> all;
   const auto start = std::chrono::steady_clock::now();
   while (!worker.is_idle() && !testing::Test::HasFailure()) {
     worker.check();
-    for (LodFiles::Piece& piece : worker.take(1)) all.push_back(std::move(piece));
+    for (LodFiles::LoadedChunk& loaded : worker.take(1)) all.push_back(std::move(loaded));
     if (std::chrono::steady_clock::now() - start > std::chrono::seconds(60)) ADD_FAILURE() << "it hangs";
     std::this_thread::yield();
   }
   return all;
 }
 
-void note_levels(const std::vector<LodFiles::Piece>& pieces, Levels& levels) {
-  for (const LodFiles::Piece& piece : pieces) levels[piece.chunk] = piece.level;
+void note_levels(const std::vector<LodFiles::LoadedChunk>& loaded_chunks, Levels& levels) {
+  for (const LodFiles::LoadedChunk& loaded : loaded_chunks) levels[loaded.chunk] = loaded.level;
 }
 
 TEST(StreamWorker, ReadsWhatSwitchesAndWhatShrinksFirst) {
@@ -98,10 +98,10 @@ TEST(StreamWorker, ALevelWithoutGaussiansIsALevel) {
   const LodFiles files(copy.path());
   StreamWorker worker(files, {1, 1, 0});
   worker.request(request_from(far_away));
-  const auto pieces = all_of(worker);
-  ASSERT_EQ(pieces.size(), 1u);
-  EXPECT_EQ(pieces[0].level, 1u);
-  EXPECT_EQ(pieces[0].model.count(), 0u);
+  const auto loaded_chunks = all_of(worker);
+  ASSERT_EQ(loaded_chunks.size(), 1u);
+  EXPECT_EQ(loaded_chunks[0].level, 1u);
+  EXPECT_EQ(loaded_chunks[0].model.count(), 0u);
 }
 
 TEST(StreamWorker, ReportsWhatViewsLose) {
@@ -117,7 +117,7 @@ TEST(StreamWorker, ReportsWhatViewsLose) {
   view.width = view.height = 100;
   EXPECT_FALSE(worker.chosen().error);
   const VisibleChunks visible{{std::vector<ChunkVisibility>(chunks, {50.0, 30.0})}, Levels(chunks, 2)};
-  worker.request({{view}, {.db = 100.0, .most_new = 400}, visible});
+  worker.request({{view}, {.db = 100.0, .read_most = 400}, visible});
   Levels levels(chunks, 2);
   note_levels(all_of(worker), levels);
   ASSERT_TRUE(worker.chosen().error);

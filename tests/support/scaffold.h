@@ -72,7 +72,7 @@ inline Scaffold random_scaffold(std::uint32_t seed, const ScaffoldKind& kind = {
 
 /// The same as a model.
 inline Model scaffold_model(std::uint32_t seed, const ScaffoldKind& kind = {}) {
-  return stand_in(std::make_shared<Scaffold>(random_scaffold(seed, kind)));
+  return placeholder_model(std::make_shared<Scaffold>(random_scaffold(seed, kind)));
 }
 
 }  // namespace binosplat::test

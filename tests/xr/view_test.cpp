@@ -449,7 +449,7 @@ TEST_F(XrView, LeavesOutWhatNoLensShows) {
 
 TEST_F(XrView, LevelsOfDetailComeWhileOneLooks) {
   const std::string levels = (folder / "levels").string();
-  ASSERT_EQ(run_program({"levels", file, "-o", levels, "--leaf", "64", "--levels", "3"}).code, 0);
+  ASSERT_EQ(run_program({"levels", file, "-o", levels, "--chunk", "64", "--levels", "3"}).code, 0);
   stage.script = {{"frames", 60}, {"sleep", true}, {"pixels", {59}}};
   plain_words[1] = levels;
   std::vector<Strings> options = {{"--quality", "45"}};

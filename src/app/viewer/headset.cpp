@@ -197,31 +197,31 @@ void view_in_headset(const RenderOptions& o, const preview::Opened& scene, previ
   tell_first_signal();
   HeadsetRecording recording(context, scene, instance.headset);
   if (o.headset.record_s) recording.begin(*o.headset.record_s);
-  xr::Beside beside;
-  beside.step = [&] {
+  xr::Callbacks callbacks;
+  callbacks.step = [&] {
     if (mirror && mirror->take_record_key()) recording.begin(seconds_by_key);
     return (!mirror || mirror->step()) && signalled == 0;
   };
-  beside.drawn = [&](xr::Drawn frame) {
+  callbacks.drawn = [&](xr::Drawn frame) {
     const double period_ms = frame.period_ms;
     const std::size_t uploaded = levels ? levels->take_times().put : 0;
     recording.add(record_of(std::move(frame), gaussians(), uploaded), period_ms);
   };
-  if (mirror) beside.show = [&](const Target& left, const glm::ivec2& size) { mirror->show(left, size); };
+  if (mirror) callbacks.show = [&](const Target& left, const glm::ivec2& size) { mirror->show(left, size); };
   std::optional<SplatStream> stream;
   if (levels) {
     stream.emplace(levels);
-    beside.levels = [&](std::span<const View> views, const Placement& placement, Settings& drawing,
-                        double period_ms, double drawn_ms) {
+    callbacks.levels = [&](std::span<const View> views, const Placement& placement, Settings& drawing,
+                           double period_ms, double drawn_ms) {
       Settings asked = drawing;  // a frame budget does not change the levels' quality
       asked.quality = settings.drawing.quality;
       stream->begin_frame(views, placement, asked, time_for_levels(period_ms, drawn_ms));
-      if (asked.quality) drawing.quality = static_cast<float>(levels->quality_left(*asked.quality));
+      if (asked.quality) drawing.quality = static_cast<float>(levels->frame_quality(*asked.quality));
     };
   }
   Renderer renderer = stream ? Renderer(xr::get_proc_address(), *stream, precision)
                              : Renderer(xr::get_proc_address(), SplatModel(model), precision);
-  xr::run(instance, renderer, settings, beside);
+  xr::run(instance, renderer, settings, callbacks);
 }
 
 }  // namespace binosplat::app

@@ -10,7 +10,7 @@
 #include "app/calibrated.h"
 #include "app/command.h"
 #include "app/command_line.h"
-#include "app/followed.h"
+#include "app/level_options.h"
 #include "app/load_scene.h"
 #include "app/outputs.h"
 #include "app/profile.h"
@@ -88,9 +88,9 @@ preview::Opened open(const RenderOptions& o) {
     policy.check_perspective(settings, model);
     policy.check_model(model);
     choices.policy = policy;
-    const CameraList all = list.listed ? list : made_up_cameras(o.scene, o.camera, list.known, model);
+    const CameraList all = list.listed ? list : made_up_cameras(o.scene, o.camera, list.hints, model);
     const stereo::RigSettings found =
-        rig_settings(o.rig, list.known, near_plane_of(o.camera, pose ? *pose : all));
+        rig_settings(o.rig, list.hints, near_plane_of(o.camera, pose ? *pose : all));
     choices.rig.ipd = found.ipd;
     choices.rig.units_per_metre = found.units_per_metre;
     choices.rig.near_plane = found.near_plane;
@@ -103,7 +103,7 @@ preview::Opened open(const RenderOptions& o) {
       std::rotate(cameras.begin(), at, cameras.end());
     }
     if (pose) cameras.insert(cameras.begin(), pose->cameras[0]);
-    return preview::Start{std::move(cameras), all.known.up.value_or(default_up), list.listed};
+    return preview::Start{std::move(cameras), all.hints.up.value_or(default_up), list.listed};
   };
   return opened;
 }
@@ -166,7 +166,7 @@ int run(int argc, char** argv) {
     log_line(explain(program, "binosplat view", error));
     return static_cast<int>(ExitCode::bad_input);
   } catch (...) {
-    return end_by_what_was_thrown();
+    return exit_code_of_current_exception();
   }
 }
 
@@ -176,7 +176,7 @@ int run(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   std::signal(SIGXFSZ, SIG_IGN);
-  binosplat::app::settle_shader_caches();
+  binosplat::app::prepare_shader_caches();
   binosplat::end_cleanly_without_memory();
   binosplat::end_cleanly_on_cut_files();
   return binosplat::app::run(argc, argv);

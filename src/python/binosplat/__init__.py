@@ -14,7 +14,7 @@ Error are OpenGLError and OutOfMemory. Arguments of a wrong type raise TypeError
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from importlib import import_module
 from pathlib import Path
@@ -519,12 +519,16 @@ class Rig(_View[tuple[Picture, Picture]]):
         return _binosplat.eyes(self)
 
 
+_Instance = tuple[Model, ArrayLike] | tuple[Model, ArrayLike, float]
+
+
 class Renderer:
-    """A model on a GPU, or in Mesa's software renderer.
+    """A model on a GPU, or in Mesa's software renderer, or several, each at its place.
 
     Parameters
     ----------
     model
+        A Model, or a list of instances as place() takes it. The first model sets order and projection.
     backend
         'auto' (a GPU, else Mesa), 'device', 'surfaceless' or 'osmesa'.
     device
@@ -538,11 +542,35 @@ class Renderer:
         Renderer, backend and OpenGL version, in words.
     """
 
-    def __init__(self, model: Model, *, backend: Literal["auto", "device", "surfaceless", "osmesa"] = "auto",
+    def __init__(self, model: Model | Sequence[_Instance], *,
+                 backend: Literal["auto", "device", "surfaceless", "osmesa"] = "auto",
                  device: int | None = None, precision: Literal["full", "half"] = "full") -> None:
-        _expect(model, Model, "a Model")
-        self._renderer = _binosplat.Renderer(model._model, backend, device, precision)
+        instances = list(model) if isinstance(model, (list, tuple)) else None
+        first = model if instances is None else instances[0][0] if instances else None
+        _expect(first, Model, "a Model, or a list of (Model, matrix)")
+        self._renderer = _binosplat.Renderer(first._model, backend, device, precision)
         self.device: str = self._renderer.device
+        if instances is not None:
+            self.place(instances)
+
+    def place(self, instances: Iterable[_Instance]) -> None:
+        """Sets the models that later pictures show, and their places. Each model is uploaded once.
+
+        Parameters
+        ----------
+        instances
+            (model, matrix) or (model, matrix, opacity) for each. The (4, 4) matrix brings the model into the
+            cameras' world: a rotation, a uniform scale and a translation, as in ``world = matrix @ (x, y, z, 1)``.
+            The opacity, 0 to 1, is a factor of each Gaussian's. A model may occur several times.
+        """
+        parts = []
+        for model, matrix, *opacity in instances:
+            _expect(model, Model, "a Model")
+            numbers = np.asarray(matrix, dtype=np.float64)
+            if numbers.shape != (4, 4):
+                raise InputError(f"instances[{len(parts)}]: expected a matrix of (4, 4), not {numbers.shape}")
+            parts.append((model._model, numbers.ravel().tolist(), *(opacity or (1.0,))))
+        self._renderer.place(parts)
 
     def draw(self, view: _View[_Drawn], *, quality: float | None = None, tolerance: float | None = None,
              th: _Th | None = None, transmittance: _Transmittance = "one", order: _Order | None = None,

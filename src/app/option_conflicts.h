@@ -7,6 +7,6 @@ namespace binosplat::app {
 
 /// Throws Error, with the reason, for options that conflict or need others. Checks of values are with each
 /// part of the options.
-void check_together(const CLI::App& sub);
+void check_conflicts(const CLI::App& sub);
 
 }  // namespace binosplat::app

@@ -1,4 +1,4 @@
-#include "app/followed.h"
+#include "app/level_options.h"
 
 #include <algorithm>
 #include <bit>
@@ -43,8 +43,8 @@ std::vector<shared::View> usual_views(const Lens& lens = {}, std::size_t count =
 /// few_gaussians; and the budget of --gpu-memory.
 StreamSettings stream_settings(const SceneOptions& options, const render::FrameSettings& settings) {
   StreamSettings result{.detail = options.detail.value_or(DetailRequest{}),
-                        .shares = !options.detail,
-                        .all_up_to = few_gaussians};
+                        .shares_quality = !options.detail,
+                        .finest_up_to = few_gaussians};
   if (options.gpu_memory) {
     result.room = [megabytes = *options.gpu_memory, settings](std::span<const shared::View> views,
                                                               int degree) {
@@ -76,7 +76,7 @@ DetailBudget detail_budget(const RenderOptions& options, const CameraList& list)
   std::vector<Shot> shots;
   if (const CameraOptions& camera = options.camera; list.listed || camera.eye) {
     shots = make_shots(camera.views, camera.lens, options.rig,
-                       list.listed ? list : eye_camera(camera, list.known),
+                       list.listed ? list : eye_camera(camera, list.hints),
                        camera.near_plane.value_or(near_default), axes);
   }
   DetailBudget budget;
@@ -106,7 +106,7 @@ std::unique_ptr<Stream> open_for_frames(const SceneOptions& options, const rende
   StreamSettings of_stream = stream_settings(options, settings);
   of_stream.reserve = std::size_t{1} << 22;  // 0.4 GB, or 1 with all their harmonics
   auto stream = std::make_unique<Stream>(options.name, std::move(of_stream));
-  set_as_asked(options, stream->model());
+  apply_options(options, stream->model());
   return stream;
 }
 
@@ -114,9 +114,9 @@ std::unique_ptr<PictureStream> open_for_shots(const SceneOptions& options,
                                               const render::FrameSettings& settings, bool heads_turn) {
   StreamSettings of_shots = stream_settings(options, settings);
   of_shots.detail.heads_turn = heads_turn;
-  if (options.detail || options.gpu_memory) of_shots.all_up_to = 0;
+  if (options.detail || options.gpu_memory) of_shots.finest_up_to = 0;
   auto stream = std::make_unique<PictureStream>(options.name, std::move(of_shots));
-  set_as_asked(options, stream->model());
+  apply_options(options, stream->model());
   return stream;
 }
 

@@ -1,4 +1,4 @@
-#include "app/together.h"
+#include "app/option_conflicts.h"
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
@@ -56,7 +56,7 @@ const struct {
 
 }  // namespace
 
-void check_together(const CLI::App& sub) {
+void check_conflicts(const CLI::App& sub) {
   const auto is_given = [&](const char* name) {
     const CLI::Option* const option = sub.get_option_no_throw(name);
     return option != nullptr && option->count() > 0;

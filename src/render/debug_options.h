@@ -27,7 +27,7 @@ struct StandIn {
   std::function<std::vector<Picture>(const Model&, const FramePlan&, ModelBuffers&, FrameBuffers&)> fill;
 };
 
-struct Workings {
+struct DebugOptions {
   /// Initial room in Gaussians in view and in pairs; 0: the frame chooses. A frame that needs more grows its
   /// buffers and is drawn again.
   std::int64_t slots = 0;
@@ -40,12 +40,12 @@ struct Workings {
   bool visibility_as_depth = false;
   /// Appends a stage, such as compositing. Called after the last stage, before the frame waits for the GPU;
   /// called again if the frame is drawn again.
-  std::function<void(gl::Dispatcher&)> then;
-  const char* then_called = "then";  // that stage's name
+  std::function<void(gl::Dispatcher&)> extra_stage;
+  const char* extra_stage_name = "extra";  // that stage's name
 };
 
 /// Throws Error for illegal values, and for a stand-in in a frame that would use earlier measurements.
 /// `prefix` as in settings.h.
-void check(const Workings& workings, const FrameSettings& settings, std::string_view prefix = "");
+void check(const DebugOptions& debug, const FrameSettings& settings, std::string_view prefix = "");
 
 }  // namespace binosplat::render

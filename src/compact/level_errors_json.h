@@ -1,5 +1,5 @@
 #pragma once
-// JSON of the errors of chunks, as in errors_N.json and together_N.json.
+// JSON of the errors of chunks, as in errors_N.json and joint_N.json.
 
 #include <nlohmann/json.hpp>
 #include <string>
@@ -18,14 +18,14 @@ nlohmann::ordered_json json_of(const std::vector<Item>& list, double factor = 1.
   return json;
 }
 
-/// The JSON of a piece's chunks.
-nlohmann::ordered_json json_of(const std::vector<LeafErrors>& leaves);
-/// Parses it, for `leaves` chunks with `levels` levels. Throws Error naming the file if it has other numbers.
-std::vector<LeafErrors> leaf_errors(const std::string& name, const std::string& text, std::size_t leaves,
-                                    std::size_t levels);
+/// The JSON of a batch's chunks.
+nlohmann::ordered_json json_of(const std::vector<LevelErrors>& chunks);
+/// Parses it, for `chunks` chunks with `levels` levels. Throws Error naming the file if it has other numbers.
+std::vector<LevelErrors> parse_level_errors(const std::string& name, const std::string& text,
+                                            std::size_t chunks, std::size_t levels);
 
 /// The JSON of a scene's pictures.
-nlohmann::ordered_json json_of(const std::vector<LossTogether>& pictures);
+nlohmann::ordered_json json_of(const std::vector<JointLoss>& pictures);
 /// Returns measured over predicted error for each picture, except those that were not drawn or have a
 /// predicted error of 0.
 std::vector<double> loss_shares(const std::string& name, const std::string& text);

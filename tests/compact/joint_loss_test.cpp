@@ -1,5 +1,5 @@
 // What levels lose in pictures of many parts.
-#include "compact/loss_together.h"
+#include "compact/joint_loss.h"
 
 #include <gtest/gtest.h>
 
@@ -13,11 +13,11 @@
 namespace binosplat::compact {
 namespace {
 
-/// Leaves all around, which hide what is behind them; a level has every other Gaussian of the one before.
-std::vector<std::vector<Model>> leaves_around(int count) {
-  std::vector<std::vector<Model>> leaves;
+/// Chunks all around, which hide what is behind them; a level has every other Gaussian of the one before.
+std::vector<std::vector<Model>> chunks_around(int count) {
+  std::vector<std::vector<Model>> chunks;
   for (int k = 0; k < count; ++k) {
-    std::vector<Model>& levels = leaves.emplace_back();
+    std::vector<Model>& levels = chunks.emplace_back();
     levels.push_back(test::random_model(static_cast<unsigned>(k) + 1, 64, 1));
     const double height = 2.0 * (k + 0.5) / count - 1.0, turn = 2.4 * k,
                  away = std::sqrt(1.0 - height * height);
@@ -31,15 +31,15 @@ std::vector<std::vector<Model>> leaves_around(int count) {
       levels.push_back(with_order(levels.back(), others));
     }
   }
-  return leaves;
+  return chunks;
 }
 
-TEST(LossTogether, GoesWithTheErrorsThatAreReportedAndWithWhatIsDrawn) {
-  const std::vector<std::vector<Model>> leaves = leaves_around(24);
-  std::vector<LeafErrors> errors = level_errors(test::gl_context(), leaves);
-  const auto losses = loss_together(test::gl_context(), leaves, errors, 2);
+TEST(JointLoss, GoesWithTheErrorsThatAreReportedAndWithWhatIsDrawn) {
+  const std::vector<std::vector<Model>> chunks = chunks_around(24);
+  std::vector<LevelErrors> errors = level_errors(test::gl_context(), chunks);
+  const auto losses = joint_losses(test::gl_context(), chunks, errors, 2);
   ASSERT_EQ(losses.size(), 2u);
-  const auto again = loss_together(test::gl_context(), leaves, errors, 1);
+  const auto again = joint_losses(test::gl_context(), chunks, errors, 1);
   EXPECT_EQ(again.at(0).predicted, losses[0].predicted);
   EXPECT_EQ(again[0].measured, losses[0].measured);
   for (std::size_t k = 0; k < 2; ++k) {
@@ -49,23 +49,23 @@ TEST(LossTogether, GoesWithTheErrorsThatAreReportedAndWithWhatIsDrawn) {
   }
 
   // Planted: a hundredth of what levels lose. Pictures that are taken to have 40 dB lose far more.
-  for (LeafErrors& leaf : errors)
-    for (auto& of_level : leaf.of_level)
+  for (LevelErrors& chunk : errors)
+    for (auto& of_level : chunk.of_level)
       for (auto& of_direction : of_level)
         for (double& error : of_direction) error *= 0.01;
-  const auto wrong = loss_together(test::gl_context(), leaves, errors, 2);
+  const auto wrong = joint_losses(test::gl_context(), chunks, errors, 2);
   ASSERT_EQ(wrong.size(), 2u);
   for (std::size_t k = 0; k < 2; ++k)
     EXPECT_GT(wrong[k].measured / wrong[k].predicted, 4.0 * losses[k].measured / losses[k].predicted);
 }
 
-TEST(LossTogether, IsNothingWhereLevelsAreTheSame) {
-  std::vector<std::vector<Model>> leaves = leaves_around(9);
-  for (std::vector<Model>& levels : leaves) levels.assign(levels.size(), levels[0]);
-  const auto errors = level_errors(test::gl_context(), leaves);
-  const auto losses = loss_together(test::gl_context(), leaves, errors, 2);
+TEST(JointLoss, IsNothingWhereLevelsAreTheSame) {
+  std::vector<std::vector<Model>> chunks = chunks_around(9);
+  for (std::vector<Model>& levels : chunks) levels.assign(levels.size(), levels[0]);
+  const auto errors = level_errors(test::gl_context(), chunks);
+  const auto losses = joint_losses(test::gl_context(), chunks, errors, 2);
   ASSERT_FALSE(losses.empty());
-  for (const LossTogether& loss : losses) {
+  for (const JointLoss& loss : losses) {
     EXPECT_EQ(loss.predicted, 0.0);
     EXPECT_EQ(loss.measured, 0.0);
   }

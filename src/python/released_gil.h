@@ -13,12 +13,12 @@ namespace binosplat::python {
 /// must own all that it uses: Python's shutdown frees objects of daemon threads. If Python has ended
 /// meanwhile, the thread sleeps until the process ends. Otherwise Python would end it by an exception that no
 /// destructor can pass.
-class Unlocked {
+class ReleasedGil {
  public:
-  Unlocked();
-  ~Unlocked();
-  Unlocked(const Unlocked&) = delete;
-  Unlocked& operator=(const Unlocked&) = delete;
+  ReleasedGil();
+  ~ReleasedGil();
+  ReleasedGil(const ReleasedGil&) = delete;
+  ReleasedGil& operator=(const ReleasedGil&) = delete;
 
   /// Call it once, when the module is created: from then on the process waits for such threads before it
   /// ends. Otherwise drivers and libraries that have shut down crash threads that still use them.
@@ -32,13 +32,13 @@ class Unlocked {
   PyThreadState* state_;
 };
 
-/// Work without Python. While one exists, the process does not end, as with Unlocked.
-class Outlived {
+/// Work without Python. While one exists, the process does not end, as with ReleasedGil.
+class ProcessKeepAlive {
  public:
-  Outlived();
-  ~Outlived();
-  Outlived(const Outlived&) = delete;
-  Outlived& operator=(const Outlived&) = delete;
+  ProcessKeepAlive();
+  ~ProcessKeepAlive();
+  ProcessKeepAlive(const ProcessKeepAlive&) = delete;
+  ProcessKeepAlive& operator=(const ProcessKeepAlive&) = delete;
 };
 
 /// Waits for a result without Python's lock. On Python's main thread, Ctrl-C ends the wait by
@@ -48,7 +48,7 @@ Result awaited(std::future<Result> result) {
   constexpr std::chrono::milliseconds between_looks(50);
   while (true) {
     {
-      const Unlocked unlocked;
+      const ReleasedGil released;
       if (result.wait_for(between_looks) == std::future_status::ready) break;
     }
     if (PyErr_CheckSignals() != 0) throw pybind11::error_already_set();

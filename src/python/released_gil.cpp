@@ -1,4 +1,4 @@
-#include "python/unlocked.h"
+#include "python/released_gil.h"
 
 #include <pthread.h>
 #include <unistd.h>
@@ -34,9 +34,9 @@ void wait_for_all() {
 
 }  // namespace
 
-Unlocked::Unlocked() : state_(PyEval_SaveThread()) { ++alive; }
+ReleasedGil::ReleasedGil() : state_(PyEval_SaveThread()) { ++alive; }
 
-Unlocked::~Unlocked() {
+ReleasedGil::~ReleasedGil() {
   // After its end, Python would let the thread continue.
   if (python_is_gone) sleep_to_the_end();
   try {
@@ -47,7 +47,7 @@ Unlocked::~Unlocked() {
   leave();
 }
 
-void Unlocked::outlive_all() {
+void ReleasedGil::outlive_all() {
   Py_AtExit(wait_for_all);
   namespace py = pybind11;
   // Python stores the exception that ended it in sys.last_type.
@@ -59,9 +59,9 @@ void Unlocked::outlive_all() {
   pthread_atfork(nullptr, nullptr, [] { alive = 0; });
 }
 
-bool Unlocked::ends_by_interrupt() { return is_interrupted; }
+bool ReleasedGil::ends_by_interrupt() { return is_interrupted; }
 
-Outlived::Outlived() { ++alive; }
-Outlived::~Outlived() { leave(); }
+ProcessKeepAlive::ProcessKeepAlive() { ++alive; }
+ProcessKeepAlive::~ProcessKeepAlive() { leave(); }
 
 }  // namespace binosplat::python

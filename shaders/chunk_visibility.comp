@@ -15,8 +15,8 @@ layout(std430, binding = 2) readonly buffer Arguments { DispatchArguments argume
 layout(std430, binding = 3) readonly buffer Indices { uint indices[]; };    // Gaussian of each slot
 layout(std430, binding = 4) buffer Sums { uvec2 sums[]; };              // by splat: VISIBILITY_LOW_BITS, the bits above
 layout(std430, binding = 5) readonly buffer Owners { uint owners[]; };      // chunk by block of Gaussians
-layout(std430, binding = 6) buffer OfParts { uint of_parts[]; };            // (view, chunk), two of 64 bits
-uniform uint part_count;
+layout(std430, binding = 6) buffer ChunkSums { uint chunk_sums[]; };        // (view, chunk), two of 64 bits
+uniform uint chunk_count;
 uniform uint block_size;  // Gaussians
 uniform uint view_begin;
 uniform uint view_end;
@@ -25,9 +25,9 @@ uniform uint view_end;
 const uint hidden = uint(VISIBILITY_SCALE) / 65536u;
 
 void add(uint at, uvec2 number) {
-  uint before = atomicAdd(of_parts[at], number.x);
+  uint before = atomicAdd(chunk_sums[at], number.x);
   uint high = number.y + (before + number.x < before ? 1u : 0u);
-  if (high != 0u) atomicAdd(of_parts[at + 1u], high);
+  if (high != 0u) atomicAdd(chunk_sums[at + 1u], high);
 }
 
 void main() {
@@ -35,7 +35,7 @@ void main() {
   if (slot >= arguments[0].count) return;
   uint i = indices[slot] - page_first;
   if (i >= page_count) return;
-  uint part = owners[indices[slot] / block_size];
+  uint chunk = owners[indices[slot] / block_size];
   for (uint v = view_begin; v < view_end; ++v) {
     uint from = splat_of(slot, v);
     uvec2 sum = sums[from];
@@ -43,7 +43,7 @@ void main() {
     uint low = sum.x + (sum.y << VISIBILITY_LOW_BITS);
     uvec2 area = uvec2(low, (sum.y >> (32 - VISIBILITY_LOW_BITS)) + (low < sum.x ? 1u : 0u));
     if (area.y == 0u) area.x = max(area.x, hidden);
-    uint at = 4u * (v * part_count + part);
+    uint at = 4u * (v * chunk_count + chunk);
     add(at, area);
     float away = distance(GAUSSIAN(i).position.xyz, views[v].anchor.xyz + views[v].eye.xyz);
     float weighted = (float(area.x) + 4294967296.0 * float(area.y)) * clamp(log2(away) + 32.0, 0.0, 64.0);

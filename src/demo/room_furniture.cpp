@@ -302,7 +302,7 @@ Texture wooden(const dvec3& colour, double seed, double gloss) {
   };
 }
 
-void add_things(Stage& stage) {
+void add_furniture(Stage& stage) {
   add_bookshelf(stage);
   add_fairy_lights(stage);
   add_table(stage);

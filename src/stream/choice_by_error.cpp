@@ -22,14 +22,14 @@ namespace {
 /// A rest below 1 / `little` of the allowed Gaussians is not worth a search for a step that fits.
 constexpr std::size_t little = 1024;
 
-/// The implementation of choose_within().
+/// The implementation of choose_by_error().
 class ErrorChooser {
  public:
   ErrorChooser(const std::vector<LodChunk>& chunks, const std::vector<DetailView>& views,
                const ErrorBudget& budget, const VisibleChunks& visible, std::span<const std::size_t> before)
       : chunks_(chunks),
         drawn_(visible.drawn),
-        most_new_(budget.most_new),
+        read_most_(budget.read_most),
         most_(budget.most),
         before_(before),
         chosen_(chunks.size(), 0),
@@ -139,7 +139,7 @@ class ErrorChooser {
       finest_[c] = next_needed(c, level);
     } else if (!may_be_read(c, level)) {
       is_limited_ = true;
-      finest_[c] = new_ < most_new_ - most_new_ / little ? level + 1 : std::min(drawn_[c], chosen_[c]);
+      finest_[c] = new_ < read_most_ - read_most_ / little ? level + 1 : std::min(drawn_[c], chosen_[c]);
     } else {
       take(c, level);
       return true;
@@ -153,7 +153,7 @@ class ErrorChooser {
   }
   bool may_be_read(std::size_t c, std::size_t level) const {
     const std::size_t more = new_for(c, level), others = new_ - new_for(c, chosen_[c]);
-    return more == 0 || others == 0 || (others <= most_new_ && more <= most_new_ - others);
+    return more == 0 || others == 0 || (others <= read_most_ && more <= read_most_ - others);
   }
 
   /// Returns whether any view loses more than `times` its budget.
@@ -206,7 +206,7 @@ class ErrorChooser {
 
   const std::vector<LodChunk>& chunks_;
   std::span<const std::size_t> drawn_;
-  std::size_t most_new_, most_;
+  std::size_t read_most_, most_;
   std::span<const std::size_t> before_;
   double sphere_pixels_ = 0.0;
   std::vector<double> allowed_, lost_;        // squared error, by view, the sphere last
@@ -219,9 +219,9 @@ class ErrorChooser {
 
 }  // namespace
 
-LevelChoice choose_within(const std::vector<LodChunk>& chunks, const std::vector<DetailView>& views,
-                          const ErrorBudget& budget, const VisibleChunks& visible,
-                          std::span<const std::size_t> before) {
+LevelChoice choose_by_error(const std::vector<LodChunk>& chunks, const std::vector<DetailView>& views,
+                            const ErrorBudget& budget, const VisibleChunks& visible,
+                            std::span<const std::size_t> before) {
   ErrorChooser chooser(chunks, views, budget, visible, before);
   LevelChoice choice{.levels = chooser.choose(), .is_limited = chooser.is_limited()};
   chooser.give_errors(choice);
@@ -232,7 +232,7 @@ LevelChoice choose_within(const std::vector<LodChunk>& chunks, const std::vector
 double LevelChoice::error_of_view(std::size_t view, std::span<const std::size_t> any_levels) const {
   double sum = 0.0;
   for (std::size_t c = 0; c + 1 < first.size(); ++c)
-    if (levels_of(c) > 0) sum += lost(view, c, any_levels[c]);
+    if (levels_of(c) > 0) sum += error_of_chunk(view, c, any_levels[c]);
   return sum;
 }
 
@@ -242,7 +242,7 @@ double LevelChoice::error_of(std::span<const std::size_t> any_levels) const {
   return most;
 }
 
-double LevelChoice::saved(std::size_t chunk, std::size_t from, std::size_t to) const {
+double LevelChoice::error_saved(std::size_t chunk, std::size_t from, std::size_t to) const {
   const std::size_t levels_of_chunk = levels_of(chunk);
   double most = 0.0;
   for (std::size_t v = 0; v <= pixels.size(); ++v) {
@@ -262,7 +262,7 @@ void RunningError::follow(std::span<const std::size_t> levels) {
   for (std::size_t c = 0; c < levels_.size(); ++c) {
     if (levels_[c] == levels[c]) continue;
     for (std::size_t v = 0; v < lost_.size(); ++v)
-      lost_[v] += choice_->lost(v, c, levels[c]) - choice_->lost(v, c, levels_[c]);
+      lost_[v] += choice_->error_of_chunk(v, c, levels[c]) - choice_->error_of_chunk(v, c, levels_[c]);
     levels_[c] = levels[c];
   }
 }

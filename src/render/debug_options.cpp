@@ -1,4 +1,4 @@
-#include "render/workings.h"
+#include "render/debug_options.h"
 
 #include <algorithm>
 
@@ -6,15 +6,15 @@
 
 namespace binosplat::render {
 
-void check(const Workings& workings, const FrameSettings& settings, std::string_view prefix) {
-  if (workings.stand_in && (settings.transmittance != TRANSMITTANCE_ONE || settings.quality > 0.0f)) {
+void check(const DebugOptions& debug, const FrameSettings& settings, std::string_view prefix) {
+  if (debug.stand_in && (settings.transmittance != TRANSMITTANCE_ONE || settings.quality > 0.0f)) {
     fail("{0}reference-until: the reference uses no earlier frame: leave out {0}transmittance and {0}quality",
          prefix);
   }
   const auto is_whole = [](const ViewRegion& region) { return region.is_whole(); };
-  if (workings.between_pixels && !std::ranges::all_of(settings.regions, is_whole))
+  if (debug.between_pixels && !std::ranges::all_of(settings.regions, is_whole))
     fail("rays between pixels: only of whole pictures");
-  if (workings.stand_in && !settings.regions.empty())
+  if (debug.stand_in && !settings.regions.empty())
     fail("{}reference-until: the reference draws all of every view", prefix);
 }
 

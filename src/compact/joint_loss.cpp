@@ -1,4 +1,4 @@
-#include "compact/loss_together.h"
+#include "compact/joint_loss.h"
 
 #include <cmath>
 #include <functional>
@@ -19,7 +19,7 @@ namespace binosplat::compact {
 
 namespace {
 
-constexpr double asked_db = 40.0;
+constexpr double requested_db = 40.0;
 constexpr int passes = 3;  // of visibility and choice: later choices hardly change
 // Pictures: a headset's field of view in few pixels, so that each shows many chunks.
 constexpr int side = 512;     // px
@@ -31,22 +31,22 @@ constexpr double as_far_least = 0.4;  // mean distance of its content over the t
 constexpr double hidden = 0.01;       // px of a visible chunk, of hundreds of thousands
 
 /// Returns the chunk as lod-meta.json will describe it.
-LodChunk part_of(std::span<const Model> levels, const LeafErrors& errors) {
-  LodChunk part;
-  const Box box = reach_of(levels.front());
-  part.low = box.low;
-  part.high = box.high;
+LodChunk lod_chunk(std::span<const Model> levels, const LevelErrors& errors) {
+  LodChunk chunk;
+  const Box box = bounds_of(levels.front());
+  chunk.low = box.low;
+  chunk.high = box.high;
   const auto flat = [](const std::vector<std::vector<double>>& by_direction) {
     std::vector<double> list;
     for (const auto& of : by_direction) list.insert(list.end(), of.begin(), of.end());
     return list;
   };
   for (std::size_t level = 0; level < levels.size(); ++level) {
-    part.levels.push_back({static_cast<int>(level), levels[level].count(), flat(errors.of_level[level])});
+    chunk.levels.push_back({static_cast<int>(level), levels[level].count(), flat(errors.of_level[level])});
   }
-  part.pixels = errors.pixels;
-  part.seen = flat(errors.seen);
-  return part;
+  chunk.pixels = errors.pixels;
+  chunk.seen = flat(errors.seen);
+  return chunk;
 }
 
 shared::View from(const glm::dvec3& eye, const glm::dvec3& at, int px) {
@@ -67,29 +67,33 @@ bool can_draw(const std::function<void()>& draw) {
 }
 
 /// The chunks as one model, at any levels.
-class Leaves {
+class JointModel {
  public:
-  Leaves(gl::Context& context, std::span<const std::vector<Model>> leaves, std::span<const LeafErrors> errors)
-      : leaves_(leaves), layout_(leaves.size()), model_(without_gaussians(leaves[0][0])) {
-    for (std::size_t i = 0; i < leaves.size(); ++i) parts_.push_back(part_of(leaves[i], errors[i]));
-    bring_to(coarsest());
+  JointModel(gl::Context& context, std::span<const std::vector<Model>> levels_of_chunks,
+             std::span<const LevelErrors> errors)
+      : levels_of_chunks_(levels_of_chunks),
+        layout_(levels_of_chunks.size()),
+        model_(without_gaussians(levels_of_chunks[0][0])) {
+    for (std::size_t i = 0; i < levels_of_chunks.size(); ++i)
+      chunks_.push_back(lod_chunk(levels_of_chunks[i], errors[i]));
+    set_levels(coarsest());
     gpu_model_ = std::make_shared<render::GpuModel>(context, model_);
     frame_.emplace(gpu_model_);
     visibility_.emplace(gpu_model_);
   }
 
   std::vector<std::size_t> coarsest() const {
-    return std::vector<std::size_t>(leaves_.size(), leaves_[0].size() - 1);
+    return std::vector<std::size_t>(levels_of_chunks_.size(), levels_of_chunks_[0].size() - 1);
   }
 
-  void bring_to(const std::vector<std::size_t>& levels) {
+  void set_levels(const std::vector<std::size_t>& levels) {
     put(levels);
     const ModelChunks::Changes changes = layout_.take_changes();
     if (gpu_model_) gpu_model_->reload(changes);
   }
 
   /// Resets the model after memory was short, when the GPU's contents are unknown.
-  void start_again() {
+  void reset() {
     put(coarsest());
     layout_.take_changes();
     gpu_model_->reload();
@@ -102,7 +106,7 @@ class Leaves {
     room = true;
     Random random(1);
     const auto any = [&] {
-      const Model& level = leaves_[random.bits() % leaves_.size()].back();
+      const Model& level = levels_of_chunks_[random.bits() % levels_of_chunks_.size()].back();
       return glm::dvec3(level.position[random.bits() % level.count()]);
     };
     for (int k = 0; k < candidates_for_one * pictures && std::ssize(views) < pictures;
@@ -113,7 +117,7 @@ class Leaves {
         one.eye = glm::mix(one.at, any(), random.uniform(0.3, 1.0));
       }
       std::erase_if(candidates, [](const Candidate& one) { return one.eye == one.at; });
-      for (const Candidate& one : those_that_show(candidates, room)) {
+      for (const Candidate& one : filled_views(candidates, room)) {
         if (std::ssize(views) < pictures) views.push_back(from(one.eye, one.at, side));
       }
     }
@@ -125,17 +129,17 @@ class Leaves {
 
   /// Sets the chunks' levels for a view, and returns the predicted loss.
   double settle(const shared::View& view) {
-    bring_to(coarsest());
+    set_levels(coarsest());
     LevelChoice choice;
-    shows_.assign(leaves_.size(), 0.0);
+    shows_.assign(levels_of_chunks_.size(), 0.0);
     for (int pass = 0; pass < passes; ++pass) {
       const VisibleChunks seen{visibility_->measure({&view, 1}, {}, layout_), levels_};
       for (std::size_t i = 0; i < shows_.size(); ++i)
         shows_[i] = std::max(shows_[i], seen.by_view[0][i].area);
-      choice = choose_within(parts_, detail_views({&view, 1}),
-                             {.error = error_of_psnr(asked_db), .heads_turn = false}, seen);
+      choice = choose_by_error(chunks_, detail_views({&view, 1}),
+                               {.error = error_of_psnr(requested_db), .heads_turn = false}, seen);
       if (choice.levels == levels_) break;
-      bring_to(choice.levels);
+      set_levels(choice.levels);
     }
     return choice.error();
   }
@@ -145,14 +149,15 @@ class Leaves {
     std::vector<std::size_t> levels = levels_;
     for (std::size_t i = 0; i < levels.size(); ++i)
       if (shows_[i] > hidden) levels[i] = 0;
-    bring_to(levels);
+    set_levels(levels);
   }
 
  private:
   void put(const std::vector<std::size_t>& levels) {
     std::vector<ModelChunks::Replacement> replacements;
-    for (std::size_t i = 0; i < leaves_.size(); ++i)
-      if (levels_.empty() || levels[i] != levels_[i]) replacements.push_back({i, &leaves_[i][levels[i]]});
+    for (std::size_t i = 0; i < levels_of_chunks_.size(); ++i)
+      if (levels_.empty() || levels[i] != levels_[i])
+        replacements.push_back({i, &levels_of_chunks_[i][levels[i]]});
     levels_ = levels;
     layout_.replace(model_, replacements);
   }
@@ -162,7 +167,7 @@ class Leaves {
   };
 
   /// Returns the candidates whose views are well filled, with nothing close in front of their target.
-  std::vector<Candidate> those_that_show(std::span<const Candidate> candidates, bool& room) {
+  std::vector<Candidate> filled_views(std::span<const Candidate> candidates, bool& room) {
     std::vector<shared::View> views;
     for (const Candidate& one : candidates) views.push_back(from(one.eye, one.at, candidate_side));
     std::vector<std::vector<ChunkVisibility>> seen;
@@ -174,10 +179,10 @@ class Leaves {
     std::vector<Candidate> found;
     for (std::size_t k = 0; k < candidates.size(); ++k) {
       double area = 0.0, logarithms = 0.0;
-      for (const ChunkVisibility& part : seen[k]) {
-        if (part.area == 0.0) continue;
-        area += part.area;
-        logarithms += part.area * std::log(part.distance);
+      for (const ChunkVisibility& chunk : seen[k]) {
+        if (chunk.area == 0.0) continue;
+        area += chunk.area;
+        logarithms += chunk.area * std::log(chunk.distance);
       }
       if (area > shows_least * candidate_side * candidate_side &&
           std::exp(logarithms / area) > as_far_least * glm::distance(candidates[k].eye, candidates[k].at))
@@ -186,8 +191,8 @@ class Leaves {
     return found;
   }
 
-  std::span<const std::vector<Model>> leaves_;
-  std::vector<LodChunk> parts_;
+  std::span<const std::vector<Model>> levels_of_chunks_;
+  std::vector<LodChunk> chunks_;
   ModelChunks layout_;
   std::vector<std::size_t> levels_;
   std::vector<double> shows_;  // visible area of each chunk in the settled view, px
@@ -199,25 +204,26 @@ class Leaves {
 
 }  // namespace
 
-std::vector<LossTogether> loss_together(gl::Context& context, std::span<const std::vector<Model>> of_leaves,
-                                        std::span<const LeafErrors> errors, int pictures) {
-  Leaves leaves(context, of_leaves, errors);
+std::vector<JointLoss> joint_losses(gl::Context& context,
+                                    std::span<const std::vector<Model>> levels_of_chunks,
+                                    std::span<const LevelErrors> errors, int pictures) {
+  JointModel joint(context, levels_of_chunks, errors);
   bool room = true;
-  const std::vector<shared::View> views = leaves.find_views(pictures, room);
-  std::vector<LossTogether> losses;
+  const std::vector<shared::View> views = joint.find_views(pictures, room);
+  std::vector<JointLoss> losses;
   for (const shared::View& view : views) {
-    LossTogether loss;
+    JointLoss loss;
     render::SquaredError error(context);
     const auto draw = [&] {
-      loss.predicted = leaves.settle(view);
-      leaves.draw(view);
-      error.add(leaves.colours(), side * side);
-      leaves.refine();
-      leaves.draw(view);
-      loss.measured = error.mean(leaves.colours());
+      loss.predicted = joint.settle(view);
+      joint.draw(view);
+      error.add(joint.colours(), side * side);
+      joint.refine();
+      joint.draw(view);
+      loss.measured = error.mean(joint.colours());
     };
     loss.drawn = can_draw(draw);
-    if (!loss.drawn) leaves.start_again();
+    if (!loss.drawn) joint.reset();
     losses.push_back(loss);
   }
   if (!room) losses.resize(static_cast<std::size_t>(pictures), {.drawn = false});

@@ -127,7 +127,7 @@ TEST(ChoiceWithin, KeepTheBoundWithHardlyMoreThanTheFewestGaussians) {
     const std::vector<LodChunk> chunks = row_with_errors(6, seed);
     const DetailView near = along_x(-1.0), far = along_x(-40.0);
     for (const double error : {1e-5, 1e-4, 3e-4, 1e-3}) {
-      const LevelChoice choice = choose_within(chunks, {near}, {error, any});
+      const LevelChoice choice = choose_by_error(chunks, {near}, {error, any});
       EXPECT_LE(loss(chunks, choice.levels, near), error);
       EXPECT_NEAR(choice.error(), loss(chunks, choice.levels, near), 1e-12);
       const Levels others(chunks.size(), 2);
@@ -135,7 +135,7 @@ TEST(ChoiceWithin, KeepTheBoundWithHardlyMoreThanTheFewestGaussians) {
       worst = std::max(worst, static_cast<double>(test::gaussians_of(chunks, choice.levels)) /
                                   static_cast<double>(fewest(chunks, near, error)));
       // Planted faults: levels for another place, and for a bound that is ignored.
-      planted += loss(chunks, choose_within(chunks, {far}, {error, any}).levels, near) > error;
+      planted += loss(chunks, choose_by_error(chunks, {far}, {error, any}).levels, near) > error;
       planted += loss(chunks, Levels(chunks.size(), 3), near) > error;
       cases += 2;
     }
@@ -148,7 +148,7 @@ TEST(ChoiceWithin, MoreDecibelsAreMoreGaussians) {
   const std::vector<LodChunk> chunks = row_with_errors(20);
   std::size_t last = 0;
   for (double db = 20.0; db <= 80.0; db += 1.0) {
-    const LevelChoice choice = choose_within(chunks, {along_x(-1.0)}, {std::pow(10, -0.1 * db), any});
+    const LevelChoice choice = choose_by_error(chunks, {along_x(-1.0)}, {std::pow(10, -0.1 * db), any});
     EXPECT_GE(test::gaussians_of(chunks, choice.levels), last) << db;
     last = test::gaussians_of(chunks, choice.levels);
   }
@@ -158,47 +158,47 @@ TEST(ChoiceWithin, MoreDecibelsAreMoreGaussians) {
 TEST(ChoiceWithin, OneChoiceForAllViews) {
   const std::vector<LodChunk> chunks = row_with_errors(8);
   const DetailView first = along_x(-1.0), last = along_x(16.0, -1.0);
-  const LevelChoice both = choose_within(chunks, {first, last}, {1e-4, any});
-  EXPECT_EQ(both.levels, choose_within(chunks, {last, first}, {1e-4, any}).levels);
+  const LevelChoice both = choose_by_error(chunks, {first, last}, {1e-4, any});
+  EXPECT_EQ(both.levels, choose_by_error(chunks, {last, first}, {1e-4, any}).levels);
   EXPECT_LE(std::max(loss(chunks, both.levels, first), loss(chunks, both.levels, last)), both.error());
   EXPECT_LE(both.error(), 1e-4);
-  EXPECT_GT(loss(chunks, choose_within(chunks, {first}, {1e-4, any}).levels, last), 1e-4)
+  EXPECT_GT(loss(chunks, choose_by_error(chunks, {first}, {1e-4, any}).levels, last), 1e-4)
       << "planted: the choice for one";
 }
 
 TEST(ChoiceWithin, WhatIsOutOfSightIsThereForHeadsThatTurn) {
   const std::vector<LodChunk> chunks = row_with_errors(8);
   const DetailView ahead = along_x(6.5), beside = along_x(-1.0, -1.0);
-  const LevelChoice one = choose_within(chunks, {ahead}, {1e-4, any});
+  const LevelChoice one = choose_by_error(chunks, {ahead}, {1e-4, any});
   EXPECT_LE(one.error(), 1e-4);
   EXPECT_LT(one.levels[2], 3u) << "behind";
   // What it costs is what is seen of it.
   EXPECT_LT(one.error(), loss(chunks, one.levels, ahead));
   // Who sees nothing yet has what the sphere around it asks, which is more than nothing, and not all.
-  const LevelChoice nothing = choose_within(chunks, {beside}, {1e-4, any});
+  const LevelChoice nothing = choose_by_error(chunks, {beside}, {1e-4, any});
   EXPECT_EQ(nothing.error(), 0.0);
   EXPECT_LT(nothing.levels.front(), 3u);
   EXPECT_LT(test::gaussians_of(chunks, nothing.levels),
-            test::gaussians_of(chunks, choose_within(chunks, {along_x(-1.0)}, {1e-4, any}).levels));
+            test::gaussians_of(chunks, choose_by_error(chunks, {along_x(-1.0)}, {1e-4, any}).levels));
   // A single picture needs none of it, and has the same of what it sees.
-  const LevelChoice still = choose_within(chunks, {ahead}, {1e-4, any, false});
+  const LevelChoice still = choose_by_error(chunks, {ahead}, {1e-4, any, false});
   EXPECT_EQ(still.levels[2], 3u);
   EXPECT_EQ(still.levels[7], one.levels[7]);
   EXPECT_LE(still.error(), 1e-4);
-  EXPECT_EQ(choose_within(chunks, {beside}, {1e-4, any, false}).levels, Levels(chunks.size(), 3));
+  EXPECT_EQ(choose_by_error(chunks, {beside}, {1e-4, any, false}).levels, Levels(chunks.size(), 3));
   // A chunk beside the picture is seen whose coarsest Gaussians reach into it.
   const std::vector<LodChunk> at_edge = {row_with_errors(1).front()};
   DetailView view{.eye = {0.5, 0.5, -2.0},
                   .inward = inward_of({std::sin(0.79), 0, std::cos(0.79)}, 0.5),
                   .focal = 100.0,
                   .pixels = 1.0};
-  EXPECT_GT(choose_within(at_edge, {view}, {1e9, any}).error(), 0.0);
+  EXPECT_GT(choose_by_error(at_edge, {view}, {1e9, any}).error(), 0.0);
   VisibleChunks seen{{{ChunkVisibility{}}}, {3}};
-  EXPECT_EQ(choose_within(at_edge, {view}, {1e9, any}, seen).error(), 0.0) << "they were drawn, and do not";
+  EXPECT_EQ(choose_by_error(at_edge, {view}, {1e9, any}, seen).error(), 0.0) << "they were drawn, and do not";
   seen.drawn = {1};
-  EXPECT_GT(choose_within(at_edge, {view}, {1e9, any}, seen).error(), 0.0) << "finer ones were";
+  EXPECT_GT(choose_by_error(at_edge, {view}, {1e9, any}, seen).error(), 0.0) << "finer ones were";
   view.inward = inward_of({std::sin(0.83), 0, std::cos(0.83)}, 0.5);
-  EXPECT_EQ(choose_within(at_edge, {view}, {1e9, any}).error(), 0.0);
+  EXPECT_EQ(choose_by_error(at_edge, {view}, {1e9, any}).error(), 0.0);
 }
 
 // Of a headset's eye, whose picture is not even about its middle, and which is turned.
@@ -230,12 +230,12 @@ TEST(ChoiceWithin, GoByThePicturesSides) {
 TEST(ChoiceWithin, GoByWhatIsSeen) {
   const std::vector<LodChunk> chunks = row_with_errors(8);
   const DetailView view = along_x(-1.0);
-  const LevelChoice blind = choose_within(chunks, {view}, {1e-4, any});
+  const LevelChoice blind = choose_by_error(chunks, {view}, {1e-4, any});
   std::vector<ChunkVisibility> seen;
   for (const LodChunk& chunk : chunks) seen.push_back(open_view(chunk, view));
   const Levels coarsest(chunks.size(), 3);
   const auto by = [&](const std::vector<ChunkVisibility>& found, const Levels& drawn) {
-    return choose_within(chunks, {view}, {1e-4, any}, {{found}, drawn}, drawn);
+    return choose_by_error(chunks, {view}, {1e-4, any}, {{found}, drawn}, drawn);
   };
   EXPECT_NEAR(by(seen, Levels()).error(), blind.error(), 1e-12) << "nothing hides anything";
   constexpr double hidden = 1e-9;  // px
@@ -257,7 +257,7 @@ TEST(ChoiceWithin, GoByWhatIsSeen) {
   const std::vector<ChunkVisibility> nothing(chunks.size());
   const DetailView ahead = along_x(6.5);
   const auto ahead_by = [&](const std::vector<ChunkVisibility>& found, double error) {
-    return choose_within(chunks, {ahead}, {error, any, false}, {{found}, coarsest}, coarsest);
+    return choose_by_error(chunks, {ahead}, {error, any, false}, {{found}, coarsest}, coarsest);
   };
   EXPECT_GT(ahead_by(nothing, 1.0).error(), 1e-6);
   EXPECT_LT(ahead_by(seen, 1.0).error(), 1e-9) << "hidden is not beside the picture";
@@ -270,19 +270,19 @@ TEST(ChoiceWithin, KeepToWhatWasChosenBefore) {
   const std::vector<LodChunk> chunks = row_with_errors(20);
   std::size_t anew = 0;
   for (double x = -12.0; x < -0.5; x += 0.25) {
-    Levels here = choose_within(chunks, {along_x(x)}, {1e-4, any}).levels;
+    Levels here = choose_by_error(chunks, {along_x(x)}, {1e-4, any}).levels;
     // Trembling by as little switches nothing once it is settled.
-    here = choose_within(chunks, {along_x(x)}, {1e-4, any}, {}, here).levels;
+    here = choose_by_error(chunks, {along_x(x)}, {1e-4, any}, {}, here).levels;
     for (const double by : {0.97, 1.03}) {
-      const LevelChoice kept = choose_within(chunks, {along_x(x * by)}, {1e-4, any}, {}, here);
+      const LevelChoice kept = choose_by_error(chunks, {along_x(x * by)}, {1e-4, any}, {}, here);
       EXPECT_EQ(kept.levels, here) << x << " times " << by;
       EXPECT_LE(kept.error(), 1.1e-4 * 1.0001);
-      anew += choose_within(chunks, {along_x(x * by)}, {1e-4, any}).levels != here;
+      anew += choose_by_error(chunks, {along_x(x * by)}, {1e-4, any}).levels != here;
     }
   }
   EXPECT_GT(anew, 10u) << "without a memory it would switch";
-  const Levels far = choose_within(chunks, {along_x(-100.0)}, {1e-4, any}).levels;
-  EXPECT_NE(choose_within(chunks, {along_x(-1.0)}, {1e-4, any}, {}, far).levels, far);
+  const Levels far = choose_by_error(chunks, {along_x(-100.0)}, {1e-4, any}).levels;
+  EXPECT_NE(choose_by_error(chunks, {along_x(-1.0)}, {1e-4, any}, {}, far).levels, far);
 }
 
 // Of what does not come in time many chunks get some, not a few all.
@@ -290,8 +290,8 @@ TEST(ChoiceWithin, HasNoMoreReadThanIsAllowed) {
   const std::vector<LodChunk> chunks = row_with_errors(200);
   const DetailView view = along_x(-1.0);
   const Levels coarsest(chunks.size(), 3);
-  const auto wanted = [&](std::size_t most_new, const Levels& drawn) {
-    return choose_within(chunks, {view}, {1e-6, any, false, most_new}, {{}, drawn});
+  const auto wanted = [&](std::size_t read_most, const Levels& drawn) {
+    return choose_by_error(chunks, {view}, {1e-6, any, false, read_most}, {{}, drawn});
   };
   const auto gaussians = [&](std::size_t p, const Levels& levels) {
     return levels[p] < coarsest[p] ? chunks[p].levels[levels[p]].count : 0;
@@ -305,22 +305,23 @@ TEST(ChoiceWithin, HasNoMoreReadThanIsAllowed) {
   Levels order;  // of the chunks, what saves most per Gaussian first
   for (std::size_t p = 0; p < chunks.size(); ++p) order.push_back(p);
   std::ranges::sort(order, std::greater<>(), [&](std::size_t p) {
-    return all.saved(p, 3, all.levels[p]) / std::max(1.0, static_cast<double>(gaussians(p, all.levels)));
+    return all.error_saved(p, 3, all.levels[p]) /
+           std::max(1.0, static_cast<double>(gaussians(p, all.levels)));
   });
-  for (const std::size_t most_new : {needed / 8, needed / 4, needed / 2}) {
-    const LevelChoice some = wanted(most_new, coarsest);
-    EXPECT_TRUE(some.is_limited) << most_new;
-    std::size_t come = 0, left = most_new;
+  for (const std::size_t read_most : {needed / 8, needed / 4, needed / 2}) {
+    const LevelChoice some = wanted(read_most, coarsest);
+    EXPECT_TRUE(some.is_limited) << read_most;
+    std::size_t come = 0, left = read_most;
     for (std::size_t p = 0; p < chunks.size(); ++p) come += gaussians(p, some.levels);
-    EXPECT_LE(come, most_new);
-    EXPECT_GT(come, most_new / 2);
+    EXPECT_LE(come, read_most);
+    EXPECT_GT(come, read_most / 2);
     Levels few = coarsest;
     for (const std::size_t p : order) {
       if (gaussians(p, all.levels) > left) continue;
       left -= gaussians(p, all.levels);
       few[p] = all.levels[p];
     }
-    EXPECT_LT(some.error(), all.error_of(few)) << most_new << ", planted: one chunk after another";
+    EXPECT_LT(some.error(), all.error_of(few)) << read_most << ", planted: one chunk after another";
   }
   EXPECT_EQ(std::ranges::count(wanted(0, coarsest).levels, 3u), 199) << "one chunk's, or nothing ever comes";
   EXPECT_EQ(wanted(needed / 4, all.levels).levels, all.levels) << "all is there";
@@ -331,23 +332,24 @@ TEST(ChoiceWithin, HasNoMoreReadThanIsAllowed) {
 TEST(ChoiceWithin, TellWhatAnotherLevelSaves) {
   const std::vector<LodChunk> chunks = row_with_errors(4);
   const DetailView near = along_x(-1.0), far = along_x(-9.0), away = along_x(-1.0, -1.0);
-  const LevelChoice choice = choose_within(chunks, {near, far}, {1e-3, any});
-  const LevelChoice unseen = choose_within(chunks, {away}, {1e-3, any});
+  const LevelChoice choice = choose_by_error(chunks, {near, far}, {1e-3, any});
+  const LevelChoice unseen = choose_by_error(chunks, {away}, {1e-3, any});
   for (std::size_t p = 0; p < chunks.size(); ++p) {
     Levels coarse(chunks.size(), 3), finer = coarse;
     finer[p] = 1;
-    EXPECT_NEAR(choice.saved(p, 3, 1), loss(chunks, coarse, near) - loss(chunks, finer, near), 1e-12) << p;
-    EXPECT_LT(loss(chunks, coarse, far) - loss(chunks, finer, far), 0.9 * choice.saved(p, 3, 1))
+    EXPECT_NEAR(choice.error_saved(p, 3, 1), loss(chunks, coarse, near) - loss(chunks, finer, near), 1e-12)
+        << p;
+    EXPECT_LT(loss(chunks, coarse, far) - loss(chunks, finer, far), 0.9 * choice.error_saved(p, 3, 1))
         << "planted: of the view that gains less";
-    EXPECT_EQ(choice.saved(p, 1, 3), 0.0);
-    EXPECT_GT(unseen.saved(p, 3, 1), 0.0) << "of the sphere";
+    EXPECT_EQ(choice.error_saved(p, 1, 3), 0.0);
+    EXPECT_GT(unseen.error_saved(p, 3, 1), 0.0) << "of the sphere";
   }
 }
 
 TEST(ChoiceWithin, FewGaussiansMayBeAllowedAndPartsUnknown) {
   std::vector<LodChunk> chunks = row_with_errors(6);
   for (std::size_t most = 300; most < 2500; most += 50) {
-    Levels chosen = choose_within(chunks, {along_x(-1.0)}, {1e-9, most}).levels;
+    Levels chosen = choose_by_error(chunks, {along_x(-1.0)}, {1e-9, most}).levels;
     EXPECT_LE(test::gaussians_of(chunks, chosen), most);
     for (std::size_t& level : chosen) {
       if (level == 0) continue;
@@ -363,16 +365,16 @@ TEST(ChoiceWithin, FewGaussiansMayBeAllowedAndPartsUnknown) {
        {{0, 400, std::vector(6, 0.0)}, {1, 200, std::vector(6, 0.9)}, {2, 100, std::vector(6, 1.0)}},
        {0.01},
        std::vector(6, 100.0)}};
-  EXPECT_EQ(choose_within(leap, {along_x(-1.0)}, {1e-9, 400}).levels, Levels{0});
-  EXPECT_EQ(choose_within(leap, {along_x(-1.0)}, {1e-9, 399}).levels, Levels{1});
+  EXPECT_EQ(choose_by_error(leap, {along_x(-1.0)}, {1e-9, 400}).levels, Levels{0});
+  EXPECT_EQ(choose_by_error(leap, {along_x(-1.0)}, {1e-9, 399}).levels, Levels{1});
   chunks[3].pixels.clear();
   chunks[3].seen.clear();
   for (LodChunk::Level& level : chunks[3].levels) level.errors.clear();
   chunks[4].levels.clear();
-  const LevelChoice choice = choose_within(chunks, {along_x(-1.0)}, {1e9, any});
+  const LevelChoice choice = choose_by_error(chunks, {along_x(-1.0)}, {1e9, any});
   EXPECT_EQ(choice.levels, (Levels{3, 3, 3, 0, 0, 3}));
-  EXPECT_EQ(choose_within(chunks, {along_x(-1.0)}, {1e9, 450}).levels[3], 1u);
-  EXPECT_TRUE(choose_within({}, {along_x(0.0)}, {1.0, any}).levels.empty());
+  EXPECT_EQ(choose_by_error(chunks, {along_x(-1.0)}, {1e9, 450}).levels[3], 1u);
+  EXPECT_TRUE(choose_by_error({}, {along_x(0.0)}, {1.0, any}).levels.empty());
 }
 
 // However many change, and whatever views there are.

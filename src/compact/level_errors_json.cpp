@@ -1,4 +1,4 @@
-#include "compact/leaf_errors.h"
+#include "compact/level_errors_json.h"
 
 #include <fmt/format.h>
 
@@ -24,23 +24,24 @@ nlohmann::ordered_json json_of(double number, double factor) {
   return std::stod(fmt::format("{:.3g}", factor * number));
 }
 
-nlohmann::ordered_json json_of(const std::vector<LeafErrors>& leaves) {
+nlohmann::ordered_json json_of(const std::vector<LevelErrors>& chunks) {
   nlohmann::ordered_json json = nlohmann::ordered_json::array();
-  for (const LeafErrors& leaf : leaves) {
-    json.push_back(
-        {{"pixels", json_of(leaf.pixels)}, {"seen", json_of(leaf.seen)}, {"errors", json_of(leaf.of_level)}});
+  for (const LevelErrors& chunk : chunks) {
+    json.push_back({{"pixels", json_of(chunk.pixels)},
+                    {"seen", json_of(chunk.seen)},
+                    {"errors", json_of(chunk.of_level)}});
   }
   return json;
 }
 
-std::vector<LeafErrors> leaf_errors(const std::string& name, const std::string& text, std::size_t leaves,
-                                    std::size_t levels) {
+std::vector<LevelErrors> parse_level_errors(const std::string& name, const std::string& text,
+                                            std::size_t chunks, std::size_t levels) {
   const nlohmann::json json = parse_json(name, text);
-  const JsonValue list = JsonValue(name, json).list_of(leaves);
-  std::vector<LeafErrors> errors(leaves);
-  for (std::size_t k = 0; k < leaves; ++k) {
-    const JsonValue leaf = list.at(k);
-    read(leaf.at("pixels"), errors[k].pixels);
+  const JsonValue list = JsonValue(name, json).list_of(chunks);
+  std::vector<LevelErrors> errors(chunks);
+  for (std::size_t k = 0; k < chunks; ++k) {
+    const JsonValue chunk = list.at(k);
+    read(chunk.at("pixels"), errors[k].pixels);
     const auto by_direction = [&](const JsonValue& of) {
       for (std::size_t d = 0; d < detail_directions; ++d)
         of.list_of(detail_directions).at(d).list_of(errors[k].pixels.size());
@@ -48,17 +49,17 @@ std::vector<LeafErrors> leaf_errors(const std::string& name, const std::string& 
       read(of, numbers);
       return numbers;
     };
-    errors[k].seen = by_direction(leaf.at("seen"));
-    const JsonValue of_levels = leaf.at("errors").list_of(levels);
+    errors[k].seen = by_direction(chunk.at("seen"));
+    const JsonValue of_levels = chunk.at("errors").list_of(levels);
     for (std::size_t level = 0; level < levels; ++level)
       errors[k].of_level.push_back(by_direction(of_levels.at(level)));
   }
   return errors;
 }
 
-nlohmann::ordered_json json_of(const std::vector<LossTogether>& pictures) {
+nlohmann::ordered_json json_of(const std::vector<JointLoss>& pictures) {
   nlohmann::ordered_json json = nlohmann::ordered_json::array();
-  for (const LossTogether& picture : pictures) {
+  for (const JointLoss& picture : pictures) {
     json.push_back(picture.drawn ? nlohmann::ordered_json{picture.predicted, picture.measured} : nullptr);
   }
   return json;
