@@ -32,7 +32,7 @@
 namespace binosplat::lab {
 namespace {
 
-/// Where thresholds that go by the last frame can fail (docs/method.md 7): a small scene and a path.
+/// Where thresholds that use the last frame can fail (docs/measuring.md, traps): a small scene and a path.
 struct StabilityCase {
   std::string name;
   std::shared_ptr<const Model> model;
@@ -478,7 +478,7 @@ StabilityCase case_named(const std::string& name) {
   throw std::runtime_error("no case " + name);
 }
 
-// Traps of docs/method.md 7 that need frames in a row; docs/measuring.md names the tests of the others.
+// Traps of docs/measuring.md that need frames in a row; that page names the tests of all other traps.
 struct Traps : testing::Test {
   static Shown frames_of(const std::string& name, const render::FrameSettings& settings, std::size_t count) {
     const StabilityCase one = case_named(name);
