@@ -322,7 +322,7 @@ TEST(Usd, ErrorsNameTheLine) {
       {with("positions = [(1, 2, 3)]", "positions.timeSamples = { 1: [(1, 2, 3)], 2: [] }"),
        {"line 10", "positions changes with time"}},
       {with("positions =", "positions.timeSamples ="), {"line 10", "expected '{'"}},
-      {with("}\n", shear), {"line 11", "'xformOp:shear' of 'a' is not there"}},
+      {with("}\n", shear), {"line 11", "'xformOp:shear' of 'a' is missing"}},
       {with("}\n", "float xformOp:shear = 1\n" + shear), {"line 11", "unknown transform xformOp:shear"}},
       {with("}\n", "float3 xformOp:scale = (1e300, 1, 1)\n" + order_of({"xformOp:scale"}) + "}\n"),
        {"line 8", "beyond the range of floats"}},

@@ -67,7 +67,8 @@ TEST_F(ThresholdPolicyTest, RefusesWhatItIsNotFor) {
   EXPECT_ERROR(policy().check_model(test::random_model(4, 100, 1)), "c.json",
                "another model (fox.ply, 100 Gaussians)");
   EXPECT_ERROR(policy().check_perspective({.th = TH_PERIPHERAL, .projection = PROJECTION_TANGENT}, model),
-               "is for order depth and projection affine", "drawn with order depth and projection tangent");
+               "is for order depth and projection affine",
+               "the frame uses order depth and projection tangent");
 }
 
 TEST_F(ThresholdPolicyTest, WithoutACalibrationSettingsStayAsTheyAre) {
