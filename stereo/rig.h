@@ -29,8 +29,8 @@ struct RigSettings {
 
 struct EyePair {
   std::array<Camera, 2> cameras;      // named NAME_left and NAME_right
-  std::array<shared::View, 2> views;  // both have one anchor; the frame adds tiles, offsets and groups
-  bool parallel = true;               // the third rows are bit-equal: both are projected together
+  std::array<shared::View, 2> views;  // share one anchor (method.md 1); Frame adds tiles, offsets, groups
+  bool parallel = true;               // the views' z axes (row_z) are bit-equal: both are projected together
 };
 
 /// The eyes of a head: at head.position -+ x axis * ipd / 2. Parallel eyes (no cant) have bit-equal y and z
@@ -41,8 +41,9 @@ struct EyePair {
 /// onto one plane.
 EyePair make_rig(const Camera& head, const RigSettings& settings);
 
-/// The rig of two given cameras. They are parallel if their rotations are equal within 1e-9, and their z
-/// translations within 1e-9 of their distance from the origin. The left one's third row then serves both.
+/// The rig of two given cameras. They are parallel if no element of their rotations differs by more than
+/// 1e-9, and their positions along z by at most 1e-9 times the farther camera's distance from the origin.
+/// Both then use the left one's z axis.
 EyePair rig_from_eyes(const Camera& left, const Camera& right, double near_plane = near_default);
 
 /// The views of a head's two or more cameras. Those parallel to the first share its third row. All have one
@@ -57,15 +58,15 @@ HeadViews views_of_head(std::span<const Camera> cameras, double near_plane = nea
 std::optional<std::array<Camera, 2>> find_eyes(const std::vector<Camera>& cameras, std::string_view name);
 
 /// The camera of a pose and a frustum. `rotation` has the axes x right, y down, z forward as columns (an
-/// OpenXR pose has y up and z backward: negate its second and third columns). Throws Error for angles without
-/// a picture.
+/// OpenXR pose has y up and z backward: negate its second and third columns). Throws Error if the
+/// angles span no picture, such as a left angle that is not less than the right one.
 Camera camera_from_fov(std::string name, const glm::dvec3& position, const glm::dmat3& rotation,
                        const Fov& fov, int width, int height);
 
 /// The head camera with the size and lens of `--preset`. "preview" is 1,280 x 720 an eye and keeps the
 /// vertical field of view. "headset" is 3,660 x 3,200 an eye, 100 degrees across, with square pixels,
-/// centred. "vr180" has the size of a panorama, 2,048 x 2,048 an eye, and its pixels' width in the middle.
-/// Keeps pose, name and time.
+/// centred. "vr180" has the size of a panorama, 2,048 x 2,048 an eye. Its middle pixel covers the same angle
+/// as a pixel of the panorama. Keeps pose, name and time.
 Camera apply_preset(const Camera& head, std::string_view preset);
 
 }  // namespace binosplat::stereo

@@ -35,8 +35,8 @@ struct ShotLevels {
 /// The range of disparities of a pair, and a better rig if they are uncomfortable.
 struct Comfort {
   stereo::DisparityRange range;
-  std::optional<double> focus;                   // m; zero of the range; none: infinitely far
-  std::optional<stereo::ComfortableRig> better;  // m; if uncomfortable and the rig is ours
+  std::optional<double> focus;                   // m, where the range's disparity is 0; none: infinitely far
+  std::optional<stereo::ComfortableRig> better;  // in m; if the program made an uncomfortable rig itself
 };
 
 /// A drawn shot.
@@ -79,15 +79,15 @@ struct RenderRun {
   std::vector<Drawn> drawn = {};                 // for each shot
   std::vector<render::FrameReport> frames = {};  // all, with --frames per shot
   RunTimes times = {};
-  std::optional<double> exact_ms = {};  // GPU time of one exact frame, if --quality drew many
+  std::optional<double> exact_ms = {};  // GPU time of one exact frame, if --quality drew a long --path
 
   const Model& model() const { return stream ? stream->model() : loaded; }
 };
 
 /// Draws every shot --frames times and writes the files of its last frame. Only the calling thread uses
-/// OpenGL. While the GPU draws a shot, it waits for the copy of the previous one (render/read_back.h) and
-/// passes that to threads that encode and write. Pictures that need OpenGL first (--show, --foveate, --vr180)
-/// are read at once.
+/// OpenGL. While the GPU draws a shot, that thread waits for the copy of the previous one
+/// (render/read_back.h) and passes the copy to threads that encode and write. Pictures that need OpenGL first
+/// (--show, --foveate, --vr180) are read at once.
 void draw_all(RenderRun& run);
 
 /// Prints the results as a table.

@@ -19,8 +19,8 @@ using PhotoOf = std::function<std::optional<Image>(const Camera&)>;
 
 /// The pictures to fit.
 struct RefitTargets {
-  const Model& original;        // without a photo: its exact pictures, in its own perspective
-  std::vector<Camera> cameras;  // of the world
+  const Model& original;        // its exact picture, in its order and projection, replaces a missing photo
+  std::vector<Camera> cameras;  // in world coordinates
   PhotoOf photo;                // may be empty
   double near_plane = 0.0;      // world units
 };
@@ -41,7 +41,7 @@ struct Refitted {
   int best_round = 0;          // 0: the unchanged model
 };
 
-/// Fits the harmonics of `model`, in its perspective. Ends early if it no longer improves. Without a
+/// Fits the harmonics of `model`, in its order and projection. Ends early if it no longer improves. Without a
 /// validation loss the last round is the best. Takes about seven times the memory of the harmonics; pictures
 /// are drawn or read one at a time. Coefficients that affect no target stay. Deterministic. Model and
 /// original have the same axes and no scaffold.

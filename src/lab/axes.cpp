@@ -87,6 +87,7 @@ struct Key {
   std::function<void(BenchSettings&, const nlohmann::json&)> set;
 };
 
+// The views on which the tolerance is found: the measured views, or training views.
 constexpr Choice found_on_choices[] = {{"test", "the views that are measured"}, {"training", "others"}};
 
 constexpr std::size_t most_settings = 10000;  // of all blocks together

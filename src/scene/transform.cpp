@@ -14,7 +14,7 @@ namespace binosplat {
 
 namespace {
 
-// Smaller differences are rounding, since maps are written as floats.
+// Relative tolerance for equal scales, and absolute for no rotation: files store transforms as floats.
 constexpr double even_enough = 1e-6;
 
 /// Views a glm matrix as an Eigen one: both store columns.
@@ -32,13 +32,14 @@ glm::dquat quaternion(const glm::vec4& wxyz) { return {wxyz.x, wxyz.y, wxyz.z, w
 
 glm::vec4 wxyz(const glm::dquat& q) { return glm::dvec4(q.w, q.x, q.y, q.z); }
 
-/// Returns the rotation of orthogonal axes. A mirror negates them, which leaves an ellipsoid unchanged.
+/// Returns the rotation of orthogonal axes. If these include a reflection, it negates them first, which
+/// leaves an ellipsoid unchanged.
 glm::dquat quaternion_of(const glm::dmat3& orthogonal) {
   return glm::normalize(glm::quat_cast(glm::determinant(orthogonal) < 0.0 ? -orthogonal : orthogonal));
 }
 
-/// Maps an ellipsoid: M and C = R diag(scale) give M C = U diag(s) V^T, with axes U and scales s. The
-/// covariance itself would square thin Gaussians and lose half their digits.
+/// Maps an ellipsoid: M and C = R diag(scale) give M C = U diag(s) V^T, with axes U and scales s.
+/// The covariance would square the scales, and thin Gaussians would lose half their digits.
 void map_ellipsoid(const glm::dmat3& linear, glm::vec4& rotation, glm::vec3& scale) {
   glm::dmat3 axes = linear * glm::mat3_cast(quaternion(rotation));
   for (int c = 0; c < 3; ++c) axes[c] *= scale[c];
@@ -62,7 +63,7 @@ bool transform(Model& model, const glm::dmat4& map, std::vector<glm::dvec3>& pla
   const bool turns = (to_eigen(q) - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff() > even_enough;
   const glm::dquat turn = quaternion_of(q);
   const double size = svd.singularValues()[1];
-  std::optional<HarmonicsTurn> harmonics;  // as slow as mapping a small model
+  std::optional<HarmonicsTurn> harmonics;  // only if needed: as slow as mapping a small model
   if (turns && model.degree > 0) harmonics.emplace(q);
   const std::size_t values = 3 * static_cast<std::size_t>(sh_count(model.degree));
   std::atomic<bool> good = true;

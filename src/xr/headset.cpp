@@ -17,7 +17,8 @@ namespace {
 using std::chrono::milliseconds;
 
 constexpr double own_share = 0.8;  // of a frame's time; the runtime also draws
-constexpr int sessions_most = 10;  // lost without any frame, in a row
+// Sessions lost in a row without a drawn frame, after which the viewer ends.
+constexpr int sessions_most = 10;
 constexpr milliseconds between_sessions{500}, wait_most{10000};
 constexpr milliseconds between_polls{10};  // while no frames are requested
 
@@ -93,7 +94,7 @@ class Viewer {
     drawing.depth = DepthKind::median;
     if (instance_.has_insets()) drawing.foveation.reset();
     if (drawing.foveation && input.gaze) drawing.foveation->gaze = gaze_of(*input.gaze, views);
-    // A larger world in the hands must not move the near plane away.
+    // If the hands enlarge the world, the near plane keeps its distance from the eyes in metres.
     const Placement& placement = walk_->placement();
     drawing.near_plane *= std::min(1.0, placement.units_per_metre / settings_.start.units_per_metre);
     frame.views = projection.begin(views, placement, effort.scale, drawing);
