@@ -230,17 +230,17 @@ TEST_F(StreamedSogWriter, GoesOnWithThePicturesThatAreLeft) {
   settings.joint_gaussians = 1500;  // two batches, or more
   WrittenFiles files;
   write(files);
-  EXPECT_FALSE(files.contains("together_2.json"));
+  EXPECT_FALSE(files.contains("joint_2.json"));
   WrittenFiles again = files;
   again.erase("lod-meta.json");
-  again.erase("together_1.json");
+  again.erase("joint_1.json");
   pictures.clear();
   write(again);
   EXPECT_EQ(again, files);
   EXPECT_EQ(pictures.size(), 1u);
   again.erase("lod-meta.json");
   again.erase("errors_1.json");
-  again.erase("together_0.json");
+  again.erase("joint_0.json");
   write(again);
   EXPECT_EQ(again, files);
 }
@@ -295,7 +295,7 @@ TEST_F(StreamedSogWriter, GoesOnAfterAnInterruption) {
       if (!files.contains(folder + "meta.json"))
         std::erase_if(files, [&](const auto& file) { return file.first.starts_with(folder); });
     }
-    EXPECT_EQ(files.size(), 8 * complete + files.count("errors_0.json") + files.count("together_0.json"))
+    EXPECT_EQ(files.size(), 8 * complete + files.count("errors_0.json") + files.count("joint_0.json"))
         << "meta.json is written last";
     EXPECT_EQ(write(files).kept, complete);
     EXPECT_EQ(files, whole) << most;
