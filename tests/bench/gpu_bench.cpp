@@ -345,7 +345,8 @@ Json run_crowd(const How& how) {
     for (int k = 0; k < 100; ++k) {
       render::InstancePlace& place = crowd[static_cast<std::size_t>(k)].place;
       place.rotation = glm::dmat3(glm::rotate(glm::dmat4(1.0), radians + k, glm::dvec3(0, 1, 0)));
-      place.translation = {3.0 * (k % 10 - 4.5), 0.0, 3.0 * (k / 10)};
+      const int row = k / 10;
+      place.translation = {3.0 * (k % 10 - 4.5), 0.0, 3.0 * row};
       place.scale = 0.01;
     }
   };

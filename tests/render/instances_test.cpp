@@ -200,7 +200,8 @@ TEST_F(Instances, AHundredTakeTheMemoryOfOneModel) {
   for (int k = 0; k < 100; ++k) {
     InstancePlace place = some_place();
     place.scale = 0.15;
-    place.translation = {0.5 * (k % 10 - 5), 0.5 * (k / 10 - 5), 4.0};
+    const int row = k / 10;
+    place.translation = {0.5 * (k % 10 - 5), 0.5 * (row - 5), 4.0};
     crowd.push_back({shown, place});
     merged = joined(std::move(merged), moved(model, place));
   }
