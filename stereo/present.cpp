@@ -108,8 +108,7 @@ void Presenter::attach(std::uint32_t framebuffer, GLenum place, std::uint32_t te
   gl.NamedFramebufferTexture(framebuffer, place, 0, 0);
   fail(
       "texture {}, level {}, layer {} cannot be drawn into (OpenGL error 0x{:04x}, status 0x{:04x}): "
-      "expected "
-      "a 2D texture, or a layer of an array, of a {}-renderable format",
+      "expected a 2D texture, or a layer of an array, of a {}-renderable format",
       texture, level, layer, error, status, kind);
 }
 

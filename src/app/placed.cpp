@@ -8,6 +8,7 @@
 #include "base/log.h"
 #include "base/mapped_file.h"
 #include "formats/content.h"
+#include "formats/gltf_nodes.h"
 #include "formats/join.h"
 #include "formats/json_file.h"
 #include "formats/model_file.h"
@@ -18,25 +19,12 @@ namespace binosplat::app {
 
 namespace {
 
-glm::dmat4 matrix_of(const JsonValue& entry) {
-  glm::dmat4 matrix(1.0);
-  const std::optional<JsonValue> listed = entry.find("matrix");
-  if (!listed) return matrix;
-  const JsonValue numbers = listed->list_of(16);
-  for (std::size_t i = 0; i < 16; ++i)
-    matrix[static_cast<int>(i / 4)][static_cast<int>(i % 4)] = numbers.at(i).number();
-  if (glm::dvec4(matrix[0].w, matrix[1].w, matrix[2].w, matrix[3].w) != glm::dvec4(0, 0, 0, 1))
-    listed->fail_here("expected 16 numbers column by column, as in glTF, with 0, 0, 0, 1 as the last row");
-  return matrix;
-}
-
 void check_trained_alike(const JsonValue& entry, const Model& model, const Model& scene) {
   if (model.scaffold || scene.scaffold) entry.fail_here("a Scaffold-GS model cannot be placed among others");
   if (model.antialiased != scene.antialiased || model.kernel_px2 != scene.kernel_px2) {
     entry.fail_here(
         "trained {} anti-aliasing and for a low-pass of {} px^2, the scene {} and for {}: one setting draws "
-        "all; "
-        "name it by --antialias or --no-antialias and --kernel-px2",
+        "all; name it by --antialias or --no-antialias and --kernel-px2",
         model.antialiased ? "with" : "without", model.kernel_px2, scene.antialiased ? "with" : "without",
         scene.kernel_px2);
   }
@@ -55,7 +43,7 @@ void append_placed(const SceneOptions& o, Model& model) {
     const JsonValue entry = root.at(k);
     const std::string path =
         (std::filesystem::path(o.place).parent_path() / entry.at("model").text()).lexically_normal().string();
-    const glm::dmat4 matrix = matrix_of(entry);
+    const glm::dmat4 matrix = node_transform(entry);
     Model placed = load_model(path);
     apply_options(asked, placed);
     check_trained_alike(entry, placed, model);

@@ -8,8 +8,8 @@ namespace binosplat::app {
 
 /// Appends the models that the JSON file of --place lists, each at its place: a list of objects with
 /// - "model": a path, relative to the file;
-/// - "matrix": 16 numbers, column by column as in a node of glTF, that bring the model into the world of the
-///   cameras (x right, y down, z forward); the identity without it.
+/// - "matrix": 16 numbers, column by column, that bring the model into the world of the cameras (x right, y
+///   down, z forward); or "translation", "rotation" and "scale": as a node of glTF; the identity without any.
 /// The result has the highest degree of them all. Throws Error for Scaffold-GS models, and for models that
 /// were trained with another low-pass or anti-aliasing than `model`, because one setting draws them all.
 void append_placed(const SceneOptions& options, Model& model);

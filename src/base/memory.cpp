@@ -27,8 +27,7 @@ void on_crash(int signal) {
   if (is_out_of_memory()) {
     constexpr char text[] =
         "\nbinosplat: out of memory: a library crashed where no more was to be had; give it more (ulimit "
-        "-v), or "
-        "try a smaller --size, or fewer Gaussians\n";
+        "-v), or try a smaller --size, or fewer Gaussians\n";
     static_cast<void>(!write(STDERR_FILENO, text, sizeof(text) - 1));
     _exit(static_cast<int>(ExitCode::out_of_memory));
   }

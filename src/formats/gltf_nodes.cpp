@@ -25,8 +25,17 @@ glm::dmat4 composed(const JsonValue& where, const glm::dvec3& translation, const
   return matrix;
 }
 
-/// Returns a node's own transform: a matrix, or translation, rotation and scale.
-glm::dmat4 transform_of(const JsonValue& node) {
+bool is_visible(const JsonValue& node) {
+  const auto visibility = extension_of(node, "KHR_node_visibility");
+  if (!visibility || !visibility->has("visible")) return true;
+  const JsonValue visible = visibility->at("visible");
+  if (!visible.value().is_boolean()) visible.fail_here("expected true or false");
+  return visible.value().get<bool>();
+}
+
+}  // namespace
+
+glm::dmat4 node_transform(const JsonValue& node) {
   const auto numbers = [&](const char* key, std::size_t n, double* to) {
     if (!node.has(key)) return;
     const JsonValue list = node.at(key).list_of(n);
@@ -46,16 +55,6 @@ glm::dmat4 transform_of(const JsonValue& node) {
   numbers("scale", 3, &scale.x);
   return composed(node, translation, rotation, scale);
 }
-
-bool is_visible(const JsonValue& node) {
-  const auto visibility = extension_of(node, "KHR_node_visibility");
-  if (!visibility || !visibility->has("visible")) return true;
-  const JsonValue visible = visibility->at("visible");
-  if (!visible.value().is_boolean()) visible.fail_here("expected true or false");
-  return visible.value().get<bool>();
-}
-
-}  // namespace
 
 std::vector<GltfNode> visible_nodes(const JsonValue& root) {
   struct Open {
@@ -82,7 +81,7 @@ std::vector<GltfNode> visible_nodes(const JsonValue& root) {
     const Open next = open.back();
     open.pop_back();
     const JsonValue node = root.at("nodes").at(next.node);
-    const glm::dmat4 matrix = next.parent * transform_of(node);
+    const glm::dmat4 matrix = next.parent * node_transform(node);
     const bool visible = next.visible && is_visible(node);
     if (visible && node.has("mesh")) shown.push_back({node, matrix, node.at("mesh").whole(gltf_number_most)});
     if (node.has("children")) enter(node.at("children"), matrix, visible);

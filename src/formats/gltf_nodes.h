@@ -16,6 +16,10 @@ struct GltfNode {
   std::size_t mesh;
 };
 
+/// Returns a node's own transform: a matrix, or translation, rotation and scale; the identity without any.
+/// Throws Error naming the key if it is invalid.
+glm::dmat4 node_transform(const JsonValue& node);
+
 /// Returns the nodes with a mesh of the default scene (or the first), except those that are hidden or below a
 /// hidden one (KHR_node_visibility). Throws Error naming the key for missing nodes, nodes with two parents,
 /// and invalid transforms.

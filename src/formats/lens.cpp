@@ -1,9 +1,9 @@
 #include "formats/lens.h"
 
-#include <algorithm>
 #include <cmath>
 
 #include "base/error.h"
+#include "scene/axes.h"
 
 namespace binosplat {
 
@@ -20,17 +20,10 @@ void check_lens(const std::string& where, const Camera& camera) {
 }
 
 std::string rotation_fault(const glm::dmat3& columns) {
-  const glm::dmat3 square = glm::transpose(columns) * columns;
-  double largest = 0;
-  for (int i = 0; i < 3; ++i) {
-    for (int j = 0; j < 3; ++j) {
-      const double off = std::abs(square[i][j] - (i == j ? 1.0 : 0.0));
-      if (!std::isfinite(off)) return "its numbers must be finite";
-      largest = std::max(largest, off);
-    }
-  }
-  if (!(largest <= 1e-3))
-    return fmt::format("the columns must be orthogonal and of length 1; they are off by {:.3g}", largest);
+  const double error = orthonormality_error(columns);
+  if (!std::isfinite(error)) return "its numbers must be finite";
+  if (error > 1e-3)
+    return fmt::format("the columns must be orthogonal and of length 1; they are off by {:.3g}", error);
   if (glm::determinant(columns) < 0)
     return "it mirrors (determinant -1); expected x right, y down, z forward";
   return "";

@@ -157,8 +157,7 @@ Model load_model_alone(const fs::path& path, const ModelOptions& options) {
   if (model.count() == 0) {
     fail(
         "{}: all of its {} Gaussians have values that are not finite or out of range, scales above 1e13, or "
-        "zero "
-        "quaternions",
+        "zero quaternions",
         file.string(), model.left_out);
   }
   if (model.lacks_degree_4) log_warning("{}: harmonics of degree 4 are drawn up to degree 3", file.string());

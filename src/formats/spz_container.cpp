@@ -78,8 +78,7 @@ std::size_t attribute_bytes(const std::string& source, const SpzContents& conten
                              std::size_t found) {
   fail(
       "{} is cut short: its {} Gaussians of degree {} take {} bytes after the header, and {} are there; "
-      "fetch or "
-      "export it again",
+      "fetch or export it again",
       source, contents.count, contents.degree, needed, found);
 }
 

@@ -18,8 +18,7 @@ namespace {
 
 constexpr const char* egl_to_install =
     "On Debian: apt install libegl1 and, for a GPU, its driver with EGL (NVIDIA: libnvidia-egl or the .run "
-    "installer), or "
-    "libegl-mesa0 libgl1-mesa-dri for software rendering.";
+    "installer), or libegl-mesa0 libgl1-mesa-dri for software rendering.";
 
 // The EGL entry points used here.
 struct Egl {

@@ -74,8 +74,7 @@ std::string advice_of(const Profile& profile, const ProfileSummary& summary) {
   if (recording.fps > 0.0 && summary.missed == 0)
     return fmt::format(
         "a higher --fps or a larger --size: 99 % of the frames are done in {:.2f} of {:.1f} ms, and then "
-        "wait "
-        "for the next one",
+        "wait for the next one",
         summary.wall.p99, recording.budget_ms());
   if (!profile.facts.is_software && !is_gpu_bound(profile, summary))
     return "fewer other programs and a CPU at its full clock: the GPU waits for the CPU, so smaller pictures "

@@ -336,8 +336,7 @@ void add_targets(const ChartPoints& chart, std::vector<Section>& sections) {
           *std::ranges::max_element(tuned, {}, [](const Row& row) { return number(row, "pairs_removed"); });
       const std::string sentence = fmt::format(
           "“{}” removes the most pairs of the exact ellipse test: {:.1f} % at {:g} dB. Tolerances are tuned "
-          "on "
-          "the test views themselves, as the paper's are.",
+          "on the test views themselves, as the paper's are.",
           text(most, "family"), number(most, "pairs_removed"), number(most, target));
       std::vector<Row> with_paper = tuned;
       for (const auto& [drop_db, removed] : paper_removed) {

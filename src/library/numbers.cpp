@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "scene/axes.h"
 #include "shared/limits.h"
 
 namespace binosplat::library {
@@ -17,17 +18,8 @@ bool is_finite(const Vector& v) {
   return true;
 }
 
-/// Whether the columns are orthonormal, up to rounding. False if one is not finite.
-bool are_directions(const glm::dmat3& axes) {
-  constexpr double rounding = 1e-3;
-  const glm::dmat3 products = glm::transpose(axes) * axes;
-  for (int i = 0; i < 3; ++i) {
-    for (int k = 0; k < 3; ++k) {
-      if (!(std::abs(products[i][k] - (i == k ? 1.0 : 0.0)) < rounding)) return false;
-    }
-  }
-  return true;
-}
+/// Whether the columns are orthonormal, up to rounding.
+bool are_directions(const glm::dmat3& axes) { return orthonormality_error(axes) < 1e-3; }
 
 /// Throws Error(bad_input) if the value's number is not between 0 and that of `last`.
 template <typename Enum>

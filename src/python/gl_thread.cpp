@@ -17,8 +17,7 @@ void GlThread::check_process() {
   if (!in_its_process()) {
     fail(
         "a Renderer was opened before this process was forked, which OpenGL does not survive: start "
-        "processes "
-        "by multiprocessing's method 'spawn'");
+        "processes by multiprocessing's method 'spawn'");
   }
 }
 

@@ -77,18 +77,19 @@ void FrameBuffers::upload(const FramePlan& plan, bool uses_measured) {
   region_rows.reserve(sizeof(glm::uvec2));  // bound even in programs that never read it
   if (plan.draws_regions()) region_rows.upload(plan.region_rows);
   const bool by_depth = plan.settings.transmittance == TRANSMITTANCE_DEPTH;
-  std::vector<float> tables = plan.settings.depth_table.bounds;
+  std::vector<float> tables;
+  if (by_depth) tables = plan.settings.depth_table.bounds;
   std::vector<shared::View> of_instances;
   for (const InstancePlace& place : plan.instances) {
     const DepthTable& own = place.depth_table;
     for (const shared::View& view : plan.views) {
       shared::View& seen = of_instances.emplace_back(view_of_instance(view, place));
-      if (own.bounds.empty()) continue;
+      if (!by_depth || own.bounds.empty()) continue;
       seen.table_far = static_cast<float>(own.far * place.scale);
       seen.table_first = static_cast<std::uint32_t>(tables.size());
       seen.table_bins = static_cast<std::uint32_t>(own.bounds.size());
     }
-    tables.insert(tables.end(), own.bounds.begin(), own.bounds.end());
+    if (by_depth) tables.insert(tables.end(), own.bounds.begin(), own.bounds.end());
   }
   if (!of_instances.empty()) instance_views.upload(of_instances);
   if (!by_depth) return;

@@ -55,8 +55,7 @@ void Frame::place(std::vector<Instance> instances) {
     if (model->model().scaffold && (instances.size() > 1 || !place.is_plain())) {
       fail(
           "a Scaffold-GS model is drawn alone, where it was trained: its networks make Gaussians for an eye "
-          "of "
-          "its own world");
+          "of its own world");
     }
   }
   std::vector<Drawn> drawn;
@@ -76,7 +75,6 @@ void Frame::place(std::vector<Instance> instances) {
   if (std::ranges::equal(drawn, drawn_, same)) return;  // and what was noted of their uploads holds
   drawn_ = std::move(drawn);
   model_buffers_.clear();  // frees the models that are gone
-  is_placed_anew_ = true;
 }
 
 void Frame::store_submission(std::span<const shared::View> views, const FrameSettings& settings,
@@ -173,20 +171,17 @@ void Frame::begin(PlanRequest request) {
   const DebugOptions& debug = submitted_.debug;
   check(debug, settings);
   if (debug.stand_in && !is_plain()) fail("a stand-in: only for one model in its own world");
-  if (!model_buffers_.empty() && model_buffers_.front()->precision != settings.precision) {
+  if (!model_buffers_.empty() && model_buffers_.front()->precision != settings.precision)
     model_buffers_.clear();  // first, because both precisions may not fit together
-    history_.forget_measured();
-  }
-  bool is_other = std::exchange(is_placed_anew_, false);
+  bool is_other = model_buffers_.empty();
+  std::uint32_t instance_count = 0;
   std::vector<std::shared_ptr<ModelBuffers>> held;
   for (Drawn& drawn : drawn_) {
     held.push_back(drawn.model->buffers_in(settings.precision));
     PlannedModel& model = request.models.emplace_back(planned(drawn.model->model(), drawn.model->size()));
+    model.first_instance = instance_count;
     model.instances = drawn.instances;
-    if (request.models.size() > 1) {
-      const PlannedModel& before = request.models[request.models.size() - 2];
-      model.first_instance = before.first_instance + before.instances;
-    }
+    instance_count += drawn.instances;
     is_other |= std::exchange(drawn.uploads, drawn.model->uploads()) != drawn.model->uploads();
   }
   if (drawn_.empty()) request.models.push_back({.instances = 0});

@@ -190,10 +190,10 @@ class Frame {
   bool is_plain() const { return places_.empty(); }
 
   std::shared_ptr<GpuModel> model_;
-  std::vector<Drawn> drawn_;                                  // each model once
-  std::vector<InstancePlace> places_;                         // FramePlan::instances
-  bool is_placed_anew_ = false;                               // other models than the last frame's
-  std::vector<std::shared_ptr<ModelBuffers>> model_buffers_;  // of drawn_
+  std::vector<Drawn> drawn_;           // each model once
+  std::vector<InstancePlace> places_;  // FramePlan::instances
+  /// Of drawn_; empty until a frame draws these models.
+  std::vector<std::shared_ptr<ModelBuffers>> model_buffers_;
   gl::Dispatcher dispatcher_;
   FrameBuffers buffers_;
   bool is_prepared_ = false;  // prepare() has compiled its programs

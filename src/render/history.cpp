@@ -75,7 +75,7 @@ bool continues(const FramePlan& before, const FramePlan& now, double middle_dept
 }
 
 void FrameHistory::follow(const FramePlan& now) {
-  forget_measured();
+  measured_ = {};
   last_.gaussian_count = now.gaussian_count;
   last_.instances = now.instances;
 }

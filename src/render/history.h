@@ -26,8 +26,6 @@ class FrameHistory {
  public:
   /// The next frame uses no earlier measurements.
   void forget() { last_ = measured_ = {}; }
-  /// The next frame uses no measured transmittance.
-  void forget_measured() { measured_ = {}; }
   /// `now` draws other Gaussians of the same scene: other levels of detail, or other instances.
   void follow(const FramePlan& now);
 

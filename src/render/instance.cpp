@@ -21,16 +21,10 @@ std::optional<InstancePlace> place_of(const glm::dmat4& matrix) {
   InstancePlace place{.translation = glm::dvec3(matrix[3]), .scale = std::cbrt(glm::determinant(linear))};
   if (!(place.scale > 0.0) || !std::isfinite(place.scale)) return std::nullopt;
   place.rotation = linear / place.scale;
-  const glm::dmat3 products = glm::transpose(place.rotation) * place.rotation;
-  for (int i = 0; i < 3; ++i) {
-    for (int k = 0; k < 3; ++k) {
-      if (!(std::abs(products[i][k] - (i == k ? 1.0 : 0.0)) < rounding)) return std::nullopt;
-    }
-  }
-  const bool is_affine =
-      glm::dvec4(matrix[0].w, matrix[1].w, matrix[2].w, matrix[3].w) == glm::dvec4(0, 0, 0, 1);
+  const bool is_rigid = orthonormality_error(place.rotation) < rounding;
+  const bool is_affine = glm::transpose(matrix)[3] == glm::dvec4(0, 0, 0, 1);
   const bool is_finite = std::isfinite(glm::dot(place.translation, place.translation));
-  return is_affine && is_finite ? std::optional(place) : std::nullopt;
+  return is_rigid && is_affine && is_finite ? std::optional(place) : std::nullopt;
 }
 
 shared::View view_of_instance(const shared::View& view, const InstancePlace& place) {

@@ -1,6 +1,8 @@
 #include "scene/axes.h"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "base/error.h"
 #include "base/parallel.h"
@@ -18,8 +20,7 @@ glm::dmat3 world_from_axes(std::string_view letters) {
   if (std::abs(glm::determinant(matrix)) != 1.0) {
     fail(
         "axes '{}': expected three letters for x, y and z, of R or L, U or D, F or B, each pair once, as in "
-        "RDF "
-        "(COLMAP), RUB (OpenGL) or LUF (glTF)",
+        "RDF (COLMAP), RUB (OpenGL) or LUF (glTF)",
         letters);
   }
   return matrix;
@@ -42,6 +43,18 @@ void bring_into_axes(Model& model, std::string_view letters) {
     harmonics.apply(&model.sh[i * values], model.degree);
   };
   parallel_for(model.count(), bring, 2048);
+}
+
+double orthonormality_error(const glm::dmat3& columns) {
+  const glm::dmat3 error = glm::transpose(columns) * columns - glm::dmat3(1.0);
+  double largest = 0.0;
+  for (int i = 0; i < 3; ++i) {
+    for (int k = 0; k < 3; ++k) {
+      if (!std::isfinite(error[i][k])) return std::numeric_limits<double>::infinity();
+      largest = std::max(largest, std::abs(error[i][k]));
+    }
+  }
+  return largest;
 }
 
 glm::dvec3 into_world(const glm::dvec3& point, const ModelAxes& axes) {

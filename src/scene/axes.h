@@ -20,6 +20,10 @@ namespace binosplat {
 /// Error for other letters.
 glm::dmat3 world_from_axes(std::string_view letters);
 
+/// Returns the largest difference of an element of M^T M from the identity's: 0 if the columns of M have
+/// length 1 and right angles; infinite if a number is not finite.
+double orthonormality_error(const glm::dmat3& columns);
+
 /// Convert a point between a model's frame (relative to its origin) and the world.
 glm::dvec3 into_world(const glm::dvec3& point, const ModelAxes& axes);
 glm::dvec3 into_axes(const glm::dvec3& point, const ModelAxes& axes);

@@ -172,8 +172,7 @@ void run(int frames, int shrink, const std::vector<std::string>& models, const s
   bench.layouts(demo.model, head);
   fmt::print(
       "\n| both eyes for a headset | frame alone | then presented | into textures, mean depth | median | "
-      "depths, "
-      "1/4 of the sides | 1/8 | whole | the headset adds |\n|---|---|---|---|---|---|---|---|---|\n");
+      "depths, 1/4 of the sides | 1/8 | whole | the headset adds |\n|---|---|---|---|---|---|---|---|---|\n");
   bench.headset("demo:room", demo.model, head);
   for (const std::string& file : models) {
     const Model model = load_model(file);

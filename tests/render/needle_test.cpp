@@ -84,8 +84,7 @@ TEST(Needles, TheDeterminantOfTheCovarianceWouldNotDo) {
       "precise float det = det_p + low_pass * (dot_precise(width, width) + dot_precise(height, height) + "
       "low_pass);",
       "precise float det = (dot_precise(a, a) + low_pass) * (dot_precise(d, d) + low_pass) - dot_precise(a, "
-      "d) * "
-      "dot_precise(a, d);");
+      "d) * dot_precise(a, d);");
   EXPECT_LT(least_db({}, KERNEL_PX2, 1), 45.0);
 }
 
