@@ -7,7 +7,7 @@ namespace binosplat::render {
 
 namespace {
 
-// Bytes of shared memory that every driver has.
+// Bytes of shared memory that every driver offers.
 constexpr std::int64_t shared_bytes = 32768;
 
 // The anchor cull uses the tiles of 3D Gaussian Splatting.
