@@ -1,5 +1,5 @@
 #pragma once
-// Measures the disparity of a pair of pictures, and whether it is comfortable.
+// Measures the disparity of a stereo pair, and whether it is comfortable.
 
 #include <array>
 #include <optional>
@@ -51,10 +51,11 @@ struct ComfortableRig {
 /// range still exceeds comfortable_degrees, also returns a smaller eye distance. For parallel eyes.
 ComfortableRig comfortable_rig(const DisparityRange& range, const std::array<Camera, 2>& eyes);
 
-/// Returns a distance of the screen in metres for parallel eyes. By default half of the left eye's picture is
-/// nearer. If only one end of the range then exceeds comfortable_degrees, the screen moves towards this end,
-/// until the end is comfortable or the other end would exceed the limit. Rounds to three digits, so that an
-/// option can state the distance. Returns none if no pixel has a finite depth.
+/// Returns a distance of the screen for parallel eyes, in metres of `units_per_metre` world units. By default
+/// half of the left eye's picture is nearer. If only one end of the range then exceeds comfortable_degrees,
+/// the screen moves towards this end, until the end is comfortable or the other end would exceed the limit.
+/// Rounds to three digits, so that an option can state the distance. Returns none if no pixel has a finite
+/// depth.
 std::optional<double> suitable_convergence(const std::array<Camera, 2>& eyes, const Picture& left,
                                            double units_per_metre);
 

@@ -19,11 +19,11 @@ struct Disagreement {
 };
 
 /// The error e of an eye is the approximate minus the exact colour, over black and not clamped. The result is
-/// the mean of (eL(p) - eR(p'))^2 over channels and over the left eye's pixels p. The right picture shows p's
-/// point, at p's exact depth, at the position p'; eR is read bilinearly. A pixel p counts if it has a depth,
-/// p' is inside the right picture, and the right eye sees the point: the right exact depth at the pixel
-/// nearest to p' differs by at most 1 %. The left eye comes first. Throws Error unless all pictures have
-/// their view's size.
+/// the mean of (eL(p) - eR(p'))^2 over channels and over the left eye's pixels p. p' is the position in the
+/// right picture of the scene point that p shows at its exact depth; eR is read bilinearly. A pixel p counts
+/// if it has a depth, p' is inside the right picture, and the right eye sees the point: the right exact depth
+/// at the pixel nearest to p' differs by at most 1 %. The left eye comes first. Throws Error unless all
+/// pictures have their view's size.
 Disagreement disagreement(const std::array<shared::View, 2>& views, std::span<const Picture> exact,
                           std::span<const Picture> approximate);
 

@@ -179,7 +179,7 @@ render::FrameReport FoveatedFrame::finish() {
 void FoveatedFrame::compose(gl::Dispatcher& dispatcher) {
   for (std::size_t k = 0; k < eyes_.size(); ++k) compose_eye(dispatcher, k);
   dispatcher.wait_for_writes();
-  // Lets the caller use the canvases in any way.
+  // All barriers, because the caller may use the canvases in any way.
   if (!to_.empty()) dispatcher.context().gl().MemoryBarrier(GL_ALL_BARRIER_BITS);
 }
 

@@ -23,12 +23,12 @@ using Foveation = binosplat::Foveation;
 /// Throws Error for illegal numbers; `prefix` precedes their names in the text.
 void check(const Foveation& foveation, std::string_view prefix = "");
 
-/// The parts of one eye's picture, px.
+/// The parts of one eye's picture, px. The context has a hole where only the inset is visible.
 struct FoveatedEye {
   glm::uvec2 inset_begin{0}, inset_end{0};  // the exact pixels
   double seam = 0.0;                        // width of the border around the inset
   shared::View context;                     // the context's view, with fewer pixels
-  render::ViewRegion context_region;        // without the hole that only the inset shows
+  render::ViewRegion context_region;        // the drawn part of the context: all but the hole
   render::ViewRegion window;                // the drawn part of the full-size view: inset and seam
 };
 

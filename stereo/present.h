@@ -50,8 +50,8 @@ class Presenter {
   /// right eye in another layout; layout_size() returns the size in px. The picture's top is the texture's
   /// top in OpenGL, t = 1.
   ///
-  /// Colours are display-referred, as trained, and written without conversion by GL_FRAMEBUFFER_SRGB. A
-  /// window shows such values, and a texture of format SRGB8_ALPHA8 holds them. Without a background they are
+  /// Colours are display-referred, as trained, and GL_FRAMEBUFFER_SRGB does not convert them. A window shows
+  /// such values, and a texture of format SRGB8_ALPHA8 holds them. Without a background they are
   /// premultiplied by alpha. All draw buffers of a framebuffer receive the picture; blending, masks and tests
   /// do not affect it. The context's state is restored (gl/state.h), and later reads of the target see the
   /// picture.

@@ -37,11 +37,11 @@ struct Report {
   /// 1 if all views have the same direction and depth, as parallel eyes do.
   std::uint32_t order_groups = 0;
 
-  float tolerance = 0.0f;  // the frame's tolerance; 0: it is exact
+  float tolerance = 0.0f;  // the frame's tolerance; 0: the frame is exact
   /// With Settings::quality: the PSNR in dB of the worst view, from the measurements of this and earlier
   /// frames. Infinite if the pictures are equal.
   double quality = 0.0;
-  bool quality_is_estimate = false;  // it was measured on a part of this frame, and may be some dB off
+  bool quality_is_estimate = false;  // `quality` was measured on a part of this frame, and may be some dB off
   int attempts = 0;                  // drawings until the quality was reached
   int redrawn = 0;                   // drawings that were repeated because a buffer was too small
   int programs_made = 0;             // shaders that were compiled for the frame, or loaded from the cache
@@ -55,7 +55,7 @@ struct Report {
   /// `separate`, a target that needs a copy, and frames that measure their error for a quality. The renderer
   /// blends such pictures into its own buffer, and copies them from there.
   bool in_place = false;
-  /// OpenGL errors that the caller's own commands left before the frame began. They do not stop it.
+  /// OpenGL errors that the caller's own commands left before the frame began. They do not stop the frame.
   std::vector<std::uint32_t> callers_errors = {};
 };
 

@@ -14,7 +14,7 @@ namespace binosplat {
 enum class Threshold {
   exact,       // if its alpha is below 1/255 in the whole tile, as 3D Gaussian Splatting blends
   squared,     // if the squared error in the tile stays below the tolerance, in px * squared colour
-  peripheral,  // if all that it loses in the view stays below the tolerance, in alpha * px^2 (AdaGScale)
+  peripheral,  // if its loss in the whole view stays below the tolerance, in alpha * px^2 (AdaGScale)
 };
 
 /// The source of the upper bound of a Gaussian's transmittance, which a Threshold assumes.
@@ -49,9 +49,9 @@ enum class Projection {
 /// The precision of the model and the frames in the GPU's memory.
 enum class Precision {
   full,  // 32 bits
-  half,  // mostly 16 bits: half the memory, at 60 dB or more from full. On NVIDIA's GPUs since Turing, exact
-         // frames without depths and meshes take 0.84 to 0.89 of the time, others 0.95; elsewhere the time
-         // hardly changes
+  half,  // mostly 16 bits: half the memory, at least 60 dB against full precision. On NVIDIA's GPUs since
+         // Turing, exact frames without depths and meshes take 0.84 to 0.89 of the time of full precision,
+         // and other frames 0.95. On other GPUs the time hardly changes
 };
 
 /// The depth of a pixel, if more than half of it is covered.

@@ -13,7 +13,7 @@ struct SplatStream::Impl {
   std::shared_ptr<Stream> stream;  // not null
   gl::Context* context = nullptr;  // the renderer's context; null without a renderer
   int precision = 0;               // the renderer's PRECISION_
-  bool is_drawn = false;           // a submitted, unfinished frame draws it
+  bool is_drawn = false;           // a submitted, unfinished frame draws the stream
 };
 
 }  // namespace binosplat

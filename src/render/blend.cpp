@@ -34,8 +34,8 @@ BlendProgram program_for(const gl::Context& context, const FramePlan& plan, cons
 }
 
 // Whether a tile may be 42 degrees wide. A splat is visible up to 69 degrees from its direction
-// (docs/method.md 2.2). So in such a tile one ray may show a splat that is over 90 degrees from another ray,
-// and behind it.
+// (docs/method.md 2.2). So such a tile may show a splat along one ray while the splat lies behind another
+// ray, over 90 degrees away.
 bool has_broad_tiles(const FramePlan& plan) {
   return std::ranges::any_of(plan.views, [&](const shared::View& view) {
     return std::min(view.lens.x, view.lens.y) < 2.0f * static_cast<float>(plan.settings.tile_size);
@@ -119,7 +119,7 @@ void blend(gl::Dispatcher& dispatcher, const FramePlan& plan, bool measures, dou
 void blend_debug_view(gl::Dispatcher& dispatcher, const FramePlan& plan, int what, FrameBuffers& buffers) {
   buffers.pictures.debug_values.reserve(plan.pixel_count * 4);
   buffers.pictures.debug_transmittance.reserve(4);  // bound by all debug views, read by one
-  if (what == SHOW_TRANSMITTANCE) {                 // needs max(T), measured first
+  if (what == SHOW_TRANSMITTANCE) {                 // shows max(T), which is measured first
     buffers.pictures.debug_transmittance.reserve_zeros(std::int64_t{buffers.slots} * plan.view_count() * 4);
     run(dispatcher, plan, buffers, {.measure = MEASURE_TRANSMITTANCE, .debug_view = SHOW_VISIBLE},
         buffers.pictures.debug_transmittance);

@@ -101,8 +101,7 @@ struct FrameBuffers {
     gl::Buffer slab_tiles;        // uint by (slab, tile of its list): sort_split.comp
 
     // The lists that the blend reads:
-    gl::Buffer
-        tile_ranges;  // uvec2 by tile: begin and end in tile_values; TILES_ALL: only at a view's first tile
+    gl::Buffer tile_ranges;  // uvec2 by tile: begin, end in tile_values; TILES_ALL: at a view's first tile
     gl::Buffer tile_values;  // uint: indices of splats
     gl::Buffer long_lists;   // tiles with more than LONG_LIST pairs
   } lists;

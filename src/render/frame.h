@@ -36,7 +36,7 @@ struct FrameReport {
   std::uint64_t pairs = 0;            // Gaussian-tile pairs over all views, including the probe's
   std::uint64_t supertile_pairs = 0;  // sorted entries: splat-supertile pairs; two eyes may share an entry
   std::uint32_t order_groups = 0;     // 1 for parallel eyes
-  int attempts = 0;                   // with settings.quality: drawings until the frame reached it
+  int attempts = 0;                   // with settings.quality: drawings until the frame reached the quality
   int redrawn = 0;                    // drawings that were repeated because a buffer was too small
   std::vector<gl::StageTime> stages;  // GPU times, summed over attempts, without drawings that overflowed
   double total_ms = 0;                // sum of `stages`
@@ -133,7 +133,7 @@ class Frame {
   }
 
   /// The measurements of the last frame in its view `v`, in index order. Empty if the frame did not measure
-  /// (FrameReport), with place(), and after a reload of the model.
+  /// (FrameReport), for placed instances, and after a reload of the model.
   std::vector<MeasuredGaussian> read_measured(std::uint32_t v) const;
 
   /// A debug view of the last frame, SHOW_ALPHAS to SHOW_MEDIAN_DEPTH of shared/axes.h: one image of one

@@ -106,8 +106,8 @@ void add_view(FramePlan& plan, shared::View view, const ViewRegion& region,
   plan.views.push_back(view);
 }
 
-// For parallel views, the second eye's offset in columns of supertiles of objects at this depth. A negative
-// offset wraps around, so the result is from 0 to the number of columns.
+// Returns the disparity of objects at this depth in two parallel views, in columns of supertiles. A negative
+// disparity wraps around, so the result lies from 0 up to the number of columns.
 std::uint32_t disparity(const shared::View& first, const shared::View& second, int tile, double depth) {
   if (!(depth > 0.0)) return 0;
   const auto across = static_cast<int>((first.tiles_x + SUPERTILE_SIDE - 1) / SUPERTILE_SIDE);
@@ -150,7 +150,8 @@ int FramePlan::depth() const {
 }
 
 // Lists are sorted by z, or by the distance from `centre`. By the triangle inequality, a splat's distance
-// from an eye differs from its distance from `centre` by at most `farthest`.
+// from an eye differs from its distance from `centre` by at most `farthest`, and the distances of two splats
+// by twice that.
 float FramePlan::depth_slack() const {
   if (perspective.order == ORDER_DEPTH && perspective.projection == PROJECTION_AFFINE) return 0.0f;
   if (perspective.order != ORDER_DISTANCE || perspective.projection != PROJECTION_TANGENT)

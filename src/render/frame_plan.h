@@ -124,10 +124,9 @@ struct PlanRequest {
   CallersTextures textures;
 };
 
-/// Lets the two eyes of each head, views 2k and 2k + 1, share lists (supertiles.glsl), if possible. The eyes
-/// must have equal depths, focal lengths and grid sizes, and entries must have enough bits for `slots`
-/// Gaussians. Shifts the second eye's grid by the disparity at `middle_depth`, in world units; 0 or less: no
-/// shift.
+/// Lets eye pairs, views 2k and 2k + 1, share lists (supertiles.glsl), if possible. The eyes of a pair must
+/// have equal depths, focal lengths and grid sizes, and entries must have enough bits for `slots` Gaussians.
+/// Shifts the second eye's grid by the disparity at `middle_depth`, in world units; 0 or less: no shift.
 void share_lists(FramePlan& plan, std::int64_t slots, double middle_depth);
 
 /// Makes the plan for `size` instead of model.count(), because the model in memory may have changed since its

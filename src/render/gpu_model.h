@@ -70,7 +70,7 @@ class GpuModel {
   /// The model's size at its last upload. Frames use it, because the model may have changed since.
   const ModelSize& size() const { return size_; }
 
-  /// Returns the model in that precision, and uploads it if no frame holds it. The buffers stay on the GPU as
+  /// Returns the model in `precision`, and uploads it if no frame holds it. The buffers stay on the GPU as
   /// long as a frame holds them. The last requested precision also stays, until a reload while frames hold
   /// only the other precision. Throws as the constructor does.
   std::shared_ptr<ModelBuffers> buffers_in(int precision);

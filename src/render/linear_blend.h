@@ -27,8 +27,8 @@ class LinearBlend {
   /// The Gaussians that the view draws, in index order; each has a column in W.
   const std::vector<DrawnGaussian>& drawn() const { return drawn_; }
 
-  /// Sets the picture to W c. `colours` has one colour per element of drawn(), also negative ones. Throws
-  /// Error(out_of_memory) if lists of splats are too long for the driver, as does transposed().
+  /// Sets the picture to W c. `colours` has one colour per element of drawn(); colours may be negative.
+  /// Throws Error(out_of_memory) if lists of splats are too long for the driver, as does transposed().
   void set_colours(std::span<const glm::vec3> colours);
 
   /// Replaces the picture: one vec4 per pixel of the view, rows from the top.

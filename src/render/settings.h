@@ -66,8 +66,8 @@ void check(const FrameSettings& settings, std::string_view prefix = "");
 /// each eye. Keeps order, projection, anchor_cull and tile_size of `settings`.
 FrameSettings exact_of(const FrameSettings& settings);
 
-/// The legal range of a quality, dB. Below it no picture remains; above it a picture of 8 bits is the exact
-/// one.
+/// The legal range of a quality, dB. Below this range no picture remains; above it, a picture of 8 bits
+/// equals the exact one.
 constexpr double quality_least = 10.0, quality_most = 100.0;
 
 /// The same as check() for settings that a user chose, each of which must have an effect. Also throws for a

@@ -59,7 +59,7 @@ void blend_visibility(gl::Dispatcher& dispatcher, const FramePlan& plan, FrameBu
 /// Throws Error(out_of_memory) if the driver truncated a list of splats.
 void throw_if_truncated(const gl::Context& context, const shared::Counters& counters);
 
-/// Stores the frame's measurements for the next one. Does nothing in a frame that does not measure.
+/// Stores the frame's measurements for the next frame. Does nothing in a frame that does not measure.
 void store_measured(gl::Dispatcher& dispatcher, const FramePlan& plan, bool measures, FrameBuffers& buffers);
 
 /// Sums the squared error in the probe's tiles. Does nothing without a probe.

@@ -31,7 +31,7 @@ constexpr double surprise = 2.7;
 constexpr double deviation = 0.12;
 constexpr double share_max = 64.0;
 constexpr double small_most = 1024.0;  // tiles
-// Maximum number of attempts at a frame. The last attempt is exact. The last three accept a quality that is
+// Maximum number of attempts at a frame. The last attempt is exact; the last three accept a quality that is
 // too good.
 constexpr int attempts_max = 8;
 // The largest factors by which the tolerance rises and falls from one frame to the next, and between
@@ -46,7 +46,8 @@ constexpr double tolerance_min = 1e-9, tolerance_max = 1e9;
 constexpr double followed = 3.5, unnoticed = 0.25;
 
 // Smaller pictures have smaller Gaussians, which need a smaller tolerance. With `squared` and `last`, fox
-// needed 0.148 at a focal length of 690 px and 0.027 at 160 px: it falls faster than in proportion.
+// needed 0.148 at a focal length of 690 px and 0.027 at 160 px, so the tolerance falls faster than in
+// proportion.
 double careful_tolerance_at_40_db(const FrameSettings& s, double focal) {
   return threshold_rules[s.th].careful_tolerance * std::pow(std::min(1.0, focal / 700.0), 1.75);
 }
@@ -133,7 +134,7 @@ float ToleranceControl::next_tolerance() {
   return static_cast<float>(tolerance_);
 }
 
-// The tolerance for a frame that follows another frame.
+// The tolerance of a frame without a cut, from the error of the frames before.
 double ToleranceControl::followed_tolerance(double target) const {
   const double error = worst();
   if (error <= 0.0) return tolerance_ * step_up;

@@ -141,7 +141,7 @@ class Viewer {
   std::optional<FrameBudget> budget_;
   std::optional<XrTime> last_;               // display time of the last step of `walk_`
   XrTime first_shown_ = 0, last_shown_ = 0;  // display times of drawn frames; 0: none yet
-  std::vector<double> times_;                // ms
+  std::vector<double> times_;                // GPU time of each frame, ms
   bool tracked_ = true, leaving_ = false;
 };
 

@@ -15,7 +15,8 @@ struct Swapchain {
   Swapchain(const Session& session, std::int64_t format, const glm::ivec2& wanted,
             XrSwapchainUsageFlags usage, XrSwapchainUsageFlags more = 0);
 
-  /// Waits until the runtime has read a texture, and returns its name. Call release() before the frame ends.
+  /// Waits until the runtime has read a texture, and returns the texture's name. Call release() before the
+  /// frame ends.
   std::uint32_t acquire() const;
   void release() const { XR(ReleaseSwapchainImage, handle.get(), nullptr); }
 
@@ -73,7 +74,7 @@ class Projection {
 /// Converts a pose to the library's eye.
 Eye eye_of(const XrPosef& pose, const XrFovf& fov = {});
 
-/// The gaze of each eye, for Foveation::gaze, clamped to slightly within its picture.
+/// The gaze of each eye, for Foveation::gaze, clamped to slightly inside the eye's picture.
 std::vector<glm::dvec2> gaze_of(const XrPosef& gaze, std::span<const XrView> located);
 
 }  // namespace binosplat::xr

@@ -44,7 +44,7 @@ Placement start_of(Placement eyes, bool on_floor, const Eye* head) {
   if (on_floor) eyes.origin -= eyes_above_floor * eyes.units_per_metre * eyes.axes[1];
   if (head == nullptr) return eyes;
   const glm::dvec3 ahead = heading_of(*head);
-  const double turned = std::atan2(-ahead.x, -ahead.z);  // to the left
+  const double turned = std::atan2(-ahead.x, -ahead.z);  // radians to the left
   eyes.axes *= glm::mat3_cast(glm::angleAxis(-turned, glm::dvec3(0.0, 1.0, 0.0)));
   eyes.origin -= eyes.units_per_metre * (eyes.axes * glm::dvec3(head->position.x, 0.0, head->position.z));
   return eyes;
