@@ -10,8 +10,8 @@ namespace binosplat::stereo {
 
 namespace {
 
-// A face of the cube around the eye, or the half of it in front of the eye. `low` and `high` are its corners
-// in focal lengths from the middle of the whole face.
+// A face of the cube around the eye. Side faces are cut to the half in front of the eye. `low` and `high` are
+// the corners in focal lengths from the middle of the uncut face.
 struct Face {
   glm::dmat3 axes;  // columns: right, down, forward, in the eye's frame
   glm::dvec2 low, high;

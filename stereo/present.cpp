@@ -53,7 +53,8 @@ InPlace in_place(const gl::Functions& gl, const Target& target, bool over_target
   gl.GetTextureParameteriv(target.texture, GL_TEXTURE_IMMUTABLE_FORMAT, &immutable);
   gl.GetTextureLevelParameteriv(target.texture, target.level, GL_TEXTURE_INTERNAL_FORMAT, &format);
   if (kind != GL_TEXTURE_2D && kind != GL_TEXTURE_2D_ARRAY) return {};
-  // Display values are the plain bytes of an sRGB texture. Only immutable textures have views.
+  // An sRGB texture stores display values as plain bytes, which a texture view of format RGBA8 writes. Only
+  // immutable textures have views.
   if (format == GL_SRGB8_ALPHA8 && immutable != 0) return {GL_RGBA8, true};
   constexpr std::array formats = {GL_RGBA8, GL_RGB10_A2, GL_RGBA16, GL_RGBA16F, GL_RGBA32F};
   if (std::find(formats.begin(), formats.end(), format) == formats.end()) return {};

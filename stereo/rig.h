@@ -41,9 +41,9 @@ struct EyePair {
 /// no shift brings their pictures onto one plane.
 EyePair make_rig(const Camera& head, const RigSettings& settings);
 
-/// The rig of two given cameras. They are parallel if no element of their rotations differs by more than
-/// 1e-9, and their positions along z by at most 1e-9 times the farther camera's distance from the origin.
-/// Both then use the left one's z axis.
+/// The rig of two given cameras. They are parallel if the elements of their rotations differ by at most 1e-9,
+/// and their positions along z by at most 1e-9 times the farther camera's distance from the origin. Parallel
+/// cameras both use the left one's z axis.
 EyePair rig_from_eyes(const Camera& left, const Camera& right, double near_plane = near_default);
 
 /// The views of a head's two or more cameras. Views parallel to the first share its z axis (row_z). All share

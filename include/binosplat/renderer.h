@@ -166,8 +166,8 @@ class Renderer {
   /// in its units. Calibration::settings() and SplatStream::begin_frame() take such a placement.
   Placement in_model(const Placement& placement, const Instance& instance) const;
 
-  /// Compiles every shader that frames of these settings and targets may need, so that no submit() has to.
-  /// Call it while the user waits anyway. It also allocates the frames' memory, and writes nothing into
+  /// Compiles every shader that frames of these settings and targets may need, so that no submit() compiles
+  /// any. Call it while the user waits anyway. It also allocates the frames' memory, and writes nothing into
   /// targets. The next frame uses no earlier measurements. For a stream it also compiles the shaders of
   /// begin_frame(). Throws as submit() does.
   void prepare(std::span<const View> views, const Placement& placement, const Settings& settings = {});

@@ -80,7 +80,7 @@ class FrameBudget {
 
   Effort effort() const;
 
-  /// Records that a frame of this effort took `ms` (Report::gpu_ms); the display shows a frame every
+  /// Records that a frame of the present effort took `ms` (Report::gpu_ms); the display shows a frame every
   /// `period_ms`. Ignores the first frame after each change, which may compile shaders. Lowers the effort
   /// after one frame that exceeds the budget by a third, or after two frames in a row that exceed it. Raises
   /// the effort after a second of frames that take less than three quarters of the budget. If a raise was too

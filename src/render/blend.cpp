@@ -21,7 +21,7 @@ struct BlendTask {
   float scale = 0.0f;          // of the transposed blend
 };
 
-constexpr double large_tiles = 8.0;  // tiles per splat from which short lists use large_splats
+constexpr double large_tiles = 8.0;  // with more tiles per splat, short lists use large_splats
 
 // Measurements other than visibility, and TILES_ALL with its one list per view, use the general program. A
 // software renderer runs several invocations as one, and spends its time on loads; it has a program for this.

@@ -149,9 +149,8 @@ int FramePlan::depth() const {
   return !canvases.empty() && depth_rows == 2 ? DEPTH_MEDIAN_OF_TWO_ROWS : DEPTH_MEDIAN;
 }
 
-// Lists are sorted by z, or by the distance from `centre`. By the triangle inequality, a splat's distance
-// from an eye differs from its distance from `centre` by at most `farthest`, and the distances of two splats
-// by twice that.
+// Lists are sorted by z, or by the distance from `centre`. No eye is farther than `farthest` from `centre`.
+// So, measured from an eye, a splat may be nearer than its predecessor by up to twice `farthest`.
 float FramePlan::depth_slack() const {
   if (perspective.order == ORDER_DEPTH && perspective.projection == PROJECTION_AFFINE) return 0.0f;
   if (perspective.order != ORDER_DISTANCE || perspective.projection != PROJECTION_TANGENT)

@@ -118,7 +118,7 @@ Perspective perspective_of(const FrameSettings& settings, const Model& model);
 /// Inputs of a plan besides settings.
 struct PlanRequest {
   std::vector<PlannedModel> models;      // empty: the model that make_plan() is given
-  std::vector<InstancePlace> instances;  // as FramePlan's
+  std::vector<InstancePlace> instances;  // as FramePlan::instances
   std::optional<Probe> probe;
   std::optional<float> tolerance;  // replaces the settings' tolerance
   CallersTextures textures;

@@ -79,12 +79,13 @@ class GpuModel {
   /// are large enough. Frames compare uploads() to detect that their measurements belong to another state.
   /// Throws as the constructor does.
   void reload();
-  /// Uploads only these places (ModelBuffers::upload).
+  /// Uploads only the places in `changes` (ModelBuffers::upload).
   void reload(const ModelChunks::Changes& changes);
   int uploads() const { return uploads_; }
 
  private:
-  /// Calls upload() for each precision that is in use, and drops the other.
+  /// Calls upload() for each precision on the GPU. First frees the last requested precision if frames hold
+  /// only the other one.
   template <typename Upload>
   void upload_all(const Upload& upload);
 

@@ -18,7 +18,7 @@ double middle_depth(const shared::Counters& counters);
 
 /// Whether a frame uses measured transmittance, and whether it measures.
 struct Measuring {
-  bool uses_last = false;  // an earlier frame measured for this one
+  bool uses_last = false;  // an earlier frame measured for this frame
   bool measures = false;   // this frame measures for later frames
 };
 

@@ -57,7 +57,7 @@ MemoryNeeds memory_needs(const FramePlan& plan) {
 
 void Capacity::start(const FramePlan& plan, const DebugOptions& debug) {
   Capacity first = starting_room(plan);
-  // A stand-in is not run again with larger buffers, so its buffers have room for all Gaussians.
+  // A stand-in reports no overflow, so its buffers have room for all Gaussians.
   if (debug.stand_in) first.slots = plan.gaussian_room;
   slots = debug.slots > 0 ? debug.slots : std::max(slots, first.slots);
   if (debug.pairs > 0) {

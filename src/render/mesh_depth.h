@@ -16,7 +16,7 @@ struct MeshDepth {
   int level = 0;
   int x = 0, y = 0;    // px, the lower left corner of the picture in the texture
   glm::ivec2 size{0};  // px, of the whole picture
-  /// z = 1 / (scale d + offset), or z = scale d.
+  /// True: z = 1 / (scale d + offset). False: z = scale d.
   bool is_inverse = true;
   float scale = 1.0f, offset = 0.0f;
   float nothing = 1.0f;  // the d of a pixel without a mesh; with z = scale d, a d of at most 0 means the same

@@ -46,7 +46,7 @@ struct FrameSettings {
   /// ORDER_ and PROJECTION_ of shared/axes.h; none: as the model was trained. `distance` with `tangent` makes
   /// pictures that do not depend on the direction of the head.
   std::optional<int> order, projection;
-  bool anchor_cull = true;  // for Scaffold-GS: as trained; false: also decodes anchors out of view
+  bool anchor_cull = true;  // for Scaffold-GS; true: culls anchors as trained; false: decodes all
   /// px: 8, 16 or 32. Exact pictures do not depend on it.
   int tile_size = TILE_SIZE_DEFAULT;
   int precision = PRECISION_FULL;  // PRECISION_, for the model, the splats and the results

@@ -21,7 +21,8 @@ void project(gl::Dispatcher& dispatcher, const FramePlan& plan, std::uint32_t gr
 /// Writes (depth, splat) into the list of every supertile that a splat of any view touches, in any order.
 void bin(gl::Dispatcher& dispatcher, const FramePlan& plan, const Capacity& capacity, FrameBuffers& buffers);
 
-/// Sorts each supertile's list front to back, ties by the Gaussian's index, and makes the lists of its tiles.
+/// Sorts each supertile's list front to back, and splats of equal depth by the Gaussian's index. Makes the
+/// lists of the supertile's tiles.
 void sort(gl::Dispatcher& dispatcher, const FramePlan& plan, const Capacity& capacity, FrameBuffers& buffers);
 
 /// Blends the pictures. If the frame `measures` the transmittance, also stores the largest T of each splat.

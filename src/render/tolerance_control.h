@@ -84,7 +84,7 @@ class ToleranceControl {
   std::size_t views_held_ = 0;  // number of views that keep the quality in the frame after a cut
   bool is_final_ = true;
   bool exact_ = false;  // whether this attempt is exact
-  int attempts_ = 0;    // at this frame, for this view's tolerance
+  int attempts_ = 0;    // at this frame, for the probed view
   Bracket bracket_;
   std::uint32_t next_ = 0;    // index of the next probe, one per frame
   Probe probe_;               // of this attempt

@@ -18,8 +18,8 @@ struct BlendColumns {
 };
 
 // These numbers were the fastest (README.md). In the approximate blend, blend_blocks.comp has blocks of
-// `height` rows (docs/method.md 5.2). In the exact blend, longer columns would cost llvmpipe more of the
-// 65,535 rounds that it allows for all loops. blend.comp needs an `ahead` that divides BLEND_UNROLL.
+// `height` rows (docs/method.md 5.2). In the exact blend, longer columns would need more rounds of loops;
+// llvmpipe allows 65,535 rounds of all loops together. blend.comp needs an `ahead` that divides BLEND_UNROLL.
 BlendColumns columns_of(const BlendVariant& v) {
   if (v.debug_view) return {1, 1};
   if (v.program == BlendProgram::software) return {v.long_lists && v.approximate ? 4 : 8, 2};
