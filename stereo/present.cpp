@@ -58,7 +58,7 @@ InPlace in_place(const gl::Functions& gl, const Target& target, bool over_target
   if (format == GL_SRGB8_ALPHA8 && immutable != 0) return {GL_RGBA8, true};
   constexpr std::array formats = {GL_RGBA8, GL_RGB10_A2, GL_RGBA16, GL_RGBA16F, GL_RGBA32F};
   if (std::find(formats.begin(), formats.end(), format) == formats.end()) return {};
-  // A texture that is also read needs a view, which ignores the owner's swizzles and levels.
+  // A texture that is also read needs a texture view, which ignores the owner's swizzles and levels.
   if (over_target && immutable == 0) return {};
   return {static_cast<GLenum>(format), over_target};
 }
@@ -243,7 +243,7 @@ Canvases Presenter::canvases(std::span<const Target> targets, const Background& 
   gl::Context& context = dispatcher_.context();
   if (targets.size() > MAX_CANVASES) return {};
   for (const Target& target : targets) {
-    framebuffer_of(target);  // throws if it cannot be drawn into
+    framebuffer_of(target);  // throws if the target cannot be drawn into
     if (target.texture != 0)
       context.gl().NamedFramebufferTexture(target_framebuffer_, GL_COLOR_ATTACHMENT0, 0, 0);
     const Target texture = texture_behind(context.gl(), target);

@@ -22,7 +22,7 @@ struct DrawnBuffers {
         indices(context, "indices of the Gaussians drawn") {}
 
   gl::Buffer arguments;  // DispatchArguments
-  gl::Buffer indices;    // Gaussian by slot
+  gl::Buffer indices;    // uint by slot: the index of a Gaussian
 };
 
 /// A Gaussian that a view draws, and its slot.
