@@ -1,5 +1,5 @@
-// Measures a GPU's peak rates (src/lab/floors.h): FLOOR_BYTES copies, FLOOR_ALPHAS blends splats from shared memory
-// into four pixels an invocation, FLOOR_FMAS multiplies and adds. Only the time matters.
+// The work by which src/lab/floors.h measures a GPU's peak rates. FLOOR_BYTES copies. FLOOR_ALPHAS blends splats from
+// shared memory into four pixels per invocation. FLOOR_FMAS multiplies and adds. The results are not used.
 #include "shared/axes.h"
 #include "shared/limits.h"
 #include "shared/grid.glsl"
