@@ -2,7 +2,7 @@
 // pairs and stay background. One exception: a splat that reaches across the hole is also paired with the tiles in it.
 #if REGIONS
 
-layout(std430, binding = 13) readonly buffer RegionRows { uvec2 region_rows[]; };  // range, hole: two columns of 16 bits
+layout(std430, binding = 13) readonly buffer RegionRows { uvec2 region_rows[]; };  // range, hole: columns of 16 bits
 
 uvec2 span_of(uint columns) { return uvec2(columns & 0xFFFFu, columns >> 16); }
 

@@ -150,8 +150,8 @@ void Context::read_limits() {
   functions_.GetQueryiv(GL_TIMESTAMP, GL_QUERY_COUNTER_BITS, &bits);
   limits_.timestamp_bits = static_cast<std::uint32_t>(bits);
   functions_.GetInteger64v(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &limits_.storage_block_bytes);
-  // llvmpipe reports 128 MiB, but bindings of up to 2 GiB work; reads beyond crash. Other drivers are limited
-  // to 2 GiB, too.
+  // llvmpipe reports 128 MiB, but bindings of up to 2 GiB work; reads beyond 2 GiB crash. Other drivers are
+  // limited to 2 GiB, too.
   const std::int64_t two_gib = std::int64_t{1} << 31;
   limits_.storage_block_bytes = software() ? two_gib : std::min(limits_.storage_block_bytes, two_gib);
 }

@@ -19,10 +19,10 @@ class GpuClock {
  public:
   using Uuid = std::array<std::uint8_t, 16>;
 
-  /// For the GPU of the context.
+  /// Reads the clock rate of the context's GPU.
   explicit GpuClock(const Context& context);
-  /// For the GPU with this UUID; without a UUID, for the only GPU that the library reports. `library` names
-  /// NVIDIA's library.
+  /// Reads the clock rate of the GPU with this UUID; without a UUID, of the only GPU that the library
+  /// reports. `library` is the file name of NVIDIA's library.
   GpuClock(const char* library, const std::optional<Uuid>& uuid);
   ~GpuClock();
   GpuClock(const GpuClock&) = delete;

@@ -18,8 +18,8 @@ using Defines = std::vector<std::pair<std::string, std::string>>;
 
 /// The complete source of a shader: `#version`, the defines, then the file. The first `#include "path below
 /// shaders/"` of a file is replaced by the file, further ones by nothing. {NAME} in a path is replaced by the
-/// value of the define NAME. `#line` numbers files in the order of `files_`, with which with_file_names()
-/// converts a driver's messages. If `folder` is not empty, files are read from there instead of the embedded
+/// value of the define NAME. `#line` gives a file as its index in `files_`, so that with_file_names() can
+/// convert a driver's messages. If `folder` is not empty, files are read from there instead of the embedded
 /// text.
 class ShaderSource {
  public:

@@ -12,9 +12,10 @@ namespace binosplat::gl {
 struct Number {
   const char* name;
   std::uint64_t value;
-  std::uint64_t count;         // number of legal values, from 0 on
-  const char* word = nullptr;  // name of the value: the #define NAME_NAME, which selects included files
-  bool is_real = false;        // value: the bits of a float; 0 keeps the shader's default
+  std::uint64_t count;  // number of legal values, from 0 on
+  /// The name of the value, or null. The shader gets it as <name>_NAME, and includes files by it.
+  const char* word = nullptr;
+  bool is_real = false;  // `value` is the bits of a float; 0 keeps the shader's default
 };
 
 /// Combines the numbers of a variant into a key that is unique among the shader's variants. All variants of a
