@@ -2,7 +2,7 @@
 #extension GL_KHR_shader_subgroup_basic : require
 #extension GL_KHR_shader_subgroup_arithmetic : require
 #endif
-// Stage 2, bin: makes the entries of wide splats and of splats in many supertiles, which project.comp listed in
+// Stage 2, bin: makes the entries of wide splats and of splats in many supertiles, which project.comp has listed in
 // `large`. A work group takes LARGE_EACH splats. It divides the rows of all its splats among its invocations, so that
 // none waits for the largest splat. Entries go behind the room for bin.comp's entries, in any order. Each has its
 // supertile instead of a depth.
@@ -18,7 +18,7 @@ layout(local_size_x = THREADS) in;
 
 layout(std430, binding = 0) readonly buffer Views { View views[]; };
 layout(std430, binding = 1) buffer FrameCounters { Counters counters; };
-layout(std430, binding = 2) readonly buffer Large { uint large[]; };   // splats, for both eyes if they share lists
+layout(std430, binding = 2) readonly buffer Large { uint large[]; };   // splats; one for both eyes if they share lists
 layout(std430, binding = 3) buffer Coverages { uint coverages[]; };     // by splat: supertiles.glsl
 layout(std430, binding = 4) buffer SupertileCounts { uint supertile_counts[]; };
 layout(std430, binding = 5) writeonly buffer Entries { uvec2 entries[]; };

@@ -16,7 +16,7 @@ void debug_stage(uint at, uint splat) {
   if (shown == SHOW_TRANSMITTANCE) batch_transmittance[at] = uintBitsToFloat(measured[splat]);
 }
 
-// Counts alphas, including that of the splat before which the pixel stops.
+// Counts evaluated alphas, including the alpha of the splat before which the pixel stops.
 void debug_evaluated(uint at) {
   if (shown == SHOW_ALPHAS && !is_done(0u) && at < size) debug_value += 1.0;
 }
@@ -28,7 +28,7 @@ void debug_blended(uint at, float weight) {
     debug_value = depth_of(at);
 }
 
-// A block ended dark: scales the value like the colour.
+// Scales the value as the colour is scaled when a block ends dark.
 void debug_scale(float scale) {
   if (shown == SHOW_TRANSMITTANCE) debug_value *= scale;
 }

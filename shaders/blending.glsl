@@ -7,11 +7,11 @@
 //   DEPTH       the depth in z_sums, DEPTH_ of shared/limits.h (blend_depth.glsl)
 //   CANVASES    1: pictures of views go into images, and z_sums are depths (blend_pictures.glsl)
 //   MEASURE     the value measured of each splat, MEASURE_ of shared/limits.h (blend_measure.glsl)
-//   DEBUG_VIEW  1: writes a value per pixel instead of the picture (blend_debug.glsl)
+//   DEBUG_VIEW  1: writes a value for each pixel instead of the picture (blend_debug.glsl)
 //   PLAIN       1: all views are whole, and there is no probe: the code has fewer branches, and a GPU blends 5 % faster
-//   BROAD       1: with the tangent projection, a tile may show wide splats that lie behind some of its rays
+//   BROAD       1: with the tangent projection, a wide splat may be in front of some rays of a tile and behind others
 //   MESH_DEPTH  1: splats behind the caller's meshes are not drawn (blend_mesh.glsl)
-//   ANY         whether a condition holds in any invocation that runs with this one
+//   ANY         whether a condition holds in any invocation of the subgroup; by default, in this invocation
 //   REACHES     whether a splat of the batch reaches this invocation's block; by default all do
 #include "lists.glsl"
 #include "shared/axes.h"
@@ -32,7 +32,7 @@
 #define ANY(condition) (condition)
 #endif
 
-// Whether pixels are blended in packed halves (blend_halves.glsl): only in variants that most frames use.
+// Whether pixels are blended in packed halves (blend_halves.glsl). Only the variants that most frames use do so.
 #ifndef MAY_PACK
 #define MAY_PACK 0
 #endif

@@ -10,7 +10,7 @@
 #include "canvases.glsl"
 #endif
 
-// Pixels of a work group: an invocation draws one in every THREAD_ROWS rows.
+// Pixels of a work group. An invocation draws a pixel in every THREAD_ROWS-th row.
 #define COLUMNS COMPOSE_COLUMNS
 #define ROWS COMPOSE_ROWS
 #define THREAD_ROWS 8u

@@ -4,7 +4,7 @@
 
 // A unit quaternion has 20 bits for each component except the largest, which follows from the others. With fp16's 11
 // bits a needle that is thousands of pixels long would visibly point in a wrong direction.
-#define ROTATION_STEPS 741454.0  // steps per 1: 2^19 - 1 at sqrt(1/2)
+#define ROTATION_STEPS 741454.0  // steps per unit: sqrt(1/2), the largest stored component, has 2^19 - 1
 
 vec4 unpack_rotation(uvec2 bits) {
   uvec3 steps = uvec3(bits.x, bits.x >> 20 | bits.y << 12, bits.y >> 8) & 0xFFFFFu;

@@ -8,7 +8,7 @@
 layout(local_size_x = THREADS) in;
 
 layout(std430, binding = 0) readonly buffer Colours { vec4 colours[]; };  // C, and the final T; by pixel
-layout(std430, binding = 1) buffer Finest { vec4 finest[]; };             // likewise
+layout(std430, binding = 1) buffer Finest { vec4 finest[]; };             // the same, of the finest level
 layout(std430, binding = 2) buffer Backgrounds { vec4 backgrounds[]; };   // by square: mean colour, contrast squared
 layout(std430, binding = 3) writeonly buffer Sums { float sums_of_squares[]; };
 #if FINEST

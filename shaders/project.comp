@@ -3,8 +3,8 @@
 #extension GL_KHR_shader_subgroup_ballot : require
 #extension GL_KHR_shader_subgroup_shuffle : require
 #endif
-// Stage 1, project, last part: computes the splats of the Gaussians that project_cull.comp found, in index order. One
-// invocation per Gaussian, for all views of the order group.
+// Stage 1, project, last part: computes the splats of the Gaussians that project_cull.comp has selected, in index
+// order. One invocation per Gaussian, for all views of the order group.
 #include "shared/limits.h"
 #include "shared/types.h"
 #include "shared/grid.glsl"

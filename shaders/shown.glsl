@@ -1,4 +1,4 @@
-// Converts a blended pixel (C, and T left) to an image's final value.
+// Converts a blended pixel (C, and the final T) to an image's final value.
 #include "shared/types.h"
 
 vec4 over(vec4 colour, vec3 background, bool keeps_alpha) {

@@ -12,7 +12,7 @@ uniform uint rounds;     // number of rounds that split lists
 
 bool is_slab(uvec4 item) { return (item.w & SLAB) != 0u; }
 
-// The kind of a list. If it is too long, `round` is the first to split it.
+// The kind of a list. If it is too long to sort at once, `round` will split it.
 uint kind_of(uint length, uint round) {
   if (length > SORT_MOST) return SORT_LONG_KIND + round;
   return uint(max(findMSB(length - 1u) + 1 - findMSB(32u * SORT_EACH), 0));

@@ -35,7 +35,7 @@ layout(std430, binding = 2) readonly buffer Entries { uvec2 entries[]; };
 #endif
 layout(std430, binding = 3) readonly buffer SlabTiles { uint slab_tiles[]; };     // sort_split.comp
 layout(std430, binding = 5) writeonly buffer TileValues { uint tile_values[]; };  // splats
-uniform uint kind;  // of lists
+uniform uint kind;  // the kind of the lists to sort
 #define ITEMS_BINDING 8
 #include "sort_items.glsl"
 #include "tile_ranges.glsl"  // bindings 6 and 7

@@ -64,9 +64,9 @@ struct View {
 struct FrameParameters {
   vec4 background;       // rgb, display-referred; w: unused
   float tolerance;       // of the threshold rule: K or kappa
-  uint has_bounds;       // 0: no earlier frame measured bounds for this one
+  uint has_bounds;       // 1: an earlier frame has measured bounds for this frame
   uint view_count;       // including the probe
-  uint requested_views;  // views without the probe, which comes next and is exact
+  uint requested_views;  // number of views without the probe, which is the last view
   uint probed_view;      // index of the view that the probe samples; MAX_VIEWS without one
   uint gaussian_count;   // of all instances
   uint slots;            // room for splats in each view
@@ -108,7 +108,7 @@ struct Splat {
 
 // The canvas of a view: the place of its final picture in the caller's image.
 struct Canvas {
-  uint left;  // px, its lower left corner
+  uint left;  // px: the picture's lower left corner in the image
   uint bottom;
   uint steps;        // largest value of an integer colour channel, such as 255; 0: float channels
   uint keeps_alpha;  // 1: no background, but premultiplied alpha
@@ -175,7 +175,7 @@ struct Counters {
 #define OVERFLOW_ORDER 1u
 #define OVERFLOW_LARGE 2u  // entries of large splats
 #define OVERFLOW_PAIRS 4u
-#define OVERFLOW_COUNT 8u      // too many entries to count
+#define OVERFLOW_COUNT 8u      // more entries than a word can count
 #define OVERFLOW_UNSORTED 15u  // mask of all bits above: with any of them the lists are invalid
 #define OVERFLOW_TILE_PAIRS 16u
 #define OVERFLOW_ROUNDS 32u  // a list needs more rounds of splitting

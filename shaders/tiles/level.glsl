@@ -8,7 +8,7 @@ struct Outline {
   bool is_wide; // a wide splat: mean and conic are the splat's
 };
 
-// From the ellipse's middle to a pixel's centre.
+// The vector from the ellipse's middle to a pixel's centre.
 vec2 from_middle(Outline outline, vec2 pixel) {
   precise vec2 d = pixel - outline.mean - outline.aside;
   return d;

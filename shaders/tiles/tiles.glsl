@@ -1,8 +1,8 @@
 // The tiles of a view with which a splat makes pairs (docs/method.md 4). A tile test is a file in this folder with
 // three functions:
-//   uvec4 tile_box(Outline, View)                      columns [x, z) and rows [y, w) that it can touch, in the grid
-//   uint likely_row(Outline, View, uvec4 box)          the row of the box most likely to have such a tile
-//   uvec2 tile_row(Outline, View, uvec4 box, uint row) columns [x, y) that it does touch in one of those rows
+//   uvec4 tile_box(Outline, View)                      columns [x, z) and rows [y, w) of tiles that it may touch
+//   uint likely_row(Outline, View, uvec4 box)          the row of the box in which it most likely touches a tile
+//   uvec2 tile_row(Outline, View, uvec4 box, uint row) columns [x, y) of the tiles that it touches in a row of the box
 // `project` and `bin` call the same code and must agree to the bit, so everything that decides is `precise`.
 #include "shared/axes.h"
 #include "shared/limits.h"
@@ -94,7 +94,7 @@ uvec2 paired_columns(uvec2 columns, View view, uint row) {
 #endif
 }
 
-// The rows of supertiles of a box of tiles: [x, y).
+// The rows [x, y) of supertiles that a box of tiles intersects.
 uvec2 supertile_rows(uvec4 box) {
   return box.w <= box.y ? uvec2(0u) : uvec2(box.y / uint(SUPERTILE_SIDE), (box.w - 1u) / uint(SUPERTILE_SIDE) + 1u);
 }

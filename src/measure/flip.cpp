@@ -210,7 +210,7 @@ SeenByEye see(const Image& image, double ppd) {
 /// The colour difference from 0 to 1. Differences below p_c of the largest one use the range up to p_t.
 double colour_difference(const glm::dvec3& a, const glm::dvec3& b) {
   static const double largest =
-      std::pow(hyab(hunt_lab({0.0, 1.0, 0.0}), hunt_lab({0.0, 0.0, 1.0})), q_c);  // green and blue
+      std::pow(hyab(hunt_lab({0.0, 1.0, 0.0}), hunt_lab({0.0, 0.0, 1.0})), q_c);  // between green and blue
   const double difference = std::pow(hyab(a, b), q_c), usual = p_c * largest;
   if (difference < usual) return p_t / usual * difference;
   return p_t + (difference - usual) / (largest - usual) * (1.0 - p_t);

@@ -28,7 +28,7 @@ constexpr double ring_ends[] = {0, 5, 10, 20, 30, 40, 60, 90};
 
 // The rays of a picture, and the gaze.
 struct GazeRays {
-  double focal, x, y;  // px
+  double focal, x, y;  // px; (x, y) is the picture's middle
   glm::dvec3 gaze;
 
   GazeRays(const Image& picture, const Gaze& at)

@@ -179,7 +179,7 @@ Supertiles entries_of(const FramePlan& plan, const std::vector<Slots>& slots,
     std::vector<std::uint32_t> rank(plan.gaussian_count);
     for (std::uint32_t r = 0; r < order.size(); ++r) rank[order[r]] = r;
     const std::uint32_t side = SUPERTILE_SIDE, across = (lists.tiles_x + side - 1) / side;
-    std::vector<std::map<std::uint32_t, Entry>> found(plan.supertiles_of(v));  // by rank
+    std::vector<std::map<std::uint32_t, Entry>> found(plan.supertiles_of(v));  // by place in `order`
     for (std::uint32_t t = 0; t + 1 < lists.begin.size(); ++t) {
       const std::uint32_t x = t % lists.tiles_x, y = t / lists.tiles_x;
       for (std::uint32_t k = lists.begin[t]; k < lists.begin[t + 1]; ++k) {

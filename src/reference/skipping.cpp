@@ -66,7 +66,7 @@ void for_each_pixel(const BlendInput& input, std::size_t begin, std::size_t end,
   }
 }
 
-// Distance bins: below 1 px, then two an octave.
+// Distance bins: one below 1 px, then two per octave.
 constexpr std::size_t distance_bins = 23;
 
 std::size_t distance_bin(double px) {

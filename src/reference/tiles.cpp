@@ -51,7 +51,8 @@ OrientedBox oriented_box(const Splat& splat) {
   const double half_difference = 0.5 * (c.x - c.z);
   const double spread = std::hypot(half_difference, c.y);
   const double lambda1 = 0.5 * (c.x + c.z) + spread, lambda2 = splat.det / lambda1;
-  // The angle of the longer axis is half that of (half_difference, xy); arbitrary for a circle.
+  // The angle of the longer axis is half the angle of the vector (half_difference, c.y); arbitrary for a
+  // circle.
   const double angle = 0.5 * std::atan2(c.y, half_difference);
   return {{std::cos(angle), std::sin(angle)}, 3.0 * std::sqrt(lambda1), 3.0 * std::sqrt(lambda2)};
 }
