@@ -1,5 +1,5 @@
 // Stage 2, bin: the entries of splats in few supertiles, for a view, or for both eyes if they share lists. Without
-// FILLS it counts the entries of each supertile; with FILLS it writes the entries to their supertile's place. A work
+// FILLS it counts the entries of each supertile; with FILLS it writes the entries to their supertiles' places. A work
 // group first counts the entries of BIN_BLOCK splats in shared memory: neighbouring splats are often in one supertile,
 // and global atomics would wait for each other. A dispatch covers SUPERTILES supertiles from first_supertile on.
 #include "shared/limits.h"
@@ -22,7 +22,7 @@ layout(std430, binding = 6) readonly buffer FrameCounters { Counters counters; }
 layout(std430, binding = 3) buffer SupertileCounts { uint supertile_counts[]; };
 #endif
 uniform uint view_index;       // the view, or the first of two that share lists
-uniform uint first_supertile;  // in the view
+uniform uint first_supertile;  // of this dispatch, in the view
 
 #define EACH (BIN_BLOCK / BIN_THREADS)
 shared uint bins[SUPERTILES];  // by supertile: the number of entries; then, with FILLS, the place of the next entry

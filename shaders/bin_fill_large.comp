@@ -12,7 +12,7 @@ layout(std430, binding = 0) readonly buffer Views { View views[]; };
 layout(std430, binding = 1) readonly buffer FrameCounters { Counters counters; };
 layout(std430, binding = 3) buffer SupertileEnds { uint supertile_ends[]; };  // by supertile: place of the next entry
 layout(std430, binding = 4) readonly buffer Depths { uint depths[]; };        // (order group, slot): slots.glsl
-layout(std430, binding = 5) buffer Entries { uvec2 entries[]; };              // depth, entry; before: supertile, entry
+layout(std430, binding = 5) buffer Entries { uvec2 entries[]; };  // moved: (depth, entry); before: (supertile, entry)
 uniform uint first_entry;
 
 void main() {

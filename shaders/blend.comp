@@ -81,7 +81,8 @@ void main() {
 #if APPROXIMATE
       bool is_test_step = (batch - begin) % APPROXIMATE_STEP == 0u;
       if (is_test_step && (bright & dark_bit) == 0u) end_dark();
-      if (MEASURE != MEASURE_TRANSMITTANCE && is_test_step && bright == 0u) break;  // others measure splats behind
+      // Measurements of transmittance also need the splats behind dark blocks.
+      if (MEASURE != MEASURE_TRANSMITTANCE && is_test_step && bright == 0u) break;
 #endif
     }
     load(batch + gl_LocalInvocationIndex);

@@ -11,7 +11,7 @@ float finished(uint p) { return transmittance_left(p); }
 
 #else
 
-float dark_transmittance;  // a block is dark once no T exceeds this; 0: never
+float dark_transmittance;  // a block is dark once no pixel's T exceeds this; 0: never
 bool ended_dark = false;   // the block ended because it is dark
 #if MEASURE == MEASURE_TRANSMITTANCE
 vec4 dark_colour[COLUMN];  // final colour and Z; the loop continues only to measure

@@ -37,7 +37,7 @@ void write_debug_view(uint to, float left, uint list) {
   if (shown == SHOW_PAIRS) debug_value = float(list);
   if (shown == SHOW_TRANSMITTANCE) debug_value = left < 1.0 ? debug_value / (1.0 - left) : -1.0;
 #if PROJECTION == PROJECTION_TANGENT
-  if (shown == SHOW_MEDIAN_DEPTH) debug_value *= sqrt(nearness[0]);  // distance to view z
+  if (shown == SHOW_MEDIAN_DEPTH) debug_value *= sqrt(nearness[0]);  // converts a distance to view z
 #endif
   debug_values[to] = debug_value;
 }

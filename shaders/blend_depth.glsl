@@ -31,7 +31,7 @@ void write_depth(uint to, uint p, float left) {
 #if DEPTH != DEPTH_NONE
   precise float behind = mesh_behind(p);
 #if PROJECTION == PROJECTION_TANGENT && DEPTH != DEPTH_VISIBILITY
-  precise float along = z_sum[p] * sqrt(nearness[p]);  // distances to view z
+  precise float along = z_sum[p] * sqrt(nearness[p]);  // converts distances to view z
   z_sum[p] = along;
   behind *= sqrt(nearness[p]);
 #endif

@@ -63,8 +63,8 @@ shared vec4 batch_colour[BATCH];  // rgb, depth
 float depth_of(uint at) { return batch_colour[at].a; }
 #endif
 
-// Values of the tile. With the tangent projection registers are scarce, so they are in shared memory, and all
-// invocations write the same values.
+// Values of the tile. With the tangent projection registers are scarce, so these values are in shared memory, and all
+// invocations write the same.
 #if PROJECTION == PROJECTION_TANGENT
 #define OF_TILE shared
 OF_TILE float farthest;  // the largest |d|^2 of the tile's rays

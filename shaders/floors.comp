@@ -9,7 +9,7 @@ layout(local_size_x = THREADS) in;
 layout(std430, binding = 0) readonly buffer From { vec4 from[]; };
 layout(std430, binding = 1) writeonly buffer To { vec4 to[]; };
 uniform uint count;   // number of vec4s
-uniform uint rounds;  // of 256 splats, or of 256 multiply-adds in each of four lanes
+uniform uint rounds;  // a round has 256 splats, or 256 multiply-adds in each of four lanes
 
 #if FLOOR == FLOOR_ALPHAS
 shared vec4 splats[512];  // mean, opacity; conic

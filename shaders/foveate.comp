@@ -28,7 +28,7 @@ uniform uint first;  // the picture's first pixel in its buffer
 #endif
 uniform uint width, height;  // of the picture, px
 uniform uint context_first, context_width, context_height;
-uniform uint window_first, window_left, window_top, window_width;  // left, top: in the picture
+uniform uint window_first, window_left, window_top, window_width;  // left, top: px in the picture
 uniform uint inset_left, inset_top, inset_right, inset_bottom;     // in the picture
 uniform uint seam;            // bits of a float, px
 uniform uint step_x, step_y;  // bits of floats: px of the context per px of the picture
@@ -67,7 +67,7 @@ vec2 in_context(uvec2 pixel) {
 }
 
 // Interpolates the context by Catmull-Rom, first along rows, then along columns. Along each axis the result is clamped
-// to the range of the two nearest pixels. Otherwise edges would have bright and dark seams, and T could leave [0, 1].
+// to the range of the two nearest pixels. Otherwise edges would have bright and dark fringes, and T could leave [0, 1].
 // filter_rows() interpolates the context's rows at the x of the group's pixels.
 void filter_rows(uvec2 corner, int base_y, int count) {
   uvec2 self = gl_LocalInvocationID.xy;

@@ -12,7 +12,7 @@ layout(std430, binding = 1) readonly buffer Gaussians { Gaussian gaussians[]; };
 #define GAUSSIAN(at) gaussians[at]
 #endif
 #include "frame.glsl"
-uniform uint page_first;      // the page's first Gaussian among all of the frame
+uniform uint page_first;      // index of the page's first Gaussian in the frame
 uniform uint page_count;      // Gaussians of the page in one instance
 uniform uint instance_first;  // the model's first instance
 uniform uint instance_count;

@@ -1,7 +1,7 @@
-// Measures the error of a level of detail for each chunk. A picture shows each chunk in a separate square. With FINEST,
-// the picture is of the finest level: stores it, and computes each chunk's mean colour and visibility. Otherwise
-// computes the squared difference from the finest level, over a background similar to the chunk's mean colour. One work
-// group per square; the sums are reproducible.
+// Measures the error of a level of detail for each chunk. A picture shows each chunk in a separate square. With FINEST
+// the picture shows the finest level: the shader stores it, and computes each chunk's mean colour and visibility.
+// Otherwise it computes the squared difference from the finest level, over a background similar to the chunk's mean
+// colour. One work group per square; the sums are reproducible.
 #include "shared/limits.h"
 #include "shared/grid.glsl"
 

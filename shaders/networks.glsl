@@ -20,7 +20,7 @@
 // For each network: QUADS of biases, then the weights of direction and distance by hidden unit. Then for each row of
 // the second layers: QUADS of weights, and its bias.
 layout(std430, binding = 3) readonly buffer Networks { vec4 networks[]; };
-// (resolution of the feature, network, quad, anchor); without a feature bank there is one resolution.
+// By resolution of the feature, network, quad and anchor. Without a feature bank there is one resolution.
 layout(std430, binding = 4) readonly buffer ViewFree { vec4 view_free[]; };
 
 uniform uint anchor_count;  // of the page

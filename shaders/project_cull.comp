@@ -1,5 +1,5 @@
-// Stage 1, project, first part: stores the sort key of each Gaussian that any view of an order group draws. EYES
-// invocations for each Gaussian of the model's page and each instance; they divide the views among themselves.
+// Stage 1, project, first part: stores the sort key of each Gaussian that any view of an order group draws. Each
+// Gaussian of the model's page has EYES invocations per instance, which divide the views among themselves.
 #include "shared/limits.h"
 #include "shared/types.h"
 #include "shared/grid.glsl"

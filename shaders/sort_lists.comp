@@ -249,7 +249,7 @@ void sort_list(uvec4 item) {
   }
   uint begin = 0u;  // of a list that is no slab; requested early, because the atomic takes long
   if (self == 0u && !is_slab(item)) begin = atomicAdd(counters.tile_pairs, of_tiles);
-  uint bin[EACH];  // first place; count from bit 16 on
+  uint bin[EACH];  // first place in the bin; its count from bit 16 on
   for (uint i = 0u; i < EACH; ++i) {
     bin[i] = 0u;
     if (i * THREADS + self >= length) continue;

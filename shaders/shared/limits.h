@@ -68,9 +68,9 @@
 #define SORT_GROUPS_MOST 65535u
 #define NO_SECOND 0x7FFFFFFFu  // see sort_items.glsl
 
-// A measured transmittance of a Gaussian (docs/method.md 5) is at least BOUND_FLOOR, because Th is divided by
-// it. While Th drops a Gaussian, each frame that measures multiplies its bound by BOUND_AGEING, up to 1,
-// until it is drawn and measured again.
+// A measured transmittance of a Gaussian (docs/method.md 5) is at least BOUND_FLOOR, because the formulas of
+// Th divide by it. While Th drops a Gaussian, each frame that measures multiplies its bound by BOUND_AGEING,
+// up to 1, until it is drawn and measured again.
 #define BOUND_FLOOR 0.01
 #define BOUND_AGEING 1.25
 // The value that a blend measures of each splat, over the pixels that it reaches: none, the largest

@@ -21,8 +21,8 @@ using vec4 = glm::vec4;
 
 // One view's camera. World to eye is v = rows * (p - anchor) + translation; the rows are the camera's axes (x
 // right, y down, z forward) in the world. The anchor is a point near the eyes; all views of a rig have the
-// same. Subtracting the anchor first keeps fp32 exact far from the origin. Views with equal anchors and equal
-// rows z have bit-equal depths.
+// same anchor. Subtracting the anchor first keeps fp32 exact far from the origin. Views with equal anchors
+// and equal rows z have bit-equal depths.
 //
 // Each instance of a model has its own copy of every view (render/instance.h). In this copy the world is the
 // model's, and the rows have the length `eye.w`.
@@ -51,7 +51,7 @@ struct View {
   uint top;               // (with a window, `width` and `height` are its size)
   uint first_row;         // index of the view's first row of tiles in region_rows (tiles/regions.glsl)
   float tolerance_share;  // ratio of the view's tolerance to the frame's
-  float low_pass_share;   // share of the low-pass that does not reduce opacity (projection.glsl)
+  float low_pass_share;   // share of the low-pass that widens splats at unchanged opacity (projection.glsl)
   uint lists_shift;  // second eye in shared lists: the list's column of supertiles minus the view's; else 0
   float opacity;     // of the instance: multiplies each Gaussian's opacity
   float table_far;   // the end of the table by depth, in the frame's world units
@@ -70,7 +70,7 @@ struct FrameParameters {
   uint probed_view;      // index of the view that the probe samples; MAX_VIEWS without one
   uint gaussian_count;   // of all instances
   uint slots;            // room for splats in each view
-  uint tile_count;       // SUPERTILE_SIDE^2 per supertile, over all views
+  uint tile_count;       // tiles of all supertiles of all views, also tiles outside the pictures
   uint list_per_view;    // 1 with --tiles all: all tiles of a view share one list
   uint has_regions;      // 1: some views have regions
   // For Scaffold-GS:
@@ -160,11 +160,11 @@ struct Counters {
   uint probe_squares_high;
   uint long_lists;  // tiles with more than LONG_LIST pairs, and the group counts of their dispatch
   uint long_x, long_y, long_z;
-  uint large_splats;  // splats for bin_large.comp; in shared lists one for both eyes. Then its group counts
+  uint large_splats;  // splats for bin_large.comp (in shared lists one for both eyes), and its group counts
   uint large_x, large_y, large_z;
   uint large_entries;  // entries of large splats, and the group counts of the dispatch that moves them
   uint fill_x, fill_y, fill_z;
-  uint slabs;  // made of lists that are too long to sort at once
+  uint slabs;  // number of slabs into which too long lists are split
   uint unused_1, unused_2, unused_3;
   ListCount lists[SORT_KINDS];
 };

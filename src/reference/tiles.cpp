@@ -101,7 +101,7 @@ bool ellipse_meets(const Splat& splat, const glm::dvec2& low, const glm::dvec2& 
   const glm::dvec3& c = splat.conic;
   const double rho = reach(splat);
   const glm::dvec2 nearest =
-      glm::clamp(glm::dvec2(0.0), low, high);  // 0 along an axis if no side across it faces the mean
+      glm::clamp(glm::dvec2(0.0), low, high);  // x is 0 if low.x <= 0 <= high.x; y likewise
   const auto within_reach = [&](double dx, double dy) {
     const double xx = c.x * dx * dx, xy = 2 * c.y * dx * dy, yy = c.z * dy * dy;
     // The margin prevents that rounding drops a tile in which the blend, with other rounding, reaches Th.
@@ -167,7 +167,7 @@ bool cone_meets_rectangle(const Splat& splat, const glm::dvec2& low, const glm::
 }
 
 /// The range of x, slightly too large, in which a wide splat is visible in the rows from y = `low` to `high`,
-/// in pixel coordinates (docs/method.md 4). If it is invisible, the range is empty: its begin exceeds its
+/// in pixel coordinates (docs/method.md 4). If the splat is invisible, the begin of the range exceeds its
 /// end.
 glm::dvec2 wide_across(const Splat& splat, double low, double high, const shared::View& view) {
   const Cone& cone = *splat.cone;
