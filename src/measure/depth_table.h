@@ -30,8 +30,8 @@ class DepthTableMeasurement {
   /// Draws the view exactly, and measures max(T) of each Gaussian on the GPU.
   void add(render::Frame& frame, const shared::View& view);
 
-  /// Returns for each bin the largest max(T) of its Gaussians over all views. Bins are of view depth, with
-  /// PROJECTION_TANGENT of distance. An empty bin has 0, for which frames use 1.
+  /// Returns for each bin the largest max(T) of its Gaussians over all views. Bins divide the view depth, or
+  /// the distance with PROJECTION_TANGENT. An empty bin has 0, for which frames use 1.
   DepthTable table() const;
 
  private:

@@ -13,12 +13,12 @@ namespace binosplat::measure {
 struct Gaze {
   double x = 0;            // px from the picture's left edge
   double y = 0;            // px from the upper edge
-  double fov_degrees = 0;  // field of view of the picture's width; the axis is at its centre
+  double fov_degrees = 0;  // horizontal field of view; the view's axis meets the middle
 };
 
 /// The contrast threshold: the smallest visible contrast of a grating of `cycles_per_degree` at
-/// `eccentricity_degrees` from the gaze. Above 1 the grating is invisible. Source: Geisler and Perry, A
-/// real-time foveated multiresolution system for low-bandwidth video communication, 1998.
+/// `eccentricity_degrees` from the gaze. If it is above 1, the grating is invisible. Source: Geisler and
+/// Perry, A real-time foveated multiresolution system for low-bandwidth video communication, 1998.
 double contrast_threshold(double cycles_per_degree, double eccentricity_degrees);
 
 /// The pixels between two angles from the gaze.

@@ -10,8 +10,8 @@ namespace binosplat::measure {
 
 namespace {
 
-/// An evaluation: the logarithm of a tolerance, of which PSNR is nearly a linear function, and the value
-/// minus the aim.
+/// An evaluation: the logarithm of a tolerance, and the value minus the aim. PSNR is nearly linear in the
+/// logarithm.
 struct Asked {
   double log_tolerance, above;
 };

@@ -22,8 +22,8 @@ struct FoundTolerance {
   int evaluations = 0;
 };
 
-/// Searches the largest tolerance that holds: its value is at least `target`. `value(tolerance)` should
-/// decrease with the tolerance, such as PSNR or the number of remaining pairs, but need not be monotonic. The
+/// Searches the largest tolerance that holds: its value is at least `target`. `value(tolerance)`, such as a
+/// PSNR or the number of remaining pairs, should decrease with the tolerance, but need not be monotonic. The
 /// result holds, and no larger evaluated tolerance does. If no tolerance above 0 holds, returns 0, which must
 /// hold (else: Error). For several views, pass the mean or the minimum of their values.
 FoundTolerance find_tolerance(const std::function<double(double tolerance)>& value, double target,

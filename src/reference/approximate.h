@@ -1,6 +1,6 @@
 #pragma once
-// The further approximations of the rule `squared` (docs/method.md 5.2): the blend skips splats in blocks of
-// a tile, and ends dark blocks.
+// The approximations of the rule `squared` in the blend (docs/method.md 5.2): it skips splats in blocks of a
+// tile, and ends dark blocks.
 
 #include "reference/project.h"
 #include "shared/axes.h"

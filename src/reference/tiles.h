@@ -25,8 +25,8 @@ std::vector<std::uint32_t> depth_order(const std::vector<Splat>& splats);
 struct TileLists {
   std::uint32_t tiles_x = 0;
   std::uint32_t tiles_y = 0;
-  std::uint32_t tile_size = 0;       // px
-  std::vector<std::uint32_t> begin;  // by tile, and the end: tile t has gaussians [begin[t], begin[t + 1])
+  std::uint32_t tile_size = 0;           // px
+  std::vector<std::uint32_t> begin;      // tiles + 1 elements: tile t has gaussians [begin[t], begin[t + 1])
   std::vector<std::uint32_t> gaussians;  // indices into the model
   Approximation approximation;           // with which blend() blends the lists
   /// The view z of a mesh in each pixel, row by row. Splats beyond it are not drawn. Empty: no mesh.
