@@ -8,7 +8,7 @@
 //   CANVASES    1: pictures of views go into images, and z_sums are depths (blend_pictures.glsl)
 //   MEASURE     the value measured of each splat, MEASURE_ of shared/limits.h (blend_measure.glsl)
 //   DEBUG_VIEW  1: writes a value for each pixel instead of the picture (blend_debug.glsl)
-//   PLAIN       1: all views are whole, and there is no probe: the code has fewer branches, and a GPU blends 5 % faster
+//   PLAIN       1: views are drawn completely, and there is no probe: with fewer branches a GPU blends 5 % faster
 //   BROAD       1: with the tangent projection, a wide splat may be in front of some rays of a tile and behind others
 //   MESH_DEPTH  1: splats behind the caller's meshes are not drawn (blend_mesh.glsl)
 //   ANY         whether a condition holds in any invocation of the subgroup; by default, in this invocation

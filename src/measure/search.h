@@ -9,8 +9,9 @@ struct ToleranceSearch {
   double start = 1.0;      // first tolerance; above 0
   double smallest = 1e-9;  // limits of the search
   double largest = 1e9;
-  // The search ends at a value that exceeds the target by at most `within`, after `evaluations`, or at a step
-  // of the value: between tolerances that hold and fail, whose logarithms differ by less than `narrowest`.
+  // The search ends if a value exceeds the target by at most `within`, or after `evaluations` evaluations. It
+  // also ends if the logarithms of a tolerance that holds and of one that fails differ by less than
+  // `narrowest`: the value has a step between the two.
   double within = 0.01;
   double narrowest = 1e-6;
   int evaluations = 40;
