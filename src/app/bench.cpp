@@ -26,7 +26,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Warns before a long run on the CPU, with its expected time.
+/// Logs the expected time of a long run on the CPU.
 void tell_work(double seconds) {
   constexpr double worth_telling_s = 60.0;
   if (seconds < worth_telling_s) return;

@@ -32,12 +32,12 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// Options that name outputs, older results (which new ones may replace), or views.
+// Options whose values are no inputs: outputs, older results (which new results may replace), and views.
 constexpr const char* no_inputs[] = {"--output", "--json", "--difference", "--compare",
                                      "--merge",  "--view", "--test",       "--held-back"};
 
 constexpr double gaussian_bytes = 400.0;         // memory per Gaussian while a model of degree 3 is read
-constexpr std::uintmax_t cache_room = 64 << 20;  // bytes; shaders take less
+constexpr std::uintmax_t cache_room = 64 << 20;  // bytes that must be free; shaders take less
 
 // Edit distance: insertions, deletions, replacements, and swaps of neighbours.
 std::size_t edits(const std::string& a, const std::string& b) {

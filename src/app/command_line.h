@@ -9,14 +9,15 @@
 
 namespace binosplat::app {
 
-/// Throws Error for an empty argument: in scripts an unset variable.
+/// Throws Error for an empty argument, usually an unset variable of a script.
 void check_arguments(int argc, const char* const* argv);
 
 /// Whether the environment names a display.
 bool has_display();
 
-/// The arguments with the sub-command made explicit. If they begin with a model, adds `view` (with a display
-/// and the preview) or `render` and logs it. Throws Error for a word that is neither command nor model.
+/// Returns the arguments. If they begin with a model, inserts a sub-command before it and logs this: `view`
+/// if there are a display and the preview, else `render`. Throws Error if the first word is neither a
+/// sub-command nor a model.
 std::vector<std::string> with_command(const CLI::App& program, int argc, const char* const* argv);
 
 /// "; did you mean WORD?", or nothing if no word is similar.

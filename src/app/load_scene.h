@@ -23,9 +23,10 @@ void apply_options(const SceneOptions& options, Model& model);
 /// built-in scene.
 std::vector<Camera> built_in_cameras(const SceneOptions& options);
 
-/// Chooses the axes of an spz without --axes, because programs write spz in two frames. Prefers the axes in
-/// which `cameras`, or those beside the model, see it (scene/detected_axes.h), then the file's or the
-/// format's. Logs a choice that the file does not state, and how to change it.
+/// Without --axes, chooses the axes of an spz, because programs write spz with two different axes. Prefers
+/// the axes with which `cameras`, or else the cameras beside the model, see the model
+/// (scene/detected_axes.h). Otherwise takes the file's axes, or else the format's. Logs a choice that the
+/// file does not state, and how to change it.
 void choose_axes(const SceneOptions& options, std::span<const Camera> cameras, Model& model);
 
 /// Reads or makes the model, which may take long, and repeats it by the options. `budget` applies to files

@@ -30,7 +30,7 @@ void check_harmonic_bits(const std::optional<int>& bits, ModelFormat format);
 /// Reads a written model back, with the perspective, low-pass and origin of `model`, which some formats lack.
 Model load_written(const std::filesystem::path& file, const Model& model);
 
-/// A function that writes candidates to a temporary file beside the output, which is never committed.
+/// Returns a function that writes candidates to a temporary file beside the output, and removes the file.
 compact::TrialWriter trial_writer(const std::string& output, ModelFormat format);
 
 /// Writes a model, whose axes must be those of the format (write_model), and reads it back. A signal leaves

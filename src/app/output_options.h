@@ -25,7 +25,7 @@ struct OutputOptions {
   Background background = glm::vec3(0.0f);
   std::optional<int> bits;
   int png_level = 1;                // compression level of libdeflate
-  std::optional<bool> exr_half;     // also writes OpenEXR: half (true) or float
+  std::optional<bool> exr_half;     // if set, also writes OpenEXR: half (true) or float
   std::optional<bool> exr_display;  // display values instead of linear light
   Depth exr_depth = Depth::mean;
   ExrCompression exr_compression = ExrCompression::rle;

@@ -32,7 +32,7 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr double seconds_default = 10.0;
-constexpr double frames_most = 1e6, frame_bytes = 4096.0;  // largest recording; memory of each frame
+constexpr double frames_most = 1e6, frame_bytes = 4096.0;  // limit of a recording; memory of each frame
 constexpr double quality_to_try = 40.0;                    // dB: an error that is hardly visible
 
 struct ProfileOptions : RenderOptions {
@@ -111,7 +111,7 @@ struct Profiled {
   Model loaded;
   lab::ProfileRun run;
   lab::Profile profile;
-  std::vector<shared::View> table_views;  // for the table of --transmittance depth; empty: known
+  std::vector<shared::View> table_views;  // to measure the depth table in; empty: known or not needed
 
   const Model& model() const { return stream ? stream->model() : loaded; }
 };

@@ -32,7 +32,7 @@ std::optional<T> given(bool is, const T& value) {
   return is ? std::optional(value) : std::nullopt;
 }
 
-// Reported dB of a shot. If levels share --quality, they include the levels' loss.
+// Reported dB of a shot. If levels share the error of --quality, the dB include the levels' loss.
 double reported_psnr(const Drawn& drawn) {
   const bool shares = drawn.levels && drawn.levels->predicted_psnr;
   const double frame = drawn.report.quality;

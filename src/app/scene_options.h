@@ -11,7 +11,7 @@
 
 namespace binosplat::app {
 
-/// Whether the name has the form of a built-in scene's, known or not.
+/// Whether the name has the form of a built-in scene's name. The scene need not exist.
 inline bool is_built_in(const std::string& scene) { return scene.starts_with("demo:"); }
 
 struct SceneOptions {
@@ -19,7 +19,7 @@ struct SceneOptions {
 
   std::optional<int> lod;                 // for files with levels of detail
   std::optional<double> gpu_memory;       // MB that chosen levels must fit into; replaces lod
-  std::optional<DetailRequest> detail;    // chooses levels for each view; without `most`
+  std::optional<DetailRequest> detail;    // chooses levels for each view; its `most` is unset
   std::string axes;                       // directions of a file's x, y and z; empty: the format's
   std::optional<std::size_t> appearance;  // for a Scaffold-GS model
 
