@@ -1,4 +1,4 @@
-// binosplat bench: charts speed against accuracy, over views, along frames, turns and levels of detail.
+// binosplat bench: charts speed against accuracy, in views, along motions and turns, and by levels of detail.
 
 #include <fmt/ranges.h>
 

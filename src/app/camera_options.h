@@ -43,7 +43,7 @@ struct CameraOptions {
 /// Adds all options except those of tours and keys (app/tour.h). `options` must outlive parsing.
 void add_camera_options(CLI::App& sub, CameraOptions& options);
 
-// Single options, for commands that take few.
+// Single options, for commands that take only a few.
 CLI::Option* add_size_option(CLI::App& sub, Lens& lens,
                              const char* help = "Pixels of a view, instead of the cameras' own");
 CLI::Option* add_preset_option(CLI::App& sub, Lens& lens, const char* help);

@@ -15,7 +15,7 @@ struct ContextOptions {
   std::string shader_dir;  // empty: the embedded shaders
 };
 
-/// Adds all of them; `options` must outlive parsing.
+/// Adds all options of ContextOptions; `options` must outlive parsing.
 void add_context_options(CLI::App& sub, ContextOptions& options);
 
 /// Adds only --device.

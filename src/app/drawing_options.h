@@ -28,7 +28,7 @@ struct DrawingOptions {
   int frames = 1;  // drawn for each view
 };
 
-/// Adds all of them; `options` must outlive parsing.
+/// Adds all options of DrawingOptions; `options` must outlive parsing.
 void add_drawing_options(CLI::App& sub, DrawingOptions& options);
 
 /// Throws Error for contradicting options.

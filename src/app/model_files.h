@@ -13,8 +13,8 @@
 
 namespace binosplat::app {
 
-/// The format of the output's ending. Throws Error for an unknown ending; it lists the known ones, and
-/// `hint`.
+/// The format of the output's ending. Throws Error for an unknown ending. The message lists the known
+/// endings, and `hint`.
 ModelFormat output_format(const std::string& output, const std::string& hint = "");
 
 /// The file that `scene` names, or the only model in that folder; empty if the folder has none or several.

@@ -44,7 +44,7 @@ inline const CLI::Validator fps_range =
 inline const CLI::Validator quality_range =
     between(render::quality_least, render::quality_most, "decibels from 10 to 100");
 
-/// From 0 to 2^64 - 1. CLI11 itself reads -1 as the largest.
+/// An integer from 0 to 2^64 - 1. CLI11's own parser reads -1 as the largest one.
 inline const CLI::Validator whole_number(
     [](std::string& text) {
       std::uint64_t value = 0;

@@ -41,7 +41,7 @@ struct OutputOptions {
 /// Parses --background: "R,G,B" from 0 to 1, or "none". Throws Error for other text.
 Background parse_background(const std::string& text);
 
-/// Adds all of them; `options` must outlive parsing.
+/// Adds all options of OutputOptions; `options` must outlive parsing.
 void add_output_options(CLI::App& sub, OutputOptions& options);
 
 /// Adds --layout, --show and --background. A window offers no multi-view.

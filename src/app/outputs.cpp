@@ -47,7 +47,7 @@ Notes notes_of(const PictureFile& file, const RenderOptions& render, const Outpu
   return notes;
 }
 
-// The layout of the options, or one that fits the output: a folder, or a file with this ending.
+// The requested layout, or else one that fits the output: a folder, or a file with this ending.
 int layout_of(const RenderOptions& render, bool video, const std::string& ending) {
   const OutputOptions& options = render.output;
   const bool one_picture = render.rig.one_picture(), exr_file = ending == ".exr",

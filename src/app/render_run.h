@@ -67,7 +67,7 @@ struct RenderRun {
   PhotoSource photos = {};
   std::unique_ptr<gl::Context> context = {};   // before its users: destroyed last
   std::unique_ptr<PictureStream> stream = {};  // if levels follow the shots
-  bool heads_turn = false;                     // on a path or in VR180: refines chunks out of view, too
+  bool heads_turn = false;                     // paths, VR180: the stream also refines chunks out of view
   Model loaded = {};                           // the model, if there is no stream
   CameraList list = {};
   double near_plane = 0.0;  // world units

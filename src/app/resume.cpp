@@ -70,7 +70,7 @@ void leave_out_drawn(const fs::path& folder, const ordered_json& run, std::vecto
   const auto is_there = [](const PictureFile& picture) { return fs::exists(picture.name); };
   for (const Shot& shot : shots) {
     // Looks for pictures before the run's file. A run that starts meanwhile writes its file first, so its
-    // pictures are not mistaken for those of no run.
+    // pictures are not mistaken for pictures without a run.
     const auto picture = std::ranges::find_if(shot.files, is_there);
     if (picture == shot.files.end()) continue;
     if (fs::exists(file)) break;

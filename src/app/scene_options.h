@@ -23,7 +23,7 @@ struct SceneOptions {
   std::string axes;                       // directions of a file's x, y and z; empty: the format's
   std::optional<std::size_t> appearance;  // for a Scaffold-GS model
 
-  // For built-in scenes, and for repeated ones.
+  // For built-in scenes and for repeated scenes.
   std::optional<std::uint64_t> seed;
   std::optional<std::size_t> count;  // Gaussians
   std::optional<glm::ivec2> repeat;  // along x and z
@@ -34,10 +34,10 @@ struct SceneOptions {
   std::optional<double> kernel_px2;  // px^2; none: as the file says
 };
 
-/// Adds all of them; `options` must outlive parsing.
+/// Adds all options of SceneOptions; `options` must outlive parsing.
 void add_scene_options(CLI::App& sub, SceneOptions& options);
 
-// Single options, for commands that take few.
+// Single options, for commands that take only a few.
 CLI::Option* add_lod_option(CLI::App& sub, SceneOptions& options,
                             const char* help = "Level of detail of a streamed SOG, 0 the finest");
 CLI::Option* add_axes_option(CLI::App& sub, SceneOptions& options);

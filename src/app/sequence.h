@@ -11,8 +11,8 @@
 
 namespace binosplat::app {
 
-/// The model files if the scene is a folder with several and --fps is set, else empty. Throws Error for
-/// options that need a single model.
+/// The model files if the scene is a folder with several models and --fps is set, else empty. Throws Error
+/// for options that need a single model.
 std::vector<std::filesystem::path> sequence_of(const RenderOptions& options);
 
 /// Assigns the models to the shots in order, and names each shot after its file. A single shot is repeated

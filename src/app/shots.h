@@ -71,7 +71,7 @@ struct CameraList {
 CameraList listed_cameras(const SceneOptions& scene, const CameraOptions& camera, const RigOptions& rig = {},
                           const std::optional<SavedPose>& saved = {});
 
-/// The reason for missing cameras, for errors: none lie beside the model, or those cannot be used.
+/// The reason for missing cameras, for errors: there are none beside the model, or they cannot be used.
 std::string why_no_cameras(const SceneOptions& scene, const SceneHints& hints);
 
 /// The pose that `binosplat view` saved beside the model, if any; logs it.
@@ -118,7 +118,7 @@ std::string free_stem(const std::string& name, std::set<std::string>& taken);
 /// The views of a shot's eyes.
 std::vector<shared::View> views_of(const Shot& shot);
 
-/// The cameras of a shot's eyes in the model's frame.
+/// The cameras of a shot's eyes in the model's axes.
 std::vector<Camera> eyes_in_axes(const Shot& shot, const ModelAxes& axes);
 
 /// Value of --view for all views of a list.
@@ -141,8 +141,9 @@ void check_views(const std::vector<std::string>& views, bool mono, const CameraL
 std::vector<Camera> chosen_cameras(const std::vector<std::string>& views, const Lens& lens,
                                    const CameraList& list, const char* option = "--view");
 
-/// The shots of the named views: NAME, all_views, or none for the first. Paths and cameras made from the
-/// model give all. `near_plane` is in world units; `axes` are the model's. Throws as chosen_cameras() does.
+/// Makes the shots of the named views: of all views for all_views, or of the first view if none is named.
+/// Paths and cameras made from the model always give all. `near_plane` is in world units; `axes` are the
+/// model's. Throws as chosen_cameras() does.
 std::vector<Shot> make_shots(const std::vector<std::string>& views, const Lens& lens, const RigOptions& rig,
                              const CameraList& list, double near_plane, const ModelAxes& axes);
 

@@ -17,8 +17,8 @@ namespace {
 
 constexpr int widths = 2;      // number of pixel widths
 constexpr double wider = 8.0;  // ratio of successive pixel widths
-// Width of the narrowest pixel over the spacing of Gaussians, if they filled a square as wide as the box's
-// diagonal. True spacings are smaller.
+// Ratio of the narrowest pixel's width to the spacing that the Gaussians would have in a square as wide as
+// the box's diagonal. True spacings are smaller.
 constexpr double narrowest = 0.625;
 // px around each chunk, for the low-pass and for Gaussians that extend beyond the box.
 constexpr int margin = 8;

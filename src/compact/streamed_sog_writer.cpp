@@ -27,10 +27,10 @@ namespace {
 
 using nlohmann::ordered_json;
 
-// Ratio of the pixel width for which a level is merged to the level's spacing (stream/choice.h). The spacing
+// Pixel width that a level is merged for, divided by the level's spacing (stream/choice.h). The spacing
 // assumes a square as wide as the box's diagonal; true spacings are smaller.
 constexpr double pixel_share = 0.2;
-// Merges are chosen once for all levels, for pixels as wide as those of this level.
+// The Gaussians to merge are chosen once for all levels, for the pixel width of this level.
 constexpr int merge_level = 3;
 // Number of pictures of many chunks: one for every chunks_a_picture chunks, at most pictures_most in all, but
 // at least one for each joint scene.
@@ -42,7 +42,7 @@ struct Chunk {
   std::span<const std::uint32_t> indices;
   Box box;                    // around one-sigma ellipsoids, with the model's origin added
   ordered_json lods;          // files, ranges and errors of its levels
-  ordered_json pixels, seen;  // of the measured errors
+  ordered_json pixels, seen;  // as in LevelErrors
 
   std::size_t count(int level) const { return ((indices.size() - 1) >> level) + 1; }
   double pixel(int level) const {
@@ -82,7 +82,7 @@ struct Plan {
   std::vector<Chunk> chunks;
   std::vector<Batch> batches;
   std::vector<JointScene> scenes;
-  std::vector<std::string> filenames;         // of all SOGs, by the chunks' file numbers
+  std::vector<std::string> filenames;         // of all SOGs; "file" in Chunk::lods is an index of this list
   std::vector<std::size_t> gaussians, files;  // by level
 };
 

@@ -58,8 +58,8 @@ class TrimBound {
   /// Returns bounded_db() as a loss: smaller is better.
   double loss(const Model& model) { return -sign() * bounded_db(model); }
 
-  /// Measures the model from which the steps start. If the bound is a drop, the steps share the difference of
-  /// the allowed drop and this model's drop.
+  /// Measures the model from which the steps start. If the bound is a drop, the steps share the difference
+  /// between the allowed drop and this model's drop.
   void start_from(const Model& whole) { start_ = bounded_db(whole); }
 
   bool holds(double db, double share) const { return sign() * db >= sign() * bound(share); }

@@ -17,21 +17,21 @@
 namespace binosplat::lab {
 
 struct Axes {
-  std::string name;        // the preset's or the file's
-  int views = 4;           // number of measured views, spread evenly over the scene's cameras
-  int training = 0;        // above 0: measures held-out views, and searches tolerances in this many others
-  int frames = 30;         // timed frames per view and repeat, or moving frames per stretch of a motion
-  int repeats = 3;         // passes over all frames; the spread of their times is the noise
-  bool perception = true;  // also measures SSIM and FLIP, which take the most time on a GPU
-  bool contributions = false;                  // also measures single Gaussians (contributions.h)
-  std::vector<int> eyes = {1};                 // 1: the camera itself; 2: a stereo pair around it
-  std::vector<std::string> sizes = {"own"};    // "own" (the camera's), WxH in px, or a preset of stereo/rig.h
+  std::string name;  // the preset's or the file's
+  int views = 4;     // number of measured views, spread evenly over the scene's cameras
+  int training = 0;  // above 0: number of training views for tolerances; measured views are then held out
+  int frames = 30;   // timed frames per view and repeat, or moving frames per stretch of a motion
+  int repeats = 3;   // passes over all frames; the spread of their times is the noise
+  bool perception = true;                    // also measures SSIM and FLIP, which take the most time on a GPU
+  bool contributions = false;                // also measures single Gaussians (contributions.h)
+  std::vector<int> eyes = {1};               // 1: the camera itself; 2: a stereo pair around it
+  std::vector<std::string> sizes = {"own"};  // "own" (the camera's), WxH in px, "preview" or "headset"
   std::vector<std::string> along = {"views"};  // values of along_choices()
   std::vector<BenchSettings> settings;         // without duplicates, in the file's order
 };
 
-/// The values of `along`: "views", "turn" (the head turns at one place), "still", the motions of a head
-/// (scene/tour.h), and "sideways" (measures popping).
+/// The values of `along`: "views", "turn" (the head turns at one place), "still" (the head rests), the
+/// motions of a head (scene/tour.h), and "sideways" (to measure popping).
 std::vector<std::string> along_choices();
 
 /// Whether a text is a valid size.

@@ -276,10 +276,9 @@ double Bench::work_ms(const BenchSettings& settings, std::size_t points) {
   return ms * frames * static_cast<double>(points);
 }
 
-// Compares a small picture with the float64 reference, except for settings that use measurements, levels of
-// detail, or another order or projection; the stages of these settings are verified by other points. Then
-// checks the first view: pixels are finite, an exact inset equals the exact picture, and frames repeat bit
-// for bit.
+// Compares a small picture with the float64 reference. Skips this for settings that use measurements, levels
+// of detail, or another order or projection, because other points verify their stages. Then checks the first
+// view: pixels are finite, an exact inset equals the exact picture, and frames repeat bit for bit.
 std::string Bench::verify(const BenchSettings& settings) {
   const bool by_reference = settings.transmittance == TRANSMITTANCE_ONE && settings.quality == 0.0f &&
                             !settings.detail && !settings.order && !settings.projection;
@@ -352,7 +351,7 @@ void Bench::time_views(BenchDrawer& drawer, Row& row) {
   const bool software = context_.software(), follows = drawer.follows();
   bool settled = true;
   render::FrameReport last;
-  std::vector<double> repeats, all_ms, submit_ms;  // a repeat has the mean over the views
+  std::vector<double> repeats, all_ms, submit_ms;  // repeats: means over the views
   std::vector<CpuUse> cpu_repeats;
   std::vector<Typical> turns;
   for (int repeat = 0; repeat < effort_.repeats; ++repeat) {

@@ -192,8 +192,9 @@ ThresholdCalibration calibrate(gl::Context& context, const Model& model,
     settings.depth_table = c.depth_table;
     settings.order = exact.order;
     settings.projection = exact.projection;
-    // Start at the tolerance of the same rule with another source of transmittance, which is similar. Each
-    // step of the search that this saves is one frame per view, or settling_frames.
+    // Start at the tolerance that the same rule has with another source of transmittance: the two are
+    // similar. Each step that this saves is one frame per view, or settling_frames with measured
+    // transmittance.
     if (!c.entries.empty() && c.entries.back().th == settings.th && c.entries.back().tolerance > 0.0)
       settings.tolerance = static_cast<float>(c.entries.back().tolerance);
     c.entries.push_back(calibrator.find(settings, wanted.target.db));

@@ -32,8 +32,8 @@ double bound_at(const DepthTable& table, double depth) {
   return bound > 0.0f ? static_cast<double>(bound) : 1.0;
 }
 
-/// For each formula of `known`, the transmittance of each Gaussian in it; empty for "alpha T", which uses the
-/// true T of each pixel.
+/// For each formula of `known`, the transmittance that it assumes for each Gaussian; empty for "alpha T",
+/// which uses the true T of each pixel.
 std::array<std::vector<double>, known.size()> bounds_by(const std::vector<reference::Splat>& splats,
                                                         const std::vector<double>& largest,
                                                         const DepthTable& table) {

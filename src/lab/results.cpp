@@ -19,7 +19,7 @@ struct Column {
   const char *name, *title;
 };
 
-/// In the order of files. The columns before `family` identify a point.
+/// All columns, in the order of the files. The columns before `family` identify a point.
 constexpr Column columns[] = {
     {"scene", "scene"},
     {"eyes", "eyes"},

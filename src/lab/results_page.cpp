@@ -12,8 +12,9 @@ namespace binosplat::lab {
 
 namespace {
 
-constexpr double good_db = 40.0;     // PSNR at which errors are hardly visible
-constexpr double hardly_seen = 1.0;  // % of pixels with a visible difference that hardly anybody notices
+constexpr double good_db = 40.0;  // PSNR at which errors are hardly visible
+constexpr double hardly_seen =
+    1.0;  // %; the page names the fastest point with fewer visibly different pixels
 constexpr const char* means_begin = "mean of ";
 
 // AdaGScale, table IV: % of pairs removed relative to FlashGS at drops of 0.1 to 0.5 dB, with K tuned on the
@@ -120,8 +121,8 @@ Section accuracy(const ChartPoints& chart) {
               {"name", "family", "pareto", "frame_ms", "noise_ms", "psnr_db"}, drawn);
 }
 
-/// The points on the Pareto front and the exact one. If tolerances were searched: the exact points of all
-/// tile tests, and the points with the middle one of the targets, tuned on the test views.
+/// The points on the Pareto front and the exact one. If tolerances were searched, these are instead the
+/// exact points of all tile tests, and the points with the middle target that were tuned on the test views.
 std::vector<const Point*> chosen(const ChartPoints& chart) {
   std::set<double> targets;
   const auto target = [](const Point* p) {

@@ -20,7 +20,7 @@ std::string text_of(const DetailRequest& detail);
 struct BenchSettings : render::FrameSettings {
   std::optional<stereo::Foveation> foveation;
   std::optional<DetailRequest> detail;  // for scenes with levels of detail; none: the finest
-  std::optional<float> far;             // end of the table by depth, world units; none: fits the scene
+  std::optional<float> far;             // end of the depth table, world units; none: fits the scene
   /// If one is set, the bench searches the largest tolerance within it: the largest mean dB lost against
   /// photos, or the smallest mean PSNR against exact pictures.
   std::optional<double> max_drop, min_psnr;

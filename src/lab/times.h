@@ -27,11 +27,11 @@ Typical typical_of(const Reports& frames);
 /// Returns the mean of each time; the stages are those of the first element.
 Typical mean_of(std::span<const Typical> all);
 
-/// CPU time of this process's threads, and the time that they waited while others had the CPU, in ms.
+/// CPU time of this process's threads, and the time that they waited while other programs had the CPU, in ms.
 struct CpuUse {
   double used = 0.0, waited = 0.0;
 
-  /// Returns the times since the process started, or at once zero unless the CPU draws.
+  /// Returns the times since the process started. If a GPU draws, returns zeros without reading them.
   static CpuUse now(const gl::Context& context);
   CpuUse since(const CpuUse& before) const { return {used - before.used, waited - before.waited}; }
   void operator+=(const CpuUse& other) { used += other.used, waited += other.waited; }
