@@ -29,7 +29,7 @@ struct BenchOptions : MeasuredOptions {
   std::vector<std::string> details;
   std::optional<int> frames;      // replaces the axes' value
   std::string size;               // replaces the axes' value
-  RigOptions rig;                 // mono: one eye
+  RigOptions rig;                 // with `mono`, measures one eye
   std::vector<std::string> test;  // views to measure by name, if the axes also have training views
   std::optional<int> hold_out;    // every Nth view is a test view
   std::string output = "out/bench";
@@ -44,7 +44,7 @@ struct BenchOptions : MeasuredOptions {
 
 /// One scene of the run and its cameras. The model is read when a point needs it.
 struct BenchScene {
-  std::string name;  // the file's, without folders and ending
+  std::string name;  // name of its file, without folders and ending
   SceneOptions options;
   CameraList list;
   PhotoSource photos = {};
@@ -58,7 +58,7 @@ struct CasePlan {
   std::size_t scene = 0;
   int eyes = 1;
   std::string size, along;
-  std::size_t first = 0, count = 0;  // points of the plan
+  std::size_t first = 0, count = 0;  // its points in the plan: `count` points from `first` on
 };
 
 struct BenchPlan {
@@ -92,7 +92,7 @@ class BenchFolder {
 
   const std::shared_ptr<const nlohmann::ordered_json>& plan() const { return plan_; }
   bool same_plan(const BenchFolder& other) const;
-  std::size_t size() const;           // points of the plan
+  std::size_t size() const;           // number of points in the plan
   bool has(std::size_t point) const;  // whether its result is complete
   lab::Point load(std::size_t point) const;
   void save(std::size_t point, const lab::Point& measured) const;

@@ -15,7 +15,7 @@ namespace binosplat::app {
 
 namespace {
 
-/// The names of the views that see nothing, and the reason for the first of them.
+/// The names of the views that see nothing, and the reason why the first of them sees nothing.
 struct Blind {
   std::vector<std::string> names;
   std::string why;

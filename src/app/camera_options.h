@@ -14,7 +14,7 @@ namespace binosplat::app {
 
 /// Size and lens that replace the cameras' own.
 struct Lens {
-  std::string preset;              // of stereo::apply_preset; empty: the camera's own
+  std::string preset;              // for stereo::apply_preset(); empty: the camera's own size and lens
   std::optional<glm::ivec2> size;  // px
 
   bool headset() const { return preset == "headset"; }

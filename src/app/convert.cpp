@@ -38,7 +38,7 @@ struct ConvertOptions : MeasuredOptions {
   std::string json;
 };
 
-/// Cameras and context that draw the original and the written model. Only the axes differ between the two.
+/// Cameras and context for drawing the original and the written model, which may have different axes.
 struct Views {
   std::vector<Camera> cameras;
   double near_plane = 0.0;

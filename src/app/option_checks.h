@@ -119,7 +119,7 @@ inline CLI::Option* add_names_option(CLI::App& sub, const char* option, std::vec
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
 }
 
-/// Splits texts at commas, except those that are one name (`is_one`): names may contain commas.
+/// Splits texts at commas. A text that is one name (`is_one`) stays whole, because names may contain commas.
 template <typename IsOne>
 std::vector<std::string> separated(const std::vector<std::string>& texts, const IsOne& is_one) {
   std::vector<std::string> names;

@@ -54,11 +54,11 @@ void check(const ProfileOptions& o) {
   check_foveate(o);
 }
 
-/// Frame rate of the poses.
+/// The frame rate for which poses are computed, also if frames are drawn as fast as possible.
 double pose_rate(const ProfileOptions& o) { return o.fps > 0.0 ? o.fps : headset_fps; }
 
-/// Replaces the cameras by the path's frames and returns the name of the path. Without any option, a scene
-/// with two or more cameras is toured. Returns "" for a head that stands still.
+/// Replaces the cameras by the path's frames and returns the name of the path. If no option chooses a path
+/// or a view, tours the cameras of a scene with at least two. Returns "" for a head that stands still.
 std::string choose_path(ProfileOptions& o, CameraList& list) {
   const bool stands = !o.camera.views.empty() || o.camera.eye || !list.listed;
   if (!o.camera.path.empty()) {

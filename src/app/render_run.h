@@ -25,9 +25,9 @@ namespace binosplat::app {
 struct ShotLevels {
   std::size_t gaussians = 0;             // of the model at these levels
   bool switched = false;                 // levels differ from those of the previous shot
-  double read_ms = 0.0;                  // reading files, if needed
-  double upload_ms = 0.0;                // uploading to the GPU
-  std::optional<double> switch_psnr;     // dB between old and new levels, both exact
+  double read_ms = 0.0;                  // time to read files
+  double upload_ms = 0.0;                // time to upload to the GPU
+  std::optional<double> switch_psnr;     // dB, between exact pictures of the old and the new levels
   std::optional<double> finest_psnr;     // dB, against the exact picture of the finest levels
   std::optional<double> predicted_psnr;  // predicted from the levels' errors; the worse eye
 };
@@ -78,7 +78,7 @@ struct RenderRun {
   render::MemoryNeeds needs = {};                // of the model and of the largest view
   std::optional<double> convergence = {};        // m, from an option or chosen; none: infinitely far
   std::vector<Drawn> drawn = {};                 // for each shot
-  std::vector<render::FrameReport> frames = {};  // all, with --frames per shot
+  std::vector<render::FrameReport> frames = {};  // of all frames: --frames for each shot
   RunTimes times = {};
   std::optional<double> exact_ms = {};  // GPU time of one exact frame, if --quality drew a long --path
 

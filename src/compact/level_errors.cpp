@@ -26,7 +26,8 @@ constexpr int side_most = 1280;  // largest width and height of a picture, px
 // Distance of the eye, in widths of the picture. So all Gaussians lie within about 5 degrees of the axis.
 constexpr double away = 8.0;
 
-/// Returns the box around spheres of two standard deviations.
+/// Returns the box around all Gaussians, as spheres with a radius of two of their largest standard
+/// deviations.
 Box box_of(const Model& model) {
   Box box;
   for (std::size_t i = 0; i < model.count(); ++i) {
@@ -47,7 +48,7 @@ struct MeasuredChunk {
 
 /// The squares of a picture, row by row, each with one chunk.
 struct Grid {
-  std::uint32_t count, side, across;  // squares, px, squares in a row
+  std::uint32_t count, side, across;  // number of squares, side of a square in px, squares in a row
   std::uint32_t width() const { return across * side; }
   std::uint32_t height() const { return (count + across - 1) / across * side; }
   /// Returns the first pixel of square `i`.

@@ -241,7 +241,7 @@ class Refit {
   const RefitTargets& targets_;
   const RefitSettings& settings_;
   const ValidationLoss& validation_loss_;
-  const std::size_t coefficients_;  // of a Gaussian and channel
+  const std::size_t coefficients_;  // number per Gaussian and channel
   render::LinearBlend blend_;
   gl::Context& context_;
   std::unique_ptr<render::Frame> wanted_;  // draws the original

@@ -86,7 +86,7 @@ struct Plan {
   std::vector<std::size_t> gaussians, files;  // by level
 };
 
-/// Collects, in order, the largest nodes of at most `most` Gaussians, and larger leaves.
+/// Collects in order the largest nodes that have at most `most` Gaussians, and the leaves that have more.
 void find_nodes(const SpaceNode& node, std::size_t most, std::vector<const SpaceNode*>& nodes) {
   if (node.count <= most || node.children.empty()) return nodes.push_back(&node);
   for (const SpaceNode& child : node.children) find_nodes(child, most, nodes);

@@ -17,7 +17,7 @@
 namespace binosplat::lab {
 
 struct Axes {
-  std::string name;  // the preset's or the file's
+  std::string name;  // name of the preset or the file
   int views = 4;     // number of measured views, spread evenly over the scene's cameras
   int training = 0;  // above 0: number of training views for tolerances; measured views are then held out
   int frames = 30;   // timed frames per view and repeat, or moving frames per stretch of a motion

@@ -41,7 +41,7 @@ std::vector<std::size_t> stretch_starts(std::size_t total, std::size_t length, s
 /// The levels that a model has loaded.
 struct LoadedLevels {
   std::size_t gaussians = 0;
-  std::optional<double> predicted_db = {};  // PSNR against the finest; none: not predicted
+  std::optional<double> predicted_db = {};  // PSNR against the finest levels; none: not predicted
 };
 
 /// A model whose levels follow the views: `load_levels` loads the levels that some views need. Without
