@@ -29,7 +29,7 @@ std::string explain(const CLI::App& command, const std::string& name, const CLI:
 
 /// Prepares the shader caches of drivers; call it before any context is created.
 /// - Removes a relative XDG_CACHE_HOME. Its specification says to ignore it, but drivers create a folder
-///   below the working one.
+///   below the working folder.
 /// - If the user's cache folder is full or cannot be written, disables the drivers' caches and warns. On a
 ///   full disk drivers write into mapped files, and SIGBUS ends the program.
 void prepare_shader_caches();

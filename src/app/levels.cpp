@@ -116,7 +116,7 @@ bool has_run(const LevelsOptions& o, const nlohmann::ordered_json& run) {
   return false;
 }
 
-/// Writes the model's cameras beside the levels, in their own world, so that the levels are drawn from the
+/// Writes the model's cameras beside the levels, in world coordinates, so that the levels are drawn from the
 /// same views. Keeps an existing complete file.
 void write_cameras(const LevelsOptions& o) {
   const fs::path file = fs::path(o.output) / "cameras.json";

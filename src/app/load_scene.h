@@ -1,5 +1,5 @@
 #pragma once
-// Loads models from files or makes the built-in ones.
+// Loads models from files, or makes built-in models.
 
 #include <optional>
 #include <span>

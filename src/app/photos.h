@@ -55,7 +55,7 @@ struct TargetOptions {
   CalibrationTarget target() const;
 };
 
-/// Throws Error unless exactly one target is set, and unless a drop has photos in their own size. The message
+/// Throws Error unless exactly one target is set. A drop also needs photos, in their own size. The message
 /// says that `command` needs `what`, such as "a bound".
 void check_target(const std::string& command, const std::string& what, const TargetOptions& target,
                   const MeasuredOptions& options);
@@ -70,7 +70,7 @@ struct ViewChoice {
   std::vector<std::string> without = {};  // excludes these names
 };
 
-/// The cameras of a choice. With a folder of photos, unnamed choices take only cameras that have one.
+/// The cameras of a choice. If it names no view and there is a folder of photos, only cameras with a photo.
 std::vector<Camera> photographed_cameras(const ViewChoice& choice, const std::string& photos,
                                          const Lens& lens, const CameraList& list);
 
@@ -80,7 +80,7 @@ std::string photos_folder(const std::string& asked, const CameraList& list);
 /// The names of test views, in which no tolerance may be found, and of training views.
 struct HeldOut {
   std::vector<std::string> test, training;
-  std::string how;  // how they were separated, for the log
+  std::string how;  // how test and training views were separated, for the log
 };
 
 /// Every `every`th view in the order of names is a test view, as is usual in the field. Without a number:

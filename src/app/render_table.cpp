@@ -139,8 +139,7 @@ struct StageRow {
   double median_ms = 0.0, p99_ms = 0.0;
 };
 
-// Number of frames whose times count: all but the first one, in which drivers compile shaders, or a single
-// one.
+// Number of frames whose times count: all but the first, in which drivers compile shaders, and at least one.
 std::size_t timed_frames(const RenderRun& run) { return std::max<std::size_t>(run.frames.size(), 2) - 1; }
 
 // GPU times of frames by stage; empty if the reference drew them.

@@ -20,8 +20,8 @@ namespace binosplat::app {
 /// on, so that the shards of one run may differ in them.
 std::vector<std::string> options_given(const CLI::App& sub);
 
-/// The values that identify a run among others with the same file names: options and contents. `shots` are
-/// those of all shards.
+/// The values that distinguish runs with the same file names: options, and hashes of the files' contents.
+/// `shots` are those of all shards.
 nlohmann::ordered_json identity_of(const RenderOptions& options, const CameraList& list, double near_plane,
                                    const std::vector<Shot>& shots);
 

@@ -20,8 +20,8 @@ class ColourFit {
   /// `now`.
   Coefficients fitted(int degree, const Coefficients& now) const;
 
-  /// Returns how much fitted() changes the colours: px * squared change, summed over the views, mean over the
-  /// channels.
+  /// Returns how much fitted() changes the colours: the squared change times px, summed over the views, mean
+  /// over the channels.
   double change(int degree, const Coefficients& now) const;
 
  private:
