@@ -18,7 +18,7 @@ namespace binosplat::lab {
 
 namespace {
 
-constexpr std::array apart_frames = {1, 7};  // popping compares a frame with those so many frames later
+constexpr std::array apart_frames = {1, 7};  // popping is measured between frames so far apart
 constexpr std::int64_t exact_bytes = std::int64_t{8} << 30;  // memory for exact frames on the GPU
 
 bool is_moving(const Row& frame) { return text(frame, "part") == "moving"; }
