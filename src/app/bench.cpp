@@ -1,4 +1,4 @@
-// binosplat bench: charts speed against accuracy, over views, along frames, turns and levels of detail.
+// binosplat bench: charts speed against accuracy, in views, along motions and turns, and by levels of detail.
 
 #include <fmt/ranges.h>
 
@@ -26,7 +26,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Warns before a long run on the CPU, with its expected time.
+/// Logs the expected time of a long run on the CPU.
 void tell_work(double seconds) {
   constexpr double worth_telling_s = 60.0;
   if (seconds < worth_telling_s) return;

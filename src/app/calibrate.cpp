@@ -25,7 +25,7 @@ namespace {
 struct CalibrateOptions : MeasuredOptions {
   TargetOptions target;
   int views = 16;
-  std::optional<int> hold_out;  // every Nth view is for tests
+  std::optional<int> hold_out;  // every Nth view is a test view
   measure::DepthTableSettings table;
   std::string output;
 };

@@ -32,12 +32,12 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// Options that name outputs, older results (which new ones may replace), or views.
+// Options whose values are no inputs: outputs, older results (which new results may replace), and views.
 constexpr const char* no_inputs[] = {"--output", "--json", "--difference", "--compare",
                                      "--merge",  "--view", "--test",       "--held-back"};
 
 constexpr double gaussian_bytes = 400.0;         // memory per Gaussian while a model of degree 3 is read
-constexpr std::uintmax_t cache_room = 64 << 20;  // bytes; shaders take less
+constexpr std::uintmax_t cache_room = 64 << 20;  // bytes that must be free; shaders take less
 
 // Edit distance: insertions, deletions, replacements, and swaps of neighbours.
 std::size_t edits(const std::string& a, const std::string& b) {
@@ -144,7 +144,7 @@ std::vector<std::string> with_command(const CLI::App& program, int argc, const c
 }
 
 std::string explain(const CLI::App& command, const std::string& name, const CLI::ParseError& error) {
-  // Extra words before a sub-command belong to this command.
+  // Extra words before a sub-command are errors of this command.
   const bool has_extras = dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr;
   const auto chosen = command.get_subcommands();
   if (!chosen.empty() && !(has_extras && command.remaining_size() > 0))
@@ -179,7 +179,7 @@ void prepare_shader_caches() {
   const fs::space_info space = fs::space(folder, error);
   const bool writable = fs::is_directory(folder, error) && access(folder.c_str(), W_OK | X_OK) == 0;
   if (folder.empty() || (writable && space.available >= cache_room)) return;
-  // Mesa's variables, old and new, and NVIDIA's.
+  // The variables of Mesa, in new and old versions, and of NVIDIA's driver.
   setenv("MESA_SHADER_CACHE_DISABLE", "1", 0);
   setenv("MESA_GLSL_CACHE_DISABLE", "1", 0);
   setenv("__GL_SHADER_DISK_CACHE", "0", 0);

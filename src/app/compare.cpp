@@ -20,8 +20,8 @@ namespace binosplat::app {
 
 namespace {
 
-/// Upper bound of memory per pixel of both pictures, mostly FLIP's. Measured: 119 for grey, 169 for colour
-/// and alpha.
+/// Upper bound of the bytes per pixel that a comparison takes, mostly for FLIP. Measured: 119 for grey, 169
+/// for colour and alpha.
 constexpr std::uint64_t bytes_per_pixel = 170;
 
 struct CompareOptions {
@@ -82,7 +82,7 @@ void print_comparison(const CompareOptions& options, const Comparison& found, co
                      largest.y, channel_name(image, largest.channel)));
 }
 
-// "1830,1600,100".
+// Parses X,Y,FOV, such as "1830,1600,100".
 measure::Gaze parse_gaze(const std::string& text) {
   const glm::dvec3 v = parse_three("--foveate-at", text);
   return {v.x, v.y, v.z};

@@ -38,7 +38,7 @@ struct ConvertOptions : MeasuredOptions {
   std::string json;
 };
 
-/// Cameras and context that draw the original and the written model. Only the axes differ between the two.
+/// Cameras and context for drawing the original and the written model, which may have different axes.
 struct Views {
   std::vector<Camera> cameras;
   double near_plane = 0.0;
@@ -74,7 +74,7 @@ void check_convert(const ConvertOptions& o, ModelFormat format) {
     fail("--cameras, --view and --size are of the pictures that --report draws: add it, or leave them out");
 }
 
-/// The cameras of --view, or as many of the listed ones as requested, or a ring around the model.
+/// The cameras of --view, else the requested number of listed cameras, or of cameras around the model.
 Views find_views(const ConvertOptions& o, CameraList list, const Model& model) {
   if (!list.listed) {
     log_info("no cameras beside {}: taking {} around the model", o.scene.name, *o.report);

@@ -10,7 +10,7 @@ namespace binosplat::app {
 
 namespace {
 
-// Counts of Gaussians by where their middles lie in a camera's view.
+// Numbers of Gaussians by the place of their middles in a camera's view.
 struct MiddlesSeen {
   std::size_t inside = 0;  // in the picture and beyond the near plane
   std::size_t ahead = 0;   // beyond the near plane

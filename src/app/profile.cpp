@@ -32,7 +32,7 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr double seconds_default = 10.0;
-constexpr double frames_most = 1e6, frame_bytes = 4096.0;  // largest recording; memory of each frame
+constexpr double frames_most = 1e6, frame_bytes = 4096.0;  // limit of a recording; memory of each frame
 constexpr double quality_to_try = 40.0;                    // dB: an error that is hardly visible
 
 struct ProfileOptions : RenderOptions {
@@ -54,11 +54,11 @@ void check(const ProfileOptions& o) {
   check_foveate(o);
 }
 
-/// Frame rate of the poses.
+/// The frame rate for which poses are computed, also if frames are drawn as fast as possible.
 double pose_rate(const ProfileOptions& o) { return o.fps > 0.0 ? o.fps : headset_fps; }
 
-/// Replaces the cameras by the path's frames and returns the name of the path. Without any option, a scene
-/// with two or more cameras is toured. Returns "" for a head that stands still.
+/// Replaces the cameras by the path's frames and returns the name of the path. If no option chooses a path
+/// or a view, tours the cameras of a scene with at least two. Returns "" for a head that stands still.
 std::string choose_path(ProfileOptions& o, CameraList& list) {
   const bool stands = !o.camera.views.empty() || o.camera.eye || !list.listed;
   if (!o.camera.path.empty()) {
@@ -111,7 +111,7 @@ struct Profiled {
   Model loaded;
   lab::ProfileRun run;
   lab::Profile profile;
-  std::vector<shared::View> table_views;  // for the table of --transmittance depth; empty: known
+  std::vector<shared::View> table_views;  // to measure the depth table in; empty: known or not needed
 
   const Model& model() const { return stream ? stream->model() : loaded; }
 };

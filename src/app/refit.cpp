@@ -84,7 +84,7 @@ class Judge {
   }
 
  private:
-  /// Against photos, a cost is the loss relative to the original model.
+  /// Against photos, `db` is the loss relative to the original model.
   double psnr(const Calibrator& views, double db) const {
     return kind_ == TargetKind::drop ? views.exact_photo_db() - db : db;
   }

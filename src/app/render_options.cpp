@@ -19,7 +19,8 @@ namespace binosplat::app {
 
 namespace {
 
-// Refuses --shard and --resume with settings that use earlier frames: pictures would depend on the shard.
+// Refuses --shard and --resume with settings that use earlier frames, because pictures would then depend on
+// the shard.
 void check_regions(const RenderOptions& o) {
   if (o.shard.all() && !o.resume) return;
   const char* const part = o.resume ? "--resume" : "--shard";

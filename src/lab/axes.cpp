@@ -80,7 +80,7 @@ class Block {
   const nlohmann::json& object_;
 };
 
-/// One key of a block, and how it sets a member.
+/// One key of a block, and the function that sets a member to its value.
 struct Key {
   const char* name;
   nlohmann::json otherwise;
@@ -90,7 +90,7 @@ struct Key {
 // The views on which the tolerance is found: the measured views, or training views.
 constexpr Choice found_on_choices[] = {{"test", "the views that are measured"}, {"training", "others"}};
 
-constexpr std::size_t most_settings = 10000;  // of all blocks together
+constexpr std::size_t most_settings = 10000;  // limit for all blocks together
 
 /// Appends all combinations of a block's lists. The last key varies fastest.
 void add_settings(const Block& block, std::vector<BenchSettings>& settings) {

@@ -66,7 +66,7 @@ preview::Loaded load(const SceneOptions& scene, const std::vector<Camera>& camer
   return load_scene(scene, {}, cameras);
 }
 
-// Opens a scene. Each camera of a pair is a single view here.
+// Opens a scene. The cameras of an eye pair are separate views here.
 preview::Opened open(const RenderOptions& o) {
   const SceneOptions& scene = o.scene;
   const auto saved = find_saved(scene);
@@ -136,7 +136,7 @@ void view(const RenderOptions& o) {
                    {scene, "in the window", "as chosen there", lab::device_text(context), context.software()},
                    std::move(recording), draw);
   };
-  // Outputs of another model go to a folder of its own.
+  // Outputs of another model go to another folder.
   const auto open_other = [&o](const std::string& file) {
     RenderOptions other;
     other.scene.name = file;
