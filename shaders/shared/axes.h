@@ -1,5 +1,6 @@
 // The choices that options, shader variants and charts name. GLSL and C++ include this file. Choices of
-// --tiles, --th and --projection have a file each: NAME.glsl in shaders/tiles/, threshold/ and projection/.
+// --tiles, --threshold and --projection have a file each: NAME.glsl in shaders/tiles/, threshold/ and
+// projection/.
 #ifndef BINOSPLAT_SHARED_AXES_H
 #define BINOSPLAT_SHARED_AXES_H
 
@@ -10,7 +11,7 @@
 #define TILES_OBB 3
 #define TILES_SNUG 4
 
-// --th: the alpha below which a Gaussian makes no pair (docs/method.md 5).
+// --threshold: the alpha below which a Gaussian makes no pair (docs/method.md 5).
 #define TH_TAU 0
 #define TH_PERIPHERAL 1
 #define TH_SQUARED 2

@@ -31,7 +31,7 @@ void tell_work(double seconds) {
   constexpr double worth_telling_s = 60.0;
   if (seconds < worth_telling_s) return;
   log_info(
-      "without a GPU this takes about {}. A smaller --axes file is faster, such as {{\"views\": 1, "
+      "without a GPU this takes about {}. A smaller --suite file is faster, such as {{\"views\": 1, "
       "\"frames\": 3, \"repeats\": 2, \"sizes\": [\"240x135\"], \"settings\": [{{\"tiles\": [\"obb\", "
       "\"ellipse\"]}}]}}",
       spoken_time(seconds));
@@ -167,7 +167,7 @@ void check_bench(const BenchOptions& o) {
   const int along =
       int{!o.camera.path.empty()} + int{o.camera.tour.has_value()} + int{!o.motions.empty()} + int{o.turn};
   if (along > 1)
-    fail("--path, --tour, --motion and --turn are measured one by one: choose one, or write --axes");
+    fail("--path, --tour, --motion and --turn are measured one by one: choose one, or write --suite");
   check(o.context, "auto");
 }
 
@@ -193,7 +193,7 @@ void add_bench(CLI::App& program, Command& command) {
   sub->add_option("-o,--output", o->output,
                   "Folder for report.html, results.csv, details.csv and results.json\n(out/bench)")
       ->type_name("DIR");
-  sub->add_option("--axes", o->axes,
+  sub->add_option("--suite", o->axes,
                   fmt::format("Measurement: {}, or a file like those in src/lab/presets (quick;\nmotion, "
                               "turn or levels with the options below)",
                               fmt::join(lab::axes_presets(), ", ")))
@@ -246,12 +246,12 @@ void add_bench(CLI::App& program, Command& command) {
       "To resume an interrupted run, start it again with the same options.\n"
       "Examples:\n"
       "  binosplat bench fox.ply garden.ply -o out/chart\n"
-      "  binosplat bench garden.ply --axes paper --photos images         # AdaGScale's figures and tables\n"
+      "  binosplat bench garden.ply --suite paper --photos images         # AdaGScale's figures and tables\n"
       "  binosplat bench garden.ply --motion walk --rule squared,one --rule squared,last\n"
       "  binosplat bench garden.ply --turn --size headset\n"
       "  binosplat bench garden-levels --detail 30dB,40dB --cameras cameras.json\n"
       "  binosplat bench fox.ply --compare main/results.json --fail-if-slower 3 -o out/ci\n"
-      "  binosplat bench fox.ply --axes paper --shard $I/8 -o out/shard$I     # on 8 machines\n"
+      "  binosplat bench fox.ply --suite paper --shard $I/8 -o out/shard$I     # on 8 machines\n"
       "  binosplat bench --merge out/shard1,out/shard2 -o out/chart");
   sub->callback([o, &command] { command = [o] { return bench(*o); }; });
 }

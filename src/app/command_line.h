@@ -15,8 +15,12 @@ void check_arguments(int argc, const char* const* argv);
 /// Whether the environment names a display.
 bool has_display();
 
-/// The arguments with the sub-command made explicit. If they begin with a model, adds `view` (with a display
-/// and the preview) or `render` and logs it. Throws Error for a word that is neither command nor model.
+/// The arguments with current names in place of former ones, which this version still takes.
+std::vector<std::string> with_current_names(const CLI::App& command, std::vector<std::string> words);
+
+/// The arguments with the sub-command made explicit, and current names. If they begin with a model, adds
+/// `view` (with a display and the preview) or `render` and logs it. Throws Error for a word that is neither
+/// command nor model.
 std::vector<std::string> with_command(const CLI::App& program, int argc, const char* const* argv);
 
 /// "; did you mean WORD?", or nothing if no word is similar.

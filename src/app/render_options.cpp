@@ -84,7 +84,7 @@ constexpr std::pair<const char*, const char*> not_in_headsets[] = {
     {"--size", of_windows},        {"--layout", of_windows},    {"--ipd", of_windows},
     {"--convergence", of_windows}, {"--cant", of_windows},      {"--show", of_windows},
     {"--fov", of_windows},         {"--output", of_windows},    {"--tiles", of_studies},
-    {"--tile", of_studies},        {"--shader-dir", of_studies}};
+    {"--tile-size", of_studies},   {"--shader-dir", of_studies}};
 constexpr std::pair<const char*, const char*> not_beside_a_budget[] = {
     {"--foveate", "a quality needs whole pictures: choose one of them"},
     {"--quality", "choose one, the budget chooses the quality"},

@@ -39,7 +39,7 @@ void add_scene_options(CLI::App& sub, SceneOptions& o) {
   sub.add_flag_callback(
          "--no-antialias", [&o] { o.antialias = false; }, "Draw as a model that was trained without it")
       ->excludes(antialias);
-  add_value(sub, "--kernel-px2", "S", o.kernel_px2, positive,
+  add_value(sub, "--eps2d", "S", o.kernel_px2, positive,
             "Variance of the low-pass of projected Gaussians in px^2 (0.3; 0.1\nfor Mip-Splatting's files)");
   add_value(sub, "--appearance", "ID", o.appearance, whole_number,
             "Appearance of a Scaffold-GS model, one of its training's (0)");
