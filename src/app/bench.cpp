@@ -215,7 +215,7 @@ void add_bench(CLI::App& program, Command& command) {
                   "Measure loss and time of these levels of detail; values as for `render\n--detail`")
       ->delimiter(',')
       ->allow_extra_args(false)
-      ->type_name("PX|DB,...");
+      ->type_name("Npx|NdB,...");
   add_rule_option(*sub, o->rules);
   sub->add_option("--calibration", o->calibration,
                   "Measure the settings of a file of binosplat calibrate, too")

@@ -24,7 +24,7 @@ void add_scene_options(CLI::App& sub, SceneOptions& o) {
   sub.option_defaults()->group("Scene");
   add_lod_option(sub, o, "Level of detail of a streamed SOG, 0 the finest (the finest complete one)");
   add_parsed(
-      sub, "--detail", "PX|DB", o.detail, [](const std::string& text) { return lab::parse_detail(text); },
+      sub, "--detail", "Npx|NdB", o.detail, [](const std::string& text) { return lab::parse_detail(text); },
       "Levels of a streamed SOG for each view, the same for both eyes. PX: the\nlargest spacing of Gaussians "
       "in px, 0 for the finest that fit; DB, from\n20dB to 80dB: the PSNR against the finest, if the file "
       "has the errors\nof its levels (render: the finest, always; view: 0)");
