@@ -8,9 +8,11 @@ namespace binosplat::app {
 
 void add_drawing_options(CLI::App& sub, DrawingOptions& o) {
   sub.option_defaults()->group("Drawing");
-  choose_explained(sub, "--tiles", o.tiles, "Tiles in which a Gaussian is drawn (ellipse)", tiles_choices);
+  choose_explained(sub, "--tiles", o.tiles,
+                   "Tile test: chooses the tiles in which a Gaussian is drawn (ellipse)", tiles_choices);
   std::string rules_help =
-      "Alpha below which a Gaussian is dropped from a tile (tau; with\n--tolerance: squared)";
+      "Rule for the alpha below which a Gaussian is dropped from a tile (tau;\nwith --tolerance, --quality "
+      "or --calibration: squared)";
   Words<int> rules = words_of(th_choices);
   for (const Choice& rule : th_choices) rules_help += fmt::format("\n  {}: {}", rule.name, rule.help);
   rules.emplace_back("adagscale", TH_PERIPHERAL);
