@@ -37,7 +37,7 @@ namespace {
 constexpr const char* no_inputs[] = {"--output", "--json", "--difference", "--compare",
                                      "--merge",  "--view", "--test",       "--held-back"};
 
-// Former names of options. A command takes one that it does not use, as its current name.
+// Former and current names of options. If a command has an option of the former name, it keeps that option.
 constexpr std::pair<std::string_view, std::string_view> renamed[] = {
     {"--th", "--threshold"}, {"--tile", "--tile-size"},      {"--kernel-px2", "--eps2d"},
     {"--axes", "--suite"},   {"--hold-out", "--test-every"}, {"--leaf", "--chunk"}};
@@ -140,7 +140,7 @@ std::vector<std::string> with_current_names(const CLI::App& command, std::vector
       log_warning("{} is named {} now; the next version takes the new name only", former, current);
       word.replace(0, former.size(), current);
     }
-    // A former value.
+    // The former name of a value.
     if (word == "--show=light" || (word == "light" && before == "--show"))
       word.replace(word.size() - 5, 5, "transmittance");
     before = word;
