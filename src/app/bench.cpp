@@ -233,7 +233,7 @@ void add_bench(CLI::App& program, Command& command) {
       ->type_name("WxH|NAME");
   sub->add_flag("--mono", o->rig.mono, "The cameras themselves, no pair (the suite's)");
   add_ipd_option(*sub, o->rig);
-  add_value(*sub, "--units-per-metre", "U", o->rig.units_per_metre, positive,
+  add_value(*sub, "--units-per-metre", "N", o->rig.units_per_metre, positive,
             "World units that make a metre (1)");
   add_value(*sub, "--ppd", "N", o->ppd, between(1.0, 1000.0, "a number from 1 to 1000"),
             "Pixels per degree of the viewer's field of view, for FLIP (67)");
