@@ -47,7 +47,7 @@ void add(const render::FrameReport& face, render::FrameReport& sum) {
   sum.visible += face.visible;
   sum.pairs += face.pairs;
   sum.supertile_pairs += face.supertile_pairs;
-  sum.redrawn += face.redrawn;
+  sum.redraws += face.redraws;
   sum.total_ms += face.total_ms;
   sum.cpu.submit += face.cpu.submit;
   sum.gpu_bytes = face.gpu_bytes;

@@ -84,7 +84,7 @@ struct Instance {
   double scale = 1.0;           // world units per unit of the model, above 0
   float opacity = 1.0f;         // from 0 to 1; multiplies the opacity of each Gaussian
   bool is_shown = true;
-  /// With Transmittance::by_depth: the table of this model's Calibration, in the model's units. Empty: the
+  /// With Transmittance::depth: the table of this model's Calibration, in the model's units. Empty: the
   /// table of the settings, in world units.
   DepthTable depth_table = {};
 };
@@ -200,7 +200,7 @@ class Renderer {
 };
 
 /// The settings of AdaGScale. A Calibration adds its tolerance K and its table by depth.
-inline const Settings adagscale{.threshold = Threshold::peripheral, .transmittance = Transmittance::by_depth};
+inline const Settings adagscale{.threshold = Threshold::peripheral, .transmittance = Transmittance::depth};
 
 /// A file that `binosplat calibrate` wrote: tolerances for frames of a model, by AdaGScale or another rule.
 ///

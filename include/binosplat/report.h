@@ -43,9 +43,9 @@ struct Report {
   double quality = 0.0;
   bool quality_is_estimate = false;  // `quality` was measured on a part of this frame, and may be some dB off
   int attempts = 0;                  // drawings until the quality was reached
-  int redrawn = 0;                   // drawings that were repeated because a buffer was too small
-  int programs_made = 0;             // shaders that were compiled for the frame, or loaded from the cache
-  bool used_measured = false;        // the frame used transmittance that an earlier frame measured
+  int redraws = 0;                   // drawings that were repeated because a buffer was too small
+  int new_programs = 0;              // shaders that were compiled for the frame, or loaded from the cache
+  bool used_last = false;            // the frame used transmittance that an earlier frame measured
   bool sampled_error = false;        // the frame also drew some tiles exactly, to measure its error
   /// With a quality or measured transmittance: the frame could not use earlier measurements. True for the
   /// first frame and after a camera cut.

@@ -19,9 +19,9 @@ enum class Threshold {
 
 /// The source of the upper bound of a Gaussian's transmittance, which a Threshold assumes.
 enum class Transmittance {
-  all,       // 1, as if nothing stood in front of the Gaussian
-  measured,  // measured by earlier frames: faster if the head stands still
-  by_depth,  // the largest at the Gaussian's depth, from Settings::depth_table (AdaGScale)
+  one,    // 1, as if nothing stood in front of the Gaussian
+  last,   // measured by earlier frames: faster if the head stands still
+  depth,  // the largest at the Gaussian's depth, from Settings::depth_table (AdaGScale)
 };
 
 /// The largest transmittance of any Gaussian whose view depth lies in a bin (AdaGScale's T_upper, sections
@@ -91,8 +91,8 @@ struct Settings {
   /// None: `squared` if a quality or a tolerance is set, else `exact`. `exact` excludes a quality and a
   /// tolerance.
   std::optional<Threshold> threshold = {};
-  Transmittance transmittance = Transmittance::all;
-  DepthTable depth_table = {};  // with Transmittance::by_depth
+  Transmittance transmittance = Transmittance::one;
+  DepthTable depth_table = {};  // with Transmittance::depth
 
   std::optional<Order> order = {};            // none: as the model was trained
   std::optional<Projection> projection = {};  // none: as the model was trained

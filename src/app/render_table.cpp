@@ -289,7 +289,7 @@ ordered_json view_json(const Drawn& drawn, const RenderOptions& options,
              "cant_degrees", options.rig.cant, "eyes", ordered_json::array());
   for (const Eye& eye : drawn.shot.eyes) json["eyes"].push_back(eye_json(eye));
   FieldWriter{json}("visible", r.visible, "pairs", r.pairs, "gpu_ms", ms_of(r).value_or(NAN), "tile",
-                    r.tile_size, "depth_orders", r.order_groups, "drawn_again", r.redrawn, "tolerance",
+                    r.tile_size, "depth_orders", r.order_groups, "redraws", r.redraws, "tolerance",
                     given(drawing.quality || !drawing.calibration.empty(), r.tolerance), "probed_psnr_db",
                     given(drawing.quality.has_value(), r.quality), "reported_psnr_db",
                     given(drawing.quality.has_value(), reported_psnr(drawn)), "reported_is_estimate",

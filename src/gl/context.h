@@ -102,7 +102,7 @@ class Context {
   /// drivers can compile them in parallel. During this call dispatchers run nothing (dispatch.h).
   void prepare(const std::function<void()>& record);
   /// The number of programs that have been compiled or loaded from the cache.
-  int programs_made() const { return programs_made_; }
+  int new_programs() const { return programs_made_; }
   /// The time spent on compiling and loading programs, in ms.
   double compile_ms() const { return compile_ms_; }
   bool is_preparing() const { return is_preparing_; }

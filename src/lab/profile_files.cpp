@@ -141,7 +141,7 @@ Table frames_table(const Recording& recording, std::size_t first, std::size_t co
   for (const char* name : {"cpu_ms",   "levels_ms",  "plan_ms",         "upload_ms", "submit_ms",
                            "wait_ms",  "read_ms",    "choose_ms",       "pairs",     "visible",
                            "width",    "height",     "gaussians",       "gpu_bytes", "levels_uploaded",
-                           "attempts", "redrawn",    "programs_made",   "tolerance", "quality_db",
+                           "attempts", "redraws",    "new_programs",    "tolerance", "quality_db",
                            "mhz",      "display_ms", "displays_missed", "events"})
     table.columns.emplace_back(name);
   const std::size_t end = first + std::min(count, recording.frames.size() - first);
@@ -163,7 +163,7 @@ Table frames_table(const Recording& recording, std::size_t first, std::size_t co
          row(cpu_ms(frame), frame.levels.ms, cpu.plan, cpu.upload, cpu.submit, cpu.wait, cpu.read,
              ms_of_spans(recording, frame, "choose levels"), report.pairs, report.visible,
              frame.views.front().width, frame.views.front().height, frame.gaussians, report.gpu_bytes,
-             frame.levels.uploaded, report.attempts, report.redrawn, report.programs_made,
+             frame.levels.uploaded, report.attempts, report.redraws, report.new_programs,
              static_cast<double>(report.tolerance), report.quality, frame.mhz, display, displays,
              text_of(events_of(recording, n, fastest))))
       cells.push_back(std::move(cell));

@@ -16,8 +16,7 @@ static_assert(static_cast<int>(Projection::tangent) == PROJECTION_TANGENT);
 
 /// The library's choices in the order of the shaders' numbers (shared/axes.h).
 constexpr Threshold thresholds[] = {Threshold::exact, Threshold::peripheral, Threshold::squared};
-constexpr Transmittance transmittances[] = {Transmittance::all, Transmittance::by_depth,
-                                            Transmittance::measured};
+constexpr Transmittance transmittances[] = {Transmittance::one, Transmittance::depth, Transmittance::last};
 static_assert(TH_TAU == 0 && TH_PERIPHERAL == 1 && TH_SQUARED == 2 &&
               std::size(thresholds) == std::size(th_choices));
 static_assert(TRANSMITTANCE_ONE == 0 && TRANSMITTANCE_DEPTH == 1 && TRANSMITTANCE_LAST == 2 &&
@@ -39,11 +38,11 @@ void check_choices(const Settings& s) {
   const int transmittance = transmittance_of(s.transmittance);
   if (transmittance != TRANSMITTANCE_ONE && render::is_exact(rule_of(s, TH_TAU))) {
     fail("settings.transmittance {} has no effect on an exact picture: give a quality or a tolerance, too",
-         transmittance == TRANSMITTANCE_LAST ? "measured" : "by_depth");
+         transmittance == TRANSMITTANCE_LAST ? "last" : "depth");
   }
   if (transmittance == TRANSMITTANCE_DEPTH && s.depth_table.bounds.empty()) {
     fail(
-        "settings.transmittance by_depth needs settings.depth_table: take both from a Calibration, or give a "
+        "settings.transmittance depth needs settings.depth_table: take both from a Calibration, or give a "
         "table");
   }
 }
@@ -121,8 +120,8 @@ Report report_of(const render::FrameReport& frame) {
   report.submit_ms = frame.cpu.submit;
   report.wait_ms = frame.cpu.wait;
   report.read_ms = frame.cpu.read;
-  report.programs_made = frame.programs_made;
-  report.used_measured = frame.used_measured;
+  report.new_programs = frame.new_programs;
+  report.used_last = frame.used_last;
   report.sampled_error = frame.sampled_error;
   report.is_cut = frame.is_cut;
   report.gpu_bytes = frame.gpu_bytes;
@@ -133,7 +132,7 @@ Report report_of(const render::FrameReport& frame) {
   report.quality = frame.quality;
   report.quality_is_estimate = frame.quality_is_estimate;
   report.attempts = frame.attempts;
-  report.redrawn = frame.redrawn;
+  report.redraws = frame.redraws;
   report.in_place = frame.on_canvases;
   return report;
 }

@@ -74,8 +74,7 @@ py::dict dict_of(const render::FrameReport& report) {
                   "gpu_bytes"_a = report.gpu_bytes, "visible"_a = report.visible, "pairs"_a = report.pairs,
                   "tolerance"_a = report.tolerance, "quality"_a = report.quality,
                   "quality_is_estimate"_a = report.quality_is_estimate, "attempts"_a = report.attempts,
-                  "redrawn"_a = report.redrawn, "used_measured"_a = report.used_measured,
-                  "is_cut"_a = report.is_cut);
+                  "redraws"_a = report.redraws, "used_last"_a = report.used_last, "is_cut"_a = report.is_cut);
 }
 
 /// The index of a choice; none without a value.

@@ -30,7 +30,7 @@ void check(const CallersTextures& textures, std::size_t views, const FrameSettin
 // `report`.
 void add(FrameReport attempt, FrameReport& report) {
   attempt.attempts += report.attempts;
-  attempt.redrawn += report.redrawn;
+  attempt.redraws += report.redraws;
   attempt.sampled_error = attempt.sampled_error || report.sampled_error;
   attempt.total_ms += report.total_ms;
   for (const gl::StageTime& before : report.stages) {
@@ -146,14 +146,14 @@ FrameReport Frame::finish() {
     report.quality = tolerance_control_.quality();
   report.quality_is_estimate = !submitted_.searches || !tolerance_control_.is_measured();
   report.cpu = cpu_;
-  report.programs_made = dispatcher_.context().programs_made() - programs_before_;
+  report.new_programs = dispatcher_.context().new_programs() - programs_before_;
   report.is_cut = is_cut_;
   return report;
 }
 
 void Frame::start_report() {
   cpu_ = {};
-  programs_before_ = dispatcher_.context().programs_made();
+  programs_before_ = dispatcher_.context().new_programs();
 }
 
 FrameReport Frame::draw_until(Stage last, std::span<const shared::View> views, const FrameSettings& settings,
@@ -217,8 +217,8 @@ void Frame::start_attempt() {
 
 FrameReport Frame::finish_attempt() {
   FrameReport report;
-  for (;; ++report.redrawn) {
-    if (report.redrawn == drawings_max)
+  for (;; ++report.redraws) {
+    if (report.redraws == drawings_max)
       throw std::logic_error("a frame still overflowed after its buffers grew repeatedly");
     wait_and_read(report);
     if (counters_.overflow == 0) break;
@@ -316,7 +316,7 @@ void Frame::fill(FrameReport& report) const {
   report.gpu_bytes = model_->context().allocated_bytes();
   for (const gl::StageTime& stage : report.stages) report.total_ms += stage.ms;
   report.tolerance = plan_.tolerance;
-  report.used_measured = measuring_.uses_last;
+  report.used_last = measuring_.uses_last;
   report.measured = measuring_.measures;
   report.sampled_error = plan_.probe.has_value();
   report.on_canvases = !plan_.canvases.empty();

@@ -37,16 +37,16 @@ struct FrameReport {
   std::uint64_t supertile_pairs = 0;  // sorted entries: splat-supertile pairs; two eyes may share an entry
   std::uint32_t order_groups = 0;     // 1 for parallel eyes
   int attempts = 0;                   // with settings.quality: drawings until the frame reached the quality
-  int redrawn = 0;                    // drawings that were repeated because a buffer was too small
+  int redraws = 0;                    // drawings that were repeated because a buffer was too small
   std::vector<gl::StageTime> stages;  // GPU times, summed over attempts, without drawings that overflowed
   double total_ms = 0;                // sum of `stages`
   std::vector<gl::StageSpan> spans;   // spans of all stages, also of drawings that overflowed
   CpuTimes cpu;                       // of all drawings
-  int programs_made = 0;              // programs that were compiled for the frame, or loaded from the cache
+  int new_programs = 0;               // programs that were compiled for the frame, or loaded from the cache
   std::int64_t gpu_bytes = 0;         // size of all buffers, including the model's
   int tile_size = 0;                  // px
   float tolerance = 0.0f;             // K or kappa of the frame
-  bool used_measured = false;         // the frame used transmittance that an earlier frame measured
+  bool used_last = false;             // the frame used transmittance that an earlier frame measured
   bool measured = false;              // the frame measured transmittance for later frames
   bool sampled_error = false;         // the frame also drew some tiles exactly, to measure its error
   bool is_cut = false;  // the frame could not use earlier measurements: a first frame, or after a camera cut
@@ -203,7 +203,7 @@ class Frame {
   Measuring measuring_;
   gl::Buffer counters_read_;     // Counters
   CpuTimes cpu_;                 // of the frame since submit()
-  int programs_before_ = 0;      // Context::programs_made() at submit()
+  int programs_before_ = 0;      // Context::new_programs() at submit()
   bool is_cut_ = false;          // see FrameReport
   shared::Counters counters_{};  // of the last drawing
   double tiles_a_splat_ = 0.0;   // tiles per splat of the last drawing

@@ -13,16 +13,16 @@ std::string times(int count) { return count == 1 ? "once" : fmt::format("{} time
 std::vector<FrameEvent> events_of(const FrameRecord& frame, const FrameRecord* before) {
   const FrameReport& report = frame.report;
   std::vector<FrameEvent> events;
-  if (report.redrawn > 0)
-    events.push_back({"drawn again", times(report.redrawn) + ", since a buffer was too small"});
+  if (report.redraws > 0)
+    events.push_back({"drawn again", times(report.redraws) + ", since a buffer was too small"});
   if (report.attempts > 1) {
     events.push_back({"drawn again", fmt::format("{}, until it kept its quality: {:.1f} dB",
                                                  times(report.attempts - 1), report.quality)});
   }
   if (report.is_cut) events.push_back({"camera cut", "it uses no earlier measurement"});
   if (report.sampled_error) events.push_back({"measured its error", ""});
-  if (report.programs_made > 0)
-    events.push_back({"program compiled", fmt::format("{} or loaded", times(report.programs_made))});
+  if (report.new_programs > 0)
+    events.push_back({"program compiled", fmt::format("{} or loaded", times(report.new_programs))});
   if (frame.levels.uploaded > 0)
     events.push_back({"levels uploaded", fmt::format("{} Gaussians", frame.levels.uploaded)});
   const std::int64_t grown = before == nullptr ? 0 : report.gpu_bytes - before->report.gpu_bytes;

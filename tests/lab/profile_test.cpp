@@ -43,9 +43,9 @@ Profile made_up(std::size_t count = 20) {
     }
     frame.end = frame.begin + draws * microseconds(6'000) + compiling;
     frame.report.attempts = 1;
-    frame.report.redrawn = draws - 1;
+    frame.report.redraws = draws - 1;
     frame.report.cpu = {.submit = 1.0 + 1e-3 * double(compiling.count()), .wait = 5.0 * draws};
-    frame.report.programs_made = n == 5 ? 1 : 0;
+    frame.report.new_programs = n == 5 ? 1 : 0;
     frame.report.gpu_bytes = n < 3 ? 1'000'000 : 3'000'000;
     frame.report.pairs = 1000 + n;
     frame.gaussians = 600;

@@ -97,7 +97,7 @@ TEST_F(CalibrationTest, CompletesWhatIsAskedFor) {
   far.origin.z -= 3.0;
   const Settings exact = read.settings(views(), far);
   EXPECT_EQ(exact.threshold, Threshold::exact);
-  EXPECT_EQ(exact.transmittance, Transmittance::all);
+  EXPECT_EQ(exact.transmittance, Transmittance::one);
   EXPECT_FALSE(exact.tolerance);
   EXPECT_EQ(drawn_left(exact), drawn_left({})) << "it is no setting of a renderer's";
 }
@@ -105,7 +105,7 @@ TEST_F(CalibrationTest, CompletesWhatIsAskedFor) {
 TEST_F(CalibrationTest, RefusesWhatItIsNotFor) {
   const Calibration read = calibration();
   Settings asked = adagscale;
-  asked.transmittance = Transmittance::all;
+  asked.transmittance = Transmittance::one;
   EXPECT_ERROR(read.settings(views(), placement, asked), "c.json", "no entry for threshold peripheral");
   asked = adagscale;
   asked.projection = Projection::tangent;

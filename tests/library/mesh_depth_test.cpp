@@ -292,7 +292,7 @@ TEST_F(Meshes, ThatCannotBeReadAreRefused) {
       refused({.texture = good, .coding = DepthCoding::axis, .units_per_number = 0.0}, "units per number"));
   EXPECT_TRUE(refused(sound, "background", over_black));
   EXPECT_TRUE(refused(sound, "layout", {.layout = Layout::parallel}));
-  EXPECT_TRUE(refused(sound, "measured", {.tolerance = 1.0f, .transmittance = Transmittance::measured}));
+  EXPECT_TRUE(refused(sound, "measured", {.tolerance = 1.0f, .transmittance = Transmittance::last}));
   std::vector<View> pair = views();
   pair[0].mesh_depth = sound;
   EXPECT_ERROR(renderer.draw(pair, placement), "1 of 2 views");

@@ -17,7 +17,7 @@ struct Prepare : Library {
     Placement moved = placement;
     for (int n = 0; n < 10; ++n) {
       moved.origin.x = 0.002 * n;
-      made += renderer.draw(drawn, moved, settings).programs_made;
+      made += renderer.draw(drawn, moved, settings).new_programs;
     }
     return made;
   }
@@ -31,7 +31,7 @@ struct Prepare : Library {
 };
 
 TEST_F(Prepare, LeavesNoProgramsToFrames) {
-  const Settings measured{.quality = 40.0f, .transmittance = Transmittance::measured};
+  const Settings measured{.quality = 40.0f, .transmittance = Transmittance::last};
   Renderer cold(caller.get_proc_address(), in_memory(model));
   EXPECT_GT(made_by_frames(cold, views(), measured), 0) << "there is nothing to prepare";
   expect_prepared(views(), measured);

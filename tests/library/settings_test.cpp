@@ -25,8 +25,7 @@ TEST(LibrarySettings, AreAFramesOwn) {
   EXPECT_EQ(of({.tolerance = 0.5f}).th, TH_SQUARED);
   EXPECT_EQ(of({.tolerance = 0.5f}).tolerance, 0.5f);
   EXPECT_EQ(of({.tolerance = 0.5f, .threshold = Threshold::peripheral}).th, TH_PERIPHERAL);
-  EXPECT_EQ(of({.quality = 40.0f, .transmittance = Transmittance::measured}).transmittance,
-            TRANSMITTANCE_LAST);
+  EXPECT_EQ(of({.quality = 40.0f, .transmittance = Transmittance::last}).transmittance, TRANSMITTANCE_LAST);
   EXPECT_EQ(of({.order = Order::distance}).order, ORDER_DISTANCE);
   EXPECT_EQ(of({.projection = Projection::tangent}).projection, PROJECTION_TANGENT);
   EXPECT_EQ(of({.cyclopean = true}).decode, DECODE_CYCLOPEAN);
@@ -46,7 +45,7 @@ TEST(LibrarySettings, ContradictionsAreRefused) {
       {{.quality = 0.0f}, "settings.quality 0: expected decibels"},
       {{.quality = 400.0f}, "settings.quality 400: expected decibels from 10 to 100"},
       {{.tolerance = NAN}, "zero or more"},
-      {{.transmittance = Transmittance::measured}, "settings.transmittance measured has no effect"},
+      {{.transmittance = Transmittance::last}, "settings.transmittance measured has no effect"},
       {{.threshold = static_cast<Threshold>(77)}, "settings.threshold 77"},
       {{.transmittance = static_cast<Transmittance>(77)}, "settings.transmittance 77"},
       {{.order = static_cast<Order>(-1)}, "settings.order -1"},
@@ -114,11 +113,11 @@ TEST_F(Library, ReportsHaveWhatOverlaysShow) {
   const Report first = renderer.draw(views(), placement, {.quality = 40.0f});
   EXPECT_TRUE(first.is_cut) << "no frame comes before it";
   EXPECT_TRUE(first.sampled_error);
-  EXPECT_GT(first.programs_made, 0);
+  EXPECT_GT(first.new_programs, 0);
   Report next;
   for (int n = 0; n < 8; ++n) next = renderer.draw(views(), placement, {.quality = 40.0f});
   EXPECT_FALSE(next.is_cut);
-  EXPECT_EQ(next.programs_made, 0);
+  EXPECT_EQ(next.new_programs, 0);
   for (const Report& report : {first, next}) {
     double of_spans = 0.0;
     for (const StageSpan& span : report.spans)

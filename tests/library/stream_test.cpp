@@ -74,7 +74,7 @@ INSTANTIATE_TEST_SUITE_P(Precision, LevelsIn, testing::Values(Precision::full, P
 
 TEST_F(Levels, CompileNothingOnceTheyArePrepared) {
   // Those that frames make until the views have what they need, by whoever makes them.
-  const auto programs_made = [&](bool is_prepared, const Settings& settings, Precision precision) {
+  const auto new_programs = [&](bool is_prepared, const Settings& settings, Precision precision) {
     SplatStream stream(std::make_shared<Stream>(levels(), StreamSettings{.detail = {.db = 45.0}}));
     Renderer renderer(caller.get_proc_address(), stream, precision);
     if (is_prepared) renderer.prepare(views(), placement, settings);
@@ -89,12 +89,12 @@ TEST_F(Levels, CompileNothingOnceTheyArePrepared) {
       if (span.name.starts_with("compile ") || span.name.starts_with("load ")) names.push_back(span.name);
     return names;
   };
-  EXPECT_TRUE(std::ranges::any_of(programs_made(false, over_black, Precision::full), [](const auto& name) {
+  EXPECT_TRUE(std::ranges::any_of(new_programs(false, over_black, Precision::full), [](const auto& name) {
     return name.ends_with("chunk_visibility.comp");
   })) << "there is nothing to prepare";
   const std::vector<std::string> none;
-  EXPECT_EQ(programs_made(true, over_black, Precision::full), none);
-  EXPECT_EQ(programs_made(true, {.quality = 40.0f}, Precision::half), none);
+  EXPECT_EQ(new_programs(true, over_black, Precision::full), none);
+  EXPECT_EQ(new_programs(true, {.quality = 40.0f}, Precision::half), none);
 }
 
 TEST_F(Levels, HaveOneRendererAtATimeAndItsContext) {

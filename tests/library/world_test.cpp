@@ -113,7 +113,7 @@ TEST_F(Library, AWorldTakesSettings) {
       const World world{placement, instances};
       renderer.prepare(views(), world, settings);
       const Report report = renderer.draw(views(), world, settings);
-      EXPECT_EQ(report.programs_made, 0);
+      EXPECT_EQ(report.new_programs, 0);
       EXPECT_GT(report.visible, 0u);
     }
   }

@@ -96,12 +96,12 @@ def test_a_picture_depends_on_nothing_drawn_before_but_when_it_follows(model, ca
     fast = {"tolerance": 2, "transmittance": "last"}
     with binosplat.Renderer(model, backend="surfaceless") as renderer:
         first = renderer.draw(cameras["front"], **fast, follow=True)
-        assert not first.report.used_measured
+        assert not first.report.used_last
         following = renderer.draw(cameras["front"], **fast, follow=True)
-        assert following.report.used_measured
+        assert following.report.used_last
         assert not same(following.colour, first.colour)
         alone = renderer.draw(cameras["front"], tolerance=2)
-        assert not alone.report.used_measured
+        assert not alone.report.used_last
         assert same(renderer.draw(cameras["front"], tolerance=2).colour, alone.colour)
 
 
@@ -215,10 +215,10 @@ def test_a_path_says_what_is_wrong_where_it_is(renderer, cameras, scene):
 def test_a_path_goes_by_what_came_before_only_where_it_follows(renderer, cameras):
     views = [cameras["front"]] * 3
     settings = {"tolerance": 0.5, "transmittance": "last", "follow": True}
-    assert [p.report.used_measured for p in renderer.draw_all(views, **settings)] == [False, True, True]
+    assert [p.report.used_last for p in renderer.draw_all(views, **settings)] == [False, True, True]
     with pytest.raises(binosplat.InputError, match="needs follow=True"):
         renderer.draw_all(views, tolerance=0.5, transmittance="last")
-    alone = [p.report.used_measured for p in renderer.draw_all(views, tolerance=0.5)]
+    alone = [p.report.used_last for p in renderer.draw_all(views, tolerance=0.5)]
     assert alone == [False, False, False]
 
 

@@ -257,7 +257,7 @@ TEST(Frame, BuffersTooSmallGiveTheSamePicture) {
     testing::internal::CaptureStderr();
     const render::FrameReport report = frame.draw(views, {}, little);
     EXPECT_NE(testing::internal::GetCapturedStderr().find("drawn again"), std::string::npos);
-    EXPECT_GT(report.redrawn, 0);
+    EXPECT_GT(report.redraws, 0);
     const std::vector<Picture> tight = frame.read_pictures();
     EXPECT_TRUE(same_bits(ample[0], tight[0]));
     EXPECT_TRUE(same_bits(ample[1], tight[1]));
@@ -355,7 +355,7 @@ TEST(Frame, IsTimedWithoutTheMakingOfItsPrograms) {
   render::Frame frame(context, model);
   const render::FrameReport first = frame.draw(std::span(&view, 1));
   const double making = context.compile_ms() - before;
-  EXPECT_GT(first.programs_made, 5);
+  EXPECT_GT(first.new_programs, 5);
   EXPECT_LT(first.total_ms, 0.5 * making) << "of so few Gaussians";
   EXPECT_LT(making, first.cpu.submit + 1.0) << "it is told as the CPU's time";
   frame.draw(std::span(&view, 1));

@@ -219,13 +219,13 @@ TEST_F(Instances, MayMoveAndComeAndGo) {
     frame.place(std::move(instances));
     return frame.draw(views, measured);
   };
-  EXPECT_FALSE(draw_next({{shown, place}}).used_measured);
+  EXPECT_FALSE(draw_next({{shown, place}}).used_last);
   place.translation.x += 0.01;
-  EXPECT_TRUE(draw_next({{shown, place}}).used_measured);
+  EXPECT_TRUE(draw_next({{shown, place}}).used_last);
   place.translation.x += 5.0;
-  EXPECT_FALSE(draw_next({{shown, place}}).used_measured);
-  EXPECT_TRUE(draw_next({{shown, place}}).used_measured);
-  EXPECT_FALSE(draw_next({{shown, place}, {shown, {}}}).used_measured) << "another one";
+  EXPECT_FALSE(draw_next({{shown, place}}).used_last);
+  EXPECT_TRUE(draw_next({{shown, place}}).used_last);
+  EXPECT_FALSE(draw_next({{shown, place}, {shown, {}}}).used_last) << "another one";
   EXPECT_EQ(draw_next({}).visible, 0u);
   const Picture empty = frame.read_pictures()[0];
   for (const glm::vec4& pixel : empty.colour) EXPECT_EQ(pixel, glm::vec4(0, 0, 0, 1));

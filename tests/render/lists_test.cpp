@@ -321,8 +321,8 @@ TEST(HardListsOf, ArePartedInFramesOfMoreViews) {
     if (i % 20 < 9) model.scale[i] = glm::vec3(2.0f);
   render::Frame frame(test::gl_context(), model);
   const std::vector<shared::View> views(4, make_view(camera));
-  EXPECT_GT(frame.draw(std::span(views).first(1)).redrawn, 0);  // for one more round
-  EXPECT_EQ(frame.draw(std::span(views).first(1)).redrawn, 0) << "the frame knows by now";
+  EXPECT_GT(frame.draw(std::span(views).first(1)).redraws, 0);  // for one more round
+  EXPECT_EQ(frame.draw(std::span(views).first(1)).redraws, 0) << "the frame knows by now";
   frame.draw(views);
   EXPECT_TRUE(same_bits(frame.read_pictures()[3], draw(model, views)[3]));
 }

@@ -40,9 +40,9 @@ TEST(Remember, AModelThatIsReloadedIsDrawnAsANewOne) {
     for (int n = 0; n < 3; ++n) frame.draw(std::vector{wall_view()}, settings);
     model = other;
     frame.model()->reload();
-    EXPECT_FALSE(frame.draw(std::vector{wall_view()}, settings).used_measured);
+    EXPECT_FALSE(frame.draw(std::vector{wall_view()}, settings).used_last);
     EXPECT_TRUE(same_bits(frame.read_pictures().front(), test::draw(other, wall_view(), settings)));
-    EXPECT_TRUE(frame.draw(std::vector{wall_view()}, settings).used_measured);
+    EXPECT_TRUE(frame.draw(std::vector{wall_view()}, settings).used_last);
     // Planted: changed, and not uploaded.
     model.position[700] += 0.5f;
     frame.draw(std::vector{wall_view()}, settings);

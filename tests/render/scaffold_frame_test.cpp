@@ -70,8 +70,8 @@ TEST(ScaffoldFrame, APrecisionThatChangesForgetsWhatWasKept) {
   render::Frame frame(test::gl_context(), model);
   for (int n = 0; n < 2; ++n) frame.draw(eyes_at_scaffold(), settings);
   settings.precision = PRECISION_HALF;
-  EXPECT_FALSE(frame.draw(eyes_at_scaffold(), settings).used_measured);
-  EXPECT_TRUE(frame.draw(eyes_at_scaffold(), settings).used_measured);
+  EXPECT_FALSE(frame.draw(eyes_at_scaffold(), settings).used_last);
+  EXPECT_TRUE(frame.draw(eyes_at_scaffold(), settings).used_last);
 }
 
 TEST(ScaffoldFrame, EachEyeEqualsItsMonoPictureBitForBit) {

@@ -188,12 +188,12 @@ TEST(ViewRegions, AHoleThatMovesIsACut) {
   const std::vector views = {view_of_centre(100)};
   render::Frame frame(test::gl_context(), model);
   for (int n = 0; n < 3; ++n) frame.draw(views, before);
-  EXPECT_TRUE(frame.draw(views, before).used_measured);
+  EXPECT_TRUE(frame.draw(views, before).used_last);
   const FrameSettings same_tiles = with(last, {{.hole_begin = {30, 31}, .hole_end = {97, 98}}});
-  EXPECT_TRUE(frame.draw(views, same_tiles).used_measured) << "of which only whole tiles count";
-  EXPECT_FALSE(frame.draw(views, now).used_measured);
+  EXPECT_TRUE(frame.draw(views, same_tiles).used_last) << "of which only whole tiles count";
+  EXPECT_FALSE(frame.draw(views, now).used_last);
   EXPECT_TRUE(same_bits(frame.read_pictures().front(), draw(model, views[0], now)));
-  EXPECT_FALSE(frame.draw(views, last).used_measured) << "nor where there is none";
+  EXPECT_FALSE(frame.draw(views, last).used_last) << "nor where there is none";
 }
 
 TEST(ViewRegions, AViewGoesByItsShareOfTheTolerance) {

@@ -158,7 +158,7 @@ TEST_F(ShowTest, WhatTheFrameRemembersStays) {
     pictures = frame.read_pictures();
     made(SHOW_DIFFERENCE);
   }
-  EXPECT_TRUE(report.used_measured);
+  EXPECT_TRUE(report.used_last);
   EXPECT_TRUE(same_bits(pictures, other.read_pictures()));
 }
 

@@ -53,8 +53,8 @@ Settings drawing_of(const RenderOptions& o, const preview::Choices& choices, con
                     .near_plane = choices.rig.near_plane,
                     .cyclopean = model.scaffold && o.drawing.decode == DECODE_CYCLOPEAN};
   if (o.drawing.th == TH_PERIPHERAL) settings.threshold = Threshold::peripheral;
-  if (o.drawing.transmittance == TRANSMITTANCE_LAST) settings.transmittance = Transmittance::measured;
-  if (o.drawing.transmittance == TRANSMITTANCE_DEPTH) settings.transmittance = Transmittance::by_depth;
+  if (o.drawing.transmittance == TRANSMITTANCE_LAST) settings.transmittance = Transmittance::last;
+  if (o.drawing.transmittance == TRANSMITTANCE_DEPTH) settings.transmittance = Transmittance::depth;
   if (o.drawing.order) settings.order = static_cast<Order>(*o.drawing.order);
   if (o.drawing.projection) settings.projection = static_cast<Projection>(*o.drawing.projection);
   return settings;
@@ -72,8 +72,8 @@ render::FrameRecord record_of(xr::Drawn drawn, std::size_t gaussians, std::size_
   to.visible = from.visible;
   to.pairs = from.pairs;
   to.attempts = from.attempts;
-  to.redrawn = from.redrawn;
-  to.programs_made = from.programs_made;
+  to.redraws = from.redraws;
+  to.new_programs = from.new_programs;
   to.gpu_bytes = from.gpu_bytes;
   to.tolerance = from.tolerance;
   to.sampled_error = from.sampled_error;

@@ -300,9 +300,9 @@ class Report:
         Whether ``quality`` was estimated, not measured over the whole frame.
     attempts
         Number of drawings until the quality was reached.
-    redrawn
+    redraws
         Number of repeated drawings because a buffer was too small.
-    used_measured
+    used_last
         Whether the frame used the transmittance that an earlier frame measured.
     is_cut
         With a quality or transmittance 'last': whether the frame could not use earlier measurements.
@@ -318,8 +318,8 @@ class Report:
     quality: float
     quality_is_estimate: bool
     attempts: int
-    redrawn: int
-    used_measured: bool
+    redraws: int
+    used_last: bool
     is_cut: bool
 
 
