@@ -1,5 +1,5 @@
 // The choices of options, shader variants and charts. GLSL and C++ include this file. Each choice of --tiles,
-// --th and --projection has a file NAME.glsl in shaders/tiles/, threshold/ or projection/.
+// --threshold and --projection has a file NAME.glsl in shaders/tiles/, threshold/ or projection/.
 #ifndef BINOSPLAT_SHARED_AXES_H
 #define BINOSPLAT_SHARED_AXES_H
 
@@ -10,7 +10,7 @@
 #define TILES_OBB 3
 #define TILES_SNUG 4
 
-// --th: the alpha below which a Gaussian makes no pair (docs/method.md 5).
+// --threshold: the alpha below which a Gaussian makes no pair (docs/method.md 5).
 #define TH_TAU 0
 #define TH_PERIPHERAL 1
 #define TH_SQUARED 2

@@ -181,12 +181,12 @@ void add_compare(CLI::App& program, Command& command) {
              "Colour from 0 to 1 behind pictures with alpha; by default alpha is\ncompared if both have it, "
              "else it is over black (0,0,0)");
   add_value(*sub, "--ppd", "N", options->pixels_per_degree, between(1.0, 1000.0, "a number from 1 to 1000"),
-            "For FLIP: pixels per degree that the viewer has (67)");
+            "Pixels per degree of the viewer's field of view, for FLIP (67)");
   add_parsed(*sub, "--foveate-at", "X,Y,FOV", options->gaze, parse_gaze,
              "Compare for an eye that looks at pixel X,Y of a picture FOV degrees\nacross: PSNR by degrees "
              "from there, and the share of pixels that differ\nvisibly");
   add_value(*sub, "--max-memory", "MB", options->max_memory, positive,
-            "Refuse pictures that take more than so many MB to compare\n(three quarters of the machine's)");
+            "Refuse pictures that take more memory to compare (three quarters of the\nmachine's)");
   sub->add_option(
          "--difference", options->difference,
          "Write the absolute error as PNG, amplified so that about one value\nin a thousand is white")

@@ -191,7 +191,8 @@ ExitCode convert(const ConvertOptions& o) {
 }  // namespace
 
 void add_convert(CLI::App& program, Command& command) {
-  CLI::App* sub = program.add_subcommand("convert", "Write a model in another format, and say what it costs");
+  CLI::App* sub =
+      program.add_subcommand("convert", "Write a model in another format, and report what it loses");
   const auto o = std::make_shared<ConvertOptions>();
   sub->add_option("MODEL", o->scene.name, "A model file or folder, demo:room or demo:city")->required();
   sub->add_option("-o,--output", o->output, "The file to write: " + written_endings())
@@ -210,7 +211,7 @@ void add_convert(CLI::App& program, Command& command) {
       ->type_name("N");
   sub->add_option("--cameras", o->camera.file, "Cameras of the views, if not beside the model")
       ->type_name("FILE");
-  add_names_option(*sub, "--view", o->camera.views, "Views by name, instead of N");
+  add_names_option(*sub, "--view", o->camera.views, "Views by name, in place of the N of --report");
   add_size_option(*sub, o->camera.lens);
   sub->add_option("--json", o->json, "Write everything printed as JSON")->type_name("FILE");
   add_measured_options(*sub, *o);

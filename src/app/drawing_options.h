@@ -16,7 +16,7 @@ struct DrawingOptions {
   std::optional<int> th;           // none: chosen by threshold_of()
   std::optional<float> tolerance;  // K or kappa
   int transmittance = TRANSMITTANCE_ONE;
-  bool adagscale = false;        // --th adagscale: TH_PERIPHERAL with TRANSMITTANCE_DEPTH
+  bool adagscale = false;        // --threshold adagscale: TH_PERIPHERAL with TRANSMITTANCE_DEPTH
   std::optional<float> quality;  // dB
   std::string calibration;       // a file of binosplat calibrate
   std::optional<int> decode;     // for Scaffold-GS; none: DECODE_EYES
@@ -34,8 +34,8 @@ void add_drawing_options(CLI::App& sub, DrawingOptions& options);
 /// Throws Error for contradicting options.
 void check(const DrawingOptions& options);
 
-/// The rule (TH_) of --th. Without --th, a tolerance, quality or calibration selects `squared`: at equal
-/// error it is faster than the paper's rule (docs/method.md 8).
+/// The rule (TH_) of --threshold. Without --threshold, a tolerance, quality or calibration selects `squared`:
+/// at equal error it is faster than the paper's rule (docs/method.md 8).
 int threshold_of(const DrawingOptions& options);
 
 /// The options as settings, without calibration and without depth table.

@@ -312,7 +312,7 @@ ExitCode info(const InfoOptions& options) {
 }  // namespace
 
 void add_info(CLI::App& program, Command& command) {
-  CLI::App* sub = program.add_subcommand("info", "Say what a model is made of");
+  CLI::App* sub = program.add_subcommand("info", "Report what a model is made of");
   const auto options = std::make_shared<InfoOptions>();
   sub->add_option("MODEL", options->scene.name, "A model file or folder, or demo:room or demo:city")
       ->required();

@@ -88,7 +88,7 @@ struct HeldOut {
 /// name, and then training views, sorted by name.
 HeldOut hold_out(const CameraList& list, const std::optional<int>& every);
 
-/// Adds --hold-out.
+/// Adds --test-every.
 void add_hold_out_option(CLI::App& sub, std::optional<int>& every);
 
 /// The cameras of a choice, each with its photo if there is a folder.

@@ -24,7 +24,7 @@ void check_trained_alike(const JsonValue& entry, const Model& model, const Model
   if (model.antialiased != scene.antialiased || model.kernel_px2 != scene.kernel_px2) {
     entry.fail_here(
         "trained {} anti-aliasing and for a low-pass of {} px^2, the scene {} and for {}: one setting draws "
-        "all; name it by --antialias or --no-antialias and --kernel-px2",
+        "all; name it by --antialias or --no-antialias and --eps2d",
         model.antialiased ? "with" : "without", model.kernel_px2, scene.antialiased ? "with" : "without",
         scene.kernel_px2);
   }

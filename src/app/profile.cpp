@@ -206,12 +206,14 @@ void add_profile(CLI::App& program, Command& command) {
   add_tour_options(*sub, o.camera);
   add_foveate_option(*sub, o.foveate);
   sub->option_defaults()->group("Options");
-  sub->get_option("--view")->description("Stand at this camera")->type_name("NAME");
+  sub->get_option("--view")->description("Stand still at this camera")->type_name("NAME");
   sub->get_option("--tour")->description(
       "Move through all cameras as a head does (walk, without another motion);\nM,DEG sets metres and "
       "degrees a second");
   sub->get_option("--seconds")
-      ->description("Seconds of the tour, or at a view (10), or of the path through the keys\nof --path");
+      ->description(
+          "Seconds of the tour or at --view (10); with --path: seconds through its\nkeys, at an even pace "
+          "(by their times)");
   sub->get_option("--preset")
       ->description(
           "preview: 1280 x 720 an eye; headset: 3660 x 3200 an eye,\n100 degrees (headset, without --size)");

@@ -209,7 +209,7 @@ ExitCode render(const RenderOptions& asked) {
   if (!run.stream && o.output.detail_report)
     fail(
         "--detail-report: {} lacks the errors of its levels, so --quality cannot choose them: give --detail "
-        "PX",
+        "Npx",
         o.scene.name);
   if (!run.stream) {
     std::optional<DetailBudget> budget;

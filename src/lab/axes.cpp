@@ -250,7 +250,7 @@ Axes load_axes(const std::string& preset_or_file) {
   if (preset != preset_files().end()) return parse_axes(preset_or_file, preset->second);
   std::error_code ignored;
   if (!std::filesystem::exists(preset_or_file, ignored))
-    fail("--axes {}: neither a preset ({}) nor a file", preset_or_file, fmt::join(axes_presets(), ", "));
+    fail("--suite {}: neither a preset ({}) nor a file", preset_or_file, fmt::join(axes_presets(), ", "));
   return parse_axes(preset_or_file, std::string(as_text(MappedFile(preset_or_file).bytes())));
 }
 

@@ -156,7 +156,9 @@ int run(int argc, char** argv) {
     add_max_memory(program);
     add_quiet(program);
     check_arguments(argc, argv);
-    program.parse(argc, argv);
+    std::vector<std::string> words = with_current_names(program, {argv + 1, argv + argc});
+    std::reverse(words.begin(), words.end());  // the order that CLI11 expects
+    program.parse(std::move(words));
     note_inputs(program);
     view(options);
     return 0;
