@@ -23,7 +23,7 @@ changed() {
 # The .cpp files to look at: those that changed, and for each changed header one that includes it.
 chosen() {
   local names name
-  if [[ ${1:-} == --all ]] || ! names=$(changed 2>/dev/null); then
+  if ! names=$(changed 2>/dev/null); then
     find src stereo tests -name '*.cpp'
     return
   fi
@@ -42,17 +42,20 @@ tidy() {
   if ((EPOCHSECONDS > deadline)); then echo "clang-tidy: out of time, not checked: $1"; return; fi
   if ! grep -qF "/$1\"" build/tidy/compile_commands.json; then echo "clang-tidy: not built here, not checked: $1"; return; fi
   local findings
-  findings=$(clang-tidy --quiet -p build/tidy "$1" 2>&1) && return
+  findings=$(clang-tidy --quiet -p build/tidy --checks="$checks" "$1" 2>&1) && return
   sed '/ warnings\{0,1\} generated\.$/d' <<<"$findings"
   return 1
 }
 export -f tidy
 
-cmake --preset release -B build/tidy -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON -DCMAKE_UNITY_BUILD=OFF \
-  --log-level=ERROR >/dev/null
-deadline=$((EPOCHSECONDS + 240))
-if [[ ${1:-} == --all ]]; then deadline=$((EPOCHSECONDS + 86400)); fi
-export deadline
-mapfile -t files < <(chosen "$@" | sort -u)
+unity=OFF deadline=$((EPOCHSECONDS + 240)) checks=
+if [[ ${1:-} == --all ]]; then unity=ON deadline=$((EPOCHSECONDS + 86400)) checks=-bugprone-suspicious-include; fi
+export deadline checks
+cmake --preset release -B build/tidy -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON -DCMAKE_UNITY_BUILD=$unity --log-level=ERROR >/dev/null
+if [[ $unity == ON ]]; then
+  mapfile -t files < <(sed -n "s:^  \"file\"\: \"$PWD/\(.*/Unity/.*\)\",*$:\1:p" build/tidy/compile_commands.json | sort -u)
+else
+  mapfile -t files < <(chosen | sort -u)
+fi
 echo "clang-tidy on ${#files[@]} files"
 if ((${#files[@]})); then printf '%s\0' "${files[@]}" | xargs -0 -n 1 -P "$(nproc)" bash -c 'tidy "$1"' -; fi

@@ -1,7 +1,7 @@
-// Stage 2, bin, for splats in few supertiles of a view, or of both eyes that share lists. Without FILLS it counts the
-// entries of each supertile; with FILLS it writes them to the place of their supertile. A work group first counts the
-// entries of BIN_BLOCK splats in shared memory: neighbours are often in one supertile, and would wait for each other's
-// atomics. A dispatch covers SUPERTILES supertiles from first_supertile on.
+// Stage 2, bin: the entries of splats in few supertiles, for a view, or for both eyes if they share lists. Without
+// FILLS it counts the entries of each supertile; with FILLS it writes the entries to their supertiles' places. A work
+// group first counts the entries of BIN_BLOCK splats in shared memory: neighbouring splats are often in one supertile,
+// and global atomics would wait for each other. A dispatch covers SUPERTILES supertiles from first_supertile on.
 #include "shared/limits.h"
 #include "shared/types.h"
 #include "shared/grid.glsl"
@@ -14,31 +14,33 @@ layout(std430, binding = 0) readonly buffer Views { View views[]; };
 layout(std430, binding = 1) readonly buffer Arguments { DispatchArguments arguments[]; };
 layout(std430, binding = 2) readonly buffer Coverages { uint coverages[]; };  // by splat: supertiles.glsl
 #if FILLS
-layout(std430, binding = 3) buffer SupertileEnds { uint supertile_ends[]; };  // the place of each one's next entry
+layout(std430, binding = 3) buffer SupertileEnds { uint supertile_ends[]; };  // by supertile: place of the next entry
 layout(std430, binding = 4) readonly buffer Depths { uint depths[]; };        // (order group, slot): slots.glsl
 layout(std430, binding = 5) writeonly buffer Entries { uvec2 entries[]; };    // depth, entry
 layout(std430, binding = 6) readonly buffer FrameCounters { Counters counters; };
 #else
 layout(std430, binding = 3) buffer SupertileCounts { uint supertile_counts[]; };
 #endif
-uniform uint view_index;       // the first of the views that share lists
-uniform uint first_supertile;  // in the view
+uniform uint view_index;       // the view, or the first of two that share lists
+uniform uint first_supertile;  // of this dispatch, in the view
 
 #define EACH (BIN_BLOCK / BIN_THREADS)
-shared uint bins[SUPERTILES];  // by supertile: the count of entries, then with FILLS the place of the next one
+shared uint bins[SUPERTILES];  // by supertile: the number of entries; then, with FILLS, the place of the next entry
 
-#define ENTRIES (4u * uint(LIST_VIEWS))  // of a splat in few supertiles, at most
+#define ENTRIES (4u * uint(LIST_VIEWS))  // the largest number of entries of a splat
 uint across;                             // supertiles in a row
 uint coverage[EACH][LIST_VIEWS];
 
 uint supertile_of(uint coverage, uint nth) { return ((coverage & ~IN_FEW_SUPERTILES) >> FEW_SHIFT) + nth % 2u + nth / 2u * across; }
 uint tiles_of(uint coverage, uint nth) { return nth < 4u ? coverage >> 4u * nth & 15u : 0u; }
 
-// The nth entry of splat k: its supertile, counted from first_supertile, and its tiles; 0 tiles: no entry.
+// The nth entry of this invocation's splat k: the supertile, counted from first_supertile, and its tiles as bits. If no
+// bit is set, there is no entry.
 uvec2 entry_of(uint k, uint nth) {
   uint supertile = supertile_of(coverage[k][nth / 4u], nth % 4u), tiles = tiles_of(coverage[k][nth / 4u], nth % 4u);
 #if LIST_VIEWS == 2
-  // In the first eye's supertiles an entry holds both eyes' tiles. Elsewhere the second eye has its own entries.
+  // An entry in one of the first eye's supertiles has both eyes' tiles. In other supertiles the second eye has separate
+  // entries.
   uint before = supertile - supertile_of(coverage[k][1u - nth / 4u], 0u);
   uint same = before < 2u ? before : before - across < 2u ? before - across + 2u : 4u;
   if (nth < 4u) tiles |= tiles_of(coverage[k][1], same) << SUPERTILE_TILES;

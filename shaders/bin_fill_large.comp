@@ -1,5 +1,5 @@
-// Stage 2, bin: moves the entries of bin_large.comp to the places of their supertiles, one invocation each. Neighbours
-// are in different supertiles, so each takes its place with its own atomic.
+// Stage 2, bin: moves the entries of bin_large.comp to their supertiles' places. One invocation per entry. Neighbouring
+// entries are in different supertiles, so their global atomics rarely wait for each other.
 #include "shared/limits.h"
 #include "shared/types.h"
 #include "shared/grid.glsl"
@@ -10,9 +10,9 @@ layout(local_size_x = THREADS) in;
 
 layout(std430, binding = 0) readonly buffer Views { View views[]; };
 layout(std430, binding = 1) readonly buffer FrameCounters { Counters counters; };
-layout(std430, binding = 3) buffer SupertileEnds { uint supertile_ends[]; };  // the place of each one's next entry
+layout(std430, binding = 3) buffer SupertileEnds { uint supertile_ends[]; };  // by supertile: place of the next entry
 layout(std430, binding = 4) readonly buffer Depths { uint depths[]; };        // (order group, slot): slots.glsl
-layout(std430, binding = 5) buffer Entries { uvec2 entries[]; };              // depth, entry; first supertile, entry
+layout(std430, binding = 5) buffer Entries { uvec2 entries[]; };  // moved: (depth, entry); before: (supertile, entry)
 uniform uint first_entry;
 
 void main() {

@@ -2,9 +2,10 @@
 #extension GL_KHR_shader_subgroup_basic : require
 #extension GL_KHR_shader_subgroup_arithmetic : require
 #endif
-// Stage 2, bin: makes the entries of wide splats and of splats in many supertiles, which project.comp listed in
-// `large`. A work group takes LARGE_EACH splats. Its invocations share their rows, so that none waits for the largest
-// splat. The entries go behind the room for those of bin.comp, each with its supertile, in any order.
+// Stage 2, bin: makes the entries of wide splats and of splats in many supertiles, which project.comp has listed in
+// `large`. A work group takes LARGE_EACH splats. It divides the rows of all its splats among its invocations, so that
+// none waits for the largest splat. Entries go behind the room for bin.comp's entries, in any order. Each has its
+// supertile instead of a depth.
 #include "shared/limits.h"
 #include "shared/types.h"
 #include "shared/grid.glsl"
@@ -17,24 +18,24 @@ layout(local_size_x = THREADS) in;
 
 layout(std430, binding = 0) readonly buffer Views { View views[]; };
 layout(std430, binding = 1) buffer FrameCounters { Counters counters; };
-layout(std430, binding = 2) readonly buffer Large { uint large[]; };   // splats, for both eyes if they share lists
+layout(std430, binding = 2) readonly buffer Large { uint large[]; };   // splats; one for both eyes if they share lists
 layout(std430, binding = 3) buffer Coverages { uint coverages[]; };     // by splat: supertiles.glsl
 layout(std430, binding = 4) buffer SupertileCounts { uint supertile_counts[]; };
 layout(std430, binding = 5) writeonly buffer Entries { uvec2 entries[]; };
-uniform uint first_entry;  // the first entry that it makes
-uniform uint capacity;     // room for its entries
+uniform uint first_entry;  // place of the first entry that this shader makes
+uniform uint capacity;     // room for the entries that this shader makes
 
 #define EYE_COUNT uint(LIST_VIEWS)
-#define ROWS (THREADS / EYE_COUNT)  // at a time: one invocation per row and eye
-// By splat: each eye's tile box and whether it touches any tile; the first row of supertiles; the rows of earlier
-// splats.
+#define ROWS (THREADS / EYE_COUNT)  // rows of supertiles at a time: one invocation per row and eye
+// By splat: each eye's box of tiles, and whether the eye's splat touches any tile; the first row of supertiles; the
+// number of rows of earlier splats.
 shared uvec4 box_at[LARGE_EACH][EYE_COUNT];
 shared uint touches[LARGE_EACH][EYE_COUNT];
 shared uint first_row[LARGE_EACH];
 shared uint rows_before[LARGE_EACH];
 shared uint row_count;
-// By row in work: its splat, its first supertile, columns of tiles by eye (two of 16 bits a word), and the entries of
-// earlier rows.
+// By row of supertiles: the splat; the row's first supertile; each eye's columns of tiles, two of 16 bits in a word;
+// the number of entries of earlier rows.
 shared uint row_splat[ROWS];
 shared uint row_supertile[ROWS];
 shared uvec2 row_tiles[ROWS][EYE_COUNT];
@@ -46,8 +47,9 @@ SupertileRow row_at(uint at, uint eye) {
   return supertile_row_of(uvec4(tiles.x & 0xFFFFu, tiles.x >> 16, tiles.y & 0xFFFFu, tiles.y >> 16));
 }
 
-// The shift of an eye's columns of supertiles that makes both eyes' columns adjacent; not yet wrapped around. If the
-// second eye's shift is over half a row, which means backward, the first eye's columns shift by a whole row.
+// The number of columns of supertiles by which an eye is shifted, so that both eyes' columns of a splat are adjacent.
+// Shifted columns may exceed a row. A second eye's shift of over half a row stands for a negative shift; then the first
+// eye is also shifted, by a full row.
 uint moved_by(uint first_view, uint eye) {
   if (first_view + 1u >= frame.view_count) return 0u;
   uint across = supertiles_across(views[first_view]), shift = LIST_VIEWS == 2 ? views[first_view + 1u].lists_shift : 0u;
@@ -55,7 +57,7 @@ uint moved_by(uint first_view, uint eye) {
 }
 
 #if LIST_VIEWS == 2
-// Whether both eyes' columns form one run without a gap.
+// Whether the columns of both eyes form one range without a gap.
 bool are_one(uvec2 a, uvec2 b) { return max(a.x, b.x) <= min(a.y, b.y); }
 #endif
 
@@ -95,7 +97,7 @@ void main() {
     uint nth = begin + self / EYE_COUNT;
     uvec2 tiles = uvec2(0u);
     if (nth < row_count) {
-      uint at = 0u;  // the last splat whose rows begin at or before this one
+      uint at = 0u;  // the last splat whose rows begin at or before row nth
       for (uint half_way = LARGE_EACH / 2u; half_way > 0u; half_way /= 2u) at += rows_before[at + half_way] <= nth ? half_way : 0u;
       uint splat = large[first + at], in_view = first_row[at] + nth - rows_before[at];
       uvec4 box = box_at[at][eye];
@@ -137,7 +139,7 @@ void main() {
     memoryBarrierShared();
     barrier();
     for (uint n = self; n < made; n += THREADS) {
-      uint at = 0u;  // the last row whose entries begin at or before this one
+      uint at = 0u;  // the last row whose entries begin at or before entry n
       for (uint half_way = ROWS / 2u; half_way > 0u; half_way /= 2u) at += made_before[at + half_way] <= n ? half_way : 0u;
       SupertileRow row = row_at(at, 0u);
       uint nth_of_row = n - made_before[at], column = row.columns.x + nth_of_row;

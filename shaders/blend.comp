@@ -1,11 +1,12 @@
-// Stage 4: blends the pictures. One work group a tile: its splats pass through shared memory front to back. Tiles with
-// long lists have a dispatch of their own, which starts first and has more invocations (tile_ranges.glsl).
+// Stage 4: blends the pictures. One work group per tile. The tile's splats pass through shared memory in batches, front
+// to back. A separate dispatch draws tiles with long lists. It starts first and has more invocations per tile
+// (tile_ranges.glsl).
 //
-// Debug views and all measurements but visibility have only this program.
+// Debug views, and all measurements except visibility, use only this program.
 #include "lists.glsl"
 #define INVOCATIONS (TILE_SIZE * TILE_SIZE / COLUMN)
-// Splats in shared memory at a time, at most 9 KiB. With more an H200 runs fewer groups; with fewer the longest lists
-// take longer (src/render/README.md).
+// The largest number of splats in a batch, of up to 9 KiB. With larger batches an H200 runs fewer work groups at a
+// time; with smaller ones the longest lists take longer (src/render/README.md).
 #if APPROXIMATE
 #define BATCH_MAX APPROXIMATE_STEP
 #elif MEASURE
@@ -80,7 +81,8 @@ void main() {
 #if APPROXIMATE
       bool is_test_step = (batch - begin) % APPROXIMATE_STEP == 0u;
       if (is_test_step && (bright & dark_bit) == 0u) end_dark();
-      if (MEASURE != MEASURE_TRANSMITTANCE && is_test_step && bright == 0u) break;  // measurements include splats behind
+      // Measurements of transmittance also need the splats behind dark blocks.
+      if (MEASURE != MEASURE_TRANSMITTANCE && is_test_step && bright == 0u) break;
 #endif
     }
     load(batch + gl_LocalInvocationIndex);
@@ -98,7 +100,7 @@ void main() {
 #endif
   }
   if (is_truncated || (!are_done() && !TAKES_NO_MORE && batch < end)) atomicAdd(counters.truncated_lists, 1u);
-#if MEASURE <= MEASURE_TRANSMITTANCE  // the others keep the picture
+#if MEASURE <= MEASURE_TRANSMITTANCE  // other measurements write no picture
   write_pixels();
 #endif
 }

@@ -11,10 +11,10 @@ float finished(uint p) { return transmittance_left(p); }
 
 #else
 
-float dark_transmittance;  // a block is dark once no T exceeds this; 0: never
-bool ended_dark = false;   // this block ended dark, before its list did
+float dark_transmittance;  // a block is dark once no pixel's T exceeds this; 0: never
+bool ended_dark = false;   // the block ended because it is dark
 #if MEASURE == MEASURE_TRANSMITTANCE
-vec4 dark_colour[COLUMN];  // final colour and Z; measurements continue behind
+vec4 dark_colour[COLUMN];  // final colour and Z; the loop continues only to measure
 float dark_left[COLUMN];
 #endif
 #define TAKES_NO_MORE (ended_dark && MEASURE != MEASURE_TRANSMITTANCE)
@@ -30,7 +30,7 @@ bool are_dark() {
   return all;
 }
 
-// Assumes that everything behind looks like the part in front, except in pixels that are done.
+// Ends a dark block. In each pixel that is not done, assumes that the colour behind equals the blended colour.
 void end_dark() {
   if (ended_dark || dark_transmittance <= 0.0) return;
   ended_dark = true;
@@ -46,7 +46,7 @@ void end_dark() {
   }
 }
 
-// The transmittance left in a pixel. Its colour and depth become final.
+// Returns the final transmittance of a pixel, and sets its final colour and depth.
 float finished(uint p) {
   float left = transmittance_left(p);
   if (ended_dark) {

@@ -1,11 +1,11 @@
-// Stage 4 on software renderers such as llvmpipe, which runs eight invocations in one of its own. One work group a
-// tile, one row of invocations a block of it. The group copies the list's next splats to shared memory and finds the
-// blocks that each reaches. One invocation per block lists its splats, and each row blends its block's list. The bits
-// are those of blend.comp.
+// Stage 4 on software renderers such as llvmpipe, which runs eight invocations at once in SIMD lanes. One work group
+// per tile, one row of invocations per block of the tile. The group copies the list's next splats to shared memory, and
+// finds the blocks that each splat reaches. One invocation per block lists the block's splats, and the block's row
+// blends them. The result equals blend.comp's, bit for bit.
 #define BLOCK_WIDTH 8
 #define BLOCK_HEIGHT COLUMN
 #define ROUND (APPROXIMATE == 1 ? APPROXIMATE_STEP : 128)  // splats at a time
-#define BATCH (ROUND + 1)  // plus an invisible one
+#define BATCH (ROUND + 1)  // the last splat is invisible
 #include "blending.glsl"
 #include "blocks.glsl"
 
@@ -84,7 +84,7 @@ void main() {
 #endif
   }
   if (is_truncated || batch < end) atomicAdd(counters.truncated_lists, 1u);
-#if MEASURE <= MEASURE_TRANSMITTANCE  // the others keep the picture
+#if MEASURE <= MEASURE_TRANSMITTANCE  // other measurements write no picture
   write_pixels();
 #endif
 }

@@ -1,5 +1,6 @@
-// DEBUG_VIEW: writes a value per pixel instead of the picture: `shown`, SHOW_ALPHAS to SHOW_MEDIAN_DEPTH of
-// shared/axes.h. An invocation draws one pixel, one splat at a time. Part of blending.glsl.
+// DEBUG_VIEW: writes a value for each pixel instead of the picture. `shown` selects the value: SHOW_ALPHAS to
+// SHOW_MEDIAN_DEPTH of shared/axes.h. An invocation draws one pixel, and blends one splat at a time. Part of
+// blending.glsl.
 #if DEBUG_VIEW
 uniform uint shown;
 layout(std430, binding = 8) writeonly buffer DebugView { float debug_values[]; };  // below 0: no value
@@ -15,7 +16,7 @@ void debug_stage(uint at, uint splat) {
   if (shown == SHOW_TRANSMITTANCE) batch_transmittance[at] = uintBitsToFloat(measured[splat]);
 }
 
-// Counts alphas, including that of the splat before which the pixel stops.
+// Counts evaluated alphas, including the alpha of the splat before which the pixel stops.
 void debug_evaluated(uint at) {
   if (shown == SHOW_ALPHAS && !is_done(0u) && at < size) debug_value += 1.0;
 }
@@ -27,7 +28,7 @@ void debug_blended(uint at, float weight) {
     debug_value = depth_of(at);
 }
 
-// A block ended dark: scales the value like the colour.
+// Scales the value as the colour is scaled when a block ends dark.
 void debug_scale(float scale) {
   if (shown == SHOW_TRANSMITTANCE) debug_value *= scale;
 }
@@ -36,7 +37,7 @@ void write_debug_view(uint to, float left, uint list) {
   if (shown == SHOW_PAIRS) debug_value = float(list);
   if (shown == SHOW_TRANSMITTANCE) debug_value = left < 1.0 ? debug_value / (1.0 - left) : -1.0;
 #if PROJECTION == PROJECTION_TANGENT
-  if (shown == SHOW_MEDIAN_DEPTH) debug_value *= sqrt(nearness[0]);  // from a distance
+  if (shown == SHOW_MEDIAN_DEPTH) debug_value *= sqrt(nearness[0]);  // converts a distance to view z
 #endif
   debug_values[to] = debug_value;
 }

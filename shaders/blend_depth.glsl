@@ -3,11 +3,11 @@
 layout(std430, binding = 5) writeonly buffer ZSums { float z_sums[]; };
 #endif
 
-// Whether a pixel gets a median depth: that of the splat at which T falls below a half.
+// Whether a pixel gets a median depth: the depth of the splat at which T falls below a half.
 #define HAS_MEDIAN(p) (DEPTH == DEPTH_MEDIAN || DEPTH == DEPTH_MEDIAN_OF_TWO_ROWS && p % 2u == 0u)
 const float half_left = 1.0 - float(COVERAGE_FOR_DEPTH);
 
-// The depth of the first of these splats after which T is below a half; one of them must be.
+// The depth of the first of these splats after which T is below a half. There must be such a splat.
 float median_depth(uint at[AHEAD], float weights[AHEAD], float before) {
   for (uint k = 0u; k < AHEAD; ++k) {
     precise float left = before - weights[k];
@@ -31,7 +31,7 @@ void write_depth(uint to, uint p, float left) {
 #if DEPTH != DEPTH_NONE
   precise float behind = mesh_behind(p);
 #if PROJECTION == PROJECTION_TANGENT && DEPTH != DEPTH_VISIBILITY
-  precise float along = z_sum[p] * sqrt(nearness[p]);  // from distances
+  precise float along = z_sum[p] * sqrt(nearness[p]);  // converts distances to view z
   z_sum[p] = along;
   behind *= sqrt(nearness[p]);
 #endif

@@ -1,8 +1,8 @@
 // The blend of --precision half on GPUs that compute two halves at once (PACKED of blending.glsl): an invocation blends
-// its pixels two by two. It blends a batch as if nothing were in front of it, and adds the sums to the picture's in
-// fp32. Halves alone would lose the splats behind many others. Alphas are fp32 up to the exponent.
+// two pixels at a time. It blends each batch from T = 1, and adds the result in fp32, behind earlier batches. Halves
+// alone would lose splats behind many others. The exponents of alphas are computed in fp32.
 #define PIXEL_PAIRS (COLUMN / 2)
-#define AT_ONCE (8 / COLUMN)  // splats; AHEAD at most
+#define AT_ONCE (8 / COLUMN)  // splats per round of the loop; at most AHEAD
 
 // Blends the first `count` splats of own_at(). It may read up to AHEAD more, which must be invisible.
 void blend_batch(uint count) {

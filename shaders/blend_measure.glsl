@@ -1,7 +1,7 @@
-// The value that a blend measures of each splat, MEASURE (shared/limits.h): a maximum or a sum over the pixels that it
-// reaches. It accumulates in shared memory, and each tile adds it to the buffer once, which costs little beside the
-// blend. Sums are integers, so the order of additions does not matter. With MEASURE_NONE all functions are empty. Part
-// of blending.glsl.
+// The value that a blend measures of each splat (MEASURE of shared/limits.h): a maximum or a sum over the pixels that
+// the splat reaches. A tile accumulates the value in shared memory, and updates the buffer once per splat, which takes
+// little time. Sums are integers, so the order of additions does not matter. With MEASURE_NONE all functions are empty.
+// Part of blending.glsl.
 #define SUMS_PICTURES (MEASURE == MEASURE_TRANSPOSED || MEASURE == MEASURE_CHANGES)
 #if MEASURE == MEASURE_TRANSMITTANCE
 #define MEASURED uint
@@ -12,8 +12,8 @@
 #endif
 
 #if MEASURE != MEASURE_NONE
-// Transmittance: the bits of a float, by splat. Sums: 64 bits by splat and channel, low first. Visibility: by splat,
-// the sum of the low VISIBILITY_LOW_BITS, then that of the bits above.
+// By splat. Transmittance: the bits of a float. Sums over pictures: 64 bits per channel, low word first. Visibility:
+// two words, for the low VISIBILITY_LOW_BITS bits of each tile's sum and for the bits above.
 layout(std430, binding = 7) buffer Measured { uint measured[]; };
 shared MEASURED batch_measured[BATCH];
 #endif
@@ -21,7 +21,7 @@ shared MEASURED batch_measured[BATCH];
 uniform uint scale;  // bits of a float
 #endif
 #if SUMS_PICTURES
-vec4 picture[COLUMN];  // transposed: times `scale`
+vec4 picture[COLUMN];  // pixels of the stored picture; transposed: times `scale`
 uint place_of(View view, uint p);
 #endif
 
@@ -51,12 +51,12 @@ bool is_marked[COLUMN][AHEAD];
 #define IS_MARKED(p, k, weight) (weight > 0.0)
 #endif
 
-int visible = 0;  // of the current splat, in this invocation's pixels
+int visible = 0;  // the current splat's visibility in this invocation's pixels
 
-// Transmittance: the largest T of a pixel that the splat marks (docs/method.md 5). Visibility: alpha T, the weight of
-// an error of its colour, times T, that of an error of its alpha. Transposed: the picture times the splat's weight.
-// Changes: without the splat, the colour behind it takes its place. That colour is the rest of the picture over T (1 -
-// alpha).
+// Adds a pixel to a splat's value. Transmittance: the largest T of a pixel in which the splat counts (docs/method.md
+// 5). Visibility: alpha T^2, because an error of the colour has the weight alpha T, and an error of alpha the weight T.
+// Transposed: the picture times alpha T. Changes: the squared change of the pixel without the splat. The colour behind
+// it then appears, which is the rest of the picture over T (1 - alpha).
 void measure(uint at, uint p, uint k, float weight) {
 #if MEASURE == MEASURE_VISIBILITY
   float counted = transmittance[p] >= float(VISIBILITY_LEAST) ? weight * transmittance[p] : 0.0;
@@ -81,7 +81,7 @@ void measure(uint at, uint p, uint k, float weight) {
 #endif
 }
 
-// Ends a splat, after all its pixels.
+// Call it after measure() of all pixels of a splat.
 void end_measuring_splat(uint at) {
 #if MEASURE == MEASURE_VISIBILITY
   if (visible != 0) atomicAdd(batch_measured[at], visible);
@@ -99,9 +99,9 @@ void end_where_nothing_is_measured(uint p) {
 #endif
 }
 
-// Adds a tile's measurement of a splat to the buffer. Visibility has two parts without a carry, which would make one
-// atomic wait for the other. They have room for 2^26 px and 2^18 tiles; a visibility pass has at most half the size of
-// a drawn picture.
+// Updates the buffer by a tile's value of a splat. Visibility has two words without a carry, because a carry would make
+// the second atomic wait for the first. They have room for 2^26 px and 2^18 tiles, enough for a visibility pass: it has
+// at most half the size of a drawn picture.
 void pass_on(uint splat, uint batch_at) {
 #if MEASURE == MEASURE_TRANSMITTANCE
   uint most = batch_measured[batch_at];

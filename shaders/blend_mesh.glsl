@@ -1,4 +1,4 @@
-// The caller's meshes among the splats (MESH_DEPTH): splats behind a mesh are not drawn. Part of blending.glsl.
+// The depths of the caller's meshes (MESH_DEPTH): splats behind a mesh are not drawn. Part of blending.glsl.
 //   MESH_TESTED_BY_BLOCK   1: a block first tests whether it may have any splat behind a mesh (blend_subgroups.comp)
 #ifndef MESH_DEPTH
 #define MESH_DEPTH 0
@@ -9,7 +9,7 @@
 #define NO_MESH 3e38  // beyond every splat
 #if MESH_DEPTH
 layout(std430, binding = 10) readonly buffer MeshSources { MeshSource mesh_sources[]; };  // by view
-// The caller's textures, by view. The images of canvases have the units before.
+// The caller's textures with mesh depths, by view. Lower units have the canvases' textures.
 layout(binding = MAX_CANVASES) uniform sampler2D meshes_0;
 layout(binding = MAX_CANVASES + 1) uniform sampler2D meshes_1;
 layout(binding = MAX_CANVASES + 2) uniform sampler2D meshes_2;
@@ -24,7 +24,8 @@ float number_at(uint nth, ivec2 texel, int level) {
 
 uint view_at_hand();
 
-// The depth z of the mesh in a pixel of this invocation, with the tangent projection its distance. NO_MESH: none.
+// Returns the mesh's view z in pixel p of this invocation; with the tangent projection, its distance. NO_MESH if there
+// is no mesh.
 float mesh_at(uint p) {
   uint nth = view_at_hand();
   MeshSource from = mesh_sources[nth];
@@ -43,7 +44,7 @@ float mesh_at(uint p) {
 #endif
 
 #if MESH_DEPTH && MESH_TESTED_BY_BLOCK
-float nearest_mesh;  // of the block
+float nearest_mesh;  // the smallest mesh depth in the block
 #define MESH(p) mesh_at(p)
 #elif MESH_DEPTH
 float mesh[COLUMN];
@@ -64,7 +65,7 @@ void begin_meshes(uint p, bool inside) {
 #endif
 }
 
-// The depth of the mesh in a pixel; 0: none.
+// The depth of the mesh in a pixel; 0 if there is no mesh.
 float mesh_behind(uint p) {
 #if MESH_DEPTH && MESH_TESTED_BY_BLOCK
   if (nearest_mesh == NO_MESH) return 0.0;

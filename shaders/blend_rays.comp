@@ -1,5 +1,5 @@
-// The blend (docs/method.md 3) along single rays, which need not pass through pixel centres. One invocation a ray, with
-// the list of the tile that it meets. The lists are made with BETWEEN.
+// The blend (docs/method.md 3) along single rays, which need not pass through pixel centres. One invocation per ray. It
+// blends the list of the tile that the ray meets. Lists are made with BETWEEN (tiles/tiles.glsl).
 #include "shared/limits.h"
 #include "shared/types.h"
 #include "shared/axes.h"
@@ -14,7 +14,7 @@ layout(std430, binding = 0) readonly buffer Views { View views[]; };
 layout(std430, binding = 1) readonly buffer Ranges { uint ranges[]; };
 layout(std430, binding = 2) readonly buffer Values { uint values[]; };
 layout(std430, binding = 3) readonly buffer Rays { PlacedRay rays[]; };
-layout(std430, binding = 4) writeonly buffer Colours { vec4 colours[]; };  // C, and T left
+layout(std430, binding = 4) writeonly buffer Colours { vec4 colours[]; };  // C, and the final T
 layout(std430, binding = 5) writeonly buffer ZSums { float z_sums[]; };
 layout(std430, binding = 6) buffer FrameCounters { Counters counters; };
 uniform uint ray_count;

@@ -7,20 +7,21 @@
 #if HALF && defined(GL_NV_gpu_shader5)
 #extension GL_NV_gpu_shader5 : require
 #endif
-// Stage 4 on GPUs with subgroups of 32 invocations: one work group a tile, one subgroup a block of it. The group copies
-// the list's next splats to shared memory and finds the blocks that each reaches. Each subgroup then blends the splats
-// that reach its block. The bits are those of blend.comp, except in packed halves.
+// Stage 4 on GPUs with subgroups of 32 invocations: one work group per tile, one subgroup per block of the tile. The
+// group copies the list's next splats to shared memory, and finds the blocks that each splat reaches. Each subgroup
+// then blends the splats that reach its block. The result equals blend.comp's, bit for bit, except in packed halves
+// (blend_halves.glsl).
 #define BLOCK_WIDTH 8
 #define BLOCK_HEIGHT (4 * COLUMN)
 #if APPROXIMATE  // blocks of docs/method.md 5.2
 #define ROUND APPROXIMATE_STEP
 #else
-// Splats at a time: with more, fewer groups fit in shared memory. The visibility pass has more, because it waits for
-// its longest list.
+// The number of splats in a round. With larger rounds fewer groups fit in shared memory. The visibility pass has larger
+// rounds, because it takes as long as its longest list.
 #define ROUND (LISTS == LISTS_SHORT ? 64 : MEASURE == MEASURE_VISIBILITY ? 256 : 128)
 #endif
 #define WORDS (ROUND / 32)
-#define BATCH (ROUND + 1)  // plus an invisible one
+#define BATCH (ROUND + 1)  // the last splat is invisible
 #define ANY(condition) subgroupAny(condition)
 #define MESH_TESTED_BY_BLOCK MESH_DEPTH
 #if HALF && defined(GL_NV_gpu_shader5)
@@ -39,11 +40,11 @@ OF_TILE vec2 corner;                           // the tile's first pixel
 uint value_at(uint at) { return at < end ? values[at] : 0u; }
 
 #if MESH_DEPTH
-uint sure;  // how many of the first splats no mesh hides
+uint sure;  // this many splats, from the begin of the block's list on, are in front of all meshes
 #endif
 
-// Lists the batch's splats that reach this subgroup's block, in order, then AHEAD invisible ones. Returns their number
-// without the invisible ones.
+// Lists the batch's splats that reach this subgroup's block, in order, then AHEAD invisible ones. Returns the number of
+// splats that reach the block.
 uint list_own() {
   uint lane = gl_SubgroupInvocationID, bit = bit_of(gl_SubgroupID);
   uint count = 0u;
@@ -65,7 +66,7 @@ uint list_own() {
     count += bitCount(all);
   }
   if (lane < AHEAD) own_lists[gl_SubgroupID][count + lane] = ROUND;
-  subgroupMemoryBarrierShared();  // subgroupBarrier() would wait for all memory of the GPU: 2 % of the time
+  subgroupMemoryBarrierShared();  // subgroupBarrier() also waits for global memory: 2 % of the time
   return count;
 }
 
@@ -141,7 +142,7 @@ void main() {
     barrier();
     if (blocks_done == BLOCKS) break;
   }
-#if MEASURE <= MEASURE_TRANSMITTANCE  // the others keep the picture
+#if MEASURE <= MEASURE_TRANSMITTANCE  // other measurements write no picture
   write_pixels();
 #endif
 }

@@ -7,12 +7,12 @@
 //   DEPTH       the depth in z_sums, DEPTH_ of shared/limits.h (blend_depth.glsl)
 //   CANVASES    1: pictures of views go into images, and z_sums are depths (blend_pictures.glsl)
 //   MEASURE     the value measured of each splat, MEASURE_ of shared/limits.h (blend_measure.glsl)
-//   DEBUG_VIEW  1: writes a value per pixel instead of the picture (blend_debug.glsl)
-//   PLAIN       1: whole views, no probe: without these branches a GPU blends 5 % faster
-//   BROAD       1: with the tangent projection, a tile may show wide splats that lie behind some of its rays
+//   DEBUG_VIEW  1: writes a value for each pixel instead of the picture (blend_debug.glsl)
+//   PLAIN       1: views are drawn completely, and there is no probe: with fewer branches a GPU blends 5 % faster
+//   BROAD       1: with the tangent projection, a wide splat may be in front of some rays of a tile and behind others
 //   MESH_DEPTH  1: splats behind the caller's meshes are not drawn (blend_mesh.glsl)
-//   ANY         whether a condition holds in any invocation that runs with this one
-//   REACHES     whether a splat of the batch is blended in this invocation's block, if the batch also has others
+//   ANY         whether a condition holds in any invocation of the subgroup; by default, in this invocation
+//   REACHES     whether a splat of the batch reaches this invocation's block; by default all do
 #include "lists.glsl"
 #include "shared/axes.h"
 #include "shared/limits.h"
@@ -32,7 +32,7 @@
 #define ANY(condition) (condition)
 #endif
 
-// Whether pixels are blended in packed halves (blend_halves.glsl): only in variants that most frames use.
+// Whether pixels are blended in packed halves (blend_halves.glsl). Only the variants that most frames use do so.
 #ifndef MAY_PACK
 #define MAY_PACK 0
 #endif
@@ -50,11 +50,12 @@ layout(std430, binding = 6) buffer FrameCounters { Counters counters; };
 layout(std430, binding = 9) readonly buffer LongLists { uint long_lists[]; };  // tiles
 #endif
 
-// -log2(alpha) in a pixel (x, y) of the cell is (t^2 + s) + y ((2 b t + v) + c y), t = a x + u. See stage(). With the
-// tangent projection s excludes -log2(sigma): that is added after a division by |d|^2, with d the pixel's ray.
+// -log2(alpha) in pixel (x, y) of the cell is (t^2 + s) + y ((2 b t + v) + c y), with t = a x + u (see stage()). With
+// the tangent projection s does not include -log2(sigma), which is added after the division by |d|^2, with d the
+// pixel's ray.
 shared vec4 batch_across[BATCH];  // a, u, 2 b, s
-shared vec4 batch_down[BATCH];    // v, c; tangent: -log2(sigma), direction_in_bytes()
-#if PACKED  // v and c; batch_down also has rg and b as halves
+shared vec4 batch_down[BATCH];    // v, c; tangent projection: -log2(sigma), direction_in_bytes()
+#if PACKED  // the last two of batch_down are rg and b as halves
 shared float batch_depth[BATCH];
 float depth_of(uint at) { return batch_depth[at]; }
 #else
@@ -62,19 +63,20 @@ shared vec4 batch_colour[BATCH];  // rgb, depth
 float depth_of(uint at) { return batch_colour[at].a; }
 #endif
 
-// Values of a whole tile. With the tangent projection registers are scarce, so they are shared; all write the same.
+// Values of the tile. With the tangent projection registers are scarce, so these values are in shared memory, and all
+// invocations write the same.
 #if PROJECTION == PROJECTION_TANGENT
 #define OF_TILE shared
-OF_TILE float farthest;  // the largest |d|^2
+OF_TILE float farthest;  // the largest |d|^2 of the tile's rays
 OF_TILE vec2 middle_slope;  // the slope of the tile's middle
 float nearness[COLUMN];  // by pixel: 1 / |d|^2
 #else
 #define OF_TILE
 #endif
-OF_TILE vec2 middle;  // of the tile's cell
+OF_TILE vec2 middle;  // middle of the tile's cell (BLEND_CELL), px
 
 uint view_index = 0u;
-uvec2 first_pixel;  // of the column
+uvec2 first_pixel;  // the upper pixel of this invocation
 float column;       // x from the middle of the cell
 float row[COLUMN];  // by pixel: y from the middle of the cell
 uint size;          // splats in the batch
@@ -105,7 +107,7 @@ float transmittance_left(uint p) { return is_done(p) ? -least[p] : transmittance
 #define FOLLOWS_TRANSMITTANCE (MEASURE != MEASURE_NONE || DEPTH == DEPTH_VISIBILITY || DEBUG_VIEW != 0)
 
 // Blends AHEAD splats of the batch at once: their alphas are independent, only T is sequential. With `may_be_hidden`,
-// tests them against each pixel's mesh.
+// also compares their depths with each pixel's mesh.
 void blend(uint at[AHEAD], const bool may_be_hidden) {
   float farthest[COLUMN];
   if (may_be_hidden) {
@@ -144,7 +146,7 @@ void blend(uint at[AHEAD], const bool may_be_hidden) {
   }
 #endif
   float left[COLUMN];
-  bool some_stop = false;  // one test for all pixels: a branch for each took 2 % of the time
+  bool some_stop = false;  // one test for all pixels: a branch for each takes 2 % of the time
   for (uint p = 0u; p < COLUMN; ++p) {
     debug_evaluated(at[0]);
     precise float next = transmittance[p];
@@ -212,10 +214,10 @@ void blend_from(uint first) {
 
 // Writes a splat into the batch; stage_nothing() writes an invisible one.
 //
-// alpha = sigma 2^-|L^T d|^2, d = pixel - mean, L the lower Cholesky factor of Q log2(e) / 2, as a polynomial of the
-// pixel's place from the middle of its cell. No splat is thinner than the low-pass, and in visible pixels the mean is
-// at most a few of its widths away. So no term is large there, and their sum is exact to 1e-4. Cells do not depend on
-// the tile size.
+// alpha = sigma 2^-|L^T d|^2, with d = pixel - mean and L the lower Cholesky factor of Q log2(e) / 2. The exponent is
+// stored as a polynomial in the pixel's position relative to the middle of its cell. Splats are at least as wide as the
+// low-pass, and are visible up to a few of their widths from the mean. So no term is large in visible pixels, and the
+// sum is exact to 1e-4. Cells do not depend on the tile size, so neither does the sum.
 void stage(uint at, Splat splat) {
   const float scale = 0.72134752044448170;  // log2(e) / 2
 #if !PACKED

@@ -1,6 +1,6 @@
-// The blocks of BLOCK_WIDTH x BLOCK_HEIGHT px in which a tile is drawn, row by row, and the blocks that a splat
-// reaches. The two are equal, except in the approximate blend. There a splat reaches the blocks of docs/method.md 5.2,
-// which do not depend on how a tile is drawn. Include after blending.glsl.
+// A tile is drawn in blocks of BLOCK_WIDTH x BLOCK_HEIGHT px, row by row. This file finds the blocks that a splat
+// reaches. The approximate blend tests splats in the blocks of docs/method.md 5.2 instead, which do not depend on how a
+// tile is drawn. Include after blending.glsl.
 #define BLOCKS_ACROSS (TILE_SIZE / BLOCK_WIDTH)
 #define BLOCKS_DOWN (TILE_SIZE / BLOCK_HEIGHT)
 #define BLOCKS (BLOCKS_ACROSS * BLOCKS_DOWN)
@@ -15,8 +15,8 @@ uint bit_of(uint block) {
   return block / BLOCKS_ACROSS * BLOCK_HEIGHT / REACH_HEIGHT * BLOCKS_ACROSS + block % BLOCKS_ACROSS;
 }
 
-// A bit for each block with a pixel whose alpha reaches ALPHA_MIN, in the approximate blend Th. Rounding may add
-// blocks, but never loses one. `mean` is relative to the tile's first pixel.
+// Returns a bit for each block with a pixel in which alpha reaches ALPHA_MIN, or Th in the approximate blend. Rounding
+// may add blocks, but never loses one. `mean` is relative to the tile's first pixel.
 uint blocks_reached(Splat splat, vec2 mean) {
   if (!(splat.opacity >= float(ALPHA_MIN))) return 0u;
 #if APPROXIMATE
@@ -28,16 +28,16 @@ uint blocks_reached(Splat splat, vec2 mean) {
   rho *= farthest;
 #endif
   float root_det = abs(splat.conic.w);
-  float tallest = root_det * sqrt(rho * splat.conic.x);            // half the ellipse's height,
-  float widest = sqrt(rho / splat.conic.x);                        // half the length of its widest row,
-  float lean = -splat.conic.y / splat.conic.x;                     // the slope of the line through its rows' middles,
-  float apex = -splat.conic.y * root_det * sqrt(rho / splat.conic.z);  // the y of its rightmost point
+  float tallest = root_det * sqrt(rho * splat.conic.x);            // half the height of the ellipse
+  float widest = sqrt(rho / splat.conic.x);                        // half the width of its widest row
+  float lean = -splat.conic.y / splat.conic.x;                     // slope of the line through its rows' middles
+  float apex = -splat.conic.y * root_det * sqrt(rho / splat.conic.z);  // y of its rightmost point
   uint bits = 0u;
   for (uint row = 0u; row < TILE_SIZE / REACH_HEIGHT; ++row) {
     float low = float(row * REACH_HEIGHT) - mean.y;
     float high = low + float(REACH_HEIGHT - 1);
     if (low > tallest || high < -tallest) continue;
-    vec2 y = clamp(vec2(-apex, apex), low, high);  // the y of its leftmost and rightmost points in this row
+    vec2 y = clamp(vec2(-apex, apex), low, high);  // y of its leftmost and rightmost points in this row of blocks
     vec2 reach = widest * sqrt(max(vec2(0.0), 1.0 - y * y / (tallest * tallest)));
     vec2 x = lean * y + vec2(-reach.x, reach.y);
     float slack = 0.01 + 1e-5 * (abs(x.x) + abs(x.y));

@@ -1,12 +1,13 @@
-// The squared error of a drawn view, in squared 255ths, against the picture that byte_pictures.comp stored, summed by
-// work group. In integers, equal pictures have 0, and the order of summation does not matter. One invocation a pixel.
+// The squared error of a drawn view against the picture that byte_pictures.comp stored, summed by work group, in units
+// of (1 / 255)^2. Sums are integers, so equal pictures have 0, and the order of summation does not matter. One
+// invocation per pixel.
 #include "shared/limits.h"
 #include "shared/grid.glsl"
 #include "shared/bytes.glsl"
 
 layout(local_size_x = THREADS) in;
 
-layout(std430, binding = 0) readonly buffer Colours { vec4 colours[]; };  // C, and T left; over black
+layout(std430, binding = 0) readonly buffer Colours { vec4 colours[]; };  // C, and the final T; over black
 layout(std430, binding = 1) readonly buffer Kept { uint kept[]; };
 layout(std430, binding = 2) writeonly buffer Sums { uint sums_of_groups[]; };
 uniform uint first_pixel;

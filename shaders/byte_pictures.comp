@@ -1,11 +1,11 @@
-// Rounds drawn pixels to 8 bits, one word each, for pictures that are only compared in 8 bits. One invocation a pixel.
+// Rounds drawn pixels to 8 bits, in a word each, for comparisons in 8 bits. One invocation per pixel.
 #include "shared/limits.h"
 #include "shared/grid.glsl"
 #include "shared/bytes.glsl"
 
 layout(local_size_x = THREADS) in;
 
-layout(std430, binding = 0) readonly buffer Colours { vec4 colours[]; };  // C, and T left; over black
+layout(std430, binding = 0) readonly buffer Colours { vec4 colours[]; };  // C, and the final T; over black
 layout(std430, binding = 1) writeonly buffer Kept { uint kept[]; };       // red in the lowest byte
 uniform uint first_pixel;
 uniform uint first_kept;

@@ -1,5 +1,5 @@
 // The caller's images, into which the blend writes views' final pictures.
-//   MESH_DEPTH  1: over the images' own colours
+//   MESH_DEPTH  1: blends over the images' colours
 #include "shared/types.h"
 #include "shown.glsl"
 
@@ -10,7 +10,7 @@ layout(binding = 2) writeonly uniform image2D image_2;
 layout(binding = 3) writeonly uniform image2D image_3;
 
 #if MESH_DEPTH
-// The same images, each read before it is written.
+// The same images, from which each pixel is read before it is written.
 layout(binding = 0) uniform sampler2D behind_0;
 layout(binding = 1) uniform sampler2D behind_1;
 layout(binding = 2) uniform sampler2D behind_2;
@@ -24,7 +24,8 @@ vec4 behind_at(uint nth, ivec2 at) {
 }
 #endif
 
-// Writes a blended pixel to the image of unit `nth`. `at` counts from the top left of a view that is `height` px high.
+// Writes a blended pixel to the image of unit `nth`. `at` counts from the upper left corner of a view that is `height`
+// px high.
 void write_on_canvas(uint nth, Canvas canvas, uint height, uvec2 at, vec4 pixel, vec3 background) {
   ivec2 to = ivec2(canvas.left + at.x, canvas.bottom + height - 1u - at.y);
 #if MESH_DEPTH

@@ -1,5 +1,5 @@
 // The visibility of a model's chunks in the views: sums the blend's results (MEASURE_VISIBILITY) over the Gaussians of
-// each chunk. One invocation a slot of an order group; it skips Gaussians outside the page.
+// each chunk. One invocation per slot of an order group; it skips Gaussians outside the page.
 #include "shared/axes.h"
 #include "shared/limits.h"
 #include "shared/types.h"
@@ -13,15 +13,16 @@ layout(local_size_x = THREADS) in;
 layout(std430, binding = 0) readonly buffer Views { View views[]; };
 layout(std430, binding = 2) readonly buffer Arguments { DispatchArguments arguments[]; };
 layout(std430, binding = 3) readonly buffer Indices { uint indices[]; };    // Gaussian of each slot
-layout(std430, binding = 4) buffer Sums { uvec2 sums[]; };              // by splat: VISIBILITY_LOW_BITS, the bits above
-layout(std430, binding = 5) readonly buffer Owners { uint owners[]; };      // chunk by block of Gaussians
-layout(std430, binding = 6) buffer ChunkSums { uint chunk_sums[]; };        // (view, chunk), two of 64 bits
+layout(std430, binding = 4) buffer Sums { uvec2 sums[]; };              // by splat: blend_measure.glsl
+layout(std430, binding = 5) readonly buffer Owners { uint owners[]; };      // chunk of each block of Gaussians
+// For each view and chunk two sums of 64 bits: visibility, and visibility times (log2(distance from the eye) + 32).
+layout(std430, binding = 6) buffer ChunkSums { uint chunk_sums[]; };
 uniform uint chunk_count;
-uniform uint block_size;  // Gaussians
+uniform uint block_size;  // Gaussians per block
 uniform uint view_begin;
 uniform uint view_end;
 
-// The least sum of a splat within the picture, even if it is hidden: a 65,536th of a pixel.
+// The smallest visibility of a splat in the picture, even of a hidden one: that of 1/65,536 of a pixel.
 const uint hidden = uint(VISIBILITY_SCALE) / 65536u;
 
 void add(uint at, uvec2 number) {

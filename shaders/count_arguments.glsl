@@ -1,5 +1,5 @@
-// Turns the number of Gaussians that an order group draws into the arguments of later dispatches, and checks it against
-// the buffers' room. One invocation. The including file declares `arguments` and `counters`.
+// Computes the arguments of later dispatches from the number of Gaussians that an order group draws, and compares the
+// number with the buffers' room. One invocation calls it. The including file declares `arguments` and `counters`.
 #include "shared/arguments.glsl"
 
 uniform uint capacity;  // room of the buffers, in Gaussians

@@ -1,6 +1,6 @@
 // Stage 0, decode (Scaffold-GS only): computes the Gaussians of each anchor for an eye. One invocation for each anchor
-// of the page and each decoding. A decoding serves one view, or both eyes of a pair from their midpoint. The bits of a
-// word mark the Gaussians that exist. So a Gaussian's place, and that of its measurements, depends only on its id.
+// of the page and each decoding. A decoding serves one view, or both eyes, for which it uses the midpoint. Every
+// Gaussian has a fixed place, by its id, for its data and measurements. Bits in `kept` mark the Gaussians that exist.
 #include "shared/limits.h"
 #include "shared/types.h"
 #include "shared/grid.glsl"
@@ -24,7 +24,7 @@ layout(std430, binding = 6) writeonly buffer Harmonics { vec4 harmonics[]; };   
 #endif
 layout(std430, binding = 9) writeonly buffer Kept { uint kept[]; };  // (decoding, anchor), bit k
 
-// The anchor cull, as in training: whether a Gaussian with the offsets' scales touches a tile of 3D-GS.
+// The anchor cull (docs/method.md 1.1), as trained: whether a Gaussian with the scales `offset_scale` touches a tile.
 bool sees(View view, Anchor anchor) {
   Gaussian g = Gaussian(vec4(anchor.position.xyz, 1.0), anchor.rotation, anchor.offset_scale);
   view.tiles_x = (view.width + uint(TILE_SIZE - 1)) / uint(TILE_SIZE);
@@ -41,7 +41,7 @@ vec3 mean_of(Anchor anchor, uint n, uint k) {
 
 vec3 sigmoid(vec3 x) { return 1.0 / (1.0 + exp(-x)); }
 
-// Writes Gaussian k of an anchor to `to`. Returns false if its values overflowed.
+// Writes Gaussian k of an anchor to place `to`. Returns false if its values overflow.
 bool decode(Anchor anchor, uint n, uint k, float logit, Hidden covariance, Hidden colour, uint to) {
   uint row = COVARIANCE_ROW + 7u * k;
   vec3 scale = vec3(output_of(row, covariance), output_of(row + 1u, covariance), output_of(row + 2u, covariance));
@@ -67,15 +67,15 @@ bool decode(Anchor anchor, uint n, uint k, float logit, Hidden covariance, Hidde
   return abs(sum) < 1e38;
 }
 
-// Decodes an anchor; `to` is the place of its first Gaussian. Returns a bit for each that exists. Computes opacities
-// first, so that fewer hidden units are live at a time.
+// Decodes an anchor; `to` is the place of its first Gaussian. Returns a bit for each Gaussian that exists. Computes
+// opacities first, so that fewer hidden units are in registers at a time.
 uint decode_anchor(Anchor anchor, uint n, vec3 towards, uint to) {
   float away = length(towards);
   vec4 ray = vec4(towards / away, away);
   vec3 mixed = bank_mix(ray);
   float logits[OFFSETS];
   Hidden opacity = hidden_of(OPACITY, n, ray, mixed);
-  // The bound is unknown to the compiler: unrolling this loop takes compilers minutes.
+  // The limit is a uniform, so that compilers do not unroll the loop: unrolling takes them minutes.
   for (uint k = 0u; k < frame.offset_count; ++k) logits[k] = output_of(OPACITY_ROW + k, opacity);
   Hidden covariance = hidden_of(COVARIANCE, n, ray, mixed);
   Hidden colour = hidden_of(COLOUR, n, ray, mixed);
@@ -95,7 +95,7 @@ void main() {
   uint n = at % anchor_count;
   Anchor anchor = anchors[n];
   uint end = min(first + frame.views_per_decoding, frame.requested_views);
-  vec3 eye = vec3(0.0);  // relative to the first view's anchor point
+  vec3 eye = vec3(0.0);  // relative to the anchor point of the first view
   bool seen = frame.anchor_cull == 0u;
   for (uint v = first; v < end; ++v) {
     eye += (views[v].anchor.xyz - views[first].anchor.xyz) + views[v].eye.xyz;

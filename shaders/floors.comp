@@ -1,5 +1,5 @@
-// Measures a GPU's peak rates (src/lab/floors.h): FLOOR_BYTES copies, FLOOR_ALPHAS blends splats from shared memory
-// into four pixels an invocation, FLOOR_FMAS multiplies and adds. Only the time matters.
+// The work by which src/lab/floors.h measures a GPU's peak rates. FLOOR_BYTES copies. FLOOR_ALPHAS blends splats from
+// shared memory into four pixels per invocation. FLOOR_FMAS multiplies and adds. The results are not used.
 #include "shared/axes.h"
 #include "shared/limits.h"
 #include "shared/grid.glsl"
@@ -9,7 +9,7 @@ layout(local_size_x = THREADS) in;
 layout(std430, binding = 0) readonly buffer From { vec4 from[]; };
 layout(std430, binding = 1) writeonly buffer To { vec4 to[]; };
 uniform uint count;   // number of vec4s
-uniform uint rounds;  // of 256 splats, or of 256 multiply-adds in each of four lanes
+uniform uint rounds;  // a round has 256 splats, or 256 multiply-adds in each of four lanes
 
 #if FLOOR == FLOOR_ALPHAS
 shared vec4 splats[512];  // mean, opacity; conic

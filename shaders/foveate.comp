@@ -1,7 +1,8 @@
-// Composes an eye's picture. Inside the inset are the pixels of its window. Beyond the seam around it is the context,
-// which has fewer pixels; the seam mixes both. A work group shares the context's rows, interpolated at its columns.
+// Composes an eye's picture. In the inset it copies the pixels of the inset's window. Beyond the seam around the inset
+// it interpolates the context, which has fewer pixels. In the seam it mixes window and context. A work group first
+// interpolates rows of the context, at the x of its pixels, in shared memory.
 //   CANVASES    1: writes the final picture into an image, without depths
-//   MESH_DEPTH  1: over the image's own colours
+//   MESH_DEPTH  1: blends over the image's colours
 #include "shared/limits.h"
 #include "shared/types.h"
 #include "shared/grid.glsl"
@@ -9,13 +10,13 @@
 #include "canvases.glsl"
 #endif
 
-// Pixels of a work group: an invocation draws one in every THREAD_ROWS rows.
+// Pixels of a work group. An invocation draws a pixel in every THREAD_ROWS-th row.
 #define COLUMNS COMPOSE_COLUMNS
 #define ROWS COMPOSE_ROWS
 #define THREAD_ROWS 8u
 layout(local_size_x = COLUMNS, local_size_y = THREAD_ROWS) in;
 
-layout(std430, binding = 0) readonly buffer Colours { vec4 colours[]; };  // C, and T left
+layout(std430, binding = 0) readonly buffer Colours { vec4 colours[]; };  // C, and the final T
 #if CANVASES
 uniform uint nth;                                          // index of the canvas
 uniform uint background_r, background_g, background_b;     // bits of floats
@@ -27,12 +28,13 @@ uniform uint first;  // the picture's first pixel in its buffer
 #endif
 uniform uint width, height;  // of the picture, px
 uniform uint context_first, context_width, context_height;
-uniform uint window_first, window_left, window_top, window_width;  // left and top in the picture
+uniform uint window_first, window_left, window_top, window_width;  // left, top: px in the picture
 uniform uint inset_left, inset_top, inset_right, inset_bottom;     // in the picture
 uniform uint seam;            // bits of a float, px
 uniform uint step_x, step_y;  // bits of floats: px of the context per px of the picture
 
-// A context has at most as many pixels as the picture. Interpolation needs those from one before to two after.
+// A context has at most as many rows as the picture. Interpolation needs the context's rows from one before to two
+// after a pixel.
 #define AROUND_ROWS (ROWS + 4u)
 shared vec4 across[AROUND_ROWS * COLUMNS];  // rows of the context at the pixels' columns
 #if !CANVASES
@@ -57,16 +59,16 @@ vec4 weights_of(float t) {
   return 0.5 * vec4(t * (-1.0 + t * (2.0 - t)), 2.0 + t * t * (-5.0 + 3.0 * t), t * (1.0 + t * (4.0 - 3.0 * t)), t * t * (t - 1.0));
 }
 
-// The place of a picture's pixel in the context. Every call returns the same bits, because it addresses shared memory
-// for writes and reads.
+// The position in the context of a pixel of the picture. It is `precise`, because it selects places of shared memory
+// for writing and for reading, which must agree.
 vec2 in_context(uvec2 pixel) {
   precise vec2 at = (vec2(pixel) + 0.5) * uintBitsToFloat(uvec2(step_x, step_y)) - 0.5;
   return at;
 }
 
-// Interpolates the context by Catmull-Rom. Along each axis the result stays in the range of the two nearest pixels.
-// Otherwise edges would have bright and dark seams, and T could leave its range. First along the context's rows, at the
-// pixels' columns;
+// Interpolates the context by Catmull-Rom, first along rows, then along columns. Along each axis the result is clamped
+// to the range of the two nearest pixels. Otherwise edges would have bright and dark fringes, and T could leave [0, 1].
+// filter_rows() interpolates the context's rows at the x of the group's pixels.
 void filter_rows(uvec2 corner, int base_y, int count) {
   uvec2 self = gl_LocalInvocationID.xy;
   ivec2 most = ivec2(context_width, context_height) - 1;
@@ -87,7 +89,7 @@ void filter_rows(uvec2 corner, int base_y, int count) {
   barrier();
 }
 
-// then along this invocation's column.
+// Interpolates the filtered rows along this invocation's column.
 Pixel context_at(uint pixel_y, int base_y) {
   float at = in_context(uvec2(0u, pixel_y)).y;
   vec4 weights = weights_of(at - floor(at));
@@ -103,7 +105,7 @@ Pixel context_at(uint pixel_y, int base_y) {
   return sum;
 }
 
-// 1 in the inset, 0 from the seam's end on.
+// The inset's share of a pixel: 1 in the inset, 0 beyond the seam.
 float share_of_window(uvec2 pixel) {
   vec2 d = max(vec2(inset_left, inset_top) - vec2(pixel), vec2(pixel) - vec2(inset_right - 1u, inset_bottom - 1u));
   float beyond = length(max(d, vec2(0.0)));
@@ -118,7 +120,7 @@ bool is_beyond(uvec2 corner) {
   return any(lessThan(high, vec2(inset_left, inset_top) - wide)) || any(greaterThan(low, vec2(inset_right, inset_bottom) + wide));
 }
 
-// Whether all of a group lies in the inset. The inset is convex, so the group's corners decide.
+// Whether all pixels of a group lie in the inset. The inset is convex, so the group's corners decide.
 bool is_inset(uvec2 corner) {
   uvec2 last = min(corner + uvec2(COLUMNS, ROWS), uvec2(width, height));
   return all(greaterThanEqual(corner, uvec2(inset_left, inset_top))) && all(lessThanEqual(last, uvec2(inset_right, inset_bottom)));

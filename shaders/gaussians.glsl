@@ -1,5 +1,5 @@
-// The Gaussians of a page of the model. In Scaffold-GS they depend on the eye: a view uses those of its decoding that
-// exist.
+// The Gaussians of a page of the model. In Scaffold-GS they depend on the eye: a view uses the existing Gaussians of
+// its decoding.
 //   OFFSETS   K of Scaffold-GS, 0 for other models
 //   HALF      1: in half precision
 
@@ -12,13 +12,13 @@ layout(std430, binding = 1) readonly buffer Gaussians { Gaussian gaussians[]; };
 #define GAUSSIAN(at) gaussians[at]
 #endif
 #include "frame.glsl"
-uniform uint page_first;      // of all Gaussians of the frame: where those of the page's instances begin
-uniform uint page_count;      // of one instance
+uniform uint page_first;      // index of the page's first Gaussian in the frame
+uniform uint page_count;      // Gaussians of the page in one instance
 uniform uint instance_first;  // the model's first instance
 uniform uint instance_count;
 
-// The page's Gaussians lie in the frame once an instance, one instance after another. Gaussian i of them: where it is in the
-// page, and the first of its instance's views.
+// A frame has the page's Gaussians once per instance, one instance after another. Returns for Gaussian i of these the
+// index in the page, and the index of the first view of its instance.
 uvec2 place_in_page(uint i) {
   uint instance = instance_count > 1u ? i / page_count : 0u;
   return uvec2(i - instance * page_count, (instance_first + instance) * frame.view_count);

@@ -1,9 +1,10 @@
 // --precision half: Gaussians and splats in 32 bytes each, mostly in fp16; computations are in fp32. C++ packs the same
-// in render/halves.h. Values are `precise`: several programs pack, and another last bit may round to another half.
+// in render/halves.h. Values are `precise`, because several programs pack the same value, and a different last bit may
+// round to a different half.
 
-// A unit quaternion in 20 bits for each component but the largest, which follows from the others. With fp16's eleven
-// bits a needle of thousands of pixels would point in a wrong direction.
-#define ROTATION_STEPS 741454.0  // steps per 1: 2^19 - 1 at sqrt(1/2)
+// A unit quaternion has 20 bits for each component except the largest, which follows from the others. With fp16's 11
+// bits a needle that is thousands of pixels long would visibly point in a wrong direction.
+#define ROTATION_STEPS 741454.0  // steps per unit: sqrt(1/2), the largest stored component, has 2^19 - 1
 
 vec4 unpack_rotation(uvec2 bits) {
   uvec3 steps = uvec3(bits.x, bits.x >> 20 | bits.y << 12, bits.y >> 8) & 0xFFFFFu;
@@ -27,7 +28,7 @@ uvec2 packed_rotation(vec4 q) {
   return uvec2(steps.x | steps.y << 20, steps.y >> 12 | steps.z << 8 | largest << 28);
 }
 
-// Position and the largest scale; then the scales as shares of it, opacity, rotation.
+// `low` has position and largest scale. `high` has the scales divided by the largest scale, opacity and rotation.
 Gaussian unpack_gaussian(uvec4 low, uvec4 high) {
   vec2 xy = unpackHalf2x16(high.x), z_opacity = unpackHalf2x16(high.y);
   vec4 place = uintBitsToFloat(low);
@@ -44,8 +45,8 @@ uvec4 packed_shape(Gaussian g) {
 }
 
 // Mean, depth and rho are in fp32. The conic Q = L L^T is stored as its factor L, whose rounding cannot turn an ellipse
-// inside out. A power of two scales L, so that fp16 holds splats from 1/255 to four million px. L.yx is a sum of two
-// halves, computed for the rounded L.xx: their ratio is the direction of a needle.
+// inside out. A power of two scales L, so that fp16 stores splats from 1/255 to four million px. L.yx is stored as the
+// sum of two halves, and computed for the rounded L.xx: the ratio L.yx / L.xx is a needle's direction.
 #define HALF_FACTOR 256.0
 #define HALF_LEAST 6.1035156e-05
 #define HALF_MOST 65504.0
@@ -71,7 +72,7 @@ uvec4 packed_place(Splat splat) {
 }
 
 uvec4 packed_shape(Splat splat) {
-  // Compilers differ in roots and quotients, but not in this.
+  // Compilers give different bits for roots and quotients, but equal bits for inversesqrt().
   precise float inverse = inversesqrt(splat.conic.x);
   precise float xx = splat.conic.x * inverse;
   precise float yx = splat.conic.y * inverse;

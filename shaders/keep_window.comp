@@ -1,11 +1,11 @@
-// Copies the pixels of a window to their places in a picture. Copies of buffers take a driver ten times as long. One
-// invocation a pixel.
+// Copies the pixels of a window to their places in a picture. A driver's buffer copies take ten times as long. One
+// invocation per pixel.
 #include "shared/limits.h"
 #include "shared/grid.glsl"
 
 layout(local_size_x = THREADS) in;
 
-layout(std430, binding = 0) readonly buffer Colours { vec4 colours[]; };  // C, and T left; over black
+layout(std430, binding = 0) readonly buffer Colours { vec4 colours[]; };  // C, and the final T; over black
 layout(std430, binding = 1) writeonly buffer Wanted { vec4 wanted[]; };   // C
 uniform uint pixel_count;  // of the window
 uniform uint width;        // px, of the window

@@ -1,14 +1,14 @@
-// The loss of a level of detail for each chunk. A picture shows the chunks side by side, each in a square of its own.
-// With FINEST, for the finest level: stores the picture, and computes each chunk's mean colour and visibility.
-// Otherwise: computes the difference from the finest level, over a background similar to that mean colour. One work
-// group a square; the sums are reproducible.
+// Measures the error of a level of detail for each chunk. A picture shows each chunk in a separate square. With FINEST
+// the picture shows the finest level: the shader stores it, and computes each chunk's mean colour and visibility.
+// Otherwise it computes the squared difference from the finest level, over a background similar to the chunk's mean
+// colour. One work group per square; the sums are reproducible.
 #include "shared/limits.h"
 #include "shared/grid.glsl"
 
 layout(local_size_x = THREADS) in;
 
-layout(std430, binding = 0) readonly buffer Colours { vec4 colours[]; };  // C, and T left; by pixel
-layout(std430, binding = 1) buffer Finest { vec4 finest[]; };             // likewise
+layout(std430, binding = 0) readonly buffer Colours { vec4 colours[]; };  // C, and the final T; by pixel
+layout(std430, binding = 1) buffer Finest { vec4 finest[]; };             // the same, of the finest level
 layout(std430, binding = 2) buffer Backgrounds { vec4 backgrounds[]; };   // by square: mean colour, contrast squared
 layout(std430, binding = 3) writeonly buffer Sums { float sums_of_squares[]; };
 #if FINEST
@@ -19,8 +19,8 @@ uniform uint square_side;  // px
 uniform uint row_squares;
 uniform uint row_pixels;
 
-// The background is assumed to differ from the chunk's mean colour as its own pixels do, but at least by this: a chunk
-// of one colour has others behind it.
+// The background is assumed to differ from the chunk's mean colour as much as the chunk's pixels do, but at least by
+// this: behind a chunk of one colour other colours may appear.
 const float contrast_least = 0.125;
 
 shared vec4 sums[THREADS];

@@ -1,19 +1,20 @@
-// Prefix sums over the work groups of the dispatch that counts (Merrill and Garland 2016). Each group stores its own
-// count, then the sum of all counts up to it. It looks back over earlier groups, 32 at a time, until one has stored its
-// sum. It waits only for groups that have begun, because groups take their numbers when they begin. Requires subgroups
-// of 32 with arithmetic and ballots. The including file defines LOOK_BACK_BINDING and THREADS.
+// Prefix sums of the counts of a dispatch's work groups, computed in the same dispatch (Merrill and Garland 2016). Each
+// group stores its own count, then the sum of all counts up to its own. For the sum it looks back over earlier groups,
+// 32 at a time, until it finds a group that has stored its sum. It waits only for groups that have begun, because
+// groups take their numbers when they begin. Requires subgroups of 32 with arithmetic and ballots. The including file
+// defines LOOK_BACK_BINDING and THREADS.
 layout(std430, binding = LOOK_BACK_BINDING) coherent volatile buffer LookBack { uint look_back[]; };
 uniform uint look_back_half;  // this dispatch uses one half of the words below, and clears the other for the next
 
-// First, for each half: how many groups have begun, and how many words are not 0. Then the words of both halves,
-// alternating.
+// The buffer begins with two numbers for each half: how many groups have begun, and how many words are not 0. Then come
+// the words, alternately of each half.
 #define LOOK_BACK_BEGUN(half) look_back[2u * (half)]
 #define LOOK_BACK_USED(half) look_back[2u * (half) + 1u]
 #define LOOK_BACK_WORD(half, group) look_back[4u + 2u * (group) + (half)]
-#define LOOK_BACK_OWN 1u  // in the bits above the count: the group's own count
-#define LOOK_BACK_SUM 2u  // the sum of all groups up to it
+#define LOOK_BACK_OWN 1u  // in the bits above the count: it is the group's own count
+#define LOOK_BACK_SUM 2u  // in the bits above the count: it is the sum up to this group
 #define LOOK_BACK_BITS 30
-#define LOOK_BACK_MOST ((1u << LOOK_BACK_BITS) - 1u)  // sums saturate here
+#define LOOK_BACK_MOST ((1u << LOOK_BACK_BITS) - 1u)  // larger sums saturate at this
 
 shared uint look_back_shared;
 
@@ -47,7 +48,7 @@ uint sum_before(uint number, uint groups, uint own) {
       uint word = lane < end ? LOOK_BACK_WORD(look_back_half, end - 1u - lane) : LOOK_BACK_SUM << LOOK_BACK_BITS;
       uint kind = word >> LOOK_BACK_BITS;
       uint waits = subgroupBallot(kind == 0u).x, sums = subgroupBallot(kind == LOOK_BACK_SUM).x;
-      // The words that are complete without a gap, up to the first sum.
+      // Takes the words of the nearest groups, up to the first missing word or sum.
       uint there = waits == 0u ? 32u : uint(findLSB(waits));
       uint last = sums == 0u ? 32u : uint(findLSB(sums));
       uint taken = min(there, last + 1u);

@@ -1,11 +1,11 @@
-// Composes the preview's marks behind the splats in front of them. Their pixels become opaque, and depths become sums
-// again, as in a frame without meshes. One invocation a pixel of a view.
+// Composes the preview's marks behind the splats that are in front of them. Pixels with a mark become opaque. Depths
+// become sums of alpha T z again, as in a frame without meshes. One invocation per pixel of a view.
 #include "shared/limits.h"
 #include "shared/grid.glsl"
 
 layout(local_size_x = THREADS) in;
 
-layout(std430, binding = 0) buffer Colours { vec4 colours[]; };  // C, and T left
+layout(std430, binding = 0) buffer Colours { vec4 colours[]; };  // C, and the final T
 layout(std430, binding = 1) buffer ZSums { float z_sums[]; };    // depths, of splats or of marks behind them
 layout(binding = 0) uniform sampler2D marks;
 uniform uint first;          // the view's first pixel

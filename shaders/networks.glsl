@@ -1,8 +1,8 @@
 // The networks of Scaffold-GS (Lu et al. 2024), of two layers each. The contribution of an anchor's feature to the
-// first layer is computed once per model (ViewFree). The shader adds that of direction and distance. Hidden units are
-// stored in quads.
+// first layer is computed once per model (ViewFree). The shader adds the contribution of direction and distance. Hidden
+// units are stored in quads.
 //   HIDDEN   hidden units, a multiple of 4     OFFSETS   K, Gaussians of an anchor     BANK   1 with a feature bank
-//   WEIGHTS  vec4s of all weights, if they fit in shared memory; else 0
+//   WEIGHTS  number of vec4s of all weights, if they fit in shared memory; else 0
 
 #define QUADS (HIDDEN / 4)
 
@@ -20,12 +20,12 @@
 // For each network: QUADS of biases, then the weights of direction and distance by hidden unit. Then for each row of
 // the second layers: QUADS of weights, and its bias.
 layout(std430, binding = 3) readonly buffer Networks { vec4 networks[]; };
-// (resolution of the feature, network, quad, anchor); without a feature bank there is one resolution.
+// By resolution of the feature, network, quad and anchor. Without a feature bank there is one resolution.
 layout(std430, binding = 4) readonly buffer ViewFree { vec4 view_free[]; };
 
 uniform uint anchor_count;  // of the page
 
-// All invocations must call it first.
+// All invocations must call take_weights() before other functions: it copies the weights to shared memory.
 #if WEIGHTS > 0
 shared vec4 weights[WEIGHTS];
 
@@ -61,7 +61,7 @@ vec4 from_feature(uint resolution, uint network, uint quad, uint anchor) {
   return view_free[((resolution * 3u + network) * uint(QUADS) + quad) * anchor_count + anchor];
 }
 
-// The shares of the feature at a quarter, half and full resolution in a feature bank.
+// The weights with which a feature bank mixes the feature at a quarter, half and full resolution.
 vec3 bank_mix(vec4 ray) {
 #if BANK == 1
   Hidden hidden;
@@ -74,7 +74,8 @@ vec3 bank_mix(vec4 ray) {
 #endif
 }
 
-// Computes the first layer of a network for an anchor. ray: direction from the eye, and distance.
+// Computes the first layer of a network for an anchor. `ray` has the direction from the eye and the distance; `mixed`
+// is the result of bank_mix().
 Hidden hidden_of(uint network, uint anchor, vec4 ray, vec3 mixed) {
   Hidden hidden;
   for (int q = 0; q < QUADS; ++q) {

@@ -1,5 +1,5 @@
-// The tile of a work group and the pixels of its invocations: their initial values and their destinations. The end of
-// blending.glsl.
+// The tile of a work group, and the pixels of its invocations: their initial values and their destinations. Included at
+// the end of blending.glsl.
 
 // The tile that the work group draws.
 uint tile = 0u;
@@ -7,7 +7,7 @@ uint begin = 0u, end = 0u;  // its list
 
 // Finds the tile. If it returns false, the work group has nothing to draw and must end.
 bool find_tile() {
-  // The frame will be drawn again.
+  // After an overflow the frame is drawn again.
   if (counters.overflow != 0u) return false;
 #if LISTS == LISTS_LONG
   if (group_index() >= counters.long_lists) return false;
@@ -27,7 +27,7 @@ bool find_tile() {
   return is_own;
 }
 
-// The place of pixel p of this invocation in the picture. A probe's tiles lie side by side.
+// The index of this invocation's pixel p in the frame's pixel buffers. There the tiles of a probe lie side by side.
 uint place_of(View view, uint p) {
   uvec2 at = first_pixel - first_drawn(view);
   uint across = view.width;
@@ -39,10 +39,10 @@ uint place_of(View view, uint p) {
   return view.pixel_offset + (at.y + p) * across + at.x;
 }
 
-// The drawn view, or the view of the drawn probe.
+// The view that this tile belongs to; in a probe, the view that the probe samples.
 uint view_at_hand() { return view_index < frame.requested_views ? view_index : frame.probed_view; }
 
-// Initialises the pixels of this invocation; `in_tile` is the first.
+// Initialises the pixels of this invocation. `in_tile` is the position of the first one in the tile.
 void begin_pixels(uvec2 in_tile) {
   View view = views[view_index];
   uvec2 corner = tile_corner(tile_of(tile, view), view);

@@ -1,6 +1,6 @@
-// Writes both eyes' pictures, or one, into an image of any format; shared/layout.h maps the pixels. Colours are
-// display-referred and written unchanged.
-//   OVER   1: blends a single picture over the image's own colours
+// Writes one picture, or both eyes' pictures in a layout of shared/layout.h, into an image of any format. The image
+// gets display values, or linear light with `linear`.
+//   OVER   1: blends a single picture over the image's colours
 #include "shared/layout.h"
 #include "shown.glsl"
 #include "shared/limits.h"
@@ -8,7 +8,7 @@
 
 layout(local_size_x = PRESENT_COLUMNS, local_size_y = PRESENT_ROWS) in;
 
-layout(std430, binding = 0) readonly buffer Colours { vec4 colours[]; };  // C, and T left
+layout(std430, binding = 0) readonly buffer Colours { vec4 colours[]; };  // C, and the final T
 layout(binding = 0) writeonly uniform image2D shown;
 #if OVER
 layout(binding = 0) uniform sampler2D behind;  // the same image, read before it is written
@@ -16,12 +16,12 @@ layout(binding = 0) uniform sampler2D behind;  // the same image, read before it
 uniform uint kind;            // LAYOUT_
 uniform uint first, second;   // the eyes' first pixels in `colours`; for a single picture both are equal
 uniform uint width, height;   // of an eye
-uniform uint columns, rows;   // of the picture
+uniform uint columns, rows;   // of the written picture
 uniform uint left, bottom;    // lower left corner of the picture in the image
 uniform uint background_r, background_g, background_b;  // bits of floats
 uniform uint keeps_alpha;     // 1: no background, but premultiplied alpha
 uniform uint linear;          // 1: the image stores linear light instead of display values
-uniform uint steps;           // largest integer of the image's colours; 0: floats
+uniform uint steps;           // largest value of an integer colour channel; 0: float channels
 
 vec4 over(vec4 colour) {
   return over(colour, uintBitsToFloat(uvec3(background_r, background_g, background_b)), keeps_alpha != 0u);

@@ -1,10 +1,10 @@
 // Writes a view's depths as OpenGL's values from 0 to 1 into a depth texture, which compute shaders cannot write. If
-// the texture has fewer pixels than the view, each gets the depth of the view's pixel at its middle.
+// the texture has fewer pixels than the view, each texel gets the depth of the view's pixel at the texel's middle.
 //   IS_DEPTH    1: z_sums holds depths, at least of every second row, and 0 for none
 #include "shared/limits.h"
 
 #if !IS_DEPTH
-layout(std430, binding = 0) readonly buffer Colours { vec4 colours[]; };  // C, and T left
+layout(std430, binding = 0) readonly buffer Colours { vec4 colours[]; };  // C, and the final T
 #endif
 layout(std430, binding = 1) readonly buffer ZSums { float z_sums[]; };
 uniform uint first;                  // the view's first pixel

@@ -1,6 +1,7 @@
-// After the blend: sums the squared error of a view in its probe's tiles, which are drawn exactly, for --quality. Both
-// are rounded to 8 bits, as a viewer sees them. Also sums the squares of the sums over THREADS pixels, mostly a tile,
-// which measure how much tiles differ. One invocation a pixel of these tiles.
+// After the blend, for --quality: sums the squared error of a view in the tiles that its probe has drawn exactly. Both
+// pictures are rounded to 8 bits, as a viewer sees them. Also sums the squares of the errors of THREADS pixels together
+// (a tile of 16 px), which measure how much the error differs between tiles. One invocation per pixel of the probe's
+// tiles.
 #include "shared/limits.h"
 #include "shared/types.h"
 #include "shared/grid.glsl"
@@ -9,7 +10,7 @@
 layout(local_size_x = THREADS) in;
 
 layout(std430, binding = 0) readonly buffer Views { View views[]; };
-layout(std430, binding = 1) readonly buffer Colours { vec4 colours[]; };  // C, and T left
+layout(std430, binding = 1) readonly buffer Colours { vec4 colours[]; };  // C, and the final T
 layout(std430, binding = 2) buffer FrameCounters { Counters counters; };
 #include "frame.glsl"
 

@@ -3,8 +3,8 @@
 #extension GL_KHR_shader_subgroup_ballot : require
 #extension GL_KHR_shader_subgroup_shuffle : require
 #endif
-// Stage 1, project, last part: computes the splats of the Gaussians that project_cull.comp found, in index order. One
-// invocation a Gaussian, for all views of the order group.
+// Stage 1, project, last part: computes the splats of the Gaussians that project_cull.comp has selected, in index
+// order. One invocation per Gaussian, for all views of the order group.
 #include "shared/limits.h"
 #include "shared/types.h"
 #include "shared/grid.glsl"
@@ -31,8 +31,8 @@ layout(std430, binding = 11) writeonly buffer Large { uint large[]; };  // splat
 uniform uint view_begin;
 uniform uint view_end;
 
-// Appends a splat to `large` for bin_large.comp; one entry serves both eyes if they share lists. All invocations must
-// call it: a subgroup shares one atomic, because all wait for one counter.
+// Appends a splat to `large` for bin_large.comp; one element serves both eyes if they share lists. All invocations must
+// call it: a subgroup uses one atomic for all its splats, because all atomics wait for the same counter.
 void leave_aside(uint splat, bool is_large) {
 #if WITH_SUBGROUPS
   uint all = subgroupBallot(is_large).x, lane = gl_SubgroupInvocationID, place = 0u;
@@ -53,7 +53,7 @@ void leave_aside(uint splat, bool is_large) {
 void main() {
   uint slot = thread_index();
   uint end = instance_count * page_count;
-  uint i = slot < arguments[0].count ? indices[slot] - page_first : end;  // before the page: wraps, too large
+  uint i = slot < arguments[0].count ? indices[slot] - page_first : end;  // before the page: wraps to a large i
   bool is_here = i < end;
   uvec2 place = place_in_page(is_here ? i : 0u);
   i = place.x;
@@ -63,7 +63,7 @@ void main() {
   vec3 colour = sh_colour(i, vec3(0.0));  // the same for every eye
 #endif
 #if LIST_VIEWS == 2
-  uint first_eyes = 0u;  // coverage by the first eye
+  uint first_eyes = 0u;  // coverage of the first eye's splat
 #endif
   for (uint v = view_begin; v < view_end; ++v) {
     View view = views[place.y + v];
@@ -77,7 +77,7 @@ void main() {
     if (is_here && is_kept(i, v) && project(view, g, axes, splat)) {
       splat.colour.w = tile_level(view, v, indices[slot], splat);
 #if HALF
-      splat = rounded(splat);  // as `bin` reads it
+      splat = rounded(splat);  // the values that `bin` reads
 #endif
       coverage = coverage_of(outline_of(splat, view), view);
     }

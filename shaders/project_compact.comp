@@ -3,8 +3,9 @@
 #extension GL_KHR_shader_subgroup_arithmetic : require
 #extension GL_KHR_shader_subgroup_ballot : require
 #endif
-// Stage 1, project, second part: gives the drawn Gaussians slots without gaps, in index order, by which lists break
-// ties. The last block writes the arguments of later dispatches. Also sums the depths, for the middle depth.
+// Stage 1, project, second part: gives the drawn Gaussians slots without gaps, in index order, because lists break ties
+// of depth by slot. The last block writes the arguments of later dispatches. Also sums the sort keys, for the middle
+// depth (docs/method.md 5).
 //   LOOKS_BACK    1: blocks count and compact in this dispatch; 0: project_compact_count.comp has counted the blocks
 #include "shared/limits.h"
 #include "shared/types.h"
@@ -27,7 +28,8 @@ uniform uint order_group;
 layout(std430, binding = 2) readonly buffer BlockCounts { uint block_counts[]; };
 shared uint sum_of_blocks;
 
-// Each block sums the counts of the blocks before it: for some thousands of blocks cheaper than a separate scan.
+// Each block sums the counts of all blocks before it. With some thousands of blocks this takes less time than a
+// separate scan.
 uint sum_before(uint block, uint blocks, uint own) {
   if (gl_LocalInvocationIndex == 0u) sum_of_blocks = 0u;
   barrier();
@@ -66,7 +68,7 @@ void main() {
   if (gl_SubgroupInvocationID == 0u)
 #endif
   atomicAdd(depth_sum, own_sum);
-  uint place[EACH];  // among the drawn Gaussians of the block
+  uint place[EACH];  // index among the drawn Gaussians of the block
   uint seen = 0u;
   for (uint i = 0u; i < EACH; ++i) {
     bool is_drawn = key[i] != DEPTH_KEY_NONE;

@@ -1,5 +1,5 @@
-// Stage 1, project, first part: stores the depth of each Gaussian that any view of an order group draws, as its key.
-// One invocation for each Gaussian of the model's page and each of EYES.
+// Stage 1, project, first part: stores the sort key of each Gaussian that any view of an order group draws. Each
+// Gaussian of the model's page has EYES invocations per instance, which divide the views among themselves.
 #include "shared/limits.h"
 #include "shared/types.h"
 #include "shared/grid.glsl"
@@ -11,15 +11,16 @@ layout(local_size_x = THREADS, local_size_y = EYES) in;
 layout(std430, binding = 0) readonly buffer Views { View views[]; };  // (instance, view)
 #include "gaussians.glsl"            // bindings 1 and 9
 #include "threshold/threshold.glsl"  // binding 7
-layout(std430, binding = 2) writeonly buffer DepthKeys { uint depth_keys[]; };    // of the model
+layout(std430, binding = 2) writeonly buffer DepthKeys { uint depth_keys[]; };    // by Gaussian of the frame
 #if MEASURES
 layout(std430, binding = 8) writeonly buffer NextBounds { float next_bounds[]; };  // (view, Gaussian)
 #endif
 uniform uint view_begin;
 uniform uint view_end;  // without the probe
 
-// The next frame's bound of a Gaussian that this view does not draw. It is 1 for one out of view. For one that Th drops
-// it grows slightly; otherwise it would never be measured again. Drawn ones are measured.
+// Stores the next frame's bound of a Gaussian. If Th drops the Gaussian, its bound grows slightly; otherwise the
+// Gaussian would never be drawn and measured again. If it is out of view, the bound is 1. If it is drawn,
+// blend_measured.comp replaces the bound.
 #if MEASURES
 void age_bound(View view, uint gaussian, uint v, bool projected, bool drawn, Splat splat) {
   if (v >= frame.requested_views) return;  // a probe measures nothing
@@ -27,7 +28,7 @@ void age_bound(View view, uint gaussian, uint v, bool projected, bool drawn, Spl
 #if TH != TH_TAU
   if (projected && !drawn) {
     splat.colour.w = visible_level(splat.opacity);
-    left_out = !is_wide(splat) && touches_a_tile(splat, view);  // wide ones may be out of view
+    left_out = !is_wide(splat) && touches_a_tile(splat, view);  // wide splats touch even out of view
   }
 #endif
   float aged = frame.has_bounds == 0u ? 1.0 : min(1.0, float(BOUND_AGEING) * bounds[v * frame.gaussian_count + gaussian]);
@@ -35,7 +36,8 @@ void age_bound(View view, uint gaussian, uint v, bool projected, bool drawn, Spl
 }
 #endif
 
-// The Gaussian's key, if any view of this invocation draws it. It is the same in all views of an order group.
+// Returns the Gaussian's key if any view of this invocation draws it, else DEPTH_KEY_NONE. The key is the same in all
+// views of an order group.
 uint key_of(uint i) {
   uvec2 place = place_in_page(i);
   Gaussian g = GAUSSIAN(place.x);
@@ -51,7 +53,7 @@ uint key_of(uint i) {
     bool projected = is_kept(i, v) && project(view, g, axes, splat);
     if (projected) splat.colour.w = tile_level(view, v, page_first + i, splat);
 #if HALF
-    if (projected) splat = rounded(splat);  // an eye must not differ from the same eye alone
+    if (projected) splat = rounded(splat);  // an eye drawn in stereo must equal the same eye drawn alone
 #endif
     bool drawn = projected && touches_a_tile(splat, view);
 #if MEASURES
@@ -61,7 +63,7 @@ uint key_of(uint i) {
     // A probe of this group draws every visible Gaussian.
     if (projected && !drawn && v == frame.probed_view && view.order_group == views[frame.requested_views].order_group) {
       splat.colour.w = visible_level(splat.opacity);
-      drawn = touches_a_tile(splat, views[frame.requested_views]);  // in tiles that all instances share
+      drawn = touches_a_tile(splat, views[frame.requested_views]);  // the probe's tiles are the same for all instances
     }
 #endif
     if (drawn) key = floatBitsToUint(order_depth(view, g));

@@ -37,18 +37,18 @@ vec3 to_eye(View view, vec3 d) {
   return vec3(x, y, z);
 }
 
-// The low-pass: a variance of KERNEL_PX2 across and down. `slope` leans the picture's plane against the ray. `scale`
-// stretches the axes; its product is 1.
+// The low-pass: a variance of KERNEL_PX2 along x and y. With the tangent projection, `slope` is the slope of the ray,
+// against which the picture's plane leans. `scale` stretches the axes; the product of its components is 1.
 struct LowPass {
   vec2 slope;
   vec2 scale;
 };
 
-// Returns (Q.xx, Q.xy, Q.yy, sqrt(det C2)), with w = 0 for a Gaussian that is not drawn. `kept` is the share of the
-// Gaussian's mass left under the low-pass: sqrt(det P / det C2). P is C2 without the low-pass (Mip-Splatting, Yu 2024),
-// or with the share `free` of it. With s L the low-pass, det P = |across x down|^2 and det C2 = det P + s (L.yy
-// |across|^2 - 2 L.xy across . down + L.xx |down|^2) + s^2 det L. The bracket is also a sum of squares. All terms are
-// positive, so long thin splats keep their width, which xx yy - xy^2 would lose.
+// Returns (Q.xx, Q.xy, Q.yy, sqrt(det C2)); w is 0 if the Gaussian is not drawn. `kept` is the factor of opacity that
+// keeps the Gaussian's mass under the low-pass: sqrt(det P / det C2) (Mip-Splatting, Yu 2024). P is C2 without the
+// low-pass, or with the share `free` of the low-pass. With s L the low-pass, det P = |across x down|^2 and det C2 = det
+// P + s (L.yy |across|^2 - 2 L.xy across . down + L.xx |down|^2) + s^2 det L. The bracket is also a sum of squares, so
+// all terms are positive. xx yy - xy^2 would cancel and lose the width of long thin splats.
 vec4 conic_of(vec3 across, vec3 down, LowPass low, float free, out float kept) {
   const float s = float(KERNEL_PX2);
   precise float xx = dot_precise(across, across) + s * (low.scale.x * low.scale.x * (1.0 + low.slope.x * low.slope.x));
@@ -89,7 +89,7 @@ vec4 conic_of(vec3 across, vec3 down, LowPass low, float free, out float kept) {
 }
 
 // The sort key, above 0 for a drawn Gaussian. Distances are computed in the world, so that their rounding does not
-// depend on the turn of the head.
+// depend on the head's rotation.
 float order_depth(View view, Gaussian g) {
   precise vec3 d = g.position.xyz - view.anchor.xyz;
 #if ORDER == ORDER_DISTANCE
@@ -105,7 +105,8 @@ vec3 onto_axes(vec3 direction, mat3 axes) {
   return vec3(dot_precise(direction, axes[0]), dot_precise(direction, axes[1]), dot_precise(direction, axes[2]));
 }
 
-// The scaled axes in the picture, px. Its plane leans against the ray by `slope`; `gain` is px per world unit.
+// Projects the scaled axes to the picture, in px. `slope` is the slope of the ray, against which the picture's plane
+// leans. `gain` is px per world unit.
 void axes_on_picture(View view, vec2 slope, vec2 gain, mat3 axes, out vec3 across, out vec3 down) {
   precise vec3 jx = gain.x * (view.row_x.xyz - slope.x * view.row_z.xyz);
   precise vec3 jy = gain.y * (view.row_y.xyz - slope.y * view.row_z.xyz);
@@ -113,8 +114,9 @@ void axes_on_picture(View view, vec2 slope, vec2 gain, mat3 axes, out vec3 acros
   down = onto_axes(jy, axes);
 }
 
-// The share of the low-pass that costs Gaussians no weight. It is 0 in anti-aliased models, otherwise 1, as trained. A
-// picture of fewer pixels uses the low-pass of the full picture, so that thin Gaussians are equally bright in both.
+// The share of the low-pass that does not reduce opacity: 0 in anti-aliased models, otherwise 1, as trained. In a
+// context, which has fewer pixels, it is the low-pass of the full picture, so that thin Gaussians are equally bright in
+// context and inset.
 float free_of(View view) {
 #if ANTIALIASED
   return 0.0;

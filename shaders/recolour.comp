@@ -1,11 +1,11 @@
-// Replaces the colours of the splats of a one-view frame. One invocation a slot.
+// Replaces the splats' colours of a frame with one view. One invocation per slot.
 #include "shared/limits.h"
 #include "shared/grid.glsl"
 
 layout(local_size_x = THREADS) in;
 
 layout(std430, binding = 0) readonly buffer Colours { vec4 colours[]; };
-layout(std430, binding = 12) buffer Splats { vec4 splats[]; };  // three each, the last: colour, level of Th
+layout(std430, binding = 12) buffer Splats { vec4 splats[]; };  // three per splat; the third: colour, rho
 uniform uint slot_count;
 
 void main() {

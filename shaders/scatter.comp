@@ -1,4 +1,4 @@
-// Moves uploaded records to their places. One invocation a word.
+// Moves uploaded records to their places. One invocation per word.
 #include "shared/limits.h"
 #include "shared/grid.glsl"
 

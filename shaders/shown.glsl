@@ -1,4 +1,4 @@
-// Converts a blended pixel (C, and T left) to an image's final value.
+// Converts a blended pixel (C, and the final T) to an image's final value.
 #include "shared/types.h"
 
 vec4 over(vec4 colour, vec3 background, bool keeps_alpha) {
@@ -15,14 +15,15 @@ vec3 shown_of(vec3 light) {
   return mix(high, low, lessThanEqual(light, vec3(0.0031308)));
 }
 
-// Blends over an image's pixel, whose colours are premultiplied by its alpha.
+// Blends over a pixel of an image, whose colours are premultiplied by alpha.
 vec4 over_image(vec4 colour, vec4 there, bool is_light) {
   if (is_light) there.rgb = shown_of(there.rgb);
   return vec4(colour.rgb + colour.a * there.rgb, 1.0 - colour.a * (1.0 - there.a));
 }
 
-// Converts to an image that stores linear light or display values; `steps` is the largest integer of its colours, 0 for
-// floats. GPUs themselves may round to within 0.6 of a step; files need the nearest.
+// Converts a pixel for an image that stores linear light or display values. `steps` is the largest value of an integer
+// colour channel, or 0 for float channels. Rounds to the nearest step, because a GPU may store a value up to 0.6 steps
+// away.
 vec4 in_image(vec4 pixel, bool is_light, uint steps) {
   if (is_light) pixel.rgb = light_of(pixel.rgb);
   if (steps != 0u) pixel.rgb = floor(clamp(pixel.rgb, 0.0, 1.0) * float(steps) + 0.5) / float(steps);

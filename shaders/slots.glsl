@@ -1,5 +1,5 @@
-// The places of a frame's splats: (view, slot). Those of a view are contiguous, because an eye's tiles read them and
-// not the other's.
+// The places of a frame's splats: (view, slot). The splats of a view are contiguous, because a tile reads the splats of
+// one eye only.
 #include "frame.glsl"
 
 uint splat_of(uint slot, uint v) { return v * frame.slots + slot; }

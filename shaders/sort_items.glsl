@@ -1,18 +1,18 @@
-// The lists to sort, by kind, in any order within a kind. There are SORT_CLASSES classes of length, sorted by groups of
-// 32, 64, ... SORT_MOST / SORT_EACH invocations of SORT_EACH entries each. Another kind has too many entries of a few
-// depths. From SORT_LONG_KIND on there is a kind for each round that splits lists into slabs, which then are lists
-// (sort_split.comp).
+// The lists to sort, by kind, in any order within a kind. The first SORT_CLASSES kinds are classes of length, sorted by
+// work groups of 32, 64, ... SORT_MOST / SORT_EACH invocations of SORT_EACH entries each. SORT_CROWDED_KIND has lists
+// in which too many entries have nearly one depth. From SORT_LONG_KIND on, there is a kind for each round that splits
+// lists (sort_split.comp). The slabs into which a list is split are lists, too.
 
 // An item: supertile, first entry, number of entries. The last word is the second eye's supertile or NO_SECOND; for a
-// slab it is SLAB and the slab's index in slab_tiles.
+// slab it is SLAB plus the slab's index in slab_tiles.
 #define SLAB 0x80000000u
 layout(std430, binding = ITEMS_BINDING) writeonly buffer Items { uvec4 items[]; };
-uniform uint item_room;  // for each kind
-uniform uint rounds;     // that split lists
+uniform uint item_room;  // room for items of each kind
+uniform uint rounds;     // number of rounds that split lists
 
 bool is_slab(uvec4 item) { return (item.w & SLAB) != 0u; }
 
-// The kind of a list. If it is too long, `round` is the first to split it.
+// The kind of a list. If it is too long to sort at once, `round` will split it.
 uint kind_of(uint length, uint round) {
   if (length > SORT_MOST) return SORT_LONG_KIND + round;
   return uint(max(findMSB(length - 1u) + 1 - findMSB(32u * SORT_EACH), 0));

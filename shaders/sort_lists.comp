@@ -7,11 +7,11 @@
 // Stage 3, sort, last: a work group sorts a supertile's entries by depth, ties by splat, and writes its tiles' lists.
 // It has LIST_THREADS invocations of LIST_EACH entries.
 //
-// The range of depths is split into as many equal steps as there are invocations. Each step gets as many bins as it has
-// entries, so that a bin holds one or two, which are compared with one another. Entries may come to a bin in any order.
-// So one atomic in shared memory per entry and histogram replaces the ballots of a radix sort (src/render/README.md).
-// If many entries have one of a few depths, a bin holds more than SORT_BIN_MOST. Such a list is left to CROWDED, which
-// sorts by a bitonic network in the buffer.
+// The range of depths is split into equal steps, one per invocation. Each step gets as many bins as it has entries, so
+// that most bins have one or two entries. The entries of a bin are then compared with each other, so they may be in any
+// order. This takes one atomic in shared memory per entry for each of two histograms, instead of a radix sort's ballots
+// (src/render/README.md). If many entries have nearly one depth, a bin has more than SORT_BIN_MOST entries. CROWDED, a
+// later dispatch, sorts such lists by a bitonic network in the buffer.
 #include "shared/limits.h"
 #include "shared/types.h"
 #include "shared/grid.glsl"
@@ -35,14 +35,14 @@ layout(std430, binding = 2) readonly buffer Entries { uvec2 entries[]; };
 #endif
 layout(std430, binding = 3) readonly buffer SlabTiles { uint slab_tiles[]; };     // sort_split.comp
 layout(std430, binding = 5) writeonly buffer TileValues { uint tile_values[]; };  // splats
-uniform uint kind;  // of lists
+uniform uint kind;  // the kind of the lists to sort
 #define ITEMS_BINDING 8
 #include "sort_items.glsl"
 #include "tile_ranges.glsl"  // bindings 6 and 7
 uniform uint capacity;  // room of tile_values
 
-shared uint board[MOST];    // entries by bin, then first places; then depths; then sorted entries
-shared uint steps[THREADS];  // bins before the step's; its own from bit 16 on
+shared uint board[MOST];    // in turn: entries by bin, first place by bin, keys, sorted entries
+shared uint steps[THREADS];  // by step: number of earlier bins; its own number of bins from bit 16 on
 shared uint low, high, of_tiles, list_begin, is_tied, is_crowded;
 shared uint of_rows[ROWS][LIST_TILES], of_list[LIST_TILES];
 #if !WITH_SUBGROUPS
@@ -53,7 +53,7 @@ shared uint touching[ROWS][EACH][LIST_TILES];
 void write_lists(uvec4 item) {
   uint self = gl_LocalInvocationIndex, row = self / 32u, lane = self % 32u, length = item.z;
   uint value[EACH];
-  // Each row of 32 invocations takes EACH times 32 entries: first counts those in each tile, then writes them.
+  // Each row of 32 invocations takes EACH times 32 entries: it counts the entries of each tile, then writes them.
   uint from = row * 32u * EACH + lane;
   for (uint i = 0u; i < EACH; ++i) value[i] = from + 32u * i < length ? board[from + 32u * i] : 0u;
 #if WITH_SUBGROUPS
@@ -118,8 +118,8 @@ void write_lists(uvec4 item) {
 }
 
 #if CROWDED
-// Sorts by depth, then by splat, in the buffer itself. Each merge first compares mirrored halves: then all comparisons
-// have one direction, for any length.
+// Sorts by depth, then by splat, in the buffer. Each merge first compares mirrored halves. So all comparisons have the
+// same direction, and any length is possible.
 void sort_list(uvec4 item) {
   uint self = gl_LocalInvocationIndex, in_tiles = 0u;
   if (self == 0u) of_tiles = 0u;
@@ -247,9 +247,9 @@ void sort_list(uvec4 item) {
     if (self == 0u) add_item(SORT_CROWDED_KIND, make_room(SORT_CROWDED_KIND, 1u), item);
     return;
   }
-  uint begin = 0u;  // of a whole list: requested here, because it is needed later
+  uint begin = 0u;  // of a list that is no slab; requested early, because the atomic takes long
   if (self == 0u && !is_slab(item)) begin = atomicAdd(counters.tile_pairs, of_tiles);
-  uint bin[EACH];  // first place; count from bit 16 on
+  uint bin[EACH];  // first place in the bin; its count from bit 16 on
   for (uint i = 0u; i < EACH; ++i) {
     bin[i] = 0u;
     if (i * THREADS + self >= length) continue;
@@ -275,7 +275,7 @@ void sort_list(uvec4 item) {
     }
     place[i] = first + less + earlier;
     if (as_far <= 1u) continue;
-    bin[i] = first + less | as_far << 16;  // of the equal depths
+    bin[i] = first + less | as_far << 16;  // now of the entries with this depth
     is_tied = 1u;
   }
   if (self == 0u) list_begin = begin;
@@ -304,7 +304,7 @@ void sort_list(uvec4 item) {
 }
 #endif
 
-// There is one group per list, unless that exceeds a dispatch.
+// There is one work group per list, up to the limit of a dispatch.
 void main() {
   if ((counters.overflow & OVERFLOW_UNSORTED) != 0u) return;
   uint count = counters.lists[kind].count;

@@ -2,9 +2,10 @@
 #extension GL_KHR_shader_subgroup_basic : require
 #extension GL_KHR_shader_subgroup_arithmetic : require
 #endif
-// Stage 3, sort, for lists too long for a work group (sort_items.glsl). A group splits a list into slabs by depth, or
-// by splat if all depths are equal. It finds the begin of each slab's part of each tile's list. It adds the slabs to
-// the lists to be sorted, or to be split by the next round. Each round moves entries to the other half of the buffer.
+// Stage 3, sort, for lists too long for a work group (sort_items.glsl). A work group splits a list into slabs by depth,
+// or by splat if all depths are equal. For each slab it stores the place, in each tile's list, of the slab's first
+// splat. It appends the slabs to the lists to sort or, if they are still too long, to split in the next round. Each
+// round moves entries to the other half of the buffer.
 #include "shared/limits.h"
 #include "shared/types.h"
 #include "shared/grid.glsl"
@@ -24,10 +25,10 @@ layout(std430, binding = 5) readonly buffer ItemsRead { uvec4 items_read[]; };
 #include "tile_ranges.glsl"  // bindings 6 and 7
 uniform uint round;        // from 0
 uniform uint first_entry;  // of the other half of the buffer
-uniform uint capacity;     // of all tiles' lists
+uniform uint capacity;     // room for the splats of all tiles' lists
 
-#define STEPS (2u * THREADS)  // of depth, which this round does not split
-shared uint steps[STEPS];      // entries of each, then the place of the next one
+#define STEPS (2u * THREADS)  // steps of depth; a step is not divided
+shared uint steps[STEPS];      // by step: number of entries, then place of the next entry
 shared uint slab_of[STEPS];
 shared uint slab_begin[SORT_SLABS];
 shared uint slab_sums[SORT_SLABS][LIST_TILES];
@@ -78,8 +79,8 @@ void split_list(uvec4 item) {
   barrier();
   uint first = steps[2u * self], second = steps[2u * self + 1u], before = scan_group(first + second);
   for (uint k = 0u; k < 2u; ++k) {
-    // The middle of a step selects its slab. So a step that is too large alone becomes a slab alone, and no round
-    // leaves a list unchanged.
+    // The middle of a step selects its slab. So a step that is longer than a slab becomes a separate slab, and every
+    // round shortens the list.
     uint count = k == 0u ? first : second, slab = min((before + count / 2u) / slab_length, SORT_SLABS - 1u);
     steps[2u * self + k] = before;
     slab_of[2u * self + k] = slab;
@@ -124,7 +125,7 @@ void split_list(uvec4 item) {
       begin += slab_sums[slab][self];
     }
   }
-  if (self < SORT_SLABS && slab_begin[self] < length) {  // no step begins in an empty slab
+  if (self < SORT_SLABS && slab_begin[self] < length) {  // slabs without entries have no begin
     uint end = length;
     for (uint slab = self + 1u; slab < SORT_SLABS; ++slab) end = min(end, slab_begin[slab]);
     uint count = end - slab_begin[self], kind = kind_of(count, round + 1u);

@@ -14,7 +14,8 @@
 
 layout(std430, binding = 12) writeonly buffer Splats { SPLAT_PART splats[]; };  // SPLAT_PARTS each
 
-// Writes this invocation's splat, if it has one. All invocations must call it, neighbours with neighbouring places.
+// Writes this invocation's splat, if it has one. All invocations must call it, and neighbours must have neighbouring
+// places.
 void write_splat(uint at, bool has_one, Splat splat) {
 #if HALF
   if (has_one) {
@@ -22,8 +23,8 @@ void write_splat(uint at, bool has_one, Splat splat) {
     splats[SPLAT_PARTS * at + 1u] = packed_shape(splat);
   }
 #elif WITH_SUBGROUPS
-  // Two neighbours write both splats together, one after the other: each writes half of the 32 bytes that lie in one
-  // line of memory. This is faster than each writing its own splat.
+  // Two neighbours write their two splats together, one splat after the other: each writes half of 32 bytes that lie in
+  // one line of memory. This is faster than if each writes its own splat.
   bool is_even = gl_SubgroupInvocationID % 2u == 0u;
   bool is_first = at % 2u == 0u;  // whether these are a splat's first 32 bytes
   vec4 place = vec4(splat.mean, splat.depth, splat.opacity);

@@ -1,17 +1,17 @@
-// The squared error of drawn pixels against wanted ones, summed by work group, so that calibration compares many frames
-// without reading pictures back. An invocation takes every (group_count * THREADS)th pixel.
+// The squared error of drawn pixels against wanted pixels, summed by work group. This compares many frames without
+// reading pictures back. An invocation takes every (group_count * THREADS)th pixel.
 #include "shared/limits.h"
 #include "shared/grid.glsl"
 
 layout(local_size_x = THREADS) in;
 
-layout(std430, binding = 0) readonly buffer Colours { vec4 colours[]; };  // C, and T left; over black
+layout(std430, binding = 0) readonly buffer Colours { vec4 colours[]; };  // C, and the final T; over black
 layout(std430, binding = 1) readonly buffer Wanted { vec4 wanted[]; };    // C
 layout(std430, binding = 2) writeonly buffer Sums { float sums_of_groups[]; };
 layout(std430, binding = 3) readonly buffer Exposure { vec4 exposure[3]; };  // rows that transform a drawn (r, g, b, 1)
 uniform uint pixel_count;
 uniform uint group_count;
-uniform uint levels;  // 0: unchanged; 255: both rounded to 8 bits
+uniform uint levels;  // 0: colours are not rounded; 255: both are rounded to 8 bits
 
 shared float sums[THREADS];
 

@@ -1,11 +1,12 @@
-// Stores the place of each tile's list, in stage sort. Also collects the tiles with long lists: a dispatch of their own
-// draws them, which starts first and has more invocations a tile. The including file declares `counters`.
+// Stores the range of each tile's list, in stage sort. Also collects the tiles with long lists, which a separate
+// dispatch of the blend draws. This dispatch starts first and has more invocations per tile. The including file
+// declares `counters`.
 #include "frame.glsl"
 
 layout(std430, binding = 6) writeonly buffer TileRanges { uvec2 tile_ranges[]; };  // begin, end
 layout(std430, binding = 7) writeonly buffer LongLists { uint long_lists[]; };    // tiles
 
-// Stores the range of the nth tile of a whole list.
+// Stores the range of the nth tile of a list that is no slab.
 void set_range(uvec4 item, uint nth, uint begin, uint length) {
   if (nth >= SUPERTILE_TILES && item.w == NO_SECOND) return;
   uint tile = (nth < SUPERTILE_TILES ? item.x : item.w) * SUPERTILE_TILES + nth % SUPERTILE_TILES;

@@ -33,8 +33,8 @@ Sample sample_at(const std::array<Camera, 2>& eyes, const glm::dvec2& pixel, dou
       left.rotation * glm::dvec3((pixel.x - left.cx) / left.fx, (pixel.y - left.cy) / left.fy, 1.0);
   const glm::dvec3 point = left.position + z * ray;
   const glm::dvec2 seen = projected(eyes[1], point);
-  // In the left eye the point and the focus share a pixel; in the right eye they have two. An infinitely far
-  // focus has one direction in both eyes.
+  // The point and the focus lie on one ray of the left eye, so only their pixels in the right eye differ. An
+  // infinitely far focus has the same direction from both eyes.
   const glm::dvec3 focused = (focus ? left.position : eyes[1].position) + focus.value_or(1.0) * ray;
   const double at_focus = focus ? angle_at(eyes, focused) : 0.0;
   const double px = projected(eyes[1], focused).x - seen.x;
@@ -89,8 +89,8 @@ bool is_comfortable(const DisparityRange& range) {
 }
 
 ComfortableRig comfortable_rig(const DisparityRange& range, const std::array<Camera, 2>& eyes) {
-  // For parallel eyes a disparity in px is fx ipd (1/z - 1/D). Divided by fx it is about the angle straight
-  // ahead; to the sides the angle is smaller.
+  // For parallel eyes a disparity in px is fx ipd (1/z - 1/D). Divided by fx, it is about the angle in
+  // radians of a point straight ahead; the angles of points at the sides are smaller.
   const double ipd = glm::length(eyes[1].position - eyes[0].position);
   const auto screen = screen_distance(eyes);
   const double middle = 0.5 * (range.near_px + range.far_px) / (eyes[0].fx * ipd);
@@ -106,7 +106,7 @@ std::optional<double> suitable_convergence(const std::array<Camera, 2>& eyes, co
   const auto screen = screen_distance(eyes);
   const auto range = disparity_range(eyes, left, screen);
   if (!range) return std::nullopt;
-  // Slightly below the limit, because angles to the sides differ.
+  // Slightly below the limit, because angles at the sides differ.
   const double reach = eyes[0].fx * glm::radians(0.99 * comfortable_degrees);
   const auto [least, most] = std::minmax({range->near_px - reach, range->far_px + reach});
   const double px = std::clamp(range->middle_px, least, most);

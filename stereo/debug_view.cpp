@@ -40,8 +40,8 @@ Image depth(const Picture& picture) {
   return map;
 }
 
-// The first of 1, 2, 5, 10 ... that this share of the numbers does not exceed. If those are all 0, the first
-// that none exceeds.
+// The first of 1, 2, 5, 10 ... that this share of the numbers does not exceed. If all numbers in this share
+// are 0, the first that no number exceeds.
 double range_of(const std::vector<Image>& maps, double share) {
   std::vector<float> numbers;
   for (const Image& map : maps) {
@@ -152,7 +152,7 @@ DebugPictures DebugView::make(int what, const DrawnFrame& drawn, const Backgroun
       shown.pictures.push_back(split_at(split, pictures[v], right[v]));
   } else {
     const std::vector<Image> maps = map(what, drawn, background);
-    // Near depths show the scene; with the sky they would all have one colour.
+    // The range fits the nearer depths: if it included the sky, the whole scene would have one colour.
     shown.most = range_of(maps, what == SHOW_DEPTH || what == SHOW_MEDIAN_DEPTH ? 0.8 : 0.99);
     for (const Image& map : maps) shown.pictures.push_back(coloured(map, *shown.most));
   }

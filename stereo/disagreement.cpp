@@ -35,7 +35,7 @@ Image error_of(const Picture& approximate, const Picture& exact) {
   return error;
 }
 
-// Projects a pixel of one view, with its depth, into another view: pixel coordinates and depth.
+// Projects a pixel of one view, with its depth, into another view. Returns pixel coordinates and depth there.
 glm::dvec3 seen_by(const shared::View& to, const shared::View& from, int x, int y, double z) {
   const glm::dvec4 lens = from.lens;
   const glm::dvec3 v((x + 0.5 - lens[2]) / lens[0] * z - from.row_x.w,
@@ -63,8 +63,8 @@ glm::dvec3 bilinear(const Image& image, double x, double y) {
   return colour;
 }
 
-// The point of the right picture that shows the same point as the left pixel (x, y); none if it is hidden or
-// outside.
+// The position in the right picture that shows the same scene point as the left pixel (x, y). None if the
+// right eye does not see this point.
 std::optional<glm::dvec2> partner(const std::array<shared::View, 2>& views, const Image& left_depth,
                                   const Image& right_depth, int x, int y) {
   const double z = left_depth.at(x, y, 0);
@@ -79,7 +79,7 @@ std::optional<glm::dvec2> partner(const std::array<shared::View, 2>& views, cons
   return glm::dvec2(seen);
 }
 
-// Sums over the pixels of a row that count.
+// Sums over the counted pixels of a row.
 struct Counted {
   double sum = 0.0;  // squared differences of channels
   std::size_t count = 0;
@@ -96,7 +96,7 @@ Disagreement disagreement(const std::array<shared::View, 2>& views, std::span<co
   Disagreement result;
   result.picture = Image(left.width, left.height, 3);
   result.right = left;
-  // One sum a row, added in order: the result does not depend on threads.
+  // The sums of the rows are added in order, so the result does not depend on threads.
   std::vector<Counted> rows(static_cast<std::size_t>(left.height));
   parallel_for(left.height, [&](int y) {
     Counted& row = rows[static_cast<std::size_t>(y)];

@@ -1,7 +1,7 @@
 #pragma once
 // Binocular disagreement (docs/method.md 6): the part of an approximation's error that the two eyes do not
-// share. A shared error changes the picture. An error in one eye only is rivalry, which looks like shimmer in
-// depth.
+// share. A shared error changes the picture. An error in one eye only causes binocular rivalry, which looks
+// like shimmer in depth.
 
 #include <array>
 #include <span>
@@ -12,17 +12,18 @@
 namespace binosplat::stereo {
 
 struct Disagreement {
-  double db = 0.0;       // -10 log10 of the mean squared difference; infinite without any; higher is better
+  double db = 0.0;       // -10 log10 of the mean squared difference; infinite if it is 0; higher is better
   double counted = 0.0;  // share of the left eye's pixels that both eyes see; if it is 0, db is NaN
-  Image picture;         // eL(p) - eR(p')| of RGB in the left eye; 0 for pixels that do not count
-  Image right;           // eR(p') in the left eye; eL(p) for pixels that do not count
+  Image picture;         // |eL(p) - eR(p')| of RGB at the left pixel p; 0 if p does not count
+  Image right;           // eR(p') at the left pixel p; eL(p) if p does not count
 };
 
 /// The error e of an eye is the approximate minus the exact colour, over black and not clamped. The result is
-/// the mean difference between eL(p) and eR(p') over p and channels. p' is the point of the right picture
-/// that shows the left pixel p, by its exact depth; eR is bilinear. A pixel counts if p has a depth, p' is
-/// inside the right picture, and the right eye sees the point: its exact depth at the nearest pixel is within
-/// 1 %. Left eye first. Throws Error unless all pictures have their view's size.
+/// the mean of (eL(p) - eR(p'))^2 over channels and over the left eye's pixels p. p' is the position in the
+/// right picture of the scene point that p shows at its exact depth; eR is read bilinearly. A pixel p counts
+/// if it has a depth, p' is inside the right picture, and the right eye sees the point: the right exact depth
+/// at the pixel nearest to p' differs by at most 1 %. The left eye comes first. Throws Error unless all
+/// pictures have their view's size.
 Disagreement disagreement(const std::array<shared::View, 2>& views, std::span<const Picture> exact,
                           std::span<const Picture> approximate);
 

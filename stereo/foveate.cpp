@@ -16,14 +16,15 @@ constexpr double inset_least = 1.0, inset_most = 120.0;  // degrees
 constexpr double gaze_most = 80.0;
 constexpr double scale_least = 0.05;
 
-// A resampled pixel depends on this many of the context's pixels on each side.
+// A composed pixel depends on this many pixels of the context on each side.
 constexpr std::uint32_t inset_reach = 2;
 
 glm::dvec3 direction_of(const glm::dvec2& gaze) {
   return glm::normalize(glm::dvec3(std::tan(glm::radians(gaze.x)), -std::tan(glm::radians(gaze.y)), 1.0));
 }
 
-// The range of slopes along axis k of the cone with that half angle about a direction.
+// The range of slopes along axis k, x/z or y/z, in the cone of half angle `half` (radians) around
+// `direction`.
 glm::dvec2 slopes_of(const glm::dvec3& direction, int k, double half) {
   const double middle = std::atan2(direction[k], direction.z);
   const double sine = std::sin(half) / std::hypot(direction[k], direction.z);
@@ -38,7 +39,7 @@ struct Span {
   std::uint32_t begin = 0, end = 0;
 };
 
-// The pixels of a picture, `size` of them, between two positions.
+// The pixels between two positions along an axis of `size` px.
 Span pixels_between(double begin, double end, std::uint32_t size) {
   const auto within = [&](double at) {
     return static_cast<std::uint32_t>(std::clamp(at, 0.0, static_cast<double>(size)));
@@ -46,7 +47,7 @@ Span pixels_between(double begin, double end, std::uint32_t size) {
   return {within(std::floor(begin)), within(std::ceil(end))};
 }
 
-// Widened to multiples of BLEND_CELL, where windows may begin and end.
+// Widens a span to multiples of BLEND_CELL, at which windows may begin and end.
 Span to_cells(const Span& span, std::uint32_t size) {
   return {span.begin / BLEND_CELL * BLEND_CELL,
           std::min(size, (span.end + BLEND_CELL - 1) / BLEND_CELL * BLEND_CELL)};
@@ -95,7 +96,7 @@ FoveatedEye foveate(const shared::View& eye, const Foveation& foveation, std::si
     const Span cells = to_cells(seam, size[k]);
     out.window.corner[k] = cells.begin;
     out.window.size[k] = cells.end - cells.begin;
-    // The same frustum in whole pixels.
+    // The context has the same frustum in an integer number of pixels.
     const auto pixels = static_cast<std::uint32_t>(std::lround(size[k] * foveation.context_scale));
     const double scale = static_cast<double>(std::max(pixels, 1u)) / size[k];
     (k == 0 ? out.context.width : out.context.height) = std::max(pixels, 1u);
@@ -131,7 +132,7 @@ FoveatedViews foveated_views(std::span<const shared::View> eyes, const Foveation
   return out;
 }
 
-// Passes the parts to `to`, the member function of render::Frame that draws them.
+// Passes the views of the parts to `to`, a member function of render::Frame.
 void FoveatedFrame::submit_or_prepare(std::span<const shared::View> eyes, const Foveation& foveation,
                                       const render::FrameSettings& settings,
                                       const render::DebugOptions& debug,
@@ -178,7 +179,7 @@ render::FrameReport FoveatedFrame::finish() {
 void FoveatedFrame::compose(gl::Dispatcher& dispatcher) {
   for (std::size_t k = 0; k < eyes_.size(); ++k) compose_eye(dispatcher, k);
   dispatcher.wait_for_writes();
-  // For any use of the canvases.
+  // All barriers, because the caller may use the canvases in any way.
   if (!to_.empty()) dispatcher.context().gl().MemoryBarrier(GL_ALL_BARRIER_BITS);
 }
 

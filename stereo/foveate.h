@@ -1,6 +1,7 @@
 #pragma once
-// Foveated pictures: each eye has a window about its gaze, exact to the bit, and around it a context with
-// fewer pixels, which the GPU scales up. Both are views of one frame and are projected together.
+// Foveated pictures: each eye has an inset around its gaze, exact to the bit. The context around the inset
+// has fewer pixels, and the GPU scales it up. Inset and context are views of one frame and are projected
+// together.
 
 #include <binosplat/settings.h>
 
@@ -22,17 +23,17 @@ using Foveation = binosplat::Foveation;
 /// Throws Error for illegal numbers; `prefix` precedes their names in the text.
 void check(const Foveation& foveation, std::string_view prefix = "");
 
-/// The parts of one eye's picture, px.
+/// The parts of one eye's picture, px. The context has a hole where only the inset is visible.
 struct FoveatedEye {
   glm::uvec2 inset_begin{0}, inset_end{0};  // the exact pixels
-  double seam = 0.0;                        // the border's width around them
+  double seam = 0.0;                        // width of the border around the inset
   shared::View context;                     // the context's view, with fewer pixels
-  render::ViewRegion context_region;        // without the pixels that only the inset shows
-  render::ViewRegion window;                // the drawn part of the eye's own view: the inset and its seam
+  render::ViewRegion context_region;        // the drawn part of the context: all but the hole
+  render::ViewRegion window;                // the drawn part of the full-size view: inset and seam
 };
 
 /// Plans the parts of an eye's view. `nth` is the eye's index in foveation.gaze. Throws Error as check()
-/// does, for a list of gazes without that eye, and for a gaze whose inset lies outside the picture.
+/// does, if the list of gazes lacks this eye, and if the inset lies outside the picture.
 FoveatedEye foveate(const shared::View& eye, const Foveation& foveation, std::size_t nth = 0);
 
 /// The views of a frame that draws these eyes, two per eye (its context, then its window), and the frame's
@@ -56,9 +57,9 @@ class FoveatedFrame {
         z_sums_(frame_.model()->context(), "their depth"),
         canvases_(frame_.model()->context(), "their canvases") {}
 
-  /// Draws all eyes in one frame and composes their pictures in a further stage, "compose". With canvases,
-  /// one per eye, the pictures are only there, over settings.background. Mesh depths, also one per eye,
-  /// require canvases; splats behind meshes are not drawn. Throws as foveated_views() and
+  /// Draws all eyes in one frame and composes their pictures in a further stage, "compose". If `textures` has
+  /// canvases, one per eye, the pictures are written only there, over settings.background. Mesh depths, also
+  /// one per eye, require canvases; splats behind meshes are not drawn. Throws as foveated_views() and
   /// render::Frame::draw() do.
   render::FrameReport draw(std::span<const shared::View> eyes, const Foveation& foveation,
                            const render::FrameSettings& settings = {}, const render::DebugOptions& debug = {},
@@ -67,7 +68,7 @@ class FoveatedFrame {
     return finish();
   }
 
-  /// The same in two calls, like those of frame().
+  /// Draws in two calls, as render::Frame does.
   void submit(std::span<const shared::View> eyes, const Foveation& foveation,
               const render::FrameSettings& settings = {}, const render::DebugOptions& debug = {},
               const render::CallersTextures& textures = {}) {
@@ -82,15 +83,15 @@ class FoveatedFrame {
   }
 
   /// The composed pictures of the last frame, one per eye. colours() has them on the GPU, in the layout of
-  /// Frame::colours(): vec4 (C, T) by pixel; each view begins at its pixel_offset. Undefined for a frame on
-  /// canvases.
+  /// Frame::colours(): vec4 (C, T) by pixel; each view begins at its pixel_offset. After a frame on canvases,
+  /// read_pictures() throws Error, and colours() is undefined.
   std::vector<Picture> read_pictures() const;
   const gl::Buffer& colours() const { return colours_; }
   const std::vector<shared::View>& views() const { return eyes_; }
 
   /// The parts of each eye in the last frame.
   const std::vector<FoveatedEye>& parts() const { return parts_; }
-  /// The frame that draws the parts: twice as many views.
+  /// The frame that draws the parts, with two views per eye.
   render::Frame& frame() { return frame_; }
 
  private:

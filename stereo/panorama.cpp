@@ -10,8 +10,8 @@ namespace binosplat::stereo {
 
 namespace {
 
-// A face of the cube around the eye, as far as it lies ahead: its direction, and its extent in focal lengths
-// from the middle.
+// A face of the cube around the eye. Side faces are cut to the half in front of the eye. `low` and `high` are
+// the corners in focal lengths from the middle of the uncut face.
 struct Face {
   glm::dmat3 axes;  // columns: right, down, forward, in the eye's frame
   glm::dvec2 low, high;
@@ -32,7 +32,7 @@ std::size_t face_of(const glm::dvec3& ray) {
   return ray.y < 0 ? 3 : 4;
 }
 
-// A panorama's pixel at the horizon is as wide as a pixel in the middle of a face.
+// A pixel at the panorama's horizon covers the same angle as a pixel in the middle of a face.
 double focal(int side) { return side / glm::pi<double>(); }
 
 int face_pixels(int side, double low, double high) {

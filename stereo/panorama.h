@@ -1,6 +1,6 @@
 #pragma once
-// An eye's VR180 picture: the hemisphere ahead as an equirectangular picture, in which each pixel has its own
-// ray.
+// An eye's VR180 picture: the hemisphere in front of the eye as an equirectangular picture, in which each
+// pixel has its own ray.
 
 #include <array>
 #include <memory>
@@ -14,11 +14,11 @@
 
 namespace binosplat::stereo {
 
-/// px: more than any player shows.
+/// Maximum side of a panorama, px: more than any player shows.
 constexpr int panorama_side_most = 8192;
 
 /// The direction of pixel (i, j) of a panorama, `side` px wide and high, in the eye's frame (x right, y down,
-/// z forward): longitude from -90 to 90 degrees with i, latitude from 90 to -90 with j.
+/// z forward): longitude grows with i from -90 to 90 degrees, and latitude falls with j from 90 to -90.
 glm::dvec3 panorama_ray(int side, int i, int j);
 
 /// The pinhole views that together contain all rays of an eye: ahead, right, left, up, down.
@@ -31,14 +31,14 @@ class Panorama {
   /// panorama_side_most.
   Panorama(std::shared_ptr<render::GpuModel> model, int side);
 
-  /// Draws the panoramas of one or two eyes, from the positions and directions of their cameras; the lenses
-  /// do not matter. Uses the settings that exact_of() keeps, but always sorts by distance (from the point
-  /// between the eyes) with the tangent projection. `near_plane` is a distance in world units. The report
-  /// sums over five views. Throws as render::RayBlend does.
+  /// Draws the panoramas of one or two eyes. Uses the positions and rotations of their cameras, and ignores
+  /// the lenses. Uses the settings that exact_of() keeps, but always the tangent projection and the order by
+  /// distance from the point between the eyes. `near_plane` is a distance in world units. The report sums the
+  /// five pinhole views. Throws as render::RayBlend does.
   render::FrameReport draw(std::span<const Camera> eyes, double near_plane,
                            const render::FrameSettings& settings = {});
 
-  /// The pictures of the last eyes; z_sum holds distances.
+  /// The panoramas of the last draw(), by eye; z_sum holds distances instead of depths.
   std::vector<Picture> read_pictures() const;
 
  private:
@@ -53,7 +53,7 @@ class Panorama {
   std::vector<std::unique_ptr<gl::Buffer>> rays_;  // PlacedRay, by face
   std::vector<std::uint32_t> ray_counts_;
   std::vector<std::unique_ptr<Pixels>> pixels_;  // by eye
-  std::size_t eyes_ = 0;                         // drawn last
+  std::size_t eyes_ = 0;                         // number of eyes in the last draw()
 };
 
 }  // namespace binosplat::stereo

@@ -21,8 +21,8 @@ struct InPlace {
   bool by_view = false;  // through a texture view of `format`
 };
 
-/// The texture of a framebuffer that has only this one. It is written without a copy, which is slow on server
-/// GPUs.
+/// Returns the texture of a framebuffer that has only this texture, and otherwise `target`. The texture can
+/// be written in place; copies are slow on server GPUs.
 Target texture_behind(const gl::Functions& gl, const Target& target) {
   if (target.texture != 0 || target.framebuffer == 0) return target;
   const auto attached = [&](GLenum place, GLenum what) {
@@ -30,7 +30,7 @@ Target texture_behind(const gl::Functions& gl, const Target& target) {
     gl.GetNamedFramebufferAttachmentParameteriv(target.framebuffer, place, what, &value);
     return value;
   };
-  for (GLenum other = 1; other < 8; ++other) {  // every driver has at least eight
+  for (GLenum other = 1; other < 8; ++other) {  // every driver has at least eight attachments
     if (attached(GL_COLOR_ATTACHMENT0 + other, GL_FRAMEBUFFER_ATTACHMENT_OBJECT_TYPE) != GL_NONE)
       return target;
   }
@@ -53,16 +53,17 @@ InPlace in_place(const gl::Functions& gl, const Target& target, bool over_target
   gl.GetTextureParameteriv(target.texture, GL_TEXTURE_IMMUTABLE_FORMAT, &immutable);
   gl.GetTextureLevelParameteriv(target.texture, target.level, GL_TEXTURE_INTERNAL_FORMAT, &format);
   if (kind != GL_TEXTURE_2D && kind != GL_TEXTURE_2D_ARRAY) return {};
-  // Display values are the plain bytes of an sRGB texture. Only immutable textures have views.
+  // An sRGB texture stores display values as plain bytes, which a texture view of format RGBA8 writes. Only
+  // immutable textures have views.
   if (format == GL_SRGB8_ALPHA8 && immutable != 0) return {GL_RGBA8, true};
   constexpr std::array formats = {GL_RGBA8, GL_RGB10_A2, GL_RGBA16, GL_RGBA16F, GL_RGBA32F};
   if (std::find(formats.begin(), formats.end(), format) == formats.end()) return {};
-  // A texture that is also read needs a view, which ignores the owner's swizzles and levels.
+  // A texture that is also read needs a texture view, which ignores the owner's swizzles and levels.
   if (over_target && immutable == 0) return {};
   return {static_cast<GLenum>(format), over_target};
 }
 
-/// The format of a picture that is copied into a framebuffer, with at least the framebuffer's bits.
+/// The format of a picture that is later copied into a framebuffer. It has at least the framebuffer's bits.
 GLenum copied_from(const gl::Functions& gl, GLuint framebuffer) {
   GLenum place = GL_COLOR_ATTACHMENT0;
   if (framebuffer == 0) {
@@ -72,7 +73,7 @@ GLenum copied_from(const gl::Functions& gl, GLuint framebuffer) {
   }
   GLint bits = 0;
   gl.GetNamedFramebufferAttachmentParameteriv(framebuffer, place, GL_FRAMEBUFFER_ATTACHMENT_RED_SIZE, &bits);
-  gl.GetError();  // no such attachment: the copy fails if it needs one
+  gl.GetError();  // clears the error for a missing attachment; a copy that needs the attachment fails
   return bits > 0 && bits <= 8 ? GL_RGBA8 : GL_RGBA32F;
 }
 
@@ -80,7 +81,7 @@ glm::ivec2 size_of(const gl::Functions& gl, const DepthTarget& target) {
   glm::ivec2 size(0);
   gl.GetTextureLevelParameteriv(target.texture, target.level, GL_TEXTURE_WIDTH, &size.x);
   gl.GetTextureLevelParameteriv(target.texture, target.level, GL_TEXTURE_HEIGHT, &size.y);
-  gl.GetError();  // no texture: drawing into it reports the error
+  gl.GetError();  // clears the error for a missing texture; drawing into the texture reports it
   return size;
 }
 
@@ -206,7 +207,7 @@ void Presenter::draw(const gl::Buffer& colours, std::span<const shared::View> vi
                        {"keeps_alpha", background ? 0u : 1u},
                        {"linear", target.linear ? 1u : 0u},
                        {"steps", render::steps_of(format)}});
-    context.gl().MemoryBarrier(GL_ALL_BARRIER_BITS);  // for any use of the picture
+    context.gl().MemoryBarrier(GL_ALL_BARRIER_BITS);  // before any use of the picture
   };
   const std::uint32_t framebuffer = framebuffer_of(target);
   const Target texture = texture_behind(context.gl(), target);
@@ -242,7 +243,7 @@ Canvases Presenter::canvases(std::span<const Target> targets, const Background& 
   gl::Context& context = dispatcher_.context();
   if (targets.size() > MAX_CANVASES) return {};
   for (const Target& target : targets) {
-    framebuffer_of(target);  // throws if it cannot be drawn into
+    framebuffer_of(target);  // throws if the target cannot be drawn into
     if (target.texture != 0)
       context.gl().NamedFramebufferTexture(target_framebuffer_, GL_COLOR_ATTACHMENT0, 0, 0);
     const Target texture = texture_behind(context.gl(), target);

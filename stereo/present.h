@@ -1,7 +1,7 @@
 #pragma once
 // Writes a frame's pictures into any texture or framebuffer of the context, in the layouts of
-// stereo/layout.h, without waiting for the GPU. A compute shader writes textures in place, if it can. Other
-// textures and framebuffers get a copy.
+// stereo/layout.h, without waiting for the GPU. If a compute shader can write a texture, it does so in place.
+// Other textures, and framebuffers, get a copy.
 
 #include <binosplat/targets.h>
 #include <cstddef>
@@ -19,13 +19,14 @@
 
 namespace binosplat::stereo {
 
-/// render::Canvas by view, and the texture views that they use.
+/// One render::Canvas per view, and the texture views that the canvases use.
 struct Canvases {
   std::vector<render::Canvas> list;
-  std::vector<std::unique_ptr<gl::Texture>> views;  // of targets that are sRGB textures, or are also read
+  std::vector<std::unique_ptr<gl::Texture>> views;  // for targets that are sRGB textures, or are also read
 };
 
-/// Returns the value of CallersTextures::depth_rows that these targets need of a frame on canvases.
+/// Returns CallersTextures::depth_rows for a frame on canvases: 2 if each target has at most half as many
+/// rows as its view, else 1.
 int depth_rows(const gl::Context& context, std::span<const shared::View> views,
                std::span<const DepthTarget> targets);
 
@@ -49,8 +50,8 @@ class Presenter {
   /// right eye in another layout; layout_size() returns the size in px. The picture's top is the texture's
   /// top in OpenGL, t = 1.
   ///
-  /// Colours are display-referred, as trained, and written without conversion by GL_FRAMEBUFFER_SRGB. A
-  /// window shows such values, and a texture of format SRGB8_ALPHA8 holds them. Without a background they are
+  /// Colours are display-referred, as trained, and GL_FRAMEBUFFER_SRGB does not convert them. A window shows
+  /// such values, and a texture of format SRGB8_ALPHA8 holds them. Without a background they are
   /// premultiplied by alpha. All draw buffers of a framebuffer receive the picture; blending, masks and tests
   /// do not affect it. The context's state is restored (gl/state.h), and later reads of the target see the
   /// picture.
@@ -71,13 +72,13 @@ class Presenter {
   void draw(const gl::Buffer& colours, std::span<const shared::View> views, std::size_t first, int layout,
             const Target& target, const Backdrop& backdrop);
 
-  /// Compiles the programs of draw() for both kinds of background, a colour and the target's own colours. If
-  /// `with_depths`, also compiles the programs of draw_depth().
+  /// Compiles the program with which draw() draws such a frame. If `with_depths`, also compiles the programs
+  /// of draw_depth().
   void prepare(const render::Frame& frame, bool with_depths);
 
-  /// The canvases through which a frame's own blend can draw into these targets, one per view
-  /// (LAYOUT_SEPARATE). They get the same bits as from draw(), in less time. Empty for more than MAX_CANVASES
-  /// targets, or if one of them needs a copy. Throws as draw() does.
+  /// Returns canvases, one per view, with which a frame's own blend draws into these targets
+  /// (LAYOUT_SEPARATE). The targets get the same bits as from draw(), in less time. Returns none for more
+  /// than MAX_CANVASES targets, or if a target needs a copy. Throws as draw() does.
   Canvases canvases(std::span<const Target> targets, const Background& background, bool over_target = false);
 
   /// Fills a whole target with the depths of view `v` of the last frame. The context's state is restored.
@@ -95,7 +96,7 @@ class Presenter {
 
   gl::Dispatcher dispatcher_;
   gl::Sampler nearest_;
-  // Created at first use: for the caller's textures, and for pictures to copy into framebuffers.
+  // Framebuffers, created at first use: for the caller's textures, and for pictures that are copied later.
   std::uint32_t target_framebuffer_ = 0, scratch_framebuffer_ = 0;
   std::unique_ptr<gl::Texture> scratch_;
   std::uint32_t depth_framebuffer_ = 0, no_vertices_ = 0;

@@ -9,8 +9,7 @@ namespace binosplat::stereo {
 
 namespace {
 
-/// Relative deviation up to which two given eyes count as parallel. It allows for poses that were rounded in
-/// text.
+/// Two given eyes count as parallel up to this relative deviation, because poses in text files are rounded.
 constexpr double parallel_tolerance = 1e-9;
 
 void check_rig(const RigSettings& s) {
@@ -43,8 +42,8 @@ glm::dmat3 turned_right(const glm::dmat3& rotation, double radians) {
   return glm::dmat3(c * rotation[0] - s * rotation[2], rotation[1], s * rotation[0] + c * rotation[2]);
 }
 
-/// The view of an eye that is the head, moved by `offset` along the head's x axis. It uses the head's
-/// translation and changes only x: from each eye's position, y and z would differ by rounding.
+/// Returns the view of an eye at `offset` along the head's x axis. It keeps y and z of the head's
+/// translation, because y and z from each eye's own position would differ by rounding.
 shared::View shifted_view(const Camera& eye, const Camera& head, double offset, const glm::vec3& anchor,
                           double near_plane) {
   shared::View view = make_view(head, anchor, near_plane);
@@ -55,7 +54,7 @@ shared::View shifted_view(const Camera& eye, const Camera& head, double offset, 
   return view;
 }
 
-/// All views sort by the distance from one point, so that turning the head about it changes nothing.
+/// Lets all views sort by the distance from one point, so that the order stays when the head turns about it.
 void share_centre(std::span<shared::View> views, const glm::dvec3& centre, const glm::vec3& anchor) {
   for (shared::View& view : views)
     view.centre = glm::vec4(glm::vec3(centre - glm::dvec3(anchor)), view.centre.w);

@@ -33,21 +33,21 @@ struct EyePair {
   bool parallel = true;               // the views' z axes (row_z) are bit-equal: both are projected together
 };
 
-/// The eyes of a head: at head.position -+ x axis * ipd / 2. Parallel eyes (no cant) have bit-equal y and z
-/// rows and differ by the translation along x. With a convergence distance D they also have off-axis frusta:
-/// left cx - fx ipd / (2 D), right cx + fx ipd / (2 D). A point at depth z then has the disparity xL - xR =
-/// fx ipd (1/z - 1/D). At ipd 0 both views are bit-equal. Throws Error, which names the option, for an
-/// illegal value. A convergence distance for canted eyes is illegal, because no shift brings their pictures
-/// onto one plane.
+/// The eyes of a head: at head.position -+ x axis * ipd / 2. The view matrices of parallel eyes (no cant)
+/// have bit-equal y and z rows and differ in the translation along x. With a convergence distance D, parallel
+/// eyes also have off-axis frusta: left cx - fx ipd / (2 D), right cx + fx ipd / (2 D). A point at depth z
+/// then has the disparity xL - xR = fx ipd (1/z - 1/D). At ipd 0 both views are bit-equal. Throws Error,
+/// which names the option, for an illegal value. A convergence distance for canted eyes is illegal, because
+/// no shift brings their pictures onto one plane.
 EyePair make_rig(const Camera& head, const RigSettings& settings);
 
-/// The rig of two given cameras. They are parallel if no element of their rotations differs by more than
-/// 1e-9, and their positions along z by at most 1e-9 times the farther camera's distance from the origin.
-/// Both then use the left one's z axis.
+/// The rig of two given cameras. They are parallel if the elements of their rotations differ by at most 1e-9,
+/// and their positions along z by at most 1e-9 times the farther camera's distance from the origin. Parallel
+/// cameras both use the left one's z axis.
 EyePair rig_from_eyes(const Camera& left, const Camera& right, double near_plane = near_default);
 
-/// The views of a head's two or more cameras. Those parallel to the first share its third row. All have one
-/// anchor, and sort by the distance from the midpoint of all cameras.
+/// The views of a head's two or more cameras. Views parallel to the first share its z axis (row_z). All share
+/// one anchor. With ORDER_DISTANCE, all sort by the distance from the midpoint of all cameras.
 struct HeadViews {
   std::vector<shared::View> views;
   bool parallel = true;  // all are parallel to the first

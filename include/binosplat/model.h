@@ -16,15 +16,15 @@ struct Model;  // internal
 
 /// Selects one model of a file that holds several.
 struct ModelOptions {
-  /// The level of detail of a streamed SOG; 0 is the finest. None: the finest one with all its files.
+  /// The level of detail of a streamed SOG; 0 is the finest. None: the finest one that has all its files.
   std::optional<int> lod = {};
-  std::optional<std::size_t> appearance = {};  // of Scaffold-GS models; none: the first
+  std::optional<std::size_t> appearance = {};  // index, for Scaffold-GS models; none: the first
 };
 
 /// Gaussians in memory: each array has one element per Gaussian. The constructor of SplatModel copies them.
 struct Gaussians {
   std::span<const glm::vec3> means = {};   // world units
-  std::span<const glm::vec4> quats = {};   // quaternions w, x, y, z, any length but 0
+  std::span<const glm::vec4> quats = {};   // quaternions w, x, y, z; lengths are above 0
   std::span<const glm::vec3> scales = {};  // standard deviations, world units: exp() of the trainers' values
   std::span<const float> opacities = {};   // from 0 to 1: the sigmoid of the trainers' values
   /// RGB coefficients of the spherical harmonics, the constant one first: 1, 4, 9 or 16 per Gaussian.
@@ -43,32 +43,32 @@ struct Bounds {
 /// outlive the model. Any thread may call these functions; they need no context.
 class SplatModel {
  public:
-  /// Reads a file, or a folder that holds a model. The content decides the format, never the name: INRIA's
-  /// ply and PlayCanvas' compressed ply, spz, .splat, .ksplat, SOG (a folder or .sog), streamed SOG (by a
-  /// lod-meta.json), glTF and OpenUSD's text with Gaussians, and Scaffold-GS's ply with the networks beside
-  /// it. Removes Gaussians with numbers that are not finite, and reports their count on standard error. Takes
-  /// anti-aliasing and low-pass from the file, or else from the trainer's file beside it. Reports on standard
-  /// error the effects of the training that are not drawn. Throws Error(bad_input) if the path holds no such
-  /// model; the text describes the file.
+  /// Reads a file, or a folder that holds a model. The content decides the format, never the name. The
+  /// formats are INRIA's ply, PlayCanvas' compressed ply, spz, .splat, .ksplat, SOG (a folder or .sog),
+  /// streamed SOG (a folder or its lod-meta.json), glTF and textual OpenUSD with Gaussians, and Scaffold-GS's
+  /// ply with its networks in the same folder. Removes Gaussians with numbers that are not finite, and
+  /// reports their count on standard error. Reads the low-pass, and whether the model is anti-aliased, from
+  /// the file or else from the trainer's file in its folder. Reports on standard error which effects of the
+  /// training are not drawn. Throws Error(bad_input) if the path holds no such model; the text describes the
+  /// file.
   explicit SplatModel(const std::filesystem::path& path, const ModelOptions& options = {});
 
-  /// Copies Gaussians from arrays. Throws Error(bad_input), with the array and the row, for arrays of
-  /// different lengths and for invalid numbers.
+  /// Copies Gaussians from arrays. Throws Error(bad_input) for arrays of different lengths and for invalid
+  /// numbers; the text names the array and the row.
   explicit SplatModel(const Gaussians& gaussians, const std::string& name = "arrays");
 
-  /// For the library's own code, which has models in memory. Not null.
+  /// For the library's own code, which has models in memory. `model` is not null.
   explicit SplatModel(std::shared_ptr<const Model> model);
 
-  const std::string& name() const;  // for people: the file's name
-  std::size_t count() const;        // Gaussians; anchors of a Scaffold-GS model
+  const std::string& name() const;  // the file's name, for messages
+  std::size_t count() const;        // number of Gaussians, or of a Scaffold-GS model's anchors
 
   /// The 2nd to the 98th percentile of the Gaussians' positions along each axis of the world: the subject
-  /// without far outliers. Ignores Gaussians that are wholly transparent. Takes as long as sorting the
-  /// positions.
+  /// without far outliers. Ignores Gaussians of opacity 0. Sorts all positions.
   Bounds bounds() const;
 
-  /// Returns an upright placement of the eyes' space at `origin`, whatever axes the file has. `origin` is a
-  /// point of the world of the model's cameras (x right, y down, z forward, as in COLMAP), in its units.
+  /// Returns an upright placement of the eyes' space at `origin`, whatever axes the file has. `origin` is in
+  /// the model's units, but always has x right, y down and z forward, as in COLMAP.
   Placement placement(const glm::dvec3& origin = glm::dvec3(0.0), double units_per_metre = 1.0) const;
 
  private:

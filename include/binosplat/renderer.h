@@ -11,7 +11,7 @@
 //   // ... the program's own work on the CPU, while the GPU draws ...
 //   renderer.finish();
 //
-// The complete programs are examples/embed.cpp, mesh.cpp, world.cpp and openxr.cpp.
+// Complete programs: examples/embed.cpp, mesh.cpp, world.cpp and openxr.cpp.
 
 #include <cstdint>
 #include <filesystem>
@@ -32,24 +32,24 @@ namespace binosplat {
 
 class SplatStream;
 
-/// Finds OpenGL's functions by name: eglGetProcAddress, glfwGetProcAddress and the like.
+/// A function that returns OpenGL's functions by name, as eglGetProcAddress and glfwGetProcAddress do.
 /// SDL_GL_GetProcAddress and glXGetProcAddress have other types: cast them with reinterpret_cast.
 using GetProcAddress = void (*(*)(const char* name))();
 
-/// The drawn part of a view, and its accuracy. By default the whole view, as the settings say. Rows count
-/// from the top of the picture.
+/// The drawn part of a view, and its accuracy. By default the whole view is drawn, as accurately as the
+/// settings request. Rows count from the top of the picture.
 struct ViewRegion {
   static constexpr int tile = 16;  // px, the side of a tile
-  /// The drawn columns of tiles [x, y), one range per row of tiles. It leaves out, for example, tiles that no
-  /// lens shows. Empty: all.
+  /// For each row of tiles, the range [x, y) of tile columns to draw. Use this, for example, to skip tiles
+  /// that no lens shows. Empty: all tiles.
   std::vector<glm::uvec2> columns = {};
-  /// px. Tiles within [hole_begin, hole_end) are not drawn: an inset covers them.
+  /// px. Tiles inside the rectangle [hole_begin, hole_end) are not drawn, because an inset covers them.
   glm::uvec2 hole_begin{0}, hole_end{0};
   float tolerance_share = 1.0f;  // the view's tolerance divided by the frame's; 0: exact
-  /// For a picture with fewer pixels per degree than another one, such as the context around an inset: (its
-  /// pixels per degree / the other's) squared, at most 1. The low-pass has the same width in px in every
-  /// picture, so thin Gaussians would be too bright in this one. The renderer dims them by this factor.
-  /// Anti-aliased models ignore it.
+  /// Set this for a picture with fewer pixels per degree than another picture, such as the context around an
+  /// inset. The value is the squared ratio of their pixels per degree, at most 1. The low-pass has the same
+  /// width in px in every picture, so thin Gaussians would be too bright in the coarser picture. The renderer
+  /// dims them, by at most this factor. Anti-aliased models ignore it.
   float low_pass_share = 1.0f;
 
   bool operator==(const ViewRegion&) const = default;
@@ -59,39 +59,40 @@ struct ViewRegion {
 struct View {
   Eye eye = {};
   glm::ivec2 size{0};  // px, above 0
-  Target target = {};  // holds at least `size` px from its corner on
-  /// For all views of a frame, or for none, which is faster. Stores the nearer of splats and meshes.
+  Target target = {};  // must hold `size` px from its corner (x, y) on
+  /// Set it for all views of a frame or for none; none is faster. The stored depth is the nearer one of
+  /// splats and meshes.
   std::optional<DepthTarget> depth = {};
-  /// For all views of a frame, at most 4, or for none. Excludes a background, a layout other than `separate`,
-  /// and measured transmittance.
+  /// Set it for all views of a frame (at most 4 views) or for none. It excludes a background, a layout other
+  /// than `separate`, and measured transmittance.
   std::optional<MeshDepth> mesh_depth = {};
   ViewRegion region = {};
 };
 
-/// A model that a Renderer holds.
+/// Identifies a model that a Renderer holds.
 enum class ModelId : std::uint32_t {};
 
 /// A model at its place in a world. Any number of instances may draw one model.
 ///
 /// The world has x right, y down and z forward, as COLMAP's, and its own units. A point p of the model lies
-/// at translation + scale * rotation * p. The renderer first brings a model of other axes into x right, y
-/// down and z forward, so that every model stands upright.
+/// at translation + scale * rotation * p. If the axes of the model's file differ, the renderer first turns
+/// the model to x right, y down and z forward. So every model stands upright.
 struct Instance {
   ModelId model = {};
   glm::dmat3 rotation{1.0};     // columns of length 1 at right angles
   glm::dvec3 translation{0.0};  // world units
-  double scale = 1.0;           // world units to one of the model's, above 0
-  float opacity = 1.0f;         // from 0 to 1, a factor of each Gaussian's
+  double scale = 1.0;           // world units per unit of the model, above 0
+  float opacity = 1.0f;         // from 0 to 1; multiplies the opacity of each Gaussian
   bool is_shown = true;
-  /// With Transmittance::by_depth: the model's own table, in its units, as its Calibration has it. Empty:
-  /// that of the settings, in world units.
+  /// With Transmittance::by_depth: the table of this model's Calibration, in the model's units. Empty: the
+  /// table of the settings, in world units.
   DepthTable depth_table = {};
 };
 
-/// The content of a frame: instances, and the place of the eyes' space in their world. All instances are
-/// sorted by the middles of their Gaussians and blended together, as if they were one model. They cast no
-/// shadows on each other. The first shown instance's model sets the order and the projection, unless the
-/// settings do.
+/// The content of a frame: instances, and the placement of the eyes' space in their world. The Gaussians of
+/// all instances are sorted and blended together, as if they were one model. Instances cast no shadows on
+/// each other. If the settings leave out the order or the projection, the first shown instance's model sets
+/// it.
 struct World {
   World(const Placement& of_eyes, std::span<const Instance> drawn) : placement(of_eyes), instances(drawn) {}
 
@@ -101,12 +102,13 @@ struct World {
 
 /// Models on the GPU, with the programs and buffers that draw them.
 ///
-/// Threads: call every function, and the destructor, on the thread where the caller's context is current.
-/// Elsewhere calls throw Error(no_gl). If another context is current, the destructor frees nothing and warns
-/// on standard error. Renderers of different contexts are independent.
+/// Threads: call every function, and the destructor, on the thread where the caller's context is current. On
+/// other threads, calls throw Error(no_gl). If another context is current, the destructor frees nothing and
+/// warns on standard error. Renderers of different contexts are independent.
 ///
 /// Time: prepare(), or the first frames of each combination of settings, compile shaders, which may take
-/// seconds. The renderer keeps them in $XDG_CACHE_HOME/binosplat, or ~/.cache/binosplat, for later runs.
+/// seconds. The renderer keeps the shaders in $XDG_CACHE_HOME/binosplat, or ~/.cache/binosplat, for later
+/// runs.
 ///
 /// State: each call restores the context's state, also after an error. The one exception is a current program
 /// that was deleted, which OpenGL cannot make current again. The caller's bindings, enabled states and masks
@@ -114,9 +116,9 @@ struct World {
 /// count the renderer's work.
 class Renderer {
  public:
-  /// Uploads the model into the current context, of OpenGL 4.5 core or later. Context, textures and
-  /// framebuffers stay the caller's. Throws Error: no_gl if no context is current or it lacks a feature,
-  /// out_of_memory, bad_input for an unknown precision.
+  /// Uploads the model into the current context, which is OpenGL 4.5 core or later. Context, textures and
+  /// framebuffers stay the caller's. Throws Error: no_gl if no context is current or the context lacks a
+  /// feature, out_of_memory, bad_input for an unknown precision.
   Renderer(GetProcAddress get_proc_address, const SplatModel& model, Precision precision = Precision::full);
   /// Draws the levels that a stream has read (binosplat/stream.h). A stream has one renderer at a time.
   Renderer(GetProcAddress get_proc_address, SplatStream& stream, Precision precision = Precision::full);
@@ -127,24 +129,24 @@ class Renderer {
   Renderer& operator=(Renderer&&) noexcept;
 
   /// Draws up to 8 views of one head in one frame, each into its target. A layout other than `separate` takes
-  /// two views of one size, the left eye's first, and draws both into the first view's target. submit()
+  /// two views of equal size, the left eye's first, and draws both into the first view's target. submit()
   /// passes the frame to the driver and returns while the GPU draws. Until finish() returns, do not read,
   /// write or delete the targets, and submit no other frame of this renderer. submit() never waits for the
   /// GPU, but it compiles shaders in the first frame of a combination of settings.
   ///
-  /// Neighbouring views of equal direction and depth are projected together, which saves time: put an eye's
-  /// views side by side. A view of the same orientation may lie before or behind the first one by less than a
-  /// millionth of its distance from the eyes' origin. The renderer moves it to the first one's depth, because
-  /// rounding separates the poses of parallel eyes.
+  /// If views that follow each other in `views` have equal directions and depths, they are projected
+  /// together, which saves time. So list an eye's views one after the other. Rounding may put parallel eyes
+  /// at slightly different depths. The renderer therefore moves a view of the first view's orientation to the
+  /// first view's depth, if it is off by less than a millionth of the first eye's distance from the origin.
   ///
-  /// With a quality or measured transmittance, a frame uses the measurements of earlier frames. It starts
-  /// anew at a camera cut: a view turns by more than 15 degrees, moves by more than a tenth of the middle
-  /// depth, or has another size, frustum or set of tiles, or the number of views changes.
+  /// With a quality or measured transmittance, a frame uses the measurements of earlier frames. A camera cut
+  /// discards them: a view turns by more than 15 degrees, moves by more than a tenth of the Gaussians' middle
+  /// depth, or changes its size, frustum or drawn tiles; or the number of views changes.
   ///
-  /// If it throws Error, it submits nothing. bad_input: numbers that are not finite, an orientation of zero,
-  /// an empty frustum or picture, contradictory settings, a target that is too small or cannot be drawn into,
-  /// views that do not fit the layout, an unfinished frame. out_of_memory. no_gl: the GPU was reset, or the
-  /// context is not current.
+  /// If submit() throws an Error, it has submitted nothing. bad_input: numbers that are not finite, an
+  /// orientation of zero, an empty frustum or picture, contradictory settings, a target that is too small or
+  /// cannot be drawn into, views that do not fit the layout, an unfinished frame. out_of_memory. no_gl: the
+  /// GPU was reset, or the context is not current.
   void submit(std::span<const View> views, const Placement& placement, const Settings& settings = {});
 
   /// Uploads a model, or the levels that a stream has read, for the instances of a World. Call it once for
@@ -154,32 +156,32 @@ class Renderer {
   /// Frees a model. Throws Error(bad_input) while a frame is under way, and for a model that is not held.
   void remove(ModelId model);
 
-  /// Draws a World as submit() draws a single model. Instances may move, and come and go, from frame to
-  /// frame, and no such change uploads a Gaussian. Measurements of earlier frames stay valid as long as no
-  /// instance moves, turns or grows past the limits above, as the views see it. A Scaffold-GS model must be
-  /// the only instance, and unmoved. bad_input also for a model that was not added, and numbers out of range.
+  /// Draws a World as submit() draws a single model. From frame to frame instances may move, appear and
+  /// disappear; no such change uploads a Gaussian. It is a camera cut if an instance moves, turns or grows,
+  /// relative to a view, by more than the limits above. A Scaffold-GS model must be the only instance, and
+  /// unmoved. Also throws Error(bad_input) for a model that was not added, and for numbers out of range.
   void submit(std::span<const View> views, const World& world, const Settings& settings = {});
 
-  /// The place of the eyes' space in the world of an instance's model, with the axes of the model's file.
-  /// Calibration::settings() and SplatStream::begin_frame() take it.
+  /// Returns the placement of the eyes' space in an instance's model: along the axes of the model's file and
+  /// in its units. Calibration::settings() and SplatStream::begin_frame() take such a placement.
   Placement in_model(const Placement& placement, const Instance& instance) const;
 
-  /// Compiles every shader that frames of these settings and targets may need, so that no submit() has to.
-  /// Call it while the user waits anyway. It also allocates the frames' memory, and writes nothing into
+  /// Compiles every shader that frames of these settings and targets may need, so that no submit() compiles
+  /// any. Call it while the user waits anyway. It also allocates the frames' memory, and writes nothing into
   /// targets. The next frame uses no earlier measurements. For a stream it also compiles the shaders of
   /// begin_frame(). Throws as submit() does.
   void prepare(std::span<const View> views, const Placement& placement, const Settings& settings = {});
   void prepare(std::span<const View> views, const World& world, const Settings& settings = {});
 
-  /// Whether the GPU has blended the submitted frame. finish() then returns at once, unless it must draw the
-  /// frame again. True if no frame is under way.
+  /// Whether the GPU has blended the submitted frame. If so, finish() returns at once, unless it must draw
+  /// the frame again. True if no frame is under way.
   bool is_done();
 
-  /// Waits until the GPU has blended the submitted frame. Draws it again if a buffer was too small or the
-  /// quality missed. Then writes the pictures that submit() could not write in place, without waiting for
-  /// these writes. Later commands of the caller in this context see the pictures without a glMemoryBarrier.
-  /// Throws Error(bad_input) if no frame was submitted; otherwise as submit(). After an error the frame is
-  /// over, and its targets may be half written.
+  /// Waits until the GPU has blended the submitted frame. Draws the frame again if a buffer was too small or
+  /// the quality was missed. Then starts to copy the pictures that submit() could not write in place, and
+  /// does not wait for these copies. Later commands of the caller in this context see the pictures without a
+  /// glMemoryBarrier. Throws Error(bad_input) if no frame was submitted; otherwise as submit(). After an
+  /// error the frame is over, and its targets may be half written.
   Report finish();
 
   /// submit() and finish() in one.
@@ -197,10 +199,10 @@ class Renderer {
   std::unique_ptr<Impl> impl_;
 };
 
-/// AdaGScale. A Calibration adds K and the table by depth.
+/// The settings of AdaGScale. A Calibration adds its tolerance K and its table by depth.
 inline const Settings adagscale{.threshold = Threshold::peripheral, .transmittance = Transmittance::by_depth};
 
-/// A file of `binosplat calibrate`: the loss that frames of a model may accept, by AdaGScale or another rule.
+/// A file that `binosplat calibrate` wrote: tolerances for frames of a model, by AdaGScale or another rule.
 ///
 ///   const binosplat::Calibration calibration("calibration.json", model);
 ///   // Each frame:
@@ -209,15 +211,16 @@ inline const Settings adagscale{.threshold = Threshold::peripheral, .transmittan
 /// Copies are cheap. Any thread may call these functions; they need no context.
 class Calibration {
  public:
-  /// Reads the file, and compares all numbers of the model with the calibrated model's. Throws
-  /// Error(bad_input) for a file of another kind, and for another model.
+  /// Reads the file, and checks that the model equals the calibrated model in all numbers. Throws
+  /// Error(bad_input) if it does not, and for a file of another kind.
   Calibration(const std::filesystem::path& path, const SplatModel& model);
 
-  /// Returns `asked` with the file's table. If `asked` has neither a tolerance nor a quality, adds the file's
-  /// tolerance for its threshold (none: squared) and transmittance, scaled to the first view's focal length.
-  /// The result is exact if the first eye is too far from the calibrated cameras: more than twice the largest
-  /// distance between neighbouring cameras. Throws Error(bad_input) if the file lacks that threshold and
-  /// transmittance, or has another order or projection. Throws as Renderer::submit() does for views.
+  /// Returns `asked` with the file's table by depth. If `asked` has neither a tolerance nor a quality, it
+  /// also gets the file's tolerance for its threshold (none: squared) and its transmittance, scaled to the
+  /// first view's focal length. If the first eye is farther from all calibrated cameras than twice the
+  /// largest distance between neighbouring ones, the settings are exact. Throws Error(bad_input) if the file
+  /// lacks this threshold with this transmittance, or has another order or projection. Throws as
+  /// Renderer::submit() does for views.
   Settings settings(std::span<const View> views, const Placement& placement,
                     const Settings& asked = adagscale) const;
 

@@ -1,5 +1,5 @@
 #pragma once
-// The cost of a drawn frame, and the work that the next one can do in its time.
+// Report is the cost of a drawn frame. FrameBudget chooses the quality and size of frames by their time.
 
 #include <cstdint>
 #include <optional>
@@ -19,30 +19,30 @@ struct StageSpan {
   std::int64_t begin_ns = 0, end_ns = 0;
 };
 
-/// Times are sums over all attempts at a quality, without drawings for which a buffer was too small. They
-/// exclude writes into targets after the blend.
+/// Times are sums over all attempts to reach a quality. They exclude drawings for which a buffer was too
+/// small, and writes into targets after the blend.
 struct Report {
   std::vector<StageTime> stages = {};  // empty if the driver reports no times
-  double gpu_ms = 0;                   // their sum
+  double gpu_ms = 0;                   // sum of the stages
   std::vector<StageSpan> spans = {};   // of all drawings, in order
-  double plan_ms = 0;                  // CPU time of planning the frame, in submit(), as the next two
-  double upload_ms = 0;                // CPU time of passing parameters to the driver
-  double submit_ms = 0;        // CPU time of passing the stages to the driver, including compiled shaders
-  double wait_ms = 0;          // CPU time for which finish() waits for the GPU
+  double plan_ms = 0;                  // CPU time in which submit() plans the frame
+  double upload_ms = 0;                // CPU time in which submit() passes parameters to the driver
+  double submit_ms = 0;        // CPU time in which submit() compiles shaders and passes stages to the driver
+  double wait_ms = 0;          // CPU time in which finish() waits for the GPU
   double read_ms = 0;          // CPU time in which finish() reads back counts and times
-  std::int64_t gpu_bytes = 0;  // in the renderer's buffers, including the model's
+  std::int64_t gpu_bytes = 0;  // size of the renderer's buffers, including the model's
 
   std::uint64_t visible = 0;  // Gaussians drawn, summed over the order groups
-  std::uint64_t pairs = 0;    // (Gaussian, tile) over all views
+  std::uint64_t pairs = 0;    // pairs of a Gaussian and a tile, summed over the views
   /// 1 if all views have the same direction and depth, as parallel eyes do.
   std::uint32_t order_groups = 0;
 
-  float tolerance = 0.0f;  // the frame's tolerance; 0: it is exact
+  float tolerance = 0.0f;  // the frame's tolerance; 0: the frame is exact
   /// With Settings::quality: the PSNR in dB of the worst view, from the measurements of this and earlier
-  /// frames. Infinite if nothing differs.
+  /// frames. Infinite if the pictures are equal.
   double quality = 0.0;
-  bool quality_is_estimate = false;  // measured on a part of this frame: may be some dB off
-  int attempts = 0;                  // drawings until the quality held
+  bool quality_is_estimate = false;  // `quality` was measured on a part of this frame, and may be some dB off
+  int attempts = 0;                  // drawings until the quality was reached
   int redrawn = 0;                   // drawings that were repeated because a buffer was too small
   int programs_made = 0;             // shaders that were compiled for the frame, or loaded from the cache
   bool used_measured = false;        // the frame used transmittance that an earlier frame measured
@@ -52,21 +52,21 @@ struct Report {
   bool is_cut = false;
 
   /// All pictures were blended straight into their targets. False for more than 4 views, a layout other than
-  /// `separate`, a target that needs a copy, and frames that measure their error for a quality. These are
-  /// blended into the renderer's own buffer, and copied from there.
+  /// `separate`, a target that needs a copy, and frames that measure their error for a quality. The renderer
+  /// blends such pictures into its own buffer, and copies them from there.
   bool in_place = false;
-  /// OpenGL errors of the caller, recorded before the frame began. The frame is drawn all the same.
+  /// OpenGL errors that the caller's own commands left before the frame began. They do not stop the frame.
   std::vector<std::uint32_t> callers_errors = {};
 };
 
 /// How much work a frame does.
 struct Effort {
   std::optional<float> quality = {};  // dB, as Settings::quality; none: exact
-  double scale = 1.0;                 // the picture's sides over their full size
+  double scale = 1.0;                 // factor of the picture's width and height
 };
 
-/// Chooses the best quality that fits a frame's time. It starts with exact frames, then lowers the quality
-/// down to 37 dB, then the size of pictures down to half of both sides.
+/// Chooses the best quality that fits a frame's time. It starts with exact frames. If they take too long, it
+/// lowers the quality down to 37 dB, and then the width and height down to half.
 ///
 ///   binosplat::FrameBudget budget(0.8 * period_ms);  // the OpenXR runtime needs the rest
 ///   // Each frame:
@@ -75,16 +75,16 @@ struct Effort {
 ///   budget.took(renderer.finish().gpu_ms, period_ms);
 class FrameBudget {
  public:
-  /// A frame may take `ms`.
+  /// `ms` is the budget: the time that a frame may take.
   explicit FrameBudget(double ms) : ms_(ms) {}
 
   Effort effort() const;
 
-  /// Records that a frame of this effort took `ms` (Report::gpu_ms); the display shows a frame every
-  /// `period_ms`. Ignores the first frame of an effort. Lowers the effort after one frame that is late by a
-  /// third, or two late frames in a row. Raises it after a second of frames that take less than three
-  /// quarters of the time. After each raise that was too much, the next raise takes twice as many seconds, up
-  /// to 32.
+  /// Records that a frame of the present effort took `ms` (Report::gpu_ms); the display shows a frame every
+  /// `period_ms`. Ignores the first frame after each change, which may compile shaders. Lowers the effort
+  /// after one frame that exceeds the budget by a third, or after two frames in a row that exceed it. Raises
+  /// the effort after a second of frames that take less than three quarters of the budget. If a raise was too
+  /// much, the wait before the next raise doubles, up to 32 s.
   void took(double ms, double period_ms);
 
  private:
@@ -92,7 +92,7 @@ class FrameBudget {
   void set(int step);
 
   double ms_;
-  int step_ = 0;  // index of the effort; 0 is the most
+  int step_ = 0;  // index of the effort; 0 is the highest
   int late_ = 0;  // late frames in a row
   bool fresh_ = true, raised_ = false;
   double early_ms_ = 0.0, since_raised_ms_ = 0.0, wait_ms_ = wait_least_ms;

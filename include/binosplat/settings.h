@@ -10,23 +10,23 @@
 
 namespace binosplat {
 
-/// The rule that drops a Gaussian from a tile of 16 x 16 px that it hardly changes.
+/// The rule that drops a Gaussian from a tile of 16 x 16 px that it hardly changes. It drops the Gaussian:
 enum class Threshold {
   exact,       // if its alpha is below 1/255 in the whole tile, as 3D Gaussian Splatting blends
-  squared,     // if the squared error stays below the tolerance, in px * squared colour
-  peripheral,  // if its loss elsewhere stays below the tolerance, in alpha * px^2 (AdaGScale)
+  squared,     // if the squared error in the tile stays below the tolerance, in px * squared colour
+  peripheral,  // if its loss in the whole view stays below the tolerance, in alpha * px^2 (AdaGScale)
 };
 
-/// The source of the upper bound of transmittance, which a Threshold assumes for a Gaussian.
+/// The source of the upper bound of a Gaussian's transmittance, which a Threshold assumes.
 enum class Transmittance {
-  all,       // 1, as if nothing stood before it
-  measured,  // measured by earlier frames: faster, for heads that stand still
-  by_depth,  // the largest at its depth, from Settings::depth_table (AdaGScale)
+  all,       // 1, as if nothing stood in front of the Gaussian
+  measured,  // measured by earlier frames: faster if the head stands still
+  by_depth,  // the largest at the Gaussian's depth, from Settings::depth_table (AdaGScale)
 };
 
 /// The largest transmittance of any Gaussian whose view depth lies in a bin (AdaGScale's T_upper, sections
-/// 3.2 and 3.4 of the paper). The bins are equal, over [0, far) world units. Projection::tangent uses the
-/// distance from the eye as the depth. A bin of 0 has no Gaussians; there, and beyond `far`, the bound is 1.
+/// 3.2 and 3.4 of the paper). The bins divide [0, far) equally. With Projection::tangent, the depth is the
+/// distance from the eye. A bin of 0 contains no Gaussians; there, and beyond `far`, the bound is 1.
 /// Calibration reads a table from a file (binosplat/renderer.h).
 struct DepthTable {
   float far = 0.0f;                // world units
@@ -35,7 +35,7 @@ struct DepthTable {
 
 /// The key by which Gaussians are sorted, front to back.
 enum class Order {
-  depth,     // along the view's axis, as in the training of 3D Gaussian Splatting; turns with the head
+  depth,     // along the view's axis, as 3D Gaussian Splatting trains; changes when the head turns
   distance,  // from the point between the eyes
 };
 
@@ -49,27 +49,27 @@ enum class Projection {
 /// The precision of the model and the frames in the GPU's memory.
 enum class Precision {
   full,  // 32 bits
-  half,  // mostly 16 bits: half the memory, at 60 dB or more from full. On NVIDIA's GPUs since Turing, exact
-         // frames without depths and meshes take 0.84 to 0.89 of the time, others 0.95; elsewhere the time
-         // hardly changes
+  half,  // mostly 16 bits: half the memory, at least 60 dB against full precision. On NVIDIA's GPUs since
+         // Turing, exact frames without depths and meshes take 0.84 to 0.89 of the time of full precision,
+         // and other frames 0.95. On other GPUs the time hardly changes
 };
 
 /// The depth of a pixel, if more than half of it is covered.
 enum class DepthKind {
-  mean,    // of everything visible in the pixel: between an object and its background
-  median,  // the depth at which half of the light is blocked: on one surface, as compositors need it
+  mean,    // of everything visible in the pixel; at edges it lies between an object and its background
+  median,  // the depth at which half of the light is blocked; it lies on a surface, as compositors need
 };
 
-/// Foveated pictures: each eye has an inset about its gaze, and around it the context, which has fewer pixels
-/// and is scaled up. The inset is exact; in full precision to the bit. Degrees are
-/// measured at the eye. The middle of its picture is on its axis, also in an asymmetric frustum.
+/// Foveated pictures: each eye has an inset around its gaze. The context around the inset has fewer pixels
+/// and is scaled up. The inset is exact; in full precision to the bit. All degrees are angles at the eye.
 struct Foveation {
-  double inset_degrees = 20.0;  // width of the exact part around the gaze, from 1 to 120
+  double inset_degrees = 20.0;  // width of the inset, from 1 to 120
   double context_scale = 0.4;   // ratio of the context's to the picture's pixels along each axis, 0.05 to 1
-  /// Degrees to the right of the eye's axis and above it, at most 80. One per eye, or one for all; empty:
-  /// along the axis.
+  /// Degrees to the right of the eye's forward axis and above it, at most 80. One per eye, or one for all;
+  /// empty: along the axis, which in an asymmetric frustum misses the picture's middle.
   std::vector<glm::dvec2> gaze = {};
-  /// The border in which the inset fades into the context, as a share of the inset's width. 0: no border.
+  /// Width of the border in which the inset fades into the context, divided by the inset's width. 0: no
+  /// border.
   double seam = 0.1;
 };
 
@@ -82,13 +82,14 @@ struct Settings {
   ///
   /// Quality: the PSNR in dB, from 10 to 100, that the worst view should have against the exact picture, both
   /// rounded to 8 bits. The renderer finds the tolerance, measures the error in parts of some frames, and
-  /// draws frames again that miss by far. Single frames may miss by some tenths of a dB, in fast turns by
-  /// more.
+  /// draws a frame again if it misses the quality by far. Single frames may miss it by some tenths of a dB,
+  /// in fast turns by more.
   std::optional<float> quality = {};
-  /// Tolerance: the largest loss per dropped pair of Gaussian and tile, in the unit of the threshold rule; at
-  /// least 0.
+  /// Tolerance: the largest loss that the threshold rule accepts, in the rule's unit; at least 0. The loss is
+  /// that of a dropped pair of Gaussian and tile (`squared`), or of a Gaussian in a view (`peripheral`).
   std::optional<float> tolerance = {};
-  /// None: `squared` with a quality or a tolerance, else `exact`, which excludes both.
+  /// None: `squared` if a quality or a tolerance is set, else `exact`. `exact` excludes a quality and a
+  /// tolerance.
   std::optional<Threshold> threshold = {};
   Transmittance transmittance = Transmittance::all;
   DepthTable depth_table = {};  // with Transmittance::by_depth
@@ -98,16 +99,16 @@ struct Settings {
   DepthKind depth = DepthKind::mean;          // the depth written into depth targets
   Layout layout = Layout::separate;
   /// Foveates both eyes' pictures. A tolerance or a quality then applies to the contexts. Excludes depth
-  /// targets and regions. Mesh depths need targets that are written in place. Around the inset, splats then
-  /// end at meshes with the context's resolution.
+  /// targets and regions. Mesh depths require targets that are written in place; outside the inset, meshes
+  /// then hide splats at the context's resolution.
   std::optional<Foveation> foveation = {};
-  /// World units, above 0. Gaussians nearer than this are not drawn, by the depth of their centre along the
-  /// view's axis. Order::distance with Projection::tangent uses the distance from the eye.
-  /// DepthTarget::near_plane drops nothing: it defines the depth that is stored as 0.
+  /// World units, above 0. A Gaussian is not drawn if the depth of its centre along the view's axis is
+  /// smaller. With Order::distance and Projection::tangent, its distance from the eye counts instead of the
+  /// depth. DepthTarget::near_plane drops nothing: it defines the depth that is stored as 0.
   double near_plane = near_default;
   /// For Scaffold-GS models only: views 2k and 2k + 1 share their Gaussians, decoded for the point between
-  /// their eyes. Faster, and not exact. Pass the left and the right eye's view; of four views the two
-  /// contexts come first, then the two insets.
+  /// their eyes. Faster, and not exact. Pass the left eye's view, then the right eye's. Of four views, pass
+  /// the two contexts first, then the two insets.
   bool cyclopean = false;
 };
 

@@ -1,6 +1,6 @@
 #pragma once
 // A model with levels of detail. It reads only the Gaussians that the views need, and keeps only these on the
-// GPU. For models that are larger than the GPU's memory, or than the GPU can draw in time.
+// GPU. Use it for models that exceed the GPU's memory, or that the GPU cannot draw in time.
 //
 //   binosplat::SplatStream stream("city/");  // written by `binosplat levels`
 //   binosplat::Renderer renderer(eglGetProcAddress, stream);
@@ -22,24 +22,24 @@ class Stream;  // internal
 
 /// The request for levels of detail.
 struct StreamOptions {
-  /// dB, from 10 to 100: the PSNR that each view should have against the finest levels. The loss of a frame's
-  /// own quality (Settings) adds to it.
+  /// dB, from 10 to 100: the PSNR that each view should have against the finest levels. The loss that
+  /// Settings::quality accepts is added to that of the levels.
   double quality = 40.0;
-  std::optional<std::size_t> most = {};  // the largest number of Gaussians at a time
-  /// Allocates memory for this many Gaussians at once, or for `most` if that is fewer, so that no frame
-  /// waits.
+  std::optional<std::size_t> most = {};  // maximum number of Gaussians on the GPU
+  /// At the start, memory is allocated for this many Gaussians, or for `most` if that is fewer. So no frame
+  /// waits for an allocation.
   std::size_t reserve = std::size_t{1} << 22;
 };
 
-/// A streamed SOG with errors of levels, as `binosplat levels` writes it. One thread of the stream reads
-/// files; all other work happens inside calls. Make all calls on the thread of the renderer's context while
-/// it is current, and destroy the stream there.
+/// A streamed SOG that contains the errors of its levels, as `binosplat levels` writes it. One thread of the
+/// stream reads files; all other work happens inside calls. Make all calls on the thread of the renderer's
+/// context while it is current, and destroy the stream there.
 class SplatStream {
  public:
   /// Opens the files and reads the coarsest levels. Throws Error(bad_input) if the path holds no such model.
   explicit SplatStream(const std::filesystem::path& path, const StreamOptions& options = {});
 
-  /// For the library's own code, which has streams open. Not null.
+  /// For the library's own code, which has streams open. `stream` is not null.
   explicit SplatStream(std::shared_ptr<Stream> stream);
 
   ~SplatStream();
@@ -51,10 +51,11 @@ class SplatStream {
 
   /// Updates the levels. Call it before each frame, with that frame's views. Within about `ms`, including the
   /// GPU's time, it uploads what the thread has read, or draws one view of a visibility pass. The thread uses
-  /// these passes to choose what it reads next. While views move, a pass draws the second half of them as
-  /// predicted for half a second ahead. Once they rest and the model has all they need, one call takes
-  /// longer: it measures the true loss of the levels. At 90 frames a second allow at least 2.5 ms, and 6 if
-  /// there is time. Returns whether the model has changed.
+  /// these passes to choose the levels that it reads next. While the views move, half of a pass draws the
+  /// current views, and half the views predicted for half a second later. When the views rest and the model
+  /// has all levels that they need, one call takes longer, because it measures the true loss of the levels.
+  /// At 90 frames a second allow at least 2.5 ms, and 6 if there is time. Returns whether the model has
+  /// changed.
   ///
   /// Throws Error. bad_input: as Renderer::submit() does; between submit() and finish(); before a renderer
   /// exists; if a file has become unreadable. out_of_memory.
@@ -70,8 +71,9 @@ class SplatStream {
   /// Gaussians in the model now.
   std::size_t count() const;
 
-  /// The predicted PSNR in dB of the current levels against the finest, in the views. None until something
-  /// was measured. None for a model of at most 2^19 Gaussians, which is drawn in full once it is read.
+  /// The predicted PSNR in dB of the current levels against the finest, in the views. None before the first
+  /// visibility pass. Also none for a model of at most 2^19 Gaussians, which is drawn in full once it is
+  /// read.
   std::optional<double> quality() const;
 
  private:

@@ -1,6 +1,6 @@
 // The affine projection of 3D-GS (Kerbl 2023): linearises the perspective at the Gaussian's position.
 
-// Computes everything but the colour and the level of Th. Returns false if the view does not draw the Gaussian.
+// Computes all members of the splat except the colour and rho. Returns false if the view does not draw the Gaussian.
 bool project(View view, Gaussian g, mat3 axes, out Splat splat) {
   precise vec3 d = g.position.xyz - view.anchor.xyz;
   vec3 v = to_eye(view, d);

@@ -1,15 +1,16 @@
 // The tangent projection (docs/method.md 2.2). It drops a unit ray d at a right angle onto the plane that touches the
-// unit sphere in the Gaussian's direction. A covariance in that plane gives alpha. The result depends only on position
-// and ray, so that turning the head changes nothing. In the picture q = (p - mean)^T Q (p - mean) / |d|^2, with |d| the
-// length of p's ray with d.z = 1. A splat stores Q and sqrt(det Q^-1).
+// unit sphere in the Gaussian's direction. The Gaussian's covariance in that plane gives alpha. The result depends only
+// on position and ray, so turning the head changes nothing. In the picture q = (p - mean)^T Q (p - mean) / |d|^2, with
+// |d| the length of p's ray with d.z = 1. A splat stores Q and sqrt(det Q^-1).
 //
-// The level lines of a wide splat may be no ellipses. A negative depth marks it. A negative sqrt(det Q^-1) marks a mean
-// behind the eye. The stored mean is then the point where the line through Gaussian and eye meets the picture's plane.
+// The level lines of a wide splat may not be ellipses. A negative depth marks a wide splat. A negative sqrt(det Q^-1)
+// marks a Gaussian behind the eye. The stored mean is then the point at which the line through Gaussian and eye meets
+// the picture's plane.
 
-// The largest squared sine of a visible ray, as a multiple of the variance in the tangent plane: slightly more than 2
-// ln 255.
+// The largest squared sine of the angle between a visible ray and the Gaussian, as a multiple of the variance in the
+// tangent plane: slightly more than 2 ln 255.
 #define LEVEL_MAX 11.2
-// The least |z| of a direction: parallel to the picture's plane, it would have no mean.
+// The smallest |z| of a Gaussian's unit direction. A direction parallel to the picture's plane would have no mean.
 #if HALF
 #define RISE_MIN 1e-3  // so that fp16 holds the conic
 #else
@@ -23,8 +24,8 @@ vec2 slope_at(View view, vec2 pixel) {
   return slope;
 }
 
-// The direction of a wide splat, in the bits of a float. Rays at a right angle to it are the last that could see it,
-// and it fades long before.
+// Packs the direction of a wide splat into the bits of a float. Bytes suffice: they decide only whether a ray is within
+// a right angle of the direction, and the splat fades long before.
 float direction_in_bytes(View view, Splat splat) {
   vec3 direction = vec3(slope_at(view, splat.mean), 1.0);
   return uintBitsToFloat(packSnorm4x8(vec4(sign(splat.conic.w) * normalize(direction), 0.0)));
@@ -41,8 +42,8 @@ bool is_beside(View view, vec3 v, float distance, vec3 scale) {
   return v.z < distance * (cosine - 1e-4);
 }
 
-// The conic of a wide splat at v, limited in width; w has the sign of v.z. It is computed in the tangent plane. The
-// picture's plane may be nearly parallel to the direction, and terms would cancel there.
+// Returns the conic of a wide splat at v, with limited width; w has the sign of v.z. Computes it in the tangent plane:
+// terms would cancel in the picture's plane, which may be nearly parallel to the direction.
 vec4 wide_conic(View view, vec3 v, float distance, mat3 axes, out float kept) {
   precise vec3 n = v / distance;
   vec3 least = abs(n.x) < 0.6 ? vec3(1.0, 0.0, 0.0) : vec3(0.0, 1.0, 0.0);
@@ -55,13 +56,13 @@ vec4 wide_conic(View view, vec3 v, float distance, mat3 axes, out float kept) {
   precise vec3 down = gain * (second.x * view.row_x.xyz + second.y * view.row_y.xyz + second.z * view.row_z.xyz);
   vec4 q = conic_of(onto_axes(along, axes), onto_axes(down, axes), LowPass(vec2(0.0), vec2(1.0)), free_of(view), kept);
   if (q.w == 0.0) return q;
-  // Limits the width to WIDEST_TANGENT: adds the same number to both eigenvalues.
+  // Limits the width to WIDEST_TANGENT by adding the same number to both eigenvalues of the conic.
   precise float half_difference = 0.5 * (q.x - q.z);
   precise float most = 0.5 * (q.x + q.z) + sqrt(half_difference * half_difference + q.y * q.y);
   precise float det = 1.0 / (q.w * q.w);
   precise float more = max(0.0, 1.0 / (float(WIDEST_TANGENT * WIDEST_TANGENT) * focal * focal) - det / most);
   precise float grown = det + more * (q.x + q.z + more);
-  // Squares of two rows, transformed to the picture.
+  // The conic is the sum of the squares of two rows, which are transformed to the picture.
   precise float root = sqrt(q.x + more);
   precise vec2 scale = focal / view.lens.xy;
   precise vec2 upper = scale * (root * first.xy + q.y / root * second.xy);

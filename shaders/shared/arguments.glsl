@@ -1,5 +1,5 @@
-// Computes dispatch arguments: group counts for objects that the GPU counts. `groups_max` is the driver's limit along
-// x.
+// Computes the arguments of indirect dispatches from counts on the GPU. `groups_max` is the driver's limit of work
+// groups along x.
 
 uvec2 split_groups(uint groups, uint groups_max) {
   uint rows = (groups + groups_max - 1u) / groups_max;

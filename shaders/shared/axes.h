@@ -1,5 +1,5 @@
-// The choices that options, shader variants and charts name. GLSL and C++ include this file. Choices of
-// --tiles, --th and --projection have a file each: NAME.glsl in shaders/tiles/, threshold/ and projection/.
+// The choices of options, shader variants and charts. GLSL and C++ include this file. Each choice of --tiles,
+// --threshold and --projection has a file NAME.glsl in shaders/tiles/, threshold/ or projection/.
 #ifndef BINOSPLAT_SHARED_AXES_H
 #define BINOSPLAT_SHARED_AXES_H
 
@@ -10,7 +10,7 @@
 #define TILES_OBB 3
 #define TILES_SNUG 4
 
-// --th: the alpha below which a Gaussian makes no pair (docs/method.md 5).
+// --threshold: the alpha below which a Gaussian makes no pair (docs/method.md 5).
 #define TH_TAU 0
 #define TH_PERIPHERAL 1
 #define TH_SQUARED 2
@@ -18,7 +18,7 @@
 // --transmittance: the source of T_upper, the upper bound of a Gaussian's transmittance.
 #define TRANSMITTANCE_ONE 0
 #define TRANSMITTANCE_DEPTH 1
-#define TRANSMITTANCE_LAST 2  // measured by frames
+#define TRANSMITTANCE_LAST 2  // measured by an earlier frame
 
 // --decode: the eye for which the networks of Scaffold-GS make Gaussians.
 #define DECODE_EYES 0
@@ -36,7 +36,7 @@
 #define PRECISION_FULL 0
 #define PRECISION_HALF 1
 
-// --layout: the arrangement of both eyes. The layouts from LAYOUT_ANAGLYPH on mix their colours.
+// --layout: the arrangement of both eyes. From LAYOUT_ANAGLYPH on, layouts mix both eyes' colours.
 #define LAYOUT_SEPARATE 0
 #define LAYOUT_MULTI_VIEW 1
 #define LAYOUT_QUAD_BUFFER 2
@@ -51,8 +51,8 @@
 #define LAYOUT_HALF_COLOUR 11
 #define LAYOUT_GREY 12
 
-// --show: the picture or a map of the frame. The numbers from SHOW_DIFFERENCE on are colour maps; from
-// SHOW_ALPHAS on they walk through the blend's lists.
+// --show: the picture, or debug views. From SHOW_DIFFERENCE on, they are colour maps. From SHOW_ALPHAS on,
+// they are computed from the blend's lists.
 #define SHOW_PICTURE 0
 #define SHOW_SPLIT 1
 #define SHOW_DIFFERENCE 2
@@ -65,7 +65,7 @@
 #define SHOW_MEDIAN_DEPTH 9
 #define SHOW_LEFT_OUT 10
 
-// The peak rates of a GPU (shaders/floors.comp).
+// The peak rates of a GPU that shaders/floors.comp measures: bytes, alphas and fp32 multiply-adds per second.
 #define FLOOR_BYTES 0
 #define FLOOR_ALPHAS 1
 #define FLOOR_FMAS 2

@@ -1,4 +1,5 @@
-// The index of an invocation in a dispatch that may be split over y (gl/dispatch.h); groups of THREADS along x.
+// The index of a work group or an invocation in a dispatch, which may be split into rows along y (gl/dispatch.h). A
+// work group has THREADS invocations along x.
 
 uint group_index() { return gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x; }
 

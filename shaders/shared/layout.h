@@ -1,5 +1,6 @@
-// Combines two pictures of equal size into one. GLSL and C++ both compile this file, so that files and the
-// screen show the same. It uses only vectors, uints, and floats with an f, which both languages accept.
+// Combines two pictures of equal size into one. GLSL and C++ both compile this file, so that written files
+// and the screen agree. It uses only vectors, uints and float literals with an f, which both languages
+// accept.
 #ifndef BINOSPLAT_SHARED_LAYOUT_H
 #define BINOSPLAT_SHARED_LAYOUT_H
 
@@ -23,8 +24,8 @@ using std::pow;
 #define EYE_RIGHT 1u
 #define EYE_BOTH 2u
 
-// The source of a pixel: the mean of `columns` x `rows` pixels of an eye, from (x, y) to the right and down.
-// EYE_BOTH mixes both eyes.
+// The source of a pixel: the mean of `columns` x `rows` pixels of an eye, whose upper left pixel is (x, y).
+// EYE_BOTH mixes pixel (x, y) of both eyes.
 struct LayoutSource {
   uint eye;  // EYE_
   uint x;
@@ -33,7 +34,8 @@ struct LayoutSource {
   uint rows;
 };
 
-// The source of pixel (x, y) of the picture, rows from the top, for eyes of width x height px.
+// The source of pixel (x, y) of the combined picture. Rows count from the top; an eye's picture has width x
+// height px.
 SHARED_FUNCTION LayoutSource layout_source(uint kind, uint x, uint y, uint width, uint height) {
   LayoutSource from;
   from.eye = EYE_LEFT;
@@ -82,9 +84,9 @@ SHARED_FUNCTION vec3 layout_to_linear(vec3 v) {
 // Mixes both eyes' display values for red-cyan glasses, with red for the left eye.
 //
 // LAYOUT_ANAGLYPH: Dubois, Conversion of a Stereo Pair to Anaglyph with the Least-Squares Projection Method,
-// 2009. The projection applies to linear light, so display values are converted before and after. The other
-// two mix display values, as is usual: red from the left eye's luma (Rec. 601), green and blue from the right
-// eye's colour or luma.
+// 2009. Its matrices apply to linear light, so display values are converted before and after.
+// LAYOUT_HALF_COLOUR and LAYOUT_GREY mix display values, as is usual. Red is the left eye's luma (Rec. 601);
+// green and blue are the right eye's colour or luma.
 SHARED_FUNCTION vec3 layout_mix(uint kind, vec3 left, vec3 right) {
   vec3 luma = vec3(0.299f, 0.587f, 0.114f);
   if (kind == uint(LAYOUT_HALF_COLOUR)) return vec3(dot(luma, left), right.y, right.z);

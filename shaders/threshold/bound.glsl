@@ -1,5 +1,5 @@
-// T_upper of a Gaussian in a view: the upper bound of its transmittance. It is 1 if unknown: in the first frame, after
-// a camera cut, outside the view, and beyond the table by depth (docs/method.md 5).
+// T_upper of a Gaussian in a view: the upper bound of its transmittance. It is 1 if it is unknown: in the first frame,
+// after a camera cut, for Gaussians out of view, and beyond the table by depth (docs/method.md 5).
 
 #include "shared/axes.h"
 #include "shared/limits.h"

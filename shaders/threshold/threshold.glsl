@@ -1,5 +1,6 @@
-// Th: the alpha below which a Gaussian makes no pair with a tile, or with a block (5.2). The blend keeps tau and the
-// true alpha (docs/method.md 5). A rule is a file in this folder with one function:
+// Th: a Gaussian is paired with the tiles in which its alpha reaches Th. The approximate blend also skips it in blocks
+// in which its alpha is below Th. Apart from this, the blend uses tau and the true alpha (docs/method.md 5). A rule is
+// a file in this folder with one function:
 //   float threshold(float size, float bound, float tolerance)   at least tau
 // size: sqrt(det C2), px^2; bound: T_upper, above 0; tolerance: K or kappa.
 
@@ -25,8 +26,8 @@ float visible_level(float opacity) {
   return rho;
 }
 
-// 2 ln(sigma / Th), the level of the tile tests; negative if no alpha reaches Th. `precise`: cull and project must
-// agree.
+// 2 ln(sigma / Th), the level of the tile tests; negative if no alpha reaches Th. `precise`: project_cull.comp and
+// project.comp must agree.
 float tile_level(View view, uint v, uint gaussian, Splat splat) {
   precise float rho = 1.3862943611198906 * log2(splat.opacity / threshold_in(view, v, gaussian, splat));
   return rho;

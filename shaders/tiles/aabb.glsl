@@ -1,12 +1,12 @@
-// The square of 3D-GS (Kerbl 2023): three standard deviations of the longer axis, whatever the opacity. C's truncation
-// finds its tiles. As there, opacities below tau also count. It clips visible tails: an opaque splat still has an alpha
-// of 0.011 there.
+// The square of 3D-GS (Kerbl 2023): half its side is three standard deviations of the longer axis, whatever the
+// opacity. Its tiles follow by truncation, as by C's cast to int. As in 3D-GS, opacities below tau also count. The
+// square clips visible tails: at its edge an opaque splat still has an alpha of 0.011.
 
 uvec4 tile_box(Outline outline, View view) {
 #if TH != TH_TAU
   if (outline.level < RHO_NONE) return uvec4(0u);
 #endif
-  // The covariance from the conic; then m (half the trace) and det of INRIA's lambda.
+  // INRIA's lambda, from m (half the trace) and det of the covariance, which follow from the conic.
   precise float det = outline.conic.w * outline.conic.w;
   precise float m = 0.5 * (outline.conic.x + outline.conic.z) * det;
   precise float lambda = m + sqrt(max(0.1, m * m - det));

@@ -1,5 +1,5 @@
-// The oracle for the tests of tiles: every splat makes a pair with every tile. It is one pair a view, whose tiles share
-// one list of all its splats (blend.comp).
+// For tests of the other tile tests: every splat is paired with every tile. This takes one pair per splat and view,
+// because a view's tiles share one list of all its splats (pixels.glsl).
 
 uvec4 tile_box(Outline outline, View view) { return uvec4(0u, 0u, 1u, 1u); }
 

@@ -5,19 +5,20 @@ struct Outline {
   vec2 aside;   // the rounding error of `mean`
   vec4 conic;   // Q, and sqrt(det Q^-1)
   float level;  // rho = 2 ln(sigma / Th): alpha reaches Th while q is at most this
-  bool is_wide; // with the tangent projection: mean and conic are the splat's
+  bool is_wide; // a wide splat: mean and conic are the splat's
 };
 
-// From the ellipse's middle to a pixel's centre.
+// The vector from the ellipse's middle to a pixel's centre.
 vec2 from_middle(Outline outline, vec2 pixel) {
   precise vec2 d = pixel - outline.mean - outline.aside;
   return d;
 }
 
-// Below this rho no alpha reaches the threshold. The rounding of fp32's log2 and exp2 stays above it.
+// Below this rho no alpha reaches the threshold. It is below 0 by more than the rounding of log2 and exp2 in fp32.
 #define RHO_NONE (-4e-6)
 
-// The smallest q over the pixel centres from `low` to `high`, minus its rounding, and its place relative to the mean.
+// Returns the smallest q over the pixel centres from `low` to `high`, minus a margin for rounding. `at` is its place,
+// relative to the mean.
 float lowest_level(Outline outline, vec2 low, vec2 high, out vec2 at) {
   precise vec2 a = from_middle(outline, low);
   precise vec2 b = from_middle(outline, high);

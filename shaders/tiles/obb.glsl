@@ -1,5 +1,5 @@
-// GSCore's oriented box of three standard deviations against the tile's pixel centres, by separating axes. Like aabb it
-// clips visible tails.
+// Tests GSCore's oriented box of three standard deviations against the rectangle of the tile's pixel centres, by
+// separating axes. Like aabb it clips visible tails.
 
 struct OrientedBox {
   vec2 axis;    // direction of the longer side; the other is perpendicular
@@ -14,7 +14,7 @@ OrientedBox oriented_box(Outline outline) {
   precise float shorter = outline.conic.w / longer * outline.conic.w;  // the product of both is det
   OrientedBox box;
   box.extent = 3.0 * sqrt(vec2(longer, shorter));
-  // The eigenvector, from the row without cancellation.
+  // The eigenvector, from the matrix row whose terms do not cancel.
   precise vec2 along = half_difference >= 0.0 ? vec2(half_difference + root, c.y) : vec2(c.y, root - half_difference);
   box.axis = root > 0.0 ? normalize(along) : vec2(1.0, 0.0);
   return box;
@@ -44,7 +44,7 @@ uvec4 tile_box(Outline outline, View view) {
   return uvec4(columns.x, rows.x, columns.y, rows.y);
 }
 
-// The x in this row within `limit` of the box's line, for an axis (ax, ay): |ax x + ay y| <= limit.
+// The range of x in row y with |axis.x x + axis.y y| <= limit.
 vec2 strip(vec2 axis, float y, float limit) {
   if (abs(axis.x) < 1e-6) return vec2(-3e38, 3e38);
   precise vec2 ends = (vec2(-limit, limit) - axis.y * y) / axis.x;
@@ -55,7 +55,8 @@ uint likely_row(Outline outline, View view, uvec4 box) { return box.y; }
 
 uvec2 tile_row(Outline outline, View view, uvec4 box, uint row) {
   OrientedBox oriented = oriented_box(outline);
-  // The tiles whose middles fit in the box's strips, widened slightly; then the test itself from both ends.
+  // Finds the tiles whose middles lie in the strips along both axes of the box, slightly widened. Then runs the test
+  // from both ends.
   float y = 0.5 * (tile_low(uvec2(0u, row), view).y + tile_high(uvec2(0u, row), view).y) - outline.mean.y;
   float tile = float(TILE_SIZE);
   vec2 a = abs(oriented.axis);

@@ -1,7 +1,7 @@
-// With the tangent projection {q <= level} is a section of the picture's plane with a cone around the Gaussian's
-// direction. For a narrow splat this is an ellipse, whose shape and middle depend on the level. Wide splats are few:
-// every tile test and threshold pairs them with all tiles in which they may be visible, and some more (docs/method.md
-// 4).
+// With the tangent projection the region {q <= level} is the intersection of the picture's plane with a cone around the
+// Gaussian's direction. For splats that are not wide this is an ellipse, whose shape and middle depend on the level.
+// Wide splats are few: whatever the tile test and the threshold, they are paired with all tiles in which they may be
+// visible, and some more (docs/method.md 4).
 
 #if TILES == TILES_AABB || TILES == TILES_OBB
 #define OUTLINE_LEVEL(rho) 9.0  // three standard deviations
@@ -34,8 +34,8 @@ Outline outline_of(Splat splat, View view) {
   return Outline(mean, aside, conic, reached, false);
 }
 
-// A wide splat: q |d|^2 is the sum of the squares of first . d and second . d. Only rays with direction . d above 0 see
-// it.
+// A wide splat: q |d|^2 is the sum of the squares of first . d and second . d. It is visible only to rays with
+// direction . d > 0.
 struct Cone {
   vec3 first, second, direction;
   float level;

@@ -9,7 +9,7 @@
 #endif
 
 #if PROBED
-// The tiles of a probe lie apart; its supertiles join those that are neighbours among them.
+// There are gaps between the tiles of a probe. Its supertiles join tiles that are neighbours in the grid of its tiles.
 bool is_probe(View view) { return view.is_probe != 0u; }
 uint tile_pitch(View view) { return view.pitch; }
 #else

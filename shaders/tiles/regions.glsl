@@ -1,8 +1,8 @@
-// The drawn tiles of a view: in each row of tiles a span of columns without those of a hole. Other tiles get no pairs
-// and stay background; only splats that reach across the hole have pairs in it.
+// The drawn tiles of a view: in each row of tiles a range of columns, without the columns of a hole. Other tiles get no
+// pairs and stay background. One exception: a splat that reaches across the hole is also paired with the tiles in it.
 #if REGIONS
 
-layout(std430, binding = 13) readonly buffer RegionRows { uvec2 region_rows[]; };  // 16-bit columns: span, hole
+layout(std430, binding = 13) readonly buffer RegionRows { uvec2 region_rows[]; };  // range, hole: columns of 16 bits
 
 uvec2 span_of(uint columns) { return uvec2(columns & 0xFFFFu, columns >> 16); }
 

@@ -1,8 +1,8 @@
-// The box around the ellipse in which alpha reaches Th (SnugBox of Speedy-Splat) against the tile's pixel centres;
-// touching counts. It makes every visible pair, and also those in the box's corners.
+// Tests the upright box around the ellipse in which alpha reaches Th (SnugBox of Speedy-Splat) against the rectangle of
+// the tile's pixel centres. It makes every visible pair, and also invisible pairs in the corners of the box.
 
-// Narrows `span`, which is slightly too large, to the tiles along an axis with pixel centres within `extent` of the
-// mean.
+// Removes tiles from both ends of `span`, which is slightly too large, until both end tiles have a pixel centre within
+// `extent` of the mean along the axis.
 uvec2 snug_span(uvec2 span, int axis, Outline outline, float extent, View view) {
   while (span.x < span.y && from_middle(outline, tile_high(span.xx, view))[axis] < -extent) ++span.x;
   while (span.x < span.y && from_middle(outline, tile_low(uvec2(span.y - 1u), view))[axis] > extent) --span.y;

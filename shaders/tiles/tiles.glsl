@@ -1,8 +1,8 @@
 // The tiles of a view with which a splat makes pairs (docs/method.md 4). A tile test is a file in this folder with
 // three functions:
-//   uvec4 tile_box(Outline, View)                      columns [x, z) and rows [y, w) that it can touch, in the grid
-//   uint likely_row(Outline, View, uvec4 box)          the row of the box most likely to have such a tile
-//   uvec2 tile_row(Outline, View, uvec4 box, uint row) columns [x, y) that it does touch in one of those rows
+//   uvec4 tile_box(Outline, View)                      columns [x, z) and rows [y, w) of tiles that it may touch
+//   uint likely_row(Outline, View, uvec4 box)          the row of the box in which it most likely touches a tile
+//   uvec2 tile_row(Outline, View, uvec4 box, uint row) columns [x, y) of the tiles that it touches in a row of the box
 // `project` and `bin` call the same code and must agree to the bit, so everything that decides is `precise`.
 #include "shared/axes.h"
 #include "shared/limits.h"
@@ -11,8 +11,8 @@
 #include "projection.glsl"
 #include "supertiles.glsl"
 
-// How far from a pixel's centre a splat may be visible. With BETWEEN rays between pixels may also meet it
-// (blend_rays.comp).
+// REACH, px: rays pass through the picture at most this far from a pixel centre along each axis. With BETWEEN they pass
+// between pixel centres, too (blend_rays.comp).
 #ifndef BETWEEN
 #define BETWEEN 0
 #endif
@@ -25,8 +25,8 @@
 #include "tiles/places.glsl"
 #include "tiles/level.glsl"
 
-// The first and one-past-last tile along an axis for pixels [low, high], counted from the begin of the first tile and
-// limited to the grid. Clamps floats, because int() of a huge float is undefined.
+// The tiles [x, y) along an axis that have pixels in [low, high], px from the begin of the first tile. Limited to the
+// grid. Clamps floats, because int() of a huge float is undefined.
 uvec2 tile_span(float low, float high, uint pitch, uint tiles) {
   float first = clamp(ceil((low - float(TILE_SIZE - 1) - REACH) / float(pitch)), 0.0, float(tiles));
   float last = clamp(floor((high + REACH) / float(pitch)), -1.0, float(tiles) - 1.0);
@@ -57,8 +57,8 @@ vec3 covariance(Outline outline) {
   return c;
 }
 
-// Half the size of the box around {alpha >= Th}, px. rho is slightly enlarged, because rounding in fp32 would drop
-// pairs (docs/method.md 4).
+// Half the size of the box around {alpha >= Th}, px. rho is slightly enlarged, because otherwise rounding in fp32 would
+// drop pairs (docs/method.md 4).
 vec2 level_extent(Outline outline) {
   vec3 c = covariance(outline);
   // C2.xx C2.yy / det, at least 1: the factor by which a long leaning ellipse magnifies rounding.
@@ -68,7 +68,8 @@ vec2 level_extent(Outline outline) {
   return extent;
 }
 
-// Whether that box holds the centre of a drawn pixel: a splat between centres is invisible.
+// Whether the box of half size `extent` around the mean contains the centre of a drawn pixel. If not, the splat is
+// invisible.
 bool holds_a_centre(Outline outline, View view, vec2 extent) {
   if (outline.level < RHO_NONE) return false;
   vec2 first = vec2(first_drawn(view)) - REACH, last = vec2(last_drawn(view)) + REACH;
@@ -93,13 +94,13 @@ uvec2 paired_columns(uvec2 columns, View view, uint row) {
 #endif
 }
 
-// The rows of supertiles of a box of tiles: [x, y).
+// The rows [x, y) of supertiles that a box of tiles intersects.
 uvec2 supertile_rows(uvec4 box) {
   return box.w <= box.y ? uvec2(0u) : uvec2(box.y / uint(SUPERTILE_SIDE), (box.w - 1u) / uint(SUPERTILE_SIDE) + 1u);
 }
 
-// A row of supertiles: the columns [x, y) that a splat is in. Also the columns of tiles that it touches in the first
-// row of tiles [x, y) and in the second [z, w).
+// A splat in a row of supertiles. `columns`: it is in the supertiles [x, y). `tiles`: it touches the tiles [x, y) in
+// the first row of tiles, and the tiles [z, w) in the second.
 struct SupertileRow {
   uvec2 columns;
   uvec4 tiles;
@@ -120,7 +121,7 @@ SupertileRow supertile_row(Outline outline, View view, uvec4 box, uint nth) {
   return supertile_row_of(tiles);
 }
 
-// The tiles that it touches in a column of such a row, one bit each.
+// The tiles that a splat touches in a column of supertiles of this row, one bit each.
 uint tiles_in(SupertileRow row, uint column) {
   uvec2 tiles = uvec2(2u * column, 2u * column + 1u);
   uvec2 upper = uvec2(greaterThanEqual(tiles, row.tiles.xx)) * uvec2(lessThan(tiles, row.tiles.yy));
@@ -128,7 +129,8 @@ uint tiles_in(SupertileRow row, uint column) {
   return upper.x | upper.y << 1 | lower.x << 2 | lower.y << 3;
 }
 
-// A splat's coverage (supertiles.glsl). Walks by rows of tiles, so that neighbours run the test at the same time.
+// A splat's coverage (supertiles.glsl). Loops over rows of tiles, so that neighbouring invocations run the test at the
+// same time.
 uint coverage_of(Outline outline, View view) {
   uvec4 box = box_of_tiles(outline, view);
   uvec2 rows = supertile_rows(box);
@@ -146,12 +148,12 @@ uint coverage_of(Outline outline, View view) {
   return bits == 0u ? 0u : IN_FEW_SUPERTILES | supertile << FEW_SHIFT | bits;
 }
 
-// Whether a splat touches any tile. Every wide splat that may be visible counts: testing these few would delay the
-// others.
+// Whether a splat touches any tile. Returns true for all wide splats that may be visible: tests of these few splats
+// would delay neighbouring invocations.
 bool touches_a_tile(Splat splat, View view) {
 #if TILES == TILES_ELLIPSE
-  // Most splats reach the pixel centre nearest to their own, and need no further test. A probe's tiles may lack that
-  // centre. (With the tangent projection q is smaller by |d|^2, which is at least 1.)
+  // Most splats reach Th at the pixel centre nearest to their mean, and need no further test. A probe's tiles may not
+  // contain this pixel. (With the tangent projection q is smaller by |d|^2, which is at least 1.)
   vec2 nearest = clamp(round(splat.mean), vec2(first_drawn(view)), vec2(last_drawn(view)));
   vec2 d = nearest - splat.mean;
   float q = splat.conic.x * d.x * d.x + 2.0 * splat.conic.y * d.x * d.y + splat.conic.z * d.y * d.y;

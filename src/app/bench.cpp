@@ -1,4 +1,4 @@
-// binosplat bench: charts speed against accuracy, over views, along frames, turns and levels of detail.
+// binosplat bench: charts speed against accuracy, in views, along motions and turns, and by levels of detail.
 
 #include <fmt/ranges.h>
 
@@ -26,12 +26,12 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Warns before a long run on the CPU, with its expected time.
+/// Logs the expected time of a long run on the CPU.
 void tell_work(double seconds) {
   constexpr double worth_telling_s = 60.0;
   if (seconds < worth_telling_s) return;
   log_info(
-      "without a GPU this takes about {}. A smaller --axes file is faster, such as {{\"views\": 1, "
+      "without a GPU this takes about {}. A smaller --suite file is faster, such as {{\"views\": 1, "
       "\"frames\": 3, \"repeats\": 2, \"sizes\": [\"240x135\"], \"settings\": [{{\"tiles\": [\"obb\", "
       "\"ellipse\"]}}]}}",
       spoken_time(seconds));
@@ -167,7 +167,7 @@ void check_bench(const BenchOptions& o) {
   const int along =
       int{!o.camera.path.empty()} + int{o.camera.tour.has_value()} + int{!o.motions.empty()} + int{o.turn};
   if (along > 1)
-    fail("--path, --tour, --motion and --turn are measured one by one: choose one, or write --axes");
+    fail("--path, --tour, --motion and --turn are measured one by one: choose one, or write --suite");
   check(o.context, "auto");
 }
 
@@ -193,10 +193,11 @@ void add_bench(CLI::App& program, Command& command) {
   sub->add_option("-o,--output", o->output,
                   "Folder for report.html, results.csv, details.csv and results.json\n(out/bench)")
       ->type_name("DIR");
-  sub->add_option("--axes", o->axes,
-                  fmt::format("Measurement: {}, or a file like those in src/lab/presets (quick;\nmotion, "
-                              "turn or levels with the options below)",
-                              fmt::join(lab::axes_presets(), ", ")))
+  sub->add_option(
+         "--suite", o->axes,
+         fmt::format("Settings to measure: {}\nor a JSON file as in docs/measuring.md (quick; motion, turn "
+                     "or levels with\nthe options below)",
+                     fmt::join(lab::axes_presets(), ", ")))
       ->type_name("NAME|FILE");
   add_names_option(*sub, "--motion", o->motions,
                    "Measure along frames of a moving head, 90 a second: still, calm, walk,\nfast or sideways",
@@ -215,27 +216,27 @@ void add_bench(CLI::App& program, Command& command) {
                   "Measure loss and time of these levels of detail; values as for `render\n--detail`")
       ->delimiter(',')
       ->allow_extra_args(false)
-      ->type_name("PX|DB,...");
+      ->type_name("Npx|NdB,...");
   add_rule_option(*sub, o->rules);
   sub->add_option("--calibration", o->calibration,
                   "Measure the settings of a file of binosplat calibrate, too")
       ->type_name("FILE");
   sub->add_option("--cameras", o->camera.file, "Cameras, if not beside the model")->type_name("FILE");
-  add_names_option(*sub, "--view", o->camera.views, "Views by name, instead of the axes' number of them");
+  add_names_option(*sub, "--view", o->camera.views, "Views by name, in place of the suite's number of them");
   add_names_option(*sub, "--test", o->test, "Views to measure, by name, if others are for training");
   add_hold_out_option(*sub, o->hold_out);
   add_photos_options(*sub, *o, "Compare with DIR/NAME.jpg or .png as well", true);
   add_value(
       *sub, "--frames", "N", o->frames, range(1, 100000),
-      "Timed frames of each view and repeat; for a motion, the moving frames\nof a stretch (the axes')");
-  sub->add_option("--size", o->size, "Pixels of a view, or preview, headset or own (the axes')")
+      "Timed frames of each view and repeat; for a motion, the moving frames\nof a stretch (the suite's)");
+  sub->add_option("--size", o->size, "Pixels of a view, or preview, headset or own (the suite's)")
       ->type_name("WxH|NAME");
-  sub->add_flag("--mono", o->rig.mono, "The cameras themselves, no pair (the axes')");
+  sub->add_flag("--mono", o->rig.mono, "The cameras themselves, no pair (the suite's)");
   add_ipd_option(*sub, o->rig);
-  add_value(*sub, "--units-per-metre", "U", o->rig.units_per_metre, positive,
+  add_value(*sub, "--units-per-metre", "N", o->rig.units_per_metre, positive,
             "World units that make a metre (1)");
   add_value(*sub, "--ppd", "N", o->ppd, between(1.0, 1000.0, "a number from 1 to 1000"),
-            "For FLIP: pixels per degree that the viewer has (67)");
+            "Pixels per degree of the viewer's field of view, for FLIP (67)");
   sub->add_flag("--floors", o->floors,
                 "Compare each stage with the least time that this GPU needs for its\nbytes and operations");
   add_measured_options(*sub, *o);
@@ -246,12 +247,12 @@ void add_bench(CLI::App& program, Command& command) {
       "To resume an interrupted run, start it again with the same options.\n"
       "Examples:\n"
       "  binosplat bench fox.ply garden.ply -o out/chart\n"
-      "  binosplat bench garden.ply --axes paper --photos images         # AdaGScale's figures and tables\n"
+      "  binosplat bench garden.ply --suite paper --photos images         # AdaGScale's figures and tables\n"
       "  binosplat bench garden.ply --motion walk --rule squared,one --rule squared,last\n"
       "  binosplat bench garden.ply --turn --size headset\n"
       "  binosplat bench garden-levels --detail 30dB,40dB --cameras cameras.json\n"
       "  binosplat bench fox.ply --compare main/results.json --fail-if-slower 3 -o out/ci\n"
-      "  binosplat bench fox.ply --axes paper --shard $I/8 -o out/shard$I     # on 8 machines\n"
+      "  binosplat bench fox.ply --suite paper --shard $I/8 -o out/shard$I     # on 8 machines\n"
       "  binosplat bench --merge out/shard1,out/shard2 -o out/chart");
   sub->callback([o, &command] { command = [o] { return bench(*o); }; });
 }

@@ -24,7 +24,7 @@ namespace {
 constexpr std::size_t stretches_of_a_tour = 3, frames_at_rest = 15;
 constexpr double sideways_metres_a_frame = 1.5 / headset_fps;
 constexpr std::size_t sideways_frames = 16;
-constexpr int sideways_side_max = 640;  // px: the CPU warps these pictures
+constexpr int sideways_side_max = 640;  // px; small, because the CPU warps these pictures
 
 bool is_along_frames(const std::string& along) { return along != "views" && along != "turn"; }
 
@@ -45,7 +45,7 @@ bool has_photos(const BenchScene& scene, const CasePlan& which) {
   return !scene.photos.folder.empty() && which.eyes == 1 && which.size == "own" && which.along == "views";
 }
 
-/// The views that a case measures, and those that it trains tolerances on.
+/// The views that a case measures, and those in which it finds tolerances.
 struct ChosenViews {
   ViewChoice tested, training;
 };
@@ -131,7 +131,7 @@ const Model& MeasuredScene::model() {
   return *model_;
 }
 
-// A model for axes and for tests of what views see: any level serves for both.
+// A model for its axes, and for tests whether views see anything. Its levels do not matter.
 const Model& MeasuredScene::some_model() { return stream_ ? stream_->model() : model(); }
 
 lab::BenchCase MeasuredScene::open(const CasePlan& which) {

@@ -95,7 +95,7 @@ lab::Axes axes_of(const BenchOptions& o) {
   if (!o.size.empty()) axes.sizes = {o.size};
   if (o.rig.mono) axes.eyes = {1};
   if (!o.calibration.empty()) add_calibrated(o.calibration, axes);
-  // With photos, tolerances are searched by the loss against them; without, by PSNR against exact pictures.
+  // With photos, tolerances are searched by the loss against the photos, else by PSNR against exact pictures.
   const bool drops = !o.photos.empty() && std::ranges::any_of(axes.settings, [](const lab::BenchSettings& s) {
     return s.max_drop.has_value();
   });

@@ -29,12 +29,12 @@ struct BenchOptions : MeasuredOptions {
   std::vector<std::string> details;
   std::optional<int> frames;      // replaces the axes' value
   std::string size;               // replaces the axes' value
-  RigOptions rig;                 // mono: one eye
+  RigOptions rig;                 // with `mono`, measures one eye
   std::vector<std::string> test;  // views to measure by name, if the axes also have training views
-  std::optional<int> hold_out;    // every Nth view is for tests
+  std::optional<int> hold_out;    // every Nth view is a test view
   std::string output = "out/bench";
   Shard shard;                           // which of the points this run measures
-  std::vector<std::string> merge;        // folders, instead of scenes
+  std::vector<std::string> merge;        // folders of shards to join, instead of scenes to measure
   std::string compare;                   // results.json of an older run
   std::optional<double> fail_if_slower;  // percent
   std::string calibration;               // a file whose settings are measured, too
@@ -44,21 +44,21 @@ struct BenchOptions : MeasuredOptions {
 
 /// One scene of the run and its cameras. The model is read when a point needs it.
 struct BenchScene {
-  std::string name;  // the file's, without folders and ending
+  std::string name;  // name of its file, without folders and ending
   SceneOptions options;
   CameraList list;
   PhotoSource photos = {};
 };
 
-/// The values that identify a scene, its cameras and its photos, beyond their names: hashes of contents.
+/// Returns the values that identify a scene, its cameras and its photos: names, and hashes of contents.
 nlohmann::ordered_json scene_identity(const MeasuredOptions& options, const BenchScene& scene);
 
-/// Points that share a model, views and pictures to compare with: one chart.
+/// The points of one chart. They share a model, views, and the pictures to compare with.
 struct CasePlan {
   std::size_t scene = 0;
   int eyes = 1;
   std::string size, along;
-  std::size_t first = 0, count = 0;  // points of the plan
+  std::size_t first = 0, count = 0;  // its points in the plan: `count` points from `first` on
 };
 
 struct BenchPlan {
@@ -66,7 +66,7 @@ struct BenchPlan {
   std::vector<BenchScene> scenes;
   std::vector<CasePlan> cases;
   std::vector<lab::Row> points;                        // the fixed columns of each: scene, case, settings
-  std::shared_ptr<const nlohmann::ordered_json> json;  // two runs are one if these are equal
+  std::shared_ptr<const nlohmann::ordered_json> json;  // runs with equal plans are one run
 
   /// The settings of a case's point; null for the point of its contributions.
   const lab::BenchSettings* settings_of(const CasePlan& which, std::size_t point) const {
@@ -92,8 +92,8 @@ class BenchFolder {
 
   const std::shared_ptr<const nlohmann::ordered_json>& plan() const { return plan_; }
   bool same_plan(const BenchFolder& other) const;
-  std::size_t size() const;           // points of the plan
-  bool has(std::size_t point) const;  // complete
+  std::size_t size() const;           // number of points in the plan
+  bool has(std::size_t point) const;  // whether its result is complete
   lab::Point load(std::size_t point) const;
   void save(std::size_t point, const lab::Point& measured) const;
   /// All points, measured or not, with the columns that compare them (add_relative_columns).
@@ -115,7 +115,7 @@ class MeasuredScene {
  public:
   MeasuredScene(gl::Context& context, const BenchOptions& options, const BenchPlan& plan, std::size_t scene);
 
-  /// The views, frames or turn that the points of a case are measured on.
+  /// Opens the views, frames or turn in which the points of a case are measured.
   lab::BenchCase open(const CasePlan& which);
   /// The model at its finest levels; read at first use.
   const Model& model();
@@ -130,7 +130,7 @@ class MeasuredScene {
   const BenchOptions& options_;
   const BenchPlan& plan_;
   const BenchScene& scene_;
-  std::unique_ptr<PictureStream> stream_;  // only with levels: its model stands in for axes and visibility
+  std::unique_ptr<PictureStream> stream_;  // only with levels; its model also provides axes and visibility
   std::optional<Model> model_;
 };
 

@@ -15,7 +15,7 @@ namespace binosplat::app {
 
 namespace {
 
-/// The names of the views that see nothing, and the reason for the first of them.
+/// The names of the views that see nothing, and the reason why the first of them sees nothing.
 struct Blind {
   std::vector<std::string> names;
   std::string why;
@@ -61,8 +61,8 @@ void keep_those(const std::vector<bool>& sees, std::size_t first, std::vector<Vi
   views = std::move(kept);
 }
 
-/// Returns for each camera whether it sees something. Warns of blind ones; throws Error if all are blind and
-/// `needs_one`.
+/// Returns for each camera whether it sees anything of the model. Warns of cameras that see nothing. Throws
+/// Error if all see nothing and `needs_one`.
 std::vector<bool> seeing_views(const std::string& command, gl::Context& context, const Model& model,
                                const std::vector<Camera>& cameras, double near_plane, bool needs_one = true) {
   std::vector<bool> sees = lab::seeing(context, model, cameras, near_plane);

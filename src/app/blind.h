@@ -1,5 +1,5 @@
 #pragma once
-// Handling of views in which nothing of the model is visible, for commands that measure quality.
+// Skips or refuses views in which nothing of the model is visible, for commands that measure quality.
 
 #include <string>
 #include <vector>

@@ -25,7 +25,7 @@ namespace {
 struct CalibrateOptions : MeasuredOptions {
   TargetOptions target;
   int views = 16;
-  std::optional<int> hold_out;  // every Nth view is for tests
+  std::optional<int> hold_out;  // every Nth view is a test view
   measure::DepthTableSettings table;
   std::string output;
 };
@@ -93,7 +93,7 @@ ExitCode calibrate(const CalibrateOptions& o) {
 
 void add_calibrate(CLI::App& program, Command& command) {
   CLI::App* sub =
-      program.add_subcommand("calibrate", "Find the tolerances of a model that cost as much as you allow");
+      program.add_subcommand("calibrate", "Find the tolerances at which a model loses as much as you allow");
   const auto o = std::make_shared<CalibrateOptions>();
   sub->add_option("SCENE", o->scene.name, "A model, demo:room or demo:city")->required();
   sub->add_option("-o,--output", o->output, "The file to write")->type_name("CALIB.json")->required();

@@ -12,7 +12,8 @@ namespace binosplat::app {
 /// Reads the options' calibration, if any. Throws Error if it has no entry for the requested rule.
 render::ThresholdPolicy policy_of(const DrawingOptions& options);
 
-/// As ThresholdPolicy::settings(). Warns if the shot is drawn exactly, or if its dB are rough.
+/// Returns ThresholdPolicy::settings() for the shot's first eye. Warns if the calibration does not cover the
+/// shot, which is then drawn exactly. Also warns if the tolerance is scaled, because dB are then rough.
 render::FrameSettings settings_of(const render::ThresholdPolicy& policy, const Shot& shot,
                                   const render::FrameSettings& asked, const ModelAxes& axes);
 

@@ -19,17 +19,17 @@ void add_camera_options(CLI::App& sub, CameraOptions& o) {
                    "A camera by name, or all (the first); repeat it for more, or give A,B\nunless a camera "
                    "has that name. NAME also selects the pair NAME_left,\nNAME_right");
   sub.add_option("--path", o.path,
-                 "One path: cameras.json, or nerfstudio's or LichtFeld Studio's JSON,\nwith its keys (as "
-                 "`view` saves them) or its frames; each frame uses the\nmeasurements of the last one")
+                 "Camera path: cameras.json, or nerfstudio's or LichtFeld Studio's JSON,\nof keys (as `view` "
+                 "saves them) or of frames; each frame uses the\nmeasurements of the one before")
       ->type_name("FILE");
-  three("--eye", o.eye, "Camera position instead, in world units");
-  three("--at", o.at, "Point that it looks at");
+  three("--eye", o.eye, "Position of a camera of your own, in world units; needs --at");
+  three("--at", o.at, "Point that --eye looks at, in world units");
   three("--up", o.up,
         "Up direction of --eye, --orbit and models without cameras (from the\ncameras, or else from the "
         "model)");
   add_value(sub, "--fov", "DEGREES", o.fov, between(1e-6, 179.999999, "degrees between 0 and 180"),
-            "Vertical field of view of such cameras (60)");
-  add_value(sub, "--orbit", "N", o.orbit, range(1, 10000), "N cameras around the model instead");
+            "Vertical field of view of --eye, --orbit and models without cameras (60)");
+  add_value(sub, "--orbit", "N", o.orbit, range(1, 10000), "N cameras around the model, in place of its own");
   add_size_option(sub, o.lens, "Pixels of each eye; keeps the vertical field of view");
   add_preset_option(sub, o.lens, "preview: 1280 x 720 an eye; headset: 3660 x 3200 an eye,\n100 degrees");
   add_near_option(sub, o, "Near plane, in world units (0.2; less for tiny models without cameras)");

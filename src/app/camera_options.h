@@ -12,9 +12,9 @@
 
 namespace binosplat::app {
 
-/// Size and lens that replace those of the cameras.
+/// Size and lens that replace the cameras' own.
 struct Lens {
-  std::string preset;              // of stereo::apply_preset; empty: the camera's own
+  std::string preset;              // for stereo::apply_preset(); empty: the camera's own size and lens
   std::optional<glm::ivec2> size;  // px
 
   bool headset() const { return preset == "headset"; }
@@ -22,11 +22,11 @@ struct Lens {
 };
 
 struct CameraOptions {
-  std::string file;                // lists cameras; empty: found beside the model
+  std::string file;                // a file of cameras; empty: the one beside the model
   std::string path;                // a file of a path's keys or frames, which replaces the cameras
   bool keys = false;               // draws only the keys of the path
   std::optional<Motion> tour;      // a path through the cameras
-  std::optional<double> seconds;   // from the first key to the last; of a tour: its drawn part (none: all)
+  std::optional<double> seconds;   // duration of a path through keys; of a tour, its drawn part (none: all)
   std::vector<std::string> views;  // names, or "all"; empty: the command's default
   std::optional<glm::dvec3> eye, at, up;
   std::optional<double> fov;  // degrees
@@ -40,15 +40,15 @@ struct CameraOptions {
   bool along_path() const { return tour || !path.empty(); }
 };
 
-/// Adds all options but those of tours and keys (app/tour.h). `options` must outlive parsing.
+/// Adds all options except those of tours and keys (app/tour.h). `options` must outlive parsing.
 void add_camera_options(CLI::App& sub, CameraOptions& options);
 
-// Single options, for commands that take few.
+// Single options, for commands that take only a few.
 CLI::Option* add_size_option(CLI::App& sub, Lens& lens,
                              const char* help = "Pixels of a view, instead of the cameras' own");
 CLI::Option* add_preset_option(CLI::App& sub, Lens& lens, const char* help);
 CLI::Option* add_near_option(CLI::App& sub, CameraOptions& options,
-                             const char* help = "Nothing nearer is drawn, in world units (0.2)");
+                             const char* help = "Near plane, in world units (0.2)");
 
 /// The camera with the requested size and lens.
 Camera sized(const Lens& lens, const Camera& camera);

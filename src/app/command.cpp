@@ -48,13 +48,13 @@ int exit_code_of_current_exception() {
     if (std::ferror(stdout) != 0)
       return end(ExitCode::bad_input,
                  fmt::format("cannot write to standard output: {}", error.code().message()));
-    // Threads that could not start for lack of memory.
+    // A thread could not start for lack of memory.
     if (error.code() == std::errc::resource_unavailable_try_again ||
         error.code() == std::errc::not_enough_memory)
       return end(ExitCode::out_of_memory, no_memory);
     return end(ExitCode::bad_input, fmt::format("internal error: {}", error.what()));
   } catch (const std::exception& error) {
-    // TBB reports the same in this form.
+    // TBB reports in this form that a thread could not start.
     if (std::string_view(error.what()).find("pthread_create") != std::string_view::npos)
       return end(ExitCode::out_of_memory, no_memory);
     return end(ExitCode::bad_input, fmt::format("internal error: {}", error.what()));
@@ -65,7 +65,7 @@ void end_cleanly_on_signals() {
   sigset_t signals;
   sigemptyset(&signals);
   for (const int signal : {SIGHUP, SIGINT, SIGTERM}) {
-    // A background job may start with ignored signals. It keeps ignoring them.
+    // A background job may start with ignored signals, and must keep ignoring them.
     struct sigaction action = {};
     if (sigaction(signal, nullptr, &action) == 0 && action.sa_handler != SIG_IGN) sigaddset(&signals, signal);
   }
@@ -93,7 +93,7 @@ fs::path place_of(const fs::path& path) {
 
 fs::path nearest_existing_folder(fs::path folder) {
   std::error_code ignored;
-  // A dangling link exists, too.
+  // A link counts as existing even if its target does not exist.
   while (!fs::exists(fs::symlink_status(folder, ignored)) && folder.has_relative_path())
     folder = folder.parent_path();
   return folder;

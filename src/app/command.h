@@ -15,7 +15,8 @@ namespace binosplat::app {
 /// The work of the chosen sub-command. main runs it after all options are parsed.
 using Command = std::function<ExitCode()>;
 
-/// Each adds its sub-command and options to `program`. If the user names it, the parse sets `command`.
+/// Each adds a sub-command with its options to `program`. If the user names this sub-command, parsing sets
+/// `command`.
 void add_render(CLI::App& program, Command& command);
 void add_compare(CLI::App& program, Command& command);
 void add_devices(CLI::App& program, Command& command);
@@ -39,14 +40,14 @@ int exit_code_of_current_exception();
 /// Call it before any thread starts.
 void end_cleanly_on_signals();
 
-/// The place that `path` writes to, the same for all spellings and symbolic links.
+/// The canonical path of the file that an output to `path` would write, for any spelling and symbolic link.
 std::filesystem::path place_of(const std::filesystem::path& path);
 
 /// The folder, or its nearest ancestor that exists.
 std::filesystem::path nearest_existing_folder(std::filesystem::path folder);
 
-/// Throws Error if `path` cannot be written: a file in place of a folder, no permission, a folder, or a file
-/// that this run reads (base/inputs.h). Leaves no trace; call it before long work.
+/// Throws Error if `path` cannot be written: if permission is missing, or if it is a folder, lies below a
+/// file or is a file that this run reads (base/inputs.h). Leaves no trace; call it before long work.
 void check_output(const std::filesystem::path& path);
 
 /// Throws Error if the file is not JSON.
@@ -58,13 +59,12 @@ std::string json_text(const nlohmann::ordered_json& value);
 /// Writes `value` as indented JSON. Numbers that are not finite become null, because JSON lacks them.
 void save_json(const std::filesystem::path& path, const nlohmann::ordered_json& value);
 
-/// Marks a folder of results with the run that they belong to, in `file`, so that later runs can resume it.
-/// Of several runs that start at once, one writes the file. Throws as check_same_run() if it names another
-/// run.
+/// Stores `run` in `file`, beside its results, so that later runs can resume the run. If several runs start
+/// at once, only one writes the file. Throws as check_same_run() if the file describes another run.
 void claim_run(const std::filesystem::path& file, const nlohmann::ordered_json& run, const char* results);
 
-/// Throws Error with the differing keys if `file` describes another run than `run`. `results` names the
-/// results in the message, as in "pictures".
+/// Throws Error, which names the differing keys, if `file` describes another run than `run`. `results` names
+/// the results in the message, such as "pictures".
 void check_same_run(const std::filesystem::path& file, const nlohmann::ordered_json& run,
                     const char* results);
 

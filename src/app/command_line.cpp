@@ -12,6 +12,7 @@
 #include <map>
 #include <numeric>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include "app/command.h"
@@ -32,12 +33,17 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// Options that name outputs, older results (which new ones may replace), or views.
+// Options whose values are no inputs: outputs, older results (which new results may replace), and views.
 constexpr const char* no_inputs[] = {"--output", "--json", "--difference", "--compare",
                                      "--merge",  "--view", "--test",       "--held-back"};
 
+// Former and current names of options. If a command has an option of the former name, it keeps that option.
+constexpr std::pair<std::string_view, std::string_view> renamed[] = {
+    {"--th", "--threshold"}, {"--tile", "--tile-size"},      {"--kernel-px2", "--eps2d"},
+    {"--axes", "--suite"},   {"--hold-out", "--test-every"}, {"--leaf", "--chunk"}};
+
 constexpr double gaussian_bytes = 400.0;         // memory per Gaussian while a model of degree 3 is read
-constexpr std::uintmax_t cache_room = 64 << 20;  // bytes; shaders take less
+constexpr std::uintmax_t cache_room = 64 << 20;  // bytes that must be free; shaders take less
 
 // Edit distance: insertions, deletions, replacements, and swaps of neighbours.
 std::size_t edits(const std::string& a, const std::string& b) {
@@ -123,6 +129,25 @@ void check_arguments(int argc, const char* const* argv) {
   }
 }
 
+std::vector<std::string> with_current_names(const CLI::App& command, std::vector<std::string> words) {
+  const auto has = [&](std::string_view name) {
+    return command.get_option_no_throw(std::string(name)) != nullptr;
+  };
+  std::string before;
+  for (std::string& word : words) {
+    for (const auto& [former, current] : renamed) {
+      if (word.substr(0, word.find('=')) != former || has(former) || !has(current)) continue;
+      log_warning("{} is named {} now; the next version takes the new name only", former, current);
+      word.replace(0, former.size(), current);
+    }
+    // The former name of a value.
+    if (word == "--show=light" || (word == "light" && before == "--show"))
+      word.replace(word.size() - 5, 5, "transmittance");
+    before = word;
+  }
+  return words;
+}
+
 std::vector<std::string> with_command(const CLI::App& program, int argc, const char* const* argv) {
   std::vector<std::string> words(argv + 1, argv + argc);
   std::vector<std::string> commands;
@@ -130,7 +155,7 @@ std::vector<std::string> with_command(const CLI::App& program, int argc, const c
   const auto first = std::find_if(words.begin(), words.end(),
                                   [](const std::string& word) { return !word.starts_with("-"); });
   if (first != words.end() && std::find(commands.begin(), commands.end(), *first) != commands.end())
-    return words;
+    return with_current_names(*program.get_subcommand(*first), words);
   if (words.empty() || words[0].starts_with("-")) return words;
   if (words[0].find("://") != std::string::npos) fail_to_read(words[0], ENOENT);
   std::error_code ignored;
@@ -140,11 +165,11 @@ std::vector<std::string> with_command(const CLI::App& program, int argc, const c
   if (std::find(words.begin(), words.end(), "--quiet") != words.end()) set_quiet(true);
   words.insert(words.begin(), has_display() && has_preview() ? "view" : "render");
   log_info("no command: binosplat {} {}", words[0], words[1]);
-  return words;
+  return with_current_names(*program.get_subcommand(words[0]), words);
 }
 
 std::string explain(const CLI::App& command, const std::string& name, const CLI::ParseError& error) {
-  // Extra words before a sub-command belong to this command.
+  // Extra words before a sub-command are errors of this command.
   const bool has_extras = dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr;
   const auto chosen = command.get_subcommands();
   if (!chosen.empty() && !(has_extras && command.remaining_size() > 0))
@@ -179,7 +204,7 @@ void prepare_shader_caches() {
   const fs::space_info space = fs::space(folder, error);
   const bool writable = fs::is_directory(folder, error) && access(folder.c_str(), W_OK | X_OK) == 0;
   if (folder.empty() || (writable && space.available >= cache_room)) return;
-  // Mesa's variables, old and new, and NVIDIA's.
+  // The variables of Mesa, in new and old versions, and of NVIDIA's driver.
   setenv("MESA_SHADER_CACHE_DISABLE", "1", 0);
   setenv("MESA_GLSL_CACHE_DISABLE", "1", 0);
   setenv("__GL_SHADER_DISK_CACHE", "0", 0);

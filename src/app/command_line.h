@@ -9,14 +9,19 @@
 
 namespace binosplat::app {
 
-/// Throws Error for an empty argument: in scripts an unset variable.
+/// Throws Error for an empty argument, usually an unset variable of a script.
 void check_arguments(int argc, const char* const* argv);
 
 /// Whether the environment names a display.
 bool has_display();
 
-/// The arguments with the sub-command made explicit. If they begin with a model, adds `view` (with a display
-/// and the preview) or `render` and logs it. Throws Error for a word that is neither command nor model.
+/// Returns the arguments with the current names of options in place of former ones, which this version accepts
+/// with a warning.
+std::vector<std::string> with_current_names(const CLI::App& command, std::vector<std::string> words);
+
+/// Returns the arguments with current names. If they begin with a model, inserts a sub-command before it and
+/// logs this: `view` if there are a display and the preview, else `render`. Throws Error if the first word is
+/// neither a sub-command nor a model.
 std::vector<std::string> with_command(const CLI::App& program, int argc, const char* const* argv);
 
 /// "; did you mean WORD?", or nothing if no word is similar.
@@ -28,7 +33,7 @@ std::string explain(const CLI::App& command, const std::string& name, const CLI:
 
 /// Prepares the shader caches of drivers; call it before any context is created.
 /// - Removes a relative XDG_CACHE_HOME. Its specification says to ignore it, but drivers create a folder
-///   below the working one.
+///   below the working folder.
 /// - If the user's cache folder is full or cannot be written, disables the drivers' caches and warns. On a
 ///   full disk drivers write into mapped files, and SIGBUS ends the program.
 void prepare_shader_caches();

@@ -20,8 +20,8 @@ namespace binosplat::app {
 
 namespace {
 
-/// Upper bound of memory per pixel of both pictures, mostly FLIP's. Measured: 119 for grey, 169 for colour
-/// and alpha.
+/// Upper bound of the bytes per pixel that a comparison takes, mostly for FLIP. Measured: 119 for grey, 169
+/// for colour and alpha.
 constexpr std::uint64_t bytes_per_pixel = 170;
 
 struct CompareOptions {
@@ -82,7 +82,7 @@ void print_comparison(const CompareOptions& options, const Comparison& found, co
                      largest.y, channel_name(image, largest.channel)));
 }
 
-// "1830,1600,100".
+// Parses X,Y,FOV, such as "1830,1600,100".
 measure::Gaze parse_gaze(const std::string& text) {
   const glm::dvec3 v = parse_three("--foveate-at", text);
   return {v.x, v.y, v.z};
@@ -181,12 +181,12 @@ void add_compare(CLI::App& program, Command& command) {
              "Colour from 0 to 1 behind pictures with alpha; by default alpha is\ncompared if both have it, "
              "else it is over black (0,0,0)");
   add_value(*sub, "--ppd", "N", options->pixels_per_degree, between(1.0, 1000.0, "a number from 1 to 1000"),
-            "For FLIP: pixels per degree that the viewer has (67)");
+            "Pixels per degree of the viewer's field of view, for FLIP (67)");
   add_parsed(*sub, "--foveate-at", "X,Y,FOV", options->gaze, parse_gaze,
              "Compare for an eye that looks at pixel X,Y of a picture FOV degrees\nacross: PSNR by degrees "
              "from there, and the share of pixels that differ\nvisibly");
   add_value(*sub, "--max-memory", "MB", options->max_memory, positive,
-            "Refuse pictures that take more than so many MB to compare\n(three quarters of the machine's)");
+            "Refuse pictures that take more memory to compare (three quarters of the\nmachine's)");
   sub->add_option(
          "--difference", options->difference,
          "Write the absolute error as PNG, amplified so that about one value\nin a thousand is white")

@@ -9,8 +9,8 @@
 
 namespace binosplat::app {
 
-/// 32 hexadecimal digits (XXH3) of all files that a model is read from (files_of_model). Throws Error for a
-/// file that cannot be read.
+/// Returns a hash (XXH3, 32 hexadecimal digits) of all files that a model is read from (files_of_model).
+/// Throws Error for a file that cannot be read.
 std::string content_key(const std::filesystem::path& path);
 
 /// The same for a text.

@@ -24,7 +24,8 @@ void add_context_options(CLI::App& sub, ContextOptions& o) {
 }
 
 CLI::Option* add_device_option(CLI::App& sub, ContextOptions& o) {
-  return add_value(sub, "--device", "N", o.device, range(0, 1000), "Number of the EGL device");
+  return add_value(sub, "--device", "N", o.device, range(0, 1000),
+                   "Number of the EGL device, as `binosplat devices` lists it");
 }
 
 void check(const ContextOptions& o, const char* with_devices) {

@@ -15,20 +15,21 @@ struct ContextOptions {
   std::string shader_dir;  // empty: the embedded shaders
 };
 
-/// Adds all of them; `options` must outlive parsing.
+/// Adds all options of ContextOptions; `options` must outlive parsing.
 void add_context_options(CLI::App& sub, ContextOptions& options);
 
-/// --device, for commands that take few.
+/// Adds only --device.
 CLI::Option* add_device_option(CLI::App& sub, ContextOptions& options);
 
-/// Throws Error for a device number with a backend without devices. `with_devices` lists the others.
+/// Throws Error for a device number if the backend has no devices. `with_devices` names backends that have
+/// devices, for the message.
 void check(const ContextOptions& options, const char* with_devices = "device or auto");
 
 /// Opens the requested context and logs which it is.
 std::unique_ptr<gl::Context> open_context(const ContextOptions& options);
 
-/// The same for a command that keeps no intermediate results. Logs that, on a CPU or if `on_gpus`, because
-/// the command may then take long.
+/// The same for a command that stores no intermediate results. If the context is on a CPU, or if `on_gpus`,
+/// logs that the command may take long and cannot be resumed.
 std::unique_ptr<gl::Context> open_context_for_all(const std::string& command, bool on_gpus,
                                                   const ContextOptions& options);
 

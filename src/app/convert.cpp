@@ -38,7 +38,7 @@ struct ConvertOptions : MeasuredOptions {
   std::string json;
 };
 
-/// Cameras and context that draw the original and the written model. Only the axes differ between the two.
+/// Cameras and context for drawing the original and the written model, which may have different axes.
 struct Views {
   std::vector<Camera> cameras;
   double near_plane = 0.0;
@@ -74,7 +74,7 @@ void check_convert(const ConvertOptions& o, ModelFormat format) {
     fail("--cameras, --view and --size are of the pictures that --report draws: add it, or leave them out");
 }
 
-/// The cameras of --view, or as many of the listed ones as requested, or a ring around the model.
+/// The cameras of --view, else the requested number of listed cameras, or of cameras around the model.
 Views find_views(const ConvertOptions& o, CameraList list, const Model& model) {
   if (!list.listed) {
     log_info("no cameras beside {}: taking {} around the model", o.scene.name, *o.report);
@@ -191,7 +191,8 @@ ExitCode convert(const ConvertOptions& o) {
 }  // namespace
 
 void add_convert(CLI::App& program, Command& command) {
-  CLI::App* sub = program.add_subcommand("convert", "Write a model in another format, and say what it costs");
+  CLI::App* sub =
+      program.add_subcommand("convert", "Write a model in another format, and report what it loses");
   const auto o = std::make_shared<ConvertOptions>();
   sub->add_option("MODEL", o->scene.name, "A model file or folder, demo:room or demo:city")->required();
   sub->add_option("-o,--output", o->output, "The file to write: " + written_endings())
@@ -210,7 +211,7 @@ void add_convert(CLI::App& program, Command& command) {
       ->type_name("N");
   sub->add_option("--cameras", o->camera.file, "Cameras of the views, if not beside the model")
       ->type_name("FILE");
-  add_names_option(*sub, "--view", o->camera.views, "Views by name, instead of N");
+  add_names_option(*sub, "--view", o->camera.views, "Views by name, in place of the N of --report");
   add_size_option(*sub, o->camera.lens);
   sub->add_option("--json", o->json, "Write everything printed as JSON")->type_name("FILE");
   add_measured_options(*sub, *o);

@@ -61,7 +61,7 @@ ExitCode devices(const std::string& json) {
 void add_devices(CLI::App& program, Command& command) {
   CLI::App* sub = program.add_subcommand("devices", "List what this machine has to draw with");
   const auto json = std::make_shared<std::string>();
-  sub->add_option("--json", *json, "Write the list to this file");
+  sub->add_option("--json", *json, "Write the list as JSON")->type_name("FILE");
   sub->footer("The lines without indent are the options that choose a device in `binosplat render`.");
   sub->callback([json, &command] { command = [json] { return devices(*json); }; });
 }

@@ -34,8 +34,8 @@ namespace binosplat::app {
 
 namespace {
 
-// The screen's distance in metres if no option gives it: it suits the first view of the run, in every shard.
-// Returns none if that view is empty.
+// Returns the screen's distance in metres that suits the shot `first`, the same one in every shard. Returns
+// none if its view is empty.
 std::optional<double> find_screen(render::Frame& frame, const render::FrameSettings& settings,
                                   const Shot& first) {
   frame.draw(std::array{first.eyes[0].view},
@@ -52,8 +52,8 @@ std::optional<double> find_screen(render::Frame& frame, const render::FrameSetti
 // Times an exact frame in the last view of a long path, to report whether --quality is faster. Returns none
 // if the path is short, or if the run draws with levels, insets, panoramas or several models.
 std::optional<double> exact_frame_ms(render::Frame& frame, const RenderRun& run) {
-  // Minimal numbers of frames. On a CPU --quality is rarely faster, so fewer suffice for this one extra
-  // frame.
+  // The least number of frames of a path for which one extra frame is worthwhile. On a CPU, where --quality
+  // is rarely faster, `some` suffice.
   constexpr std::size_t many = 24, some = 6;
   const RenderOptions& o = run.options;
   if (!o.drawing.quality || !run.list.path || run.drawn.size() < (run.context->software() ? some : many) ||
@@ -80,8 +80,8 @@ bool is_empty(const Picture& picture) {
 // Focal distance of a headset's optics.
 constexpr double headset_focus_metres = 2.0;
 
-// Comfort of a pair, from the left eye's picture. `headset`: the pair is seen in one. Returns none for one
-// eye or for a picture without depths.
+// Comfort of an eye pair, from the left eye's picture. `headset`: the viewer wears a headset. Returns none
+// for one eye or for a picture without depths.
 std::optional<Comfort> comfort_of(const Shot& shot, bool headset, const Picture& left) {
   if (shot.eyes.size() != 2) return std::nullopt;
   const std::array<Camera, 2> eyes = {shot.eyes[0].camera, shot.eyes[1].camera};
@@ -165,7 +165,7 @@ class ShotWriter {
     run_.times.waiting += ms_since(begin);
   }
 
-  /// Requests the frame's pictures of a shot. hand_over() receives them.
+  /// Requests the pictures of a shot that `frame` has just drawn. hand_over() receives them.
   void read_back(Drawn& drawn, const render::Frame& frame) {
     on_way_ = read_back_.start(frame);
     of_ = &drawn;
@@ -211,7 +211,7 @@ class ShotWriter {
   RenderRun& run_;
   render::ReadBack read_back_;
   std::shared_ptr<render::ReadBack::Pictures> on_way_;  // requested from the GPU
-  Drawn* of_ = nullptr;                                 // their shot
+  Drawn* of_ = nullptr;                                 // the shot of on_way_
   std::unique_ptr<Video> video_;
   std::atomic<bool> all_empty_ = true;
   std::atomic<double> encoding_ms_ = 0.0, writing_ms_ = 0.0;
@@ -272,7 +272,7 @@ struct Drawer {
     const PictureStream::Times times = run.stream->take_times();
     levels.read_ms = times.read_ms;
     levels.upload_ms = times.upload_ms;
-    // The frame's threshold may use the error that the levels leave.
+    // The frame's threshold may spend the error that the levels leave.
     settings.quality = static_cast<float>(run.stream->frame_quality(settings.quality));
     return levels;
   }
@@ -316,7 +316,7 @@ void draw_all(RenderRun& run) {
   const RenderOptions& o = run.options;
   render::FrameSettings settings = settings_of(o.drawing);
   settings.background = o.output.backdrop();
-  if (!run.list.path) settings.probe_tiles = std::numeric_limits<int>::max();  // single pictures: all tiles
+  if (!run.list.path) settings.probe_tiles = std::numeric_limits<int>::max();  // probes all tiles
   const auto drawer_of = [&](const Model& model) {
     return std::make_unique<Drawer>(
         run, std::make_shared<render::GpuModel>(*run.context, model, settings.precision));

@@ -8,33 +8,35 @@ namespace binosplat::app {
 
 void add_drawing_options(CLI::App& sub, DrawingOptions& o) {
   sub.option_defaults()->group("Drawing");
-  choose_explained(sub, "--tiles", o.tiles, "Tiles in which a Gaussian is drawn (ellipse)", tiles_choices);
+  choose_explained(sub, "--tiles", o.tiles,
+                   "Tile test: chooses the tiles in which a Gaussian is drawn (ellipse)", tiles_choices);
   std::string rules_help =
-      "Alpha below which a Gaussian is dropped from a tile (tau; with\n--tolerance: squared)";
+      "Rule for the alpha below which a Gaussian is dropped from a tile (tau;\nwith --tolerance, --quality "
+      "or --calibration: squared)";
   Words<int> rules = words_of(th_choices);
   for (const Choice& rule : th_choices) rules_help += fmt::format("\n  {}: {}", rule.name, rule.help);
   rules.emplace_back("adagscale", TH_PERIPHERAL);
   rules_help += "\n  adagscale: the whole of AdaGScale: peripheral with --transmittance depth";
-  choose(sub, "--th", o.th, rules_help, rules)->each([&o](const std::string& rule) {
+  choose(sub, "--threshold", o.th, rules_help, rules)->each([&o](const std::string& rule) {
     o.adagscale = rule == "adagscale";
     if (o.adagscale) o.transmittance = TRANSMITTANCE_DEPTH;
   });
   add_value(sub, "--tolerance", "X", o.tolerance, not_negative,
-            "Accepted loss of a dropped Gaussian in a tile, in the unit of --th");
+            "Accepted loss of a dropped Gaussian in a tile, in the unit of --threshold");
   add_value(sub, "--quality", "DB", o.quality, quality_range,
             "Choose the tolerance for a PSNR of about DB against the exact pictures,\nfrom the first frame "
             "on: one frame in four also draws some tiles\nexactly");
   sub.add_option("--calibration", o.calibration, "Take the tolerance from a file of binosplat calibrate")
       ->type_name("FILE");
   choose_explained(sub, "--transmittance", o.transmittance,
-                   "Upper bound of a Gaussian's transmittance, for --th (one)", transmittance_choices);
+                   "Upper bound of a Gaussian's transmittance, for --threshold (one)", transmittance_choices);
   choose_explained(sub, "--decode", o.decode,
                    "Eye for which a Scaffold-GS model decodes its Gaussians (eyes)", decode_choices);
   choose_explained(sub, "--order", o.order, "How Gaussians are sorted (as the model was trained: depth)",
                    order_choices);
   choose_explained(sub, "--projection", o.projection,
                    "How Gaussians are projected (as the model was trained: affine)", projection_choices);
-  choose<std::optional<int>>(sub, "--tile", o.tile, "Side of a tile in px (auto: 16)",
+  choose<std::optional<int>>(sub, "--tile-size", o.tile, "Side of a tile in px (auto: 16)",
                              {{"auto", std::nullopt}, {"8", 8}, {"16", 16}, {"32", 32}});
   choose_explained(sub, "--precision", o.precision, "Precision of the stored model and splats (full)",
                    precision_choices);
@@ -56,15 +58,15 @@ void check(const DrawingOptions& o) {
   const bool exact = render::is_exact(settings.th);
   const bool given = o.tolerance || o.quality, calibrated = !o.calibration.empty();
   if (o.adagscale && o.transmittance != TRANSMITTANCE_DEPTH) {
-    fail("--th adagscale uses its table by depth: for --transmittance {} give --th peripheral",
+    fail("--threshold adagscale uses its table by depth: for --transmittance {} give --threshold peripheral",
          transmittance_choices[o.transmittance].name);
   }
   // --tolerance is allowed beside a calibrated depth table, which it does not replace.
   if (o.tolerance && calibrated && o.transmittance != TRANSMITTANCE_DEPTH)
     fail("--tolerance with --calibration: each chooses the tolerance: leave one of them out");
   if (!exact && !given && !calibrated)
-    fail("--th {} needs --tolerance, --quality or --calibration, which set the accepted loss", th);
-  if (exact && calibrated) fail("--calibration has no effect with --th {}, which is exact", th);
+    fail("--threshold {} needs --tolerance, --quality or --calibration, which set the accepted loss", th);
+  if (exact && calibrated) fail("--calibration has no effect with --threshold {}, which is exact", th);
   render::check_choice(settings, "--");
   render::check(debug_options_of(o), settings, "--");
 }

@@ -12,30 +12,30 @@
 namespace binosplat::app {
 
 struct DrawingOptions {
-  int tiles = TILES_ELLIPSE;       // TILES_ of shared/axes.h; the members below likewise
+  int tiles = TILES_ELLIPSE;       // a constant TILES_ of shared/axes.h; other members have TH_ and so on
   std::optional<int> th;           // none: chosen by threshold_of()
   std::optional<float> tolerance;  // K or kappa
   int transmittance = TRANSMITTANCE_ONE;
-  bool adagscale = false;        // --th adagscale: TH_PERIPHERAL with TRANSMITTANCE_DEPTH
+  bool adagscale = false;        // --threshold adagscale: TH_PERIPHERAL with TRANSMITTANCE_DEPTH
   std::optional<float> quality;  // dB
   std::string calibration;       // a file of binosplat calibrate
-  std::optional<int> decode;     // for Scaffold-GS; none: eyes
+  std::optional<int> decode;     // for Scaffold-GS; none: DECODE_EYES
   std::optional<int> order;      // none: as the model was trained
   std::optional<int> projection;
   std::optional<int> tile;  // px; none: automatic
   int precision = PRECISION_FULL;
   std::optional<render::Stage> reference_until;
-  int frames = 1;  // drawn for each view
+  int frames = 1;  // number of frames to draw of each view
 };
 
-/// Adds all of them; `options` must outlive parsing.
+/// Adds all options of DrawingOptions; `options` must outlive parsing.
 void add_drawing_options(CLI::App& sub, DrawingOptions& options);
 
 /// Throws Error for contradicting options.
 void check(const DrawingOptions& options);
 
-/// The rule (TH_) of --th. Without --th, a tolerance, quality or calibration selects `squared`: at equal
-/// error it is faster than the paper's rule (docs/method.md 8).
+/// The rule (TH_) of --threshold. Without --threshold, a tolerance, quality or calibration selects `squared`:
+/// at equal error it is faster than the paper's rule (docs/method.md 8).
 int threshold_of(const DrawingOptions& options);
 
 /// The options as settings, without calibration and without depth table.

@@ -10,7 +10,7 @@ namespace binosplat::app {
 
 namespace {
 
-// Counts of Gaussians by where their middles lie in a camera's view.
+// Numbers of Gaussians by the place of their middles in a camera's view.
 struct MiddlesSeen {
   std::size_t inside = 0;  // in the picture and beyond the near plane
   std::size_t ahead = 0;   // beyond the near plane
@@ -35,7 +35,8 @@ std::string why_empty(const Model& model, const Shot& shot, double near_plane, s
   const Camera& eye = shot.eyes.front().camera;
   const MiddlesSeen seen = look(model, eye, near_plane);
   if (seen.inside > 0)
-    return "the Gaussians in the picture have opacities below 1/255, or the threshold drops them (--th)";
+    return "the Gaussians in the picture have opacities below 1/255, or the threshold drops them "
+           "(--threshold)";
   if (shot.ipd && shot.eyes.size() == 2) {
     Camera head = eye;
     head.position = 0.5 * (eye.position + shot.eyes[1].camera.position);

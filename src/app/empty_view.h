@@ -9,7 +9,7 @@
 
 namespace binosplat::app {
 
-/// The likely reason why a shot draws no Gaussian, and the options that change it. `elsewhere` ends the
+/// Returns the likely reason why a shot draws no Gaussian, and the options that help. `elsewhere` ends the
 /// message for views that miss the model. `near_plane` is in world units.
 std::string why_empty(const Model& model, const Shot& shot, double near_plane,
                       std::string_view elsewhere = ": see --eye and --at, or --orbit 8");

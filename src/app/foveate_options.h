@@ -1,5 +1,5 @@
 #pragma once
-// `render --foveate`: an exact inset about the gaze, and fewer pixels around it.
+// `render --foveate`: an exact inset at the gaze, and fewer pixels around the inset.
 
 #include <optional>
 

@@ -50,7 +50,7 @@ struct InfoOptions {
 struct SeenOfViews {
   std::size_t views = 0;
   std::size_t unseen = 0;   // Gaussians that contribute to no pixel
-  std::size_t most_of = 0;  // the fewest Gaussians with 99 % of all weight
+  std::size_t most_of = 0;  // smallest number of Gaussians that have 99 % of the blending weight
 };
 
 std::optional<SeenOfViews> see(const InfoOptions& o, const Model& model) {
@@ -120,7 +120,8 @@ void print_info(const SeenOfViews& seen, std::size_t all) {
       "`binosplat trim` writes the smallest model that keeps them");
 }
 
-/// The training run of a model and its exposures, from files beside it, and its unit, from the file itself.
+/// The training run and the exposures of a model, from files beside the model, and its unit, from its own
+/// file.
 struct Trained {
   std::optional<TrainingRun> run;
   std::optional<Exposures> exposures;
@@ -311,7 +312,7 @@ ExitCode info(const InfoOptions& options) {
 }  // namespace
 
 void add_info(CLI::App& program, Command& command) {
-  CLI::App* sub = program.add_subcommand("info", "Say what a model is made of");
+  CLI::App* sub = program.add_subcommand("info", "Report what a model is made of");
   const auto options = std::make_shared<InfoOptions>();
   sub->add_option("MODEL", options->scene.name, "A model file or folder, or demo:room or demo:city")
       ->required();

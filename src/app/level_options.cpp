@@ -33,14 +33,14 @@ std::int64_t bytes_for(render::FramePlan plan, std::uint32_t gaussians, bool in_
   return needs.model + needs.frame + uploads * bytes_of_one;
 }
 
-// A pair of eyes of the usual size, as a stand-in before the views are known.
+// An eye pair of the usual size, as a stand-in before the views are known.
 std::vector<shared::View> usual_views(const Lens& lens = {}, std::size_t count = 2) {
   const Camera camera = look_at({0, 0, -1}, {0, 0, 0}, {0, -1, 0}, 60, 1280, 720);
   return std::vector<shared::View>(count, make_view(sized(lens, camera)));
 }
 
-/// Settings of a stream: --detail, or else the finest levels that --quality leaves error for, in models above
-/// few_gaussians; and the budget of --gpu-memory.
+/// Settings of a stream. Without --detail, levels may spend half of the error of --quality, in models of more
+/// than few_gaussians. --gpu-memory limits the Gaussians.
 StreamSettings stream_settings(const SceneOptions& options, const render::FrameSettings& settings) {
   StreamSettings result{.detail = options.detail.value_or(DetailRequest{}),
                         .shares_quality = !options.detail,
@@ -80,7 +80,7 @@ DetailBudget detail_budget(const RenderOptions& options, const CameraList& list)
                        camera.near_plane.value_or(near_default), axes);
   }
   DetailBudget budget;
-  std::vector<shared::View> widest;  // the shot of the most pixels
+  std::vector<shared::View> widest;  // views of the shot with the most pixels
   std::uint64_t most_pixels = 0;
   for (const Shot& shot : shots) {
     std::uint64_t pixels = 0;
@@ -104,7 +104,7 @@ std::unique_ptr<Stream> open_for_frames(const SceneOptions& options, const rende
   const bool follows = !options.lod && !is_built_in(options.name) && (asked || is_streamed_sog(options.name));
   if (!follows) return nullptr;
   StreamSettings of_stream = stream_settings(options, settings);
-  of_stream.reserve = std::size_t{1} << 22;  // 0.4 GB, or 1 with all their harmonics
+  of_stream.reserve = std::size_t{1} << 22;  // Gaussians: 0.4 GB, or 1 GB with harmonics of degree 3
   auto stream = std::make_unique<Stream>(options.name, std::move(of_stream));
   apply_options(options, stream->model());
   return stream;

@@ -14,8 +14,8 @@
 
 namespace binosplat::app {
 
-/// The number of Gaussians of a degree that fit into `megabytes`, beside a frame of these views. `in_parts`
-/// also reserves memory for streaming uploads.
+/// The number of Gaussians of a degree that fit into `megabytes` together with a frame of these views.
+/// `in_parts` also reserves memory for the uploads of a stream.
 std::size_t gaussians_that_fit(double megabytes, render::FrameSettings settings,
                                std::span<const shared::View> views, int degree, bool in_parts);
 
@@ -23,12 +23,14 @@ std::size_t gaussians_that_fit(double megabytes, render::FrameSettings settings,
 /// the model is read. Without cameras or with --orbit the model decides the views, so `eyes` is empty.
 DetailBudget detail_budget(const RenderOptions& options, const CameraList& list);
 
-/// Opens a stream for frames that must not wait: it starts with the coarsest levels and reads finer ones
-/// meanwhile. Applies the axes and anti-aliasing of the options. Returns null if no levels follow the views.
+/// Opens a stream for frames that must not wait: it starts with the coarsest levels and reads finer levels
+/// while frames are drawn. Applies the axes and anti-aliasing of the options. Returns null if no levels
+/// follow the views.
 std::unique_ptr<Stream> open_for_frames(const SceneOptions& options, const render::FrameSettings& settings);
 
-/// The same for pictures that may wait, of a turning head or single ones. With --gpu-memory or --detail, dB
-/// decide the levels even of small models. Throws Error if the scene is not a streamed SOG.
+/// Opens a stream for pictures that may wait for their levels. `heads_turn` also refines chunks out of view.
+/// With --gpu-memory or --detail, even small models are drawn at chosen levels instead of the finest. Throws
+/// Error if the scene is not a streamed SOG.
 std::unique_ptr<PictureStream> open_for_shots(const SceneOptions& options,
                                               const render::FrameSettings& settings, bool heads_turn);
 

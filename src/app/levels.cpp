@@ -101,7 +101,8 @@ bool has_run(const LevelsOptions& o, const nlohmann::ordered_json& run) {
   const fs::path folder = o.output, file = folder / levels_run_name;
   check_output(file);
   check_output(folder / "lod-meta.json");
-  // Look for other files first: every run writes its run file before any other, under a temporary name.
+  // Looks for other files before the run file. A run that starts meanwhile writes its run file first (under a
+  // name that also begins with levels_run_name), so its files are not mistaken for others.
   std::error_code none;
   const bool others =
       std::any_of(fs::directory_iterator(folder, none), {}, [](const fs::directory_entry& entry) {
@@ -115,7 +116,7 @@ bool has_run(const LevelsOptions& o, const nlohmann::ordered_json& run) {
   return false;
 }
 
-/// Writes the model's cameras beside the levels, in their own world, so that the levels are drawn from the
+/// Writes the model's cameras beside the levels, in world coordinates, so that the levels are drawn from the
 /// same views. Keeps an existing complete file.
 void write_cameras(const LevelsOptions& o) {
   const fs::path file = fs::path(o.output) / "cameras.json";

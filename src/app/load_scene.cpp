@@ -78,7 +78,7 @@ void choose_axes(const SceneOptions& o, std::span<const Camera> cameras, Model& 
   const std::string usual = model.axes.letters, other = usual == "RUB" ? "RDF" : "RUB";
   auto detected = detect_axes(model, other, cameras);
   if (!detected) detected = detect_axes(model, other, cameras_beside(o));
-  // Overrule the file only if almost nothing of the model is in view with its axes.
+  // Overrule the file only if almost nothing of the model is in view with the file's axes.
   constexpr double hardly = 0.05;
   if (said &&
       (!detected || detected->by_ground || detected->axes == usual || detected->seen_otherwise > hardly))

@@ -1,5 +1,5 @@
 #pragma once
-// Loads models from files or makes the built-in ones.
+// Loads models from files, or makes built-in models.
 
 #include <optional>
 #include <span>
@@ -23,14 +23,15 @@ void apply_options(const SceneOptions& options, Model& model);
 /// built-in scene.
 std::vector<Camera> built_in_cameras(const SceneOptions& options);
 
-/// Chooses the axes of an spz without --axes, because programs write spz in two frames. Prefers the axes in
-/// which `cameras`, or those beside the model, see it (scene/detected_axes.h), then the file's or the
-/// format's. Logs a choice that the file does not state, and how to change it.
+/// Without --axes, chooses the axes of an spz, because programs write spz with two different axes. Prefers
+/// the axes with which `cameras`, or else the cameras beside the model, see the model
+/// (scene/detected_axes.h). Otherwise takes the file's axes, or else the format's. Logs a choice that the
+/// file does not state, and how to change it.
 void choose_axes(const SceneOptions& options, std::span<const Camera> cameras, Model& model);
 
-/// Reads or makes the model, which may take long, and repeats it by the options. `budget` applies to files
-/// with levels of detail. `cameras` are its views, if known. Throws Error as built_in_cameras() and
-/// load_model() do.
+/// Reads or makes the model, which may take long, and appends the copies that options request. `budget`
+/// applies to files with levels of detail. `cameras` are the model's views, if known. Throws Error as
+/// built_in_cameras() and load_model() do.
 Model load_scene(const SceneOptions& options, const std::optional<DetailBudget>& budget = {},
                  std::span<const Camera> cameras = {});
 

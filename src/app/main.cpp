@@ -24,11 +24,12 @@ namespace {
 using binosplat::ExitCode;
 
 constexpr const char* epilogue =
-    "`binosplat SUBCOMMAND --help` has the options and examples. `render --th adagscale` draws by AdaGScale\n"
-    "(Jo et al.): docs/adagscale.md.\nExit codes: 0 done; 1 a comparison fell short; 2 input, output or "
-    "usage is wrong; 3 no usable OpenGL, display or headset; 4 out of memory.";
+    "`binosplat SUBCOMMAND --help` has the options and examples.\n`render --threshold adagscale` draws by "
+    "AdaGScale (Jo et al.): docs/adagscale.md.\nExit codes: 0 done; 1 a comparison fell short; 2 input, "
+    "output or usage is wrong; 3 no usable OpenGL, display or headset; 4 out of memory.";
 
-// A section of the manual page in roff, not filled. No line of help begins with a dot or a quote.
+// A section of the manual page in roff, with its line breaks. No line of help begins with a dot or a quote,
+// which would need an escape.
 std::string section(const std::string& title, std::string text) {
   text = CLI::detail::find_and_replace(text, "\\", "\\e");
   text = CLI::detail::find_and_replace(text, "-", "\\-");

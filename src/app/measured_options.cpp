@@ -23,10 +23,11 @@ lab::Rule rule_of(const std::string& text) {
 }  // namespace
 
 void add_rule_option(CLI::App& sub, std::vector<std::string>& rules) {
-  add_names_option(sub, "--rule", rules,
-                   "Only this rule: TH,SOURCE, with values of `render --th` and\n`--transmittance`; repeat "
-                   "it for more (all); those with `last` take\nlongest",
-                   "RULE");
+  add_names_option(
+      sub, "--rule", rules,
+      "Measure only this rule: a value of `render --threshold`, and one of\n`--transmittance`, as in "
+      "squared,last; repeat it for more (all); rules\nwith `last` take longest",
+      "TH,SOURCE");
 }
 
 std::vector<lab::Rule> rules_of(const std::vector<std::string>& texts) {

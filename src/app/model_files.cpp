@@ -34,9 +34,10 @@ void refuse_scaffold(const Model& model, const std::string& scene) {
 }
 
 void add_harmonic_bits_option(CLI::App& sub, std::optional<int>& bits) {
-  sub.add_option("--sh-bits", bits,
-                 "Bits of a harmonic in spz (8); 4, as other writers use, saves a third\nof the file and "
-                 "costs about 15 dB")
+  sub.add_option(
+         "--sh-bits", bits,
+         "Bits of each SH coefficient in spz (8); 4, as other writers use, saves a\nthird of the file and "
+         "costs about 15 dB")
       ->check(range(1, 8))
       ->type_name("N");
 }

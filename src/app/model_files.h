@@ -13,8 +13,8 @@
 
 namespace binosplat::app {
 
-/// The format of the output's ending. Throws Error for an unknown ending; it lists the known ones, and
-/// `hint`.
+/// The format of the output's ending. Throws Error for an unknown ending. The message lists the known
+/// endings, and `hint`.
 ModelFormat output_format(const std::string& output, const std::string& hint = "");
 
 /// The file that `scene` names, or the only model in that folder; empty if the folder has none or several.
@@ -30,7 +30,7 @@ void check_harmonic_bits(const std::optional<int>& bits, ModelFormat format);
 /// Reads a written model back, with the perspective, low-pass and origin of `model`, which some formats lack.
 Model load_written(const std::filesystem::path& file, const Model& model);
 
-/// A function that writes candidates to a temporary file beside the output, which is never committed.
+/// Returns a function that writes candidates to a temporary file beside the output, and removes the file.
 compact::TrialWriter trial_writer(const std::string& output, ModelFormat format);
 
 /// Writes a model, whose axes must be those of the format (write_model), and reads it back. A signal leaves

@@ -34,7 +34,7 @@ inline CLI::Validator between(double low, double high, const char* expected) {
       "");
 }
 
-/// Ranges that float and values computed from it can hold.
+/// Ranges in which numbers, and values computed from them, fit into a float.
 inline const CLI::Validator positive = between(1e-30, 1e30, "a number above zero (1e-30 to 1e30)");
 inline const CLI::Validator not_negative = between(0.0, 1e30, "a number from 0 to 1e30");
 inline const CLI::Validator seconds_range = between(1e-6, 1e6, "seconds above zero (0.000001 to 1000000)");
@@ -44,7 +44,7 @@ inline const CLI::Validator fps_range =
 inline const CLI::Validator quality_range =
     between(render::quality_least, render::quality_most, "decibels from 10 to 100");
 
-/// From 0 to 2^64 - 1. CLI11 itself reads -1 as the largest.
+/// An integer from 0 to 2^64 - 1. CLI11's own parser reads -1 as the largest one.
 inline const CLI::Validator whole_number(
     [](std::string& text) {
       std::uint64_t value = 0;
@@ -58,7 +58,7 @@ inline const CLI::Validator whole_number(
 template <typename Value>
 using Words = std::vector<std::pair<std::string, Value>>;
 
-/// The names of a list of shared/axes.h, which stand for their indices, except `left_out`.
+/// The names of a list of shared/axes.h, with their indices as values. Omits the index `left_out`.
 inline Words<int> words_of(std::span<const Choice> choices, int left_out = -1) {
   Words<int> words;
   for (int k = 0; k < static_cast<int>(choices.size()); ++k) {
@@ -119,7 +119,7 @@ inline CLI::Option* add_names_option(CLI::App& sub, const char* option, std::vec
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
 }
 
-/// Splits texts at commas, except those that are one name (`is_one`): names may contain commas.
+/// Splits texts at commas. A text that is one name (`is_one`) stays whole, because names may contain commas.
 template <typename IsOne>
 std::vector<std::string> separated(const std::vector<std::string>& texts, const IsOne& is_one) {
   std::vector<std::string> names;

@@ -42,9 +42,9 @@ const struct {
     {"--resume", {"--json", "--photos"}, "it skips existing pictures, and these report all"},
     {"--vr180",
      {"--fov",         "--convergence", "--cant",      "--order",           "--projection", "--tiles",
-      "--th",          "--tolerance",   "--quality",   "--transmittance",   "--show",       "--detail",
+      "--threshold",   "--tolerance",   "--quality",   "--transmittance",   "--show",       "--detail",
       "--calibration", "--photos",      "--precision", "--reference-until", "--decode",     "--exr-depth",
-      "--tile",        "--only",        "--foveate",   "--preset"},
+      "--tile-size",   "--only",        "--foveate",   "--preset"},
      "it draws both eyes, or --mono, exactly and along rays of its own"}};
 
 const struct {

@@ -5,8 +5,8 @@
 
 namespace binosplat::app {
 
-/// Throws Error, with the reason, for options that conflict or need others. Checks of values are with each
-/// part of the options.
+/// Throws Error, with the reason, for options that conflict or need other options. Each group of
+/// options checks its values in its own check().
 void check_conflicts(const CLI::App& sub);
 
 }  // namespace binosplat::app

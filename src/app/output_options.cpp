@@ -44,13 +44,7 @@ void add_look_options(CLI::App& sub, OutputOptions& o, bool in_window) {
   choose_explained(
       sub, "--show", o.show,
       "Map to show instead of the picture; numbers as colours from 0 (dark) to\nyellow (picture)",
-      show_choices)
-      ->transform(CLI::Validator(  // the word of earlier versions
-          [](std::string& word) {
-            if (word == "light") word = "transmittance";
-            return std::string();
-          },
-          ""));
+      show_choices);
   add_parsed(sub, "--background", "R,G,B|none", o.background, parse_background,
              "Colour behind the model, 0 to 1, or none: keep alpha (0,0,0)");
 }

@@ -21,12 +21,12 @@ struct OutputOptions {
   std::string output;         // a folder or a file; empty: default_folder()
   std::optional<int> layout;  // LAYOUT_ of shared/axes.h; none: chosen by `output`
   int show = SHOW_PICTURE;    // SHOW_
-  std::optional<double> fps;  // of a path or a video; none: by the path's times
+  std::optional<double> fps;  // frame rate of a path or video; none: from the path's times
   Background background = glm::vec3(0.0f);
   std::optional<int> bits;
   int png_level = 1;                // compression level of libdeflate
-  std::optional<bool> exr_half;     // also writes OpenEXR: half (true) or float
-  std::optional<bool> exr_display;  // display values instead of linear light
+  std::optional<bool> exr_half;     // if set, also writes OpenEXR: half (true) or float
+  std::optional<bool> exr_display;  // OpenEXR has display values instead of linear light
   Depth exr_depth = Depth::mean;
   ExrCompression exr_compression = ExrCompression::rle;
   std::string photos;    // a folder, or photos_beside
@@ -41,7 +41,7 @@ struct OutputOptions {
 /// Parses --background: "R,G,B" from 0 to 1, or "none". Throws Error for other text.
 Background parse_background(const std::string& text);
 
-/// Adds all of them; `options` must outlive parsing.
+/// Adds all options of OutputOptions; `options` must outlive parsing.
 void add_output_options(CLI::App& sub, OutputOptions& options);
 
 /// Adds --layout, --show and --background. A window offers no multi-view.

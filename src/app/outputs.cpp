@@ -29,7 +29,8 @@ bool has(const Outputs& outputs, const char* ending) {
   return std::ranges::count(outputs.endings, ending) > 0;
 }
 
-// Metadata of a picture: how it was drawn. A stereo picture is right only at its scale.
+// Metadata of a picture: how it was drawn, with the units per metre, because a stereo picture is right at one
+// scale only.
 Notes notes_of(const PictureFile& file, const RenderOptions& render, const Outputs& outputs, const Shot& shot,
                const std::optional<double>& most_shown) {
   Notes notes = {{"Software", "binosplat " BINOSPLAT_VERSION},
@@ -46,7 +47,7 @@ Notes notes_of(const PictureFile& file, const RenderOptions& render, const Outpu
   return notes;
 }
 
-// The layout of the options, or one that fits the output: a folder, or a file with this ending.
+// The requested layout, or else one that fits the output: a folder, or a file with this ending.
 int layout_of(const RenderOptions& render, bool video, const std::string& ending) {
   const OutputOptions& options = render.output;
   const bool one_picture = render.rig.one_picture(), exr_file = ending == ".exr",
@@ -112,7 +113,7 @@ bool is_generic_name(std::string name) {
   return said.contains(name);
 }
 
-// In a folder of pictures: names their model by its full path, or the built-in scene.
+// The file in a folder of pictures that has the full path of their model, or the name of the built-in scene.
 constexpr const char* owner_name = "model.txt";
 
 fs::path path_of(const std::string& scene) {
@@ -146,7 +147,7 @@ std::string free_name(std::string name, const fs::path& model) {
   return name;
 }
 
-// File names of VR180, by whose suffix players recognise the layout.
+// The shot's stem. In VR180 it has a suffix, by which players recognise the layout.
 std::string stem_in_folder(const Outputs& outputs, const Shot& shot) {
   if (!outputs.vr180) return shot.stem;
   return shot.stem + (outputs.layout == LAYOUT_PARALLEL     ? "_180_LR"
@@ -200,7 +201,7 @@ fs::path default_folder(const std::string& scene) {
   fs::path path = model;
   std::error_code ignored;
   std::string name = fs::is_directory(path, ignored) ? path.filename().string() : path.stem().string();
-  // A number distinguishes models of one training.
+  // A number distinguishes models of one training, such as iteration_7000.
   std::string number;
   while (is_generic_name(name) && path.has_relative_path()) {
     if (number.empty() && name.find_first_of("0123456789") != std::string::npos) number = "_" + name;

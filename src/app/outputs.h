@@ -16,32 +16,31 @@ namespace binosplat::app {
 
 /// The form in which all shots are written.
 struct Outputs {
-  std::filesystem::path folder;      // for a file per shot; empty: `file` holds all
-  std::filesystem::path file;        // the picture of the one shot, or the video of all
+  std::filesystem::path folder;      // gets the files of each shot; empty: `file` is the only output
+  std::filesystem::path file;        // the picture of a single shot, or the video of all shots
   bool video = false;                // `file` is a video
-  int layout = LAYOUT_SEPARATE;      // LAYOUT_ of shared/axes.h; separate with `file`: one eye
+  int layout = LAYOUT_SEPARATE;      // LAYOUT_ of shared/axes.h; a separate layout in `file` has one eye
   std::vector<std::string> endings;  // of each picture's files: .png, .exr, .jpg (formats/vr_photo.h)
-  std::optional<double> fps;         // of the video or the path; none: by the path's times
+  std::optional<double> fps;         // frame rate of the video or path; none: from the path's times
   bool vr180 = false;
 };
 
 /// Default frame rate of videos.
 constexpr double video_fps = 30.0;
 
-/// The default folder of a scene's files: out/NAME. Adds names of parent folders if pictures of another model
-/// are there (claim_folder).
+/// Returns the default folder of a scene's files: out/NAME. If that folder has pictures of another model
+/// (claim_folder), prefixes the name with names of the model's parent folders.
 std::filesystem::path default_folder(const std::string& scene);
 
-/// Records in a folder which model its pictures show. Throws Error if a run of another model has claimed it
-/// since default_folder() returned it.
+/// Records in a folder which model its pictures show. Throws Error if a run of another model has claimed the
+/// folder since the call of default_folder().
 void claim_folder(const std::filesystem::path& folder, const std::string& scene);
 
 /// The outputs that the options request. Throws Error early for outputs that cannot be written.
 Outputs outputs_of(const RenderOptions& render);
 
-/// Names the files of each shot. Throws Error if the layout does not fit the eyes, or if several shots share
-/// one picture. Also for a video with frames of different sizes, and for a file that would replace an input
-/// or the file of --json.
+/// Names the files of each shot. Throws Error if the layout does not fit the eyes, if several shots share one
+/// picture, if frames of a video differ in size, or if a file would replace an input or the file of --json.
 void place_files(const Outputs& outputs, const std::string& json, std::vector<Shot>& shots);
 
 /// Opens the requested video of the shots, which takes frames from encoded(); null if none is requested.

@@ -177,9 +177,9 @@ HeldOut hold_out(const CameraList& list, const std::optional<int>& every) {
 }
 
 void add_hold_out_option(CLI::App& sub, std::optional<int>& every) {
-  add_value(sub, "--hold-out", "N", every, range(2, 1000000),
-            "Every Nth view by name is for tests, and no tolerance is found on it (8, or the\nviews that "
-            "INRIA's cameras.json lists first)");
+  add_value(sub, "--test-every", "N", every, range(2, 1000000),
+            "Take every Nth view, by name, as a test view, on which no tolerance is\nfound (8, or the views "
+            "that INRIA's cameras.json lists first)");
 }
 
 std::vector<lab::CalibrationView> photographed_views(const ViewChoice& choice, const PhotoSource& photos,

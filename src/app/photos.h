@@ -23,16 +23,17 @@ struct PhotoSource {
   Exposures exposures = {};
 };
 
-/// The photos of --photos with the exposures of --exposure. If that is empty, uses the exposure.json beside
-/// the model. Logs the source. Throws Error for a file without exposures, and for --exposure without photos.
+/// The photos of --photos with the exposures of --exposure. If `exposure` is empty, uses the exposure.json
+/// beside the model. Logs the source of exposures. Throws Error for a file without exposures, and for
+/// --exposure without photos.
 PhotoSource photo_source(const std::string& scene, const std::string& photos, const std::string& exposure);
 PhotoSource photos_of(const MeasuredOptions& options);
 
 /// The exposure of a view's picture. Warns once if the file lacks the view.
 glm::mat4x3 exposure_of(const Exposures& exposures, const std::string& view);
 
-/// Reads a view's photo as RGB. Grey becomes three equal channels; a photo with alpha is put before
-/// `background`, which is logged once. Throws Error unless it has the camera's size.
+/// Reads a view's photo as RGB. Grey becomes three equal channels. A photo with alpha is blended over
+/// `background`; the first one is logged. Throws Error unless the photo has the camera's size.
 Image load_view_photo(const std::filesystem::path& file, const Camera& camera,
                       const glm::vec3& background = glm::vec3(0.0f));
 
@@ -43,8 +44,8 @@ void check_cameras_of(const std::string& photos, const CameraList& list);
 /// quick. Accepts views without a photo. Checks nothing without a folder.
 void check_photos(const std::string& photos, std::span<const Camera> cameras);
 
-/// Finds photos for a fit, with inverted exposures, so that one model fits all of them. Empty without a
-/// folder. The finder throws Error for an exposure that cannot be inverted.
+/// Returns a function that reads photos for a fit and removes their exposures, so that one model fits all
+/// photos. The function is empty without a folder, and throws Error for an exposure that cannot be inverted.
 compact::PhotoOf photo_finder(const PhotoSource& photos);
 
 /// The allowed loss: --max-drop against photos, or --quality against exact pictures.
@@ -54,8 +55,8 @@ struct TargetOptions {
   CalibrationTarget target() const;
 };
 
-/// Throws Error unless exactly one target is set, with what it needs. `command` needs `what`, as in "a
-/// bound".
+/// Throws Error unless exactly one target is set. A drop also needs photos, in their own size. The message
+/// says that `command` needs `what`, such as "a bound".
 void check_target(const std::string& command, const std::string& what, const TargetOptions& target,
                   const MeasuredOptions& options);
 
@@ -69,25 +70,25 @@ struct ViewChoice {
   std::vector<std::string> without = {};  // excludes these names
 };
 
-/// The cameras of a choice. With a folder of photos, unnamed choices take only cameras that have one.
+/// The cameras of a choice. If it names no view and there is a folder of photos, only cameras with a photo.
 std::vector<Camera> photographed_cameras(const ViewChoice& choice, const std::string& photos,
                                          const Lens& lens, const CameraList& list);
 
 /// The folder of --photos; photos_beside finds the one beside the cameras. Throws Error if there is none.
 std::string photos_folder(const std::string& asked, const CameraList& list);
 
-/// Test views, which calibrations must not use, and training views, by name.
+/// The names of test views, in which no tolerance may be found, and of training views.
 struct HeldOut {
   std::vector<std::string> test, training;
-  std::string how;  // how they were separated, for the log
+  std::string how;  // how test and training views were separated, for the log
 };
 
 /// Every `every`th view in the order of names is a test view, as is usual in the field. Without a number:
-/// every 8th, or the first views of a cameras.json of INRIA's trainer. That file lists test views by name,
-/// then training views by name.
+/// every 8th, or the test views of INRIA's trainer, whose cameras.json lists test views first, sorted by
+/// name, and then training views, sorted by name.
 HeldOut hold_out(const CameraList& list, const std::optional<int>& every);
 
-/// Adds --hold-out.
+/// Adds --test-every.
 void add_hold_out_option(CLI::App& sub, std::optional<int>& every);
 
 /// The cameras of a choice, each with its photo if there is a folder.

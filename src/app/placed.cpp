@@ -24,7 +24,7 @@ void check_trained_alike(const JsonValue& entry, const Model& model, const Model
   if (model.antialiased != scene.antialiased || model.kernel_px2 != scene.kernel_px2) {
     entry.fail_here(
         "trained {} anti-aliasing and for a low-pass of {} px^2, the scene {} and for {}: one setting draws "
-        "all; name it by --antialias or --no-antialias and --kernel-px2",
+        "all; name it by --antialias or --no-antialias and --eps2d",
         model.antialiased ? "with" : "without", model.kernel_px2, scene.antialiased ? "with" : "without",
         scene.kernel_px2);
   }
@@ -37,7 +37,7 @@ void append_placed(const SceneOptions& o, Model& model) {
   const nlohmann::json list = parse_json(o.place, as_text(file.bytes()));
   const JsonValue root(o.place, list);
   SceneOptions asked = o;
-  asked.axes.clear();  // the scene's
+  asked.axes.clear();  // --axes is for the scene itself
   const glm::dmat4 into_scene(glm::transpose(world_from_axes(model.axes.letters)));
   for (std::size_t k = 0; k < root.size(); ++k) {
     const JsonValue entry = root.at(k);
@@ -47,7 +47,7 @@ void append_placed(const SceneOptions& o, Model& model) {
     Model placed = load_model(path);
     apply_options(asked, placed);
     check_trained_alike(entry, placed, model);
-    // From the model's frame into the scene's.
+    // From the placed model's axes into the scene's axes.
     const glm::dmat4 turned(world_from_axes(placed.axes.letters));
     const glm::dmat4 map = glm::translate(glm::dmat4(1.0), -model.axes.origin) * into_scene * matrix *
                            glm::translate(turned, placed.axes.origin);

@@ -10,8 +10,8 @@ namespace binosplat::app {
 /// - "model": a path, relative to the file;
 /// - "matrix": 16 numbers, column by column, that bring the model into the world of the cameras (x right, y
 ///   down, z forward); or "translation", "rotation" and "scale": as a node of glTF; the identity without any.
-/// The result has the highest degree of them all. Throws Error for Scaffold-GS models, and for models that
-/// were trained with another low-pass or anti-aliasing than `model`, because one setting draws them all.
+/// The result has the highest degree of all models. Throws Error for Scaffold-GS models, and for models that
+/// were trained with another low-pass or anti-aliasing than `model`, because one setting draws all models.
 void append_placed(const SceneOptions& options, Model& model);
 
 }  // namespace binosplat::app

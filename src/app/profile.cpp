@@ -32,7 +32,7 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr double seconds_default = 10.0;
-constexpr double frames_most = 1e6, frame_bytes = 4096.0;  // largest recording; memory of each frame
+constexpr double frames_most = 1e6, frame_bytes = 4096.0;  // limit of a recording; memory of each frame
 constexpr double quality_to_try = 40.0;                    // dB: an error that is hardly visible
 
 struct ProfileOptions : RenderOptions {
@@ -54,11 +54,11 @@ void check(const ProfileOptions& o) {
   check_foveate(o);
 }
 
-/// Frame rate of the poses.
+/// The frame rate for which poses are computed, also if frames are drawn as fast as possible.
 double pose_rate(const ProfileOptions& o) { return o.fps > 0.0 ? o.fps : headset_fps; }
 
-/// Replaces the cameras by the path's frames and returns the name of the path. Without any option, a scene
-/// with two or more cameras is toured. Returns "" for a head that stands still.
+/// Replaces the cameras by the path's frames and returns the name of the path. If no option chooses a path
+/// or a view, tours the cameras of a scene with at least two. Returns "" for a head that stands still.
 std::string choose_path(ProfileOptions& o, CameraList& list) {
   const bool stands = !o.camera.views.empty() || o.camera.eye || !list.listed;
   if (!o.camera.path.empty()) {
@@ -111,7 +111,7 @@ struct Profiled {
   Model loaded;
   lab::ProfileRun run;
   lab::Profile profile;
-  std::vector<shared::View> table_views;  // for the table of --transmittance depth; empty: known
+  std::vector<shared::View> table_views;  // to measure the depth table in; empty: known or not needed
 
   const Model& model() const { return stream ? stream->model() : loaded; }
 };
@@ -206,12 +206,14 @@ void add_profile(CLI::App& program, Command& command) {
   add_tour_options(*sub, o.camera);
   add_foveate_option(*sub, o.foveate);
   sub->option_defaults()->group("Options");
-  sub->get_option("--view")->description("Stand at this camera")->type_name("NAME");
+  sub->get_option("--view")->description("Stand still at this camera")->type_name("NAME");
   sub->get_option("--tour")->description(
       "Move through all cameras as a head does (walk, without another motion);\nM,DEG sets metres and "
       "degrees a second");
   sub->get_option("--seconds")
-      ->description("Seconds of the tour, or at a view (10), or of the path through the keys\nof --path");
+      ->description(
+          "Seconds of the tour or at --view (10); with --path: seconds through its\nkeys, at an even pace "
+          "(by their times)");
   sub->get_option("--preset")
       ->description(
           "preview: 1280 x 720 an eye; headset: 3660 x 3200 an eye,\n100 degrees (headset, without --size)");

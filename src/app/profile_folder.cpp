@@ -27,7 +27,7 @@ void save_profile(const std::filesystem::path& folder, const lab::Profile& profi
   lab::write_frames(profile.recording, next_file());
   next_file()(json_text(json));
   next_file()(lab::csv(results.points));
-  // Flush all before the first is renamed.
+  // Flush all files before the first one gets its name, so that a full disk leaves none.
   for (OutputFile& file : files) file.flush();
   for (OutputFile& file : files) file.commit();
 }

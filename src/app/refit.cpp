@@ -84,7 +84,7 @@ class Judge {
   }
 
  private:
-  /// Against photos, a cost is the loss relative to the original model.
+  /// Against photos, `db` is the loss relative to the original model.
   double psnr(const Calibrator& views, double db) const {
     return kind_ == TargetKind::drop ? views.exact_photo_db() - db : db;
   }
@@ -200,10 +200,10 @@ void add_refit(CLI::App& program, Command& command) {
                "Instead of photos: the model's own exact pictures, in the order and\nprojection that it was "
                "trained with",
                {{"exact", true}});
-  choose_explained(*sub, "--order", o->order, "How Gaussians are sorted from then on (as before)",
+  choose_explained(*sub, "--order", o->order, "How the written model's Gaussians are sorted (as before)",
                    order_choices);
   choose_explained(*sub, "--projection", o->projection,
-                   "How Gaussians are projected from then on (as before)", projection_choices);
+                   "How the written model's Gaussians are projected (as before)", projection_choices);
   sub->add_option("--rounds", o->rounds,
                   fmt::format("Rounds of conjugate gradients, at most ({})", o->rounds))
       ->type_name("N")

@@ -47,8 +47,8 @@ render::MemoryNeeds memory_needs(const RenderRun& run) {
     stereo::FoveatedViews drawn{.views = views_of(shot), .settings = settings};
     std::int64_t composed = 0;  // bytes of the pictures composed of these views
     if (run.outputs.vr180) {
-      // The largest face of each eye. 16 bytes of a ray, and 20 of its colour and distance, per pixel and
-      // eye.
+      // The memory of each eye's largest face. Composed pictures take 16 bytes per pixel for its ray, and 20
+      // bytes per pixel and eye for colour and distance.
       const int side = shot.eyes[0].camera.width;
       drawn.views.clear();
       for (const Camera& eye : eyes_in_axes(shot, run.model().axes))
@@ -68,8 +68,8 @@ std::optional<double> finite(const std::optional<double>& metres) {
   return metres && std::isfinite(*metres) ? metres : std::nullopt;
 }
 
-// The shot that decides the screen's distance, if no option does: for pictures with both eyes in one, to be
-// seen on a screen and not in a headset.
+// Returns the shot that decides the screen's distance. Returns none if an option sets the distance, if the
+// eyes have separate pictures, or if the pictures are for a headset.
 std::optional<Shot> shot_for_screen(const RenderRun& run) {
   const RenderOptions& o = run.options;
   const bool flat = run.outputs.layout != LAYOUT_SEPARATE && run.outputs.layout != LAYOUT_MULTI_VIEW;
@@ -125,7 +125,7 @@ CameraList find_list(const RenderOptions& o, const Outputs& outputs) {
 void level(Shot& shot, const glm::dvec3& up) {
   const glm::dvec3 down = -glm::normalize(up);
   Camera &first = shot.eyes.front().camera, &last = shot.eyes.back().camera;
-  // If the head looks straight up or down, use its own right.
+  // If the head looks straight up or down, use its own x axis.
   glm::dvec3 right = glm::cross(down, first.rotation[2] + last.rotation[2]);
   if (glm::length(right) < 1e-3) right = first.rotation[0] - glm::dot(first.rotation[0], down) * down;
   right = glm::normalize(right);
@@ -202,14 +202,14 @@ ExitCode render(const RenderOptions& asked) {
   check_photos_drawn(run);
   const render::FrameSettings settings = settings_of(o.drawing);
   if (o.scene.detail || quality_may_choose_levels(o)) {
-    run.heads_turn = run.list.path || run.outputs.vr180;  // turning the head shows what is beside the view
+    run.heads_turn = run.list.path || run.outputs.vr180;  // a turning head soon sees chunks out of view
     run.stream = open_for_shots(o.scene, settings, run.heads_turn);
     if (!o.scene.detail && !run.stream->files().has_errors()) run.stream.reset();
   }
   if (!run.stream && o.output.detail_report)
     fail(
         "--detail-report: {} lacks the errors of its levels, so --quality cannot choose them: give --detail "
-        "PX",
+        "Npx",
         o.scene.name);
   if (!run.stream) {
     std::optional<DetailBudget> budget;

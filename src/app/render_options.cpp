@@ -19,7 +19,8 @@ namespace binosplat::app {
 
 namespace {
 
-// Refuses --shard and --resume with settings that use earlier frames: pictures would depend on the shard.
+// Refuses --shard and --resume with settings that use earlier frames, because pictures would then depend on
+// the shard.
 void check_regions(const RenderOptions& o) {
   if (o.shard.all() && !o.resume) return;
   const char* const part = o.resume ? "--resume" : "--shard";
@@ -74,7 +75,7 @@ void add_headset_options(CLI::App& sub, HeadsetOptions& o) {
   add_value(sub, "--record", "S", o.record_s, between(1e-3, 3600.0, "seconds above zero, at most 3600"),
             "Record the first S seconds as `profile` does; F8 in the mirror window\nrecords ten more");
   sub.add_flag_callback(
-      "--no-mirror", [&o] { o.mirror = false; }, "No window with the left eye's picture");
+      "--no-mirror", [&o] { o.mirror = false; }, "Open no window with the left eye's picture");
 }
 
 // Options that conflict with a headset, and the reasons.
@@ -84,7 +85,7 @@ constexpr std::pair<const char*, const char*> not_in_headsets[] = {
     {"--size", of_windows},        {"--layout", of_windows},    {"--ipd", of_windows},
     {"--convergence", of_windows}, {"--cant", of_windows},      {"--show", of_windows},
     {"--fov", of_windows},         {"--output", of_windows},    {"--tiles", of_studies},
-    {"--tile", of_studies},        {"--shader-dir", of_studies}};
+    {"--tile-size", of_studies},   {"--shader-dir", of_studies}};
 constexpr std::pair<const char*, const char*> not_beside_a_budget[] = {
     {"--foveate", "a quality needs whole pictures: choose one of them"},
     {"--quality", "choose one, the budget chooses the quality"},
@@ -134,8 +135,8 @@ void add_options(CLI::App& sub, RenderOptions& o) {
   add_picture_options(sub, o);
   sub.add_flag_callback(
          "--vr180", [&o] { o.camera.lens.preset = "vr180"; },
-         "Everything ahead of each eye, 180 degrees wide and high\n(equirectangular, 2048 x 2048 px an eye, "
-         "or --size), level, for players\nof VR180: .png, or .vr.jpg, .mp4 and .mov with VR180's metadata")
+         "Draw VR180: level, 180 degrees wide and high ahead of each eye\n(equirectangular, 2048 x 2048 px "
+         "an eye, or --size); .png, or .vr.jpg,\n.mp4 and .mov with VR180's metadata")
       ->group("Cameras");
   add_foveate_option(sub, o.foveate);
   add_tour_options(sub, o.camera);

@@ -41,7 +41,7 @@ struct RenderOptions {
 /// Adds the options that define the pictures, but not those of output.
 void add_picture_options(CLI::App& sub, RenderOptions& options);
 
-/// Adds all of them; `options` must outlive parsing. Wrong values throw CLI::ParseError or Error.
+/// Adds all options of `render`; `options` must outlive parsing. Wrong values throw CLI::ParseError or Error.
 void add_options(CLI::App& sub, RenderOptions& options);
 
 /// Adds the options of the preview. The help ends with the window's keys.

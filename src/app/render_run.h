@@ -24,19 +24,19 @@ namespace binosplat::app {
 /// The levels that a shot was drawn with, and the times to load them.
 struct ShotLevels {
   std::size_t gaussians = 0;             // of the model at these levels
-  bool switched = false;                 // differs from the previous shot
-  double read_ms = 0.0;                  // reading files, if needed
-  double upload_ms = 0.0;                // uploading to the GPU
-  std::optional<double> switch_psnr;     // dB between old and new levels, both exact
+  bool switched = false;                 // levels differ from those of the previous shot
+  double read_ms = 0.0;                  // time to read files
+  double upload_ms = 0.0;                // time to upload to the GPU
+  std::optional<double> switch_psnr;     // dB, between exact pictures of the old and the new levels
   std::optional<double> finest_psnr;     // dB, against the exact picture of the finest levels
   std::optional<double> predicted_psnr;  // predicted from the levels' errors; the worse eye
 };
 
-/// The range of disparities of a pair, and a better rig if they are uncomfortable.
+/// The range of disparities of an eye pair, and a better rig if they are uncomfortable.
 struct Comfort {
   stereo::DisparityRange range;
-  std::optional<double> focus;                   // m, where the range's disparity is 0; none: infinitely far
-  std::optional<stereo::ComfortableRig> better;  // in m; if the program made an uncomfortable rig itself
+  std::optional<double> focus;                   // m, distance of disparity 0 in `range`; none: infinite
+  std::optional<stereo::ComfortableRig> better;  // in metres; only if the program chose the rig
 };
 
 /// A drawn shot.
@@ -50,7 +50,8 @@ struct Drawn {
   std::vector<stereo::FoveatedEye> foveated;  // with --foveate, by eye
 };
 
-/// Times from the first frame to the last file. `all`, `reading` and `waiting` are ms of the drawing thread.
+/// Times from the first frame to the last file. `all`, `reading` and `waiting` are ms of the drawing thread:
+/// in all, waiting for pictures from the GPU, and waiting for the threads that write.
 struct RunTimes {
   double all = 0.0, reading = 0.0, waiting = 0.0;
   double gpu = 0.0;                      // ms of the GPU, all frames
@@ -66,18 +67,18 @@ struct RenderRun {
   PhotoSource photos = {};
   std::unique_ptr<gl::Context> context = {};   // before its users: destroyed last
   std::unique_ptr<PictureStream> stream = {};  // if levels follow the shots
-  bool heads_turn = false;                     // on a path or in VR180; for the stream
-  Model loaded = {};                           // if there is no stream
+  bool heads_turn = false;                     // paths, VR180: the stream also refines chunks out of view
+  Model loaded = {};                           // the model, if there is no stream
   CameraList list = {};
   double near_plane = 0.0;  // world units
   std::vector<Shot> shots = {};
-  std::optional<Shot> screen = {};  // decides the screen's distance if no option does
+  std::optional<Shot> screen = {};  // the shot that decides the screen's distance if no option does
 
   // Results.
   render::MemoryNeeds needs = {};                // of the model and of the largest view
   std::optional<double> convergence = {};        // m, from an option or chosen; none: infinitely far
   std::vector<Drawn> drawn = {};                 // for each shot
-  std::vector<render::FrameReport> frames = {};  // all, with --frames per shot
+  std::vector<render::FrameReport> frames = {};  // of all frames: --frames for each shot
   RunTimes times = {};
   std::optional<double> exact_ms = {};  // GPU time of one exact frame, if --quality drew a long --path
 

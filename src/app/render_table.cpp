@@ -32,7 +32,7 @@ std::optional<T> given(bool is, const T& value) {
   return is ? std::optional(value) : std::nullopt;
 }
 
-// Reported dB of a shot. If levels share --quality, they include the levels' loss.
+// Reported dB of a shot. If levels share the error of --quality, the dB include the levels' loss.
 double reported_psnr(const Drawn& drawn) {
   const bool shares = drawn.levels && drawn.levels->predicted_psnr;
   const double frame = drawn.report.quality;
@@ -139,7 +139,7 @@ struct StageRow {
   double median_ms = 0.0, p99_ms = 0.0;
 };
 
-// Excludes the first frame, in which the driver compiles shaders, unless it is the only one.
+// Number of frames whose times count: all but the first, in which drivers compile shaders, and at least one.
 std::size_t timed_frames(const RenderRun& run) { return std::max<std::size_t>(run.frames.size(), 2) - 1; }
 
 // GPU times of frames by stage; empty if the reference drew them.

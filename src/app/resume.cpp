@@ -23,7 +23,7 @@ namespace {
 
 constexpr const char* render_run_name = "render-run.json";
 
-// Options of place, share, speed and memory: no picture depends on them.
+// Options that affect no picture, but only where, how fast and in which shard pictures are drawn.
 constexpr const char* no_matter[] = {"--output",     "--shard", "--resume",    "--backend",        "--device",
                                      "--max-memory", "--quiet", "--png-level", "--exr-compression"};
 
@@ -61,7 +61,7 @@ ordered_json identity_of(const RenderOptions& o, const CameraList& list, double 
                                  "near", near_plane, "units_per_metre", shots[0].units_per_metre);
   if (!is_built_in(o.scene.name)) run["model"] = content_key(fs::path(o.scene.name));
   if (!o.drawing.calibration.empty()) run["calibration"] = file_key(o.drawing.calibration);
-  // In the encoding of save_json(): names may be in any encoding.
+  // As save_json() would write it, which replaces bytes of names that are not UTF-8.
   return ordered_json::parse(run.dump(-1, ' ', false, ordered_json::error_handler_t::replace));
 }
 
@@ -69,7 +69,8 @@ void leave_out_drawn(const fs::path& folder, const ordered_json& run, std::vecto
   const fs::path file = folder / render_run_name;
   const auto is_there = [](const PictureFile& picture) { return fs::exists(picture.name); };
   for (const Shot& shot : shots) {
-    // Look for pictures first: every run writes its file before any picture.
+    // Looks for pictures before the run's file. A run that starts meanwhile writes its file first, so its
+    // pictures are not mistaken for pictures without a run.
     const auto picture = std::ranges::find_if(shot.files, is_there);
     if (picture == shot.files.end()) continue;
     if (fs::exists(file)) break;

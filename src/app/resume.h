@@ -1,5 +1,5 @@
 #pragma once
-// render --resume: keeps what an earlier run with the same options drew.
+// render --resume: keeps the pictures that an earlier run with the same options drew.
 
 #include <filesystem>
 #include <nlohmann/json_fwd.hpp>
@@ -20,14 +20,14 @@ namespace binosplat::app {
 /// on, so that the shards of one run may differ in them.
 std::vector<std::string> options_given(const CLI::App& sub);
 
-/// The values that identify a run among others with the same file names: options and contents. `shots` are
-/// those of all shards.
+/// The values that distinguish runs with the same file names: options, and hashes of the files' contents.
+/// `shots` are those of all shards.
 nlohmann::ordered_json identity_of(const RenderOptions& options, const CameraList& list, double near_plane,
                                    const std::vector<Shot>& shots);
 
-/// Removes the shots whose files are all complete in the folder, and logs their number. A file beside the
-/// pictures identifies their run; the first run writes it. Throws Error if it names another run, or if there
-/// are pictures without it.
+/// Removes the shots whose files are all complete in the folder, and logs their number. The first run writes
+/// a file beside the pictures that identifies the run. Throws Error if this file describes another run, or if
+/// there are pictures without such a file.
 void leave_out_drawn(const std::filesystem::path& folder, const nlohmann::ordered_json& run,
                      std::vector<Shot>& shots);
 

@@ -57,9 +57,9 @@ void add_rig_options(CLI::App& sub, RigOptions& o) {
   add_value(sub, "--units-per-metre", "N", o.units_per_metre, positive, "World units that make a metre (1)");
   add_parsed(
       sub, "--convergence", "METRES|inf", o.convergence, parse_convergence,
-      "Distance without disparity, where the screen stands, in metres or with\na unit: 80cm; inf: infinitely "
-      "far (comfortable for the first view if\none picture has both eyes, as for screens; else inf)");
-  sub.add_option("--cant", o.cant, "Turn each eye outwards (0)")->type_name("DEGREES");
+      "Distance of the screen, where disparity is zero, in metres or with a\nunit: 80cm; inf: infinitely "
+      "far (a comfortable distance in the first view\nif one picture has both eyes; else inf)");
+  sub.add_option("--cant", o.cant, "Turn each eye outwards by so many degrees (0)")->type_name("DEGREES");
 }
 
 }  // namespace binosplat::app

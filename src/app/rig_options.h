@@ -24,10 +24,10 @@ struct RigOptions {
 /// For commands without a rig.
 inline const RigOptions no_rig{.mono = true};
 
-/// Adds all of them; `options` must outlive parsing.
+/// Adds all options of RigOptions; `options` must outlive parsing.
 void add_rig_options(CLI::App& sub, RigOptions& options);
 
-/// A single option, for commands that take few.
+/// Adds only --ipd.
 CLI::Option* add_ipd_option(CLI::App& sub, RigOptions& options);
 
 }  // namespace binosplat::app

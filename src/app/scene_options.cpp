@@ -24,10 +24,10 @@ void add_scene_options(CLI::App& sub, SceneOptions& o) {
   sub.option_defaults()->group("Scene");
   add_lod_option(sub, o, "Level of detail of a streamed SOG, 0 the finest (the finest complete one)");
   add_parsed(
-      sub, "--detail", "PX|DB", o.detail, [](const std::string& text) { return lab::parse_detail(text); },
-      "Levels of a streamed SOG for each view, the same for both eyes. PX: the\nlargest spacing of Gaussians "
-      "in px, 0 for the finest that fit; DB, from\n20dB to 80dB: the PSNR against the finest, if the file "
-      "has the errors\nof its levels (render: the finest, always; view: 0)");
+      sub, "--detail", "Npx|NdB", o.detail, [](const std::string& text) { return lab::parse_detail(text); },
+      "Levels of a streamed SOG for each view, the same for both eyes. 5px:\nneighbouring Gaussians at "
+      "most 5 px apart, 0px the finest that fit; 40dB\n(20 to 80): that PSNR against the finest, in folders "
+      "of `binosplat levels`\n(render: the finest, always; view: 0px)");
   add_value(sub, "--gpu-memory", "MB", o.gpu_memory, positive,
             "Choose levels of a streamed SOG that fit into MB, the finest near the\neyes; for each view with "
             "--detail, else one choice for all");
@@ -39,10 +39,11 @@ void add_scene_options(CLI::App& sub, SceneOptions& o) {
   sub.add_flag_callback(
          "--no-antialias", [&o] { o.antialias = false; }, "Draw as a model that was trained without it")
       ->excludes(antialias);
-  add_value(sub, "--kernel-px2", "S", o.kernel_px2, positive,
-            "Variance of the low-pass of projected Gaussians in px^2 (0.3; 0.1\nfor Mip-Splatting's files)");
-  add_value(sub, "--appearance", "ID", o.appearance, whole_number,
-            "Appearance of a Scaffold-GS model, one of its training's (0)");
+  add_value(sub, "--eps2d", "PX2", o.kernel_px2, positive,
+            "Low-pass: variance in px^2 that each projected Gaussian gains, as gsplat's\neps2d (0.3; 0.1 for "
+            "Mip-Splatting's files)");
+  add_value(sub, "--appearance", "N", o.appearance, whole_number,
+            "Row of a Scaffold-GS model's appearance embedding (0)");
   add_seed_option(sub, o);
   add_count_option(sub, o, "Gaussians of demo:city, 10000 to 100000000 (1000000)");
   add_repeat_options(sub, o);
@@ -66,7 +67,7 @@ CLI::Option* add_axes_option(CLI::App& sub, SceneOptions& o) {
 }
 
 void add_place_option(CLI::App& sub, SceneOptions& o) {
-  add_value(sub, "--place", "FILE", o.place, CLI::ExistingFile,
+  add_value(sub, "--place", "FILE", o.place, CLI::ExistingFile.description(""),
             "Other models in the scene's world: JSON, a list of {\"model\": PATH,\n\"matrix\": 16 numbers as "
             "in a node of glTF}");
 }

@@ -11,12 +11,12 @@
 
 namespace binosplat::app {
 
-/// The model files if the scene is a folder with several and --fps is set, else empty. Throws Error for
-/// options that need a single model.
+/// The model files if the scene is a folder with several models and --fps is set, else empty. Throws Error
+/// for options that need a single model.
 std::vector<std::filesystem::path> sequence_of(const RenderOptions& options);
 
 /// Assigns the models to the shots in order, and names each shot after its file. A single shot is repeated
-/// for all models. If the numbers differ, drops the surplus and logs it.
+/// for all models. Otherwise drops surplus models or shots, and logs the numbers.
 void show_in_turn(const std::vector<std::filesystem::path>& files, std::vector<Shot>& shots);
 
 /// The models of all shots but the first. Reads the next one while the current one is drawn.

@@ -117,7 +117,7 @@ SceneHints hints_of(const std::optional<SavedPose>& saved) {
   return {saved->units_per_metre, saved->ipd, saved->up, {}};
 }
 
-// Stores what the cameras of a capture imply for new cameras.
+// Stores the up direction and the centre that the cameras of a capture suggest for new cameras.
 void learn(const std::vector<Camera>& cameras, SceneHints& hints) {
   const auto capture = capture_of(cameras, hints.up);
   if (!capture) return;
@@ -135,7 +135,7 @@ std::vector<Camera> cameras_for(const std::string& scene, const std::string& fil
   return cameras;
 }
 
-// Ignores unreadable cameras beside the model, with a warning.
+// Calls learn() with the cameras beside the model. Warns if they cannot be read.
 void learn_beside(const std::string& scene, SceneHints& hints) {
   const auto found = find_cameras(scene);
   if (!found) return;
@@ -163,8 +163,8 @@ CameraList camera_list(const SceneOptions& scene, const CameraOptions& camera,
   }
 }
 
-// Derives up and centre from the model if no cameras define them. Returns the origin of both for the log;
-// empty if --eye and --up define all.
+// Derives the up direction and the centre from the model if no cameras define them. Returns for the log how
+// both were found; empty if --eye and --up define all.
 std::string learn_from(const CoredModel& cored, const SceneOptions& scene, const CameraOptions& camera,
                        SceneHints& hints) {
   if (hints.around && !camera.eye)

@@ -1,5 +1,5 @@
 #pragma once
-// From options to shots: the cameras, and the eyes of each.
+// Turns options into shots: the cameras, and the eyes of each camera.
 
 #include <functional>
 #include <set>
@@ -19,7 +19,7 @@
 
 namespace binosplat::app {
 
-/// One eye: its camera in the world, and its view for shaders in the model's frame (scene/axes.h).
+/// One eye: its camera in world coordinates, and its view for shaders in the model's axes (scene/axes.h).
 struct Eye {
   std::string side;  // "left", "right", or "" for the camera itself
   Camera camera;
@@ -34,9 +34,9 @@ struct PictureFile {
 
 /// One frame to draw, and its files.
 struct Shot {
-  std::string name;   // the view's, for users
-  std::string stem;   // of file names: stem_of(name), unique among the shots
-  std::string model;  // its file, if each shot has its own (app/sequence.h)
+  std::string name;   // the view's name, for users
+  std::string stem;   // start of its file names: stem_of(name), unique among the shots
+  std::string model;  // the model's file, if each shot has its own (app/sequence.h)
   std::vector<Eye> eyes;
   std::vector<PictureFile> files;  // only for `render`: set by place_files() (app/outputs.h)
   std::optional<double> ipd;       // m; only with a rig
@@ -48,8 +48,8 @@ struct Shot {
 struct SceneHints {
   std::optional<double> units_per_metre;  // world units
   std::optional<double> ipd;              // m
-  std::optional<glm::dvec3> up;           // the world's, or --up
-  std::optional<Capture::Around> around;  // the centre for new cameras
+  std::optional<glm::dvec3> up;           // up direction of the world, or --up
+  std::optional<Capture::Around> around;  // centre for cameras made from the model
   std::string unusable;                   // why the cameras beside the model cannot be used, else empty
 };
 
@@ -63,14 +63,15 @@ struct CameraList {
   SceneHints hints;
 };
 
-/// The cameras of --cameras, of a file beside the model or of the built-in scene. Does not read the model.
-/// Empty if there are none, or if options place their own. Also empty if the ones beside the model cannot be
-/// used (SceneHints::unusable) and no option requests them. `saved` comes from find_saved(). `SceneHints`
-/// stores the units and eye distance of the rig, or else the scene's.
+/// Returns the cameras of --cameras, of a file beside the model or of the built-in scene. Does not read the
+/// model. The list is empty if there are no such cameras, or if options place cameras. It is also empty if
+/// the cameras beside the model cannot be used (SceneHints::unusable) and no option requests them. `saved`
+/// comes from find_saved(). The list's hints have units and eye distance by the rig's options, or else the
+/// scene's.
 CameraList listed_cameras(const SceneOptions& scene, const CameraOptions& camera, const RigOptions& rig = {},
                           const std::optional<SavedPose>& saved = {});
 
-/// The reason for missing cameras, for errors: none lie beside the model, or those cannot be used.
+/// The reason for missing cameras, for errors: there are none beside the model, or they cannot be used.
 std::string why_no_cameras(const SceneOptions& scene, const SceneHints& hints);
 
 /// The pose that `binosplat view` saved beside the model, if any; logs it.
@@ -83,8 +84,9 @@ std::optional<CameraList> saved_camera(const SceneOptions& scene, const CameraOp
 /// The camera of --eye and --at.
 CameraList eye_camera(const CameraOptions& camera, const SceneHints& hints);
 
-/// Level cameras from --eye, --orbit or the model. Their up and centre come from cameras beside the model or
-/// from the model's ground (scene/ground.h), and are stored in the list. Logs the choice.
+/// Makes level cameras by --eye, by --orbit or from the model. Their up direction and centre come from
+/// cameras beside the model or from the model's ground (scene/ground.h), and are stored in the list. Logs the
+/// choice.
 CameraList made_up_cameras(const SceneOptions& scene, const CameraOptions& camera, SceneHints hints,
                            const Model& model);
 
@@ -98,8 +100,8 @@ struct OpenScene {
   double near_plane = 0.0;  // world units
 };
 
-/// Opens a scene with its listed cameras, or with ones made from its model. Calls `check` with listed cameras
-/// before it reads the model.
+/// Opens a scene with its listed cameras, or with cameras made from its model. Before it reads the model,
+/// calls `check` with the listed cameras.
 OpenScene open_scene(const SceneOptions& scene, const CameraOptions& camera, const RigOptions& rig,
                      const std::function<void(const CameraList&)>& check = {});
 
@@ -110,13 +112,13 @@ stereo::RigSettings rig_settings(const RigOptions& rig, const SceneHints& hints,
 /// Moves the screen of a parallel rig from infinity to `metres`. Ignores eyes that the cameras define.
 void converge(Shot& shot, double metres);
 
-/// stem_of(name), with a number if `taken` has it; adds it to `taken`.
+/// Returns stem_of(name), with a number if `taken` has this stem already. Adds the result to `taken`.
 std::string free_stem(const std::string& name, std::set<std::string>& taken);
 
 /// The views of a shot's eyes.
 std::vector<shared::View> views_of(const Shot& shot);
 
-/// The cameras of a shot's eyes in the model's frame.
+/// The cameras of a shot's eyes in the model's axes.
 std::vector<Camera> eyes_in_axes(const Shot& shot, const ModelAxes& axes);
 
 /// Value of --view for all views of a list.
@@ -139,8 +141,9 @@ void check_views(const std::vector<std::string>& views, bool mono, const CameraL
 std::vector<Camera> chosen_cameras(const std::vector<std::string>& views, const Lens& lens,
                                    const CameraList& list, const char* option = "--view");
 
-/// The shots of the named views: NAME, all_views, or none for the first. Paths and cameras made from the
-/// model give all. `near_plane` is in world units; `axes` are the model's. Throws as chosen_cameras() does.
+/// Makes the shots of the named views: of all views for all_views, or of the first view if none is named.
+/// Paths and cameras made from the model always give all. `near_plane` is in world units; `axes` are the
+/// model's. Throws as chosen_cameras() does.
 std::vector<Shot> make_shots(const std::vector<std::string>& views, const Lens& lens, const RigOptions& rig,
                              const CameraList& list, double near_plane, const ModelAxes& axes);
 

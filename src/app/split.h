@@ -25,12 +25,13 @@ void add_split_options(CLI::App& sub, MeasuredOptions& measured, SplitOptions& s
 /// photo has another size.
 CameraList needed_cameras(const std::string& command, const MeasuredOptions& options);
 
-/// The largest number of held-back views, by the numbers of candidates and of cameras.
+/// Returns the largest allowed number of held-back views, given the numbers of candidates and of all cameras.
 using MostHeldBack = std::function<std::size_t(std::size_t can_judge, std::size_t cameras)>;
 
-/// Holds back the named views, or up to the requested number within `most`, evenly spread over the
-/// candidates, at least one. Candidates need a photo if there are photos. The other views train; test views
-/// do neither. Throws Error for unknown views and for views named twice.
+/// Holds back the named views. If none is named, holds back at least one and at most `split.held_back` or
+/// `most` views, evenly spread over the candidates. If there are photos, only views with a photo are
+/// candidates. The named test views are test views; all others are training views. Throws Error for unknown
+/// views and for views named twice.
 lab::ViewSplit split_views(const std::string& command, const MeasuredOptions& options,
                            const PhotoSource& photos, const SplitOptions& split, const CameraList& list,
                            const MostHeldBack& most);

@@ -56,7 +56,7 @@ void add_tour_options(CLI::App& sub, CameraOptions& o) {
   add_tour_option(sub, o);
   sub.add_flag("--keys", o.keys, "Draw only the keys of --path");
   add_value(sub, "--seconds", "S", o.seconds, seconds_range,
-            "The first S seconds of the tour (all); or the duration of the path\nthrough the keys of --path, "
+            "Draw only the first S seconds of the tour (all); with --path: take S\nseconds through its keys, "
             "at an even pace (by their times)");
 }
 

@@ -48,7 +48,8 @@ ModelFormat check_trim(const TrimOptions& o) {
   return format;
 }
 
-/// The input file, if it has the output's format and draws equally without other files.
+/// The input file, if a copy of it may be the output: it has the output's format, and its pictures do not
+/// depend on other files.
 std::optional<fs::path> same_format(const TrimOptions& o, const Model& model, ModelFormat format) {
   const fs::path file = model_file(o.scene.name);
   const auto run = run_of(file);

@@ -27,7 +27,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// Matroska's StereoMode; empty for one eye, anaglyph for the other layouts.
+// Matroska's StereoMode: empty for one eye, anaglyph for layouts that are not listed.
 std::string stereo_mode(int layout) {
   static const std::map<int, std::string> modes = {
       {LAYOUT_PARALLEL, "left_right"},        {LAYOUT_HALF_WIDTH, "left_right"},

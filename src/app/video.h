@@ -21,15 +21,16 @@ namespace binosplat::app {
 /// Whether the ending is .mp4, .mov, .mkv or .webm, in any case.
 bool is_video(const std::filesystem::path& path);
 
-/// The ffmpeg of $PATH. Throws Error that names the package to install, and a folder as the alternative.
+/// The ffmpeg of $PATH. If there is none, throws Error, which names the package to install, and a folder of
+/// pictures as the alternative.
 std::filesystem::path find_ffmpeg();
 
 class Video {
  public:
   /// Starts ffmpeg: H.264 of visually lossless quality, or VP9 in .webm. Matroska files store the layout.
   /// Chroma has half resolution, as players expect, except in layouts that interleave the eyes' pixels or mix
-  /// their colours. An odd size gains a row or column. With `vr180`, .mp4 and .mov are marked as half a
-  /// sphere per eye.
+  /// their colours. An odd width or height is extended by one pixel. With `vr180`, .mp4 and .mov are marked
+  /// as half a sphere per eye.
   Video(const std::filesystem::path& path, int width, int height, double frames_a_second, int layout,
         bool vr180 = false);
   ~Video();
@@ -52,7 +53,7 @@ class Video {
   std::filesystem::path target_;
   UnfinishedFile temporary_;
   std::optional<int> vr180_layout_;
-  std::unique_ptr<std::FILE, int (*)(std::FILE*)> said_;  // ffmpeg's standard error
+  std::unique_ptr<std::FILE, int (*)(std::FILE*)> said_;  // receives ffmpeg's messages
   int pictures_ = -1;                                     // socket to its standard input
   pid_t ffmpeg_ = -1;
 };

@@ -9,8 +9,8 @@ namespace binosplat::compact {
 
 namespace {
 
-// Damping of coefficients, relative to the weight of all views, so that a single view does not decide a
-// degree alone.
+// Damping of coefficients, relative to the summed weight of all views. So a single view of little weight
+// hardly changes a coefficient.
 constexpr double inertia = 0.01;
 
 constexpr std::size_t at(std::size_t row, std::size_t column) { return row * (row + 1) / 2 + column; }
@@ -36,7 +36,7 @@ ColourFit::Coefficients ColourFit::fitted(int degree, const Coefficients& now) c
     std::copy_n(now.begin(), count, x.begin());
     return x;
   }
-  // Cholesky factorisation of gram + held, and its two triangular solves.
+  // Cholesky factorisation of normal_matrix_ + held * identity, and its two triangular solves.
   std::array<double, count_max*(count_max + 1) / 2> l{};
   for (std::size_t row = 0; row < count; ++row) {
     x[row] = glm::dvec3(right_side_[row]) + held * now[row];

@@ -1,26 +1,27 @@
 #pragma once
-// Fits harmonics of a lower degree to the colours of a Gaussian towards the views that show it.
+// Fits harmonics of a lower degree to the colours of a Gaussian in the views that show it.
 
 #include <array>
 #include <glm/glm.hpp>
 
 namespace binosplat::compact {
 
-/// The colours of one Gaussian towards some views, as sums for a weighted least-squares fit of harmonics of
-/// degrees 0 to 2.
+/// Collects the colours of one Gaussian in some views, as sums for a weighted least-squares fit of harmonics
+/// of degrees 0 to 2.
 class ColourFit {
  public:
   using Coefficients = std::array<glm::dvec3, 9>;  // those beyond the fitted degree are 0
 
-  /// Adds a colour, minus 0.5, towards a view. `basis` is sh_basis() in its direction, `weight` its area in
-  /// the picture, px.
+  /// Adds the Gaussian's colour minus 0.5 in a view. `basis` is sh_basis() of the direction from the eye to
+  /// the Gaussian. `weight` is the Gaussian's visible area in the picture, px.
   void add(const std::array<double, 16>& basis, const glm::dvec3& colour, double weight);
 
-  /// Returns the least-squares coefficients of a degree. Coefficients that no view determines stay near
+  /// Returns the least-squares coefficients up to a degree. Coefficients that no view determines stay near
   /// `now`.
   Coefficients fitted(int degree, const Coefficients& now) const;
 
-  /// Returns how much the colours then change: px * squared colour, mean over the channels.
+  /// Returns how much fitted() changes the colours: the squared change times px, summed over the views, mean
+  /// over the channels.
   double change(int degree, const Coefficients& now) const;
 
  private:

@@ -20,15 +20,15 @@ namespace binosplat::compact {
 namespace {
 
 constexpr double requested_db = 40.0;
-constexpr int passes = 3;  // of visibility and choice: later choices hardly change
-// Pictures: a headset's field of view in few pixels, so that each shows many chunks.
+constexpr int passes = 3;  // rounds of measuring visibility and choosing levels; later ones change little
+// Pictures have a headset's field of view in few pixels, so that each shows many chunks.
 constexpr int side = 512;     // px
 constexpr double fov = 95.0;  // degrees
 // Candidate eyes are checked in small pictures of the coarsest levels.
 constexpr int candidate_side = 128, candidates_for_one = 24, candidates_at_once = 8;
-constexpr double shows_least = 0.35;  // share of a picture that is not empty
-constexpr double as_far_least = 0.4;  // mean distance of its content over the target's
-constexpr double hidden = 0.01;       // px of a visible chunk, of hundreds of thousands
+constexpr double shows_least = 0.35;  // smallest visible area of all chunks, as a share of the picture
+constexpr double as_far_least = 0.4;  // smallest mean distance of visible chunks over the target's distance
+constexpr double hidden = 0.01;       // px; a chunk with a smaller visible area counts as hidden
 
 /// Returns the chunk as lod-meta.json will describe it.
 LodChunk lod_chunk(std::span<const Model> levels, const LevelErrors& errors) {
@@ -55,7 +55,7 @@ shared::View from(const glm::dvec3& eye, const glm::dvec3& at, int px) {
   return make_view(look_at(eye, at, up, fov, px, px));
 }
 
-/// Calls `draw` and returns whether memory sufficed; if not, other pictures must do.
+/// Calls `draw`. Returns false if memory was short, so that other pictures can still be drawn.
 bool can_draw(const std::function<void()>& draw) {
   try {
     draw();
@@ -66,7 +66,7 @@ bool can_draw(const std::function<void()>& draw) {
   return true;
 }
 
-/// The chunks as one model, at any levels.
+/// All chunks in one model, each at any of its levels.
 class JointModel {
  public:
   JointModel(gl::Context& context, std::span<const std::vector<Model>> levels_of_chunks,
@@ -99,8 +99,8 @@ class JointModel {
     gpu_model_->reload();
   }
 
-  /// Finds views from among the chunks; they must be at their coarsest levels. Sets `room` to whether memory
-  /// sufficed.
+  /// Finds views whose eyes lie among the chunks. All chunks must have their coarsest levels. Sets `room` to
+  /// whether memory sufficed.
   std::vector<shared::View> find_views(int pictures, bool& room) {
     std::vector<shared::View> views;
     room = true;
@@ -127,7 +127,7 @@ class JointModel {
   void draw(const shared::View& view) { frame_->draw({&view, 1}); }
   const gl::Buffer& colours() const { return frame_->colours(); }
 
-  /// Sets the chunks' levels for a view, and returns the predicted loss.
+  /// Sets the levels that a view needs for requested_db, and returns their predicted loss.
   double settle(const shared::View& view) {
     set_levels(coarsest());
     LevelChoice choice;

@@ -11,11 +11,11 @@
 
 namespace binosplat::compact {
 
-/// Draws `pictures` pictures of the chunks (`levels_of_chunks`), from eyes among them. Each uses the levels
-/// for which `errors` (of level_errors) predict 40 dB, and is compared with the finest levels of its visible
-/// chunks. Overlapping chunks lose more than predicted, walls at a slant less. An eye lies between two
-/// Gaussians and looks at one of them. Returns fewer pictures if no such eyes are found. A picture for which
-/// memory was short has `drawn` false. Deterministic.
+/// Draws `pictures` pictures of the chunks (`levels_of_chunks`). Each eye lies between two Gaussians, among
+/// the chunks, and looks at one of them. Each picture has the levels for which `errors` (of level_errors())
+/// predict 40 dB. It is compared with the finest levels of its visible chunks. Overlapping chunks lose more
+/// than predicted, and walls seen at a slant lose less. Returns fewer losses if fewer eyes have a full view.
+/// If memory was short for a picture, its `drawn` is false. Deterministic.
 std::vector<JointLoss> joint_losses(gl::Context& context,
                                     std::span<const std::vector<Model>> levels_of_chunks,
                                     std::span<const LevelErrors> errors, int pictures);

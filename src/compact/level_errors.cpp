@@ -15,18 +15,19 @@ namespace binosplat::compact {
 
 namespace {
 
-constexpr int widths = 2;      // of pixels
-constexpr double wider = 8.0;  // ratio of successive widths
-// The narrowest pixel, relative to the spacing of Gaussians on a square as wide as the box's diagonal; true
-// spacings are smaller.
+constexpr int widths = 2;      // number of pixel widths
+constexpr double wider = 8.0;  // ratio of successive pixel widths
+// Ratio of the narrowest pixel's width to the spacing that the Gaussians would have in a square as wide as
+// the box's diagonal. True spacings are smaller.
 constexpr double narrowest = 0.625;
-// Between chunks, px: the reach of the low-pass and of Gaussians at the edge.
+// px around each chunk, for the low-pass and for Gaussians that extend beyond the box.
 constexpr int margin = 8;
-constexpr int side_most = 1280;  // px of a picture
-// Distance of the eye, in sides of a picture: nothing is over 5 degrees from the axis.
+constexpr int side_most = 1280;  // largest width and height of a picture, px
+// Distance of the eye, in widths of the picture. So all Gaussians lie within about 5 degrees of the axis.
 constexpr double away = 8.0;
 
-/// Returns the box around spheres of two standard deviations.
+/// Returns the box around all Gaussians, as spheres with a radius of two of their largest standard
+/// deviations.
 Box box_of(const Model& model) {
   Box box;
   for (std::size_t i = 0; i < model.count(); ++i) {
@@ -42,22 +43,22 @@ struct MeasuredChunk {
   std::span<const Model> levels;
   Box box;
   LevelErrors* errors;
-  int square;  // px, side of its narrowest picture
+  int square;  // px, side of the chunk's square in the narrowest pixels
 };
 
-/// Squares of a picture, row by row.
+/// The squares of a picture, row by row, each with one chunk.
 struct Grid {
-  std::uint32_t count, side, across;  // squares, px, squares in a row
+  std::uint32_t count, side, across;  // number of squares, side of a square in px, squares in a row
   std::uint32_t width() const { return across * side; }
   std::uint32_t height() const { return (count + across - 1) / across * side; }
-  /// Returns its first pixel.
+  /// Returns the first pixel of square `i`.
   glm::uvec2 corner(std::size_t i) const {
     const auto k = static_cast<std::uint32_t>(i);
     return side * glm::uvec2(k % across, k / across);
   }
 };
 
-/// Draws models one after the other in the same buffers: allocating buffers takes as long as drawing.
+/// Draws models one after the other in the same buffers, because allocating buffers takes as long as drawing.
 class LevelDrawer {
  public:
   explicit LevelDrawer(gl::Context& context)
@@ -70,8 +71,8 @@ class LevelDrawer {
   /// The next model to draw; its memory is reused.
   Model& model() { return model_; }
 
-  /// Draws the finest level, with which draw() compares from now on. Returns its visible area in each square,
-  /// px.
+  /// Draws the finest level, with which later calls of draw() compare. Returns its visible area in each
+  /// square, px.
   std::vector<float> draw_finest(const shared::View& view, const Grid& grid) {
     draw(view, true);
     finest_.reserve(frame_->colours().bytes());
@@ -79,7 +80,8 @@ class LevelDrawer {
     return sums_of(grid, true);
   }
 
-  /// Returns each square's difference from the finest level, over about its mean colour.
+  /// Draws another level. Returns the squared error of each square against the finest level, over about the
+  /// chunk's mean colour.
   std::vector<float> draw(const shared::View& view, const Grid& grid) {
     draw(view, false);
     return sums_of(grid, false);
@@ -154,7 +156,7 @@ class ChunkSheet {
   }
 
  private:
-  /// Places one level of all chunks.
+  /// Copies one level of all chunks into `all`, each chunk into its square.
   void fill(Model& all, std::size_t level) const {
     if (all.count() == 0) all = without_gaussians(chunks_.front().levels[level]);
     std::vector<std::size_t> first{0};
@@ -163,7 +165,7 @@ class ChunkSheet {
     parallel_for(chunks_.size(), [&](std::size_t i) {
       const MeasuredChunk& chunk = chunks_[i];
       copy(chunk.levels[level], 0, chunk.levels[level].count(), all, first[i]);
-      // At a distance of as many world units as the focal length has pixels, a pixel is one world unit.
+      // At a depth of fx world units, a pixel covers one world unit.
       const glm::dvec2 centre =
           glm::dvec2(grid_.corner(i)) + 0.5 * grid_.side - glm::dvec2(camera_.cx, camera_.cy);
       const glm::dvec3 at(centre, camera_.fx);
@@ -183,11 +185,11 @@ class ChunkSheet {
   Camera camera_;
 };
 
-/// Levels that are also drawn in the narrowest pixels. Coarser ones lose there at most as much of each area
-/// as in wider pixels.
+/// Number of levels that are also drawn in the narrowest pixels. There, coarser levels lose at most as much
+/// per visible area as in wider pixels.
 constexpr std::size_t fine_levels = 3;
 
-/// In wide pixels both sides look much alike, so only the first of two opposite directions is drawn.
+/// In wide pixels a chunk's two sides look much alike, so only the first of two opposite directions is drawn.
 bool is_drawn(std::size_t direction, std::size_t width) { return width == 0 || direction % 2 == 0; }
 
 void fill_in(LevelErrors& errors) {
@@ -241,7 +243,7 @@ std::vector<LevelErrors> level_errors(gl::Context& context,
     chunks.push_back({levels_of_chunks[i], box, &errors[i], static_cast<int>(across) + 2 * margin});
   }
   LevelDrawer drawer(context);
-  // All squares of a sheet have the size of its largest.
+  // All squares of a sheet are as large as the largest needs, so chunks of similar size share a sheet.
   std::stable_sort(chunks.begin(), chunks.end(),
                    [](const MeasuredChunk& a, const MeasuredChunk& b) { return a.square > b.square; });
   for (std::size_t first = 0, count = 0; first < chunks.size(); first += count) {

@@ -10,11 +10,11 @@
 
 namespace binosplat::compact {
 
-/// Draws every level of each chunk (`levels_of_chunks`) alone, from far away and from six directions, in
-/// pixels of two widths. The background has about the chunk's mean colour. Compares it with the chunk's
-/// finest level. A picture holds many chunks side by side. Each chunk has its levels from the finest on, none
-/// without Gaussians. To save drawing, opposite directions share one measurement in wide pixels. Levels from
-/// 3 on are drawn in wide pixels only; narrow pixels get their error per visible area.
+/// Draws every level of each chunk alone, from far away in six directions, in pixels of two widths, over
+/// about the chunk's mean colour. Compares each level with the chunk's finest level. `levels_of_chunks` has
+/// each chunk's levels from the finest on, all with Gaussians. To save drawing, a picture holds many chunks
+/// side by side, and opposite directions share one measurement in wide pixels. Levels from 3 on are drawn in
+/// wide pixels only. In narrow pixels they are assumed to have the same error per visible area.
 std::vector<LevelErrors> level_errors(gl::Context& context,
                                       std::span<const std::vector<Model>> levels_of_chunks);
 

@@ -1,5 +1,5 @@
 #pragma once
-// JSON of the errors of chunks, as in errors_N.json and joint_N.json.
+// Converts the errors of chunks to JSON and back, for errors_N.json and joint_N.json.
 
 #include <nlohmann/json.hpp>
 #include <string>
@@ -9,7 +9,8 @@
 
 namespace binosplat {
 
-/// Converts numbers times a factor to JSON with three digits: six directions do not determine more.
+/// Converts numbers times a factor to JSON with three significant digits. Errors from six directions are not
+/// more precise.
 nlohmann::ordered_json json_of(double number, double factor = 1.0);
 template <typename Item>
 nlohmann::ordered_json json_of(const std::vector<Item>& list, double factor = 1.0) {
@@ -20,11 +21,11 @@ nlohmann::ordered_json json_of(const std::vector<Item>& list, double factor = 1.
 
 /// The JSON of a batch's chunks.
 nlohmann::ordered_json json_of(const std::vector<LevelErrors>& chunks);
-/// Parses it, for `chunks` chunks with `levels` levels. Throws Error naming the file if it has other numbers.
+/// Parses that JSON. Throws Error, which names the file, unless it has `chunks` chunks with `levels` levels.
 std::vector<LevelErrors> parse_level_errors(const std::string& name, const std::string& text,
                                             std::size_t chunks, std::size_t levels);
 
-/// The JSON of a scene's pictures.
+/// The JSON of a joint scene's pictures, for joint_N.json.
 nlohmann::ordered_json json_of(const std::vector<JointLoss>& pictures);
 /// Returns measured over predicted error for each picture, except those that were not drawn or have a
 /// predicted error of 0.

@@ -16,12 +16,12 @@ namespace binosplat::compact {
 
 namespace {
 
-constexpr std::size_t chunk = 4096;  // numbers or Gaussians of a thread at a time
-constexpr int patience = 3;          // rounds without improvement
+constexpr std::size_t chunk = 4096;  // numbers or Gaussians that a thread takes at a time
+constexpr int patience = 3;          // rounds without improvement until refit() ends
 
 using Vector = std::vector<float>;
 
-/// The dot product, in chunks of one size, so that it does not depend on the threads.
+/// The dot product, summed in chunks of fixed size, so that the number of threads does not affect it.
 double dot(const Vector& a, const Vector& b) {
   std::vector<double> parts((a.size() + chunk - 1) / chunk);
   parallel_for(parts.size(), [&](std::size_t part) {
@@ -40,7 +40,7 @@ void add_scaled(Vector& a, double factor, const Vector& b) {
       a.size(), [&](std::size_t k) { a[k] += f * b[k]; }, chunk);
 }
 
-/// Returns the gradient over each coefficient's weight times (1 + damping), in all channels.
+/// Returns the gradient divided by (1 + damping) times the coefficient's weight, for all channels.
 Vector preconditioned(const Vector& gradient, const Vector& weight, double damping) {
   Vector z(gradient.size());
   parallel_for(
@@ -106,9 +106,9 @@ class Refit {
     return sh_sum(std::span(sh).subspan(at(gaussian, 0), 3 * coefficients_), basis);
   }
 
-  /// Calls body(n, Gaussian, basis, colour, counts) for each Gaussian that the view draws, as of the last
-  /// linearise(). `basis` is in its direction, `colour` is unclamped, and `counts` is 1 for unclamped
-  /// channels and 0 for clamped ones.
+  /// Calls body(n, Gaussian, basis, colour, counts) for each Gaussian that the view draws. `basis` is
+  /// sh_basis() of its direction. `colour` is its unclamped colour at the last linearise(). `counts` is 1 for
+  /// channels above 0, and 0 for channels that are clamped.
   template <typename Body>
   void for_drawn(const Camera& camera, const Body& body) const {
     const auto& drawn = blend_.drawn();
@@ -121,8 +121,8 @@ class Refit {
     parallel_for(drawn.size(), one, chunk);
   }
 
-  /// Calls body(camera of the world, the same in the model's axes) for every target, with the target's W in
-  /// blend_.
+  /// For every target, sets blend_ to its view, and calls body(camera in world coordinates, the same camera
+  /// in the model's axes).
   template <typename Body>
   void for_targets(const Body& body) {
     for (const Camera& in_world : targets_.cameras) {
@@ -212,7 +212,7 @@ class Refit {
     return true;
   }
 
-  /// Returns (A^T A + damping) times the direction.
+  /// Returns (A^T A + damping) times the direction. A is the matrix from coefficients to pixels.
   Vector curvature() {
     Vector curved(direction_.size());
     const auto damping = static_cast<float>(settings_.damping);
@@ -228,7 +228,7 @@ class Refit {
                 [&](std::size_t n, std::size_t i, const auto& basis, const glm::dvec3&,
                     const glm::dvec3& counts) { colours[n] = counts * sum_of(direction_, i, basis); });
       blend_.set_colours(colours);
-      // No pixel exceeds the colours, since weights add up to at most 1, nor does T exceed 1.
+      // No pixel exceeds the largest colour, since its weights add up to at most 1. Its T is at most 1, too.
       const std::vector<glm::dvec4> sums = blend_.transposed(std::max(1.0f, largest_of(colours)));
       for_drawn(camera,
                 [&](std::size_t n, std::size_t i, const auto& basis, const glm::dvec3&,
@@ -241,13 +241,13 @@ class Refit {
   const RefitTargets& targets_;
   const RefitSettings& settings_;
   const ValidationLoss& validation_loss_;
-  const std::size_t coefficients_;  // of a Gaussian and channel
+  const std::size_t coefficients_;  // number per Gaussian and channel
   render::LinearBlend blend_;
   gl::Context& context_;
   std::unique_ptr<render::Frame> wanted_;  // draws the original
   Model candidate_;
-  Vector candidate_at_start_;  // at the last linearisation
-  Vector gradient_;            // downhill
+  Vector candidate_at_start_;  // harmonics at the last linearisation
+  Vector gradient_;            // negative gradient of half the squared error
   Vector direction_;
   double slope_ = 0.0;
   Vector weight_;  // by Gaussian and coefficient

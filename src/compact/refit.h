@@ -1,7 +1,8 @@
 #pragma once
 // Fits colours to pictures. With order, projection, shapes and opacities fixed, a picture is linear in the
-// harmonics of its Gaussians, except that colours below 0 are clamped. So this is least squares, by conjugate
-// gradients (Hestenes and Stiefel 1952) on the normal equations, linearised again every few rounds.
+// harmonics of its Gaussians, except that colours below 0 are clamped. So refit() solves a least-squares
+// problem, by conjugate gradients (Hestenes and Stiefel 1952) on the normal equations. Every few rounds it
+// linearises again, because other colours may be clamped.
 
 #include <functional>
 #include <optional>
@@ -21,14 +22,14 @@ using PhotoOf = std::function<std::optional<Image>(const Camera&)>;
 struct RefitTargets {
   const Model& original;        // its exact picture, in its order and projection, replaces a missing photo
   std::vector<Camera> cameras;  // in world coordinates
-  PhotoOf photo;                // may be empty
+  PhotoOf photo;                // empty if there are no photos
   double near_plane = 0.0;      // world units
 };
 
 struct RefitSettings {
   int rounds = 12;          // each draws every target once
   int rounds_linear = 6;    // rounds between linearisations, each of which draws every target once more
-  double damping = 0.05;    // of changes, relative to each coefficient's weight in the pictures
+  double damping = 0.05;    // keeps changes small; relative to each coefficient's weight in the pictures
   bool keep_zeros = false;  // coefficients above degree 0 that are 0 in all channels stay 0
 };
 
@@ -41,10 +42,10 @@ struct Refitted {
   int best_round = 0;          // 0: the unchanged model
 };
 
-/// Fits the harmonics of `model`, in its order and projection. Ends early if it no longer improves. Without a
-/// validation loss the last round is the best. Takes about seven times the memory of the harmonics; pictures
-/// are drawn or read one at a time. Coefficients that affect no target stay. Deterministic. Model and
-/// original have the same axes and no scaffold.
+/// Fits the harmonics of `model`, in its order and projection. Ends early after three rounds that do not
+/// reduce the validation loss. Without a validation loss the last round counts as the best. Takes about seven
+/// times the memory of the harmonics, and holds one picture at a time. Coefficients that affect no target
+/// stay. Deterministic. Model and original must have the same axes and no scaffold.
 Refitted refit(gl::Context& context, const Model& model, const RefitTargets& targets,
                const RefitSettings& settings, const ValidationLoss& validation_loss);
 

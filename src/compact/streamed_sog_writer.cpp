@@ -27,22 +27,22 @@ namespace {
 
 using nlohmann::ordered_json;
 
-// A pixel that shows a level, relative to the spacing by which levels are chosen (stream/choice.h). That
-// spacing assumes a square as wide as the box's diagonal; true spacings are smaller.
+// Pixel width that a level is merged for, divided by the level's spacing (stream/choice.h). The spacing
+// assumes a square as wide as the box's diagonal; true spacings are smaller.
 constexpr double pixel_share = 0.2;
-// The pairs to merge are chosen once for all levels, by the pixels of this one.
+// The Gaussians to merge are chosen once for all levels, for the pixel width of this level.
 constexpr int merge_level = 3;
-// Pictures of many chunks: one for this many chunks, at most pictures_most in all, but at least one for each
-// scene.
+// Number of pictures of many chunks: one for every chunks_a_picture chunks, at most pictures_most in all, but
+// at least one for each joint scene.
 constexpr std::size_t chunks_a_picture = 4, pictures_most = 12;
-constexpr double more_most = 4.0;  // limit of their loss over the prediction, and of its inverse
+constexpr double more_most = 4.0;  // limit of joint_factor() and of its inverse
 
 /// A chunk, a leaf of the tree.
 struct Chunk {
   std::span<const std::uint32_t> indices;
-  Box box;                    // around one-sigma ellipsoids, from zero
+  Box box;                    // around one-sigma ellipsoids, with the model's origin added
   ordered_json lods;          // files, ranges and errors of its levels
-  ordered_json pixels, seen;  // of the measured errors
+  ordered_json pixels, seen;  // as in LevelErrors
 
   std::size_t count(int level) const { return ((indices.size() - 1) >> level) + 1; }
   double pixel(int level) const {
@@ -63,16 +63,16 @@ struct File {
 
 /// Chunks that are processed together, and the files of all their levels.
 struct Batch {
-  std::string errors;  // the file with the errors of its levels
+  std::string errors;  // name of the file with the errors of all levels
   std::size_t first_chunk = 0, chunks = 0;
   std::vector<File> files;
 };
 
 using Levels = std::vector<Model>;  // of a chunk, from the finest
 
-/// Batches that are drawn together as one model.
+/// Batches that are drawn together as one model, in pictures of many chunks.
 struct JointScene {
-  std::string losses;  // the file with the losses of its pictures
+  std::string losses;  // name of the file with the losses of these pictures
   std::size_t first_batch = 0, batches = 0, count = 0;
 };
 
@@ -82,11 +82,11 @@ struct Plan {
   std::vector<Chunk> chunks;
   std::vector<Batch> batches;
   std::vector<JointScene> scenes;
-  std::vector<std::string> filenames;         // of all SOGs, by the chunks' file numbers
+  std::vector<std::string> filenames;         // of all SOGs; "file" in Chunk::lods is an index of this list
   std::vector<std::size_t> gaussians, files;  // by level
 };
 
-/// Collects, in order, the largest nodes of at most `most` Gaussians, and larger leaves.
+/// Collects in order the largest nodes that have at most `most` Gaussians, and the leaves that have more.
 void find_nodes(const SpaceNode& node, std::size_t most, std::vector<const SpaceNode*>& nodes) {
   if (node.count <= most || node.children.empty()) return nodes.push_back(&node);
   for (const SpaceNode& child : node.children) find_nodes(child, most, nodes);
@@ -118,7 +118,7 @@ Plan make_plan(const Model& model, const LevelSettings& settings) {
   const std::size_t all = model.count(), scenes = (all - 1) / settings.joint_gaussians + 1;
   for (std::size_t i = 0; i < nodes.size();) {
     Batch batch{fmt::format("errors_{}.json", plan.batches.size()), plan.chunks.size(), 0, {}};
-    // Consecutive nodes share a batch, since far outliers are nodes of a few Gaussians.
+    // Consecutive nodes share a batch, since nodes of far outliers have only a few Gaussians.
     std::size_t count = 0;
     std::vector<const SpaceNode*> chunks;
     do {
@@ -130,7 +130,7 @@ Plan make_plan(const Model& model, const LevelSettings& settings) {
     batch.chunks = chunks.size();
     for (std::size_t level = 0; level < plan.files.size(); ++level)
       add_files(level, settings.file, batch, plan);
-    // Scenes have about equal numbers of Gaussians.
+    // Joint scenes have about equal numbers of Gaussians.
     if (plan.scenes.empty() || plan.scenes.back().count * scenes >= all)
       plan.scenes.push_back({fmt::format("joint_{}.json", plan.scenes.size()), plan.batches.size()});
     ++plan.scenes.back().batches;
@@ -146,7 +146,7 @@ ordered_json box_json(const Box& b) {
   return {{"min", {b.low.x, b.low.y, b.low.z}}, {"max", {b.high.x, b.high.y, b.high.z}}};
 }
 
-/// Returns the JSON of a node, and its box. `next` is the next chunk.
+/// Returns the JSON of a node, and its box. `next` points to the chunk of the next leaf.
 std::pair<ordered_json, Box> node_json(const SpaceNode& node, const Chunk*& next) {
   if (node.children.empty()) {
     const Chunk& chunk = *next++;
@@ -166,7 +166,7 @@ std::pair<ordered_json, Box> node_json(const SpaceNode& node, const Chunk*& next
   return {{{"bound", box_json(around)}, {"children", std::move(children)}}, around};
 }
 
-/// Returns lod-meta.json, once the chunks have the errors of their levels.
+/// Returns lod-meta.json. The chunks must already have the errors of their levels.
 ordered_json meta_json(const Plan& plan) {
   const Chunk* next = plan.chunks.data();
   return {{"version", 1},
@@ -226,8 +226,8 @@ class LevelsWriter {
   }
 
  private:
-  /// Measures a batch in one thread, which may leave cores idle. Meanwhile the next one is written and the
-  /// one after it is merged.
+  /// Measures batches in this thread, which may leave cores idle. During a measurement, other threads write
+  /// the next batch and merge the one after it.
   void write_batches(Progress& progress) {
     std::vector<const Batch*> left;
     for (const Batch& batch : plan_.batches) {
@@ -259,7 +259,7 @@ class LevelsWriter {
     progress.update(done_ += gaussians);
   }
 
-  /// Returns the levels to write; empty if nothing is left.
+  /// Merges and returns the levels of the batch's chunks; empty if all its files exist.
   std::vector<Levels> merged(const Batch& batch, Progress& progress) {
     int coarsest = -1;
     for (const File& file : batch.files) {
@@ -274,7 +274,8 @@ class LevelsWriter {
     return levels;
   }
 
-  /// Measures the written files: rounded colours, scales and rotations cost as much as a level may.
+  /// Measures the levels as read back from the files. Rounding colours, scales and rotations may cost as much
+  /// as a level.
   void measure(const Batch& batch) {
     write(batch.errors, json_of(measure_.alone(decoded_[&batch] = written(batch))));
   }
@@ -285,7 +286,7 @@ class LevelsWriter {
            std::ranges::all_of(batch.files, [&](const File& file) { return folder_.has(file.meta_name()); });
   }
 
-  /// Measures the scenes whose batches are complete.
+  /// Measures joint scenes whose batches are all measured.
   void measure_scenes() {
     for (const JointScene& scene : plan_.scenes) {
       const auto batches = std::span(plan_.batches).subspan(scene.first_batch, scene.batches);
@@ -374,8 +375,8 @@ class LevelsWriter {
     return parse_level_errors(batch.errors, folder_.read(batch.errors), batch.chunks, plan_.gaussians.size());
   }
 
-  /// Returns the ratio of measured to predicted loss in pictures of many chunks. It is the median, since eyes
-  /// that see hardly anything are far off.
+  /// Returns the ratio of measured to predicted loss in pictures of many chunks: the median, since pictures
+  /// that show hardly anything have extreme ratios.
   double joint_factor() const {
     std::vector<double> shares;
     for (const JointScene& scene : plan_.scenes)

@@ -20,12 +20,13 @@ namespace binosplat::compact {
 
 namespace {
 
-constexpr int drawings = 3;                                 // of a view, for the reported time
-constexpr int trial_rounds = 4;                             // of fitting the colours of a candidate
-constexpr std::size_t some = 256;                           // Gaussians of a thread at a time
-constexpr double after_bits = 0.25, after_harmonics = 0.5;  // shares of the bound
+constexpr int drawings = 3;        // drawings of each view, for the reported time
+constexpr int trial_rounds = 4;    // rounds that fit the colours of a candidate
+constexpr std::size_t some = 256;  // Gaussians that a thread takes at a time
+// Shares of the allowed loss that may be spent when these steps are done.
+constexpr double after_bits = 0.25, after_harmonics = 0.5;
 
-/// Measures the loss of a model in the validation views, and whether the bound allows it.
+/// Measures the loss of a model in the held-back views, and whether the bound allows it.
 class TrimBound {
  public:
   TrimBound(gl::Context& context, const Model& original, const lab::ViewSplit& views,
@@ -42,8 +43,7 @@ class TrimBound {
     test_own_ = open(views.test_own);
   }
 
-  /// Returns the value that the bound limits: the mean over the validation views, at the size that loses
-  /// more.
+  /// Returns the value that the bound limits: the mean over the held-back views, at the size that loses more.
   double bounded_db(const Model& model) {
     const std::size_t views = held_back_->views().size();
     Progress progress(
@@ -55,15 +55,16 @@ class TrimBound {
     return std::min(db, held_back_own_->cost(model, 1, tell).mean_db);
   }
 
-  /// The same as a loss: smaller is better.
+  /// Returns bounded_db() as a loss: smaller is better.
   double loss(const Model& model) { return -sign() * bounded_db(model); }
 
-  /// Drops are relative to this model's loss: shares of the bound are shares of the rest.
+  /// Measures the model from which the steps start. If the bound is a drop, the steps share the difference
+  /// between the allowed drop and this model's drop.
   void start_from(const Model& whole) { start_ = bounded_db(whole); }
 
   bool holds(double db, double share) const { return sign() * db >= sign() * bound(share); }
 
-  /// Returns the largest amount within a share of the bound, if `db(amount)` is the model's cost; 0 must be
+  /// Returns the largest amount whose cost `db(amount)` is within a share of the bound. The amount 0 must be
   /// within it.
   double largest_within(const std::function<double(double)>& db, double share,
                         measure::ToleranceSearch search) const {
@@ -90,8 +91,8 @@ class TrimBound {
   }
 
   CalibrationTarget target_;
-  int judged_ = 0;      // models so far
-  double start_ = 0.0;  // the whole model's loss as a drop; below 0 if fitting gained
+  int judged_ = 0;      // number of models measured so far
+  double start_ = 0.0;  // drop of the model from which the steps start; negative if refit() improved it
   std::unique_ptr<lab::Calibrator> held_back_, held_back_own_;  // own: at the cameras' own size, or null
   std::unique_ptr<lab::Calibrator> test_, test_own_;
 };
@@ -106,7 +107,7 @@ ColourFit::Coefficients coefficients(const Model& model, std::size_t gaussian) {
   return now;
 }
 
-/// Returns the model at these degrees, with harmonics nearest to the colours in the training views.
+/// Returns the model with these degrees, and with harmonics fitted to its colours in the training views.
 Model nearest_of_degrees(const Model& whole, const Weights& weights,
                          const std::vector<std::uint8_t>& degrees) {
   Model model = with_degrees(whole, degrees);
@@ -194,7 +195,7 @@ class Trimmer {
     return found.best_round > 0;
   }
 
-  /// Fits a candidate's colours, if requested and useful.
+  /// Returns the candidate with fitted colours, if refitting is requested and improves it.
   Model fitted(Model model) {
     if (settings_.refit) fit(model, {.rounds = trial_rounds, .keep_zeros = true});
     return model;
@@ -230,7 +231,7 @@ class Trimmer {
       if (of[0] > 0.0) positive.push_back(of[0]);
     }
     if (positive.empty()) return;
-    // The degree of each Gaussian if its colours may change by this much.
+    // The lowest degree of each Gaussian at which its colours change by at most `change`.
     const auto degrees = [&](double change) {
       std::vector<std::uint8_t> of(changes.size());
       for (std::size_t i = 0; i < of.size(); ++i) {
@@ -266,7 +267,7 @@ class Trimmer {
       for (std::size_t k = 0; k < static_cast<std::size_t>(amount); ++k) kept[by_worth[k]] = 0;
       return fitted(with_gaussians(model_, kept));
     };
-    std::map<std::size_t, double> known;  // amounts are rounded to whole numbers
+    std::map<std::size_t, double> known;  // cost by amount, because the search may repeat a rounded amount
     const auto db = [&](double amount) {
       const auto [at, is_new] = known.try_emplace(static_cast<std::size_t>(amount));
       if (is_new) at->second = cost(without(amount), found_.harmonic_bits);

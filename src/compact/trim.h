@@ -1,6 +1,6 @@
 #pragma once
-// Finds the smallest model whose pictures stay within a bound, in three steps. Each step is a search that is
-// validated in views other than the training views.
+// Removes as much of a model as the allowed loss permits, in three steps. Each step searches the largest
+// removal whose loss in the held-back views stays within the bound.
 
 #include <algorithm>
 #include <functional>
@@ -25,13 +25,13 @@ using TrialWriter = std::function<WrittenModel(const Model&, int harmonic_bits)>
 
 /// The model after one step.
 struct TrimStep {
-  std::string name;  // the last change
+  std::string name;  // describes the step's change
   std::size_t gaussians = 0;
   int degree = 0;
   std::uintmax_t bytes = 0;
   lab::Calibrator::Cost held_back;
   lab::Calibrator::Cost test;  // all 0 without test views
-  // At the cameras' own size, if the views are smaller (ViewSplit).
+  // The same costs at the cameras' own size, if the views are smaller (ViewSplit).
   std::optional<lab::Calibrator::Cost> held_back_own, test_own;
 
   /// Returns the value that the bound limits: the lower mean PSNR of both sizes. Drops exist at one size
@@ -42,29 +42,31 @@ struct TrimStep {
 };
 
 struct Trimmed {
-  Model model;                  // to write, with
-  int harmonic_bits = 8;        // of spz
+  Model model;                  // the trimmed model
+  int harmonic_bits = 8;        // bits per harmonic with which to write it as spz
   bool format_fits = true;      // false: the format alone exceeds the bound, and nothing was removed
   bool is_smaller = false;      // something was removed, or colours were fitted
   std::size_t unseen = 0;       // Gaussians that touch no pixel of the training views
-  std::vector<TrimStep> steps;  // from the whole model on, which has no file and so no bytes
+  std::vector<TrimStep> steps;  // the first one is the original model, which has no file and 0 bytes
 };
 
 /// Settings of trim().
 struct TrimSettings {
-  CalibrationTarget target;  // the allowed mean loss in the validation views
+  CalibrationTarget target;  // the allowed mean loss in the held-back views: the bound
   ModelFormat format = ModelFormat::ply;
   TrialWriter write;
-  std::optional<PhotoOf> refit;  // fit colours to these photos, or to the model's own pictures
+  std::optional<PhotoOf> refit;  // if set: fits colours to these photos, or to the model's exact pictures
 };
 
-/// Spends the bound in this order. A quarter: as few bits as the format offers (spz). Another quarter:
-/// harmonics that change colours least, first by a lower degree for all, then, if the format packs zeros
-/// (spz), for as many Gaussians as possible. The rest, at least half: the Gaussians whose removal changes the
-/// pictures least. Training views determine these changes; the bound limits the mean over the validation
-/// views, at both sizes if they have two. Every candidate is judged as read back from its file, so the bound
-/// holds for the written file. The model has the format's axes and no scaffold. Throws Error for views in
-/// which a target cannot be measured (Calibrator).
+/// Spends the allowed loss in three steps:
+/// - up to a quarter for fewer bits per harmonic (spz only);
+/// - up to half, with the first step, for lower degrees of harmonics: one degree for all Gaussians, then (spz
+///   only, which packs zeros) lower degrees for the Gaussians whose colours change least;
+/// - the rest for removing the Gaussians whose removal changes the pictures least.
+/// Changes are measured in the training views. The bound limits the mean loss in the held-back views, at both
+/// sizes if there are two. Every candidate is measured as read back from its file, so the bound holds for the
+/// written file. The model must have the format's axes and no scaffold. Throws Error for views in which a
+/// target cannot be measured (Calibrator).
 Trimmed trim(gl::Context& context, const Model& model, const lab::ViewSplit& views,
              const TrimSettings& settings);
 

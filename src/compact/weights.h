@@ -12,8 +12,7 @@ namespace binosplat::compact {
 
 struct Weights {
   std::size_t views = 0;
-  /// By Gaussian: its blending weight alpha * T, summed over the pixels of all views, px; exactly 0 if no
-  /// pixel blends it.
+  /// By Gaussian: alpha * T summed over the pixels of all views, px; exactly 0 if no pixel blends it.
   std::vector<double> weight;
   std::vector<ColourFit> colours;  // by Gaussian, if requested
 
@@ -21,13 +20,13 @@ struct Weights {
   std::size_t unseen() const;
 };
 
-/// Returns by how much the views' pictures change without each Gaussian alone, squared and summed
-/// (render::LinearBlend::changes). Parameters as for weigh().
+/// Returns for each Gaussian the squared change of the views' pictures if it alone is removed, summed over
+/// pixels, channels and views (render::LinearBlend::changes). Parameters as for weigh().
 std::vector<double> changes_without(gl::Context& context, const Model& model,
                                     const std::vector<Camera>& cameras, double near_plane);
 
-/// Draws each view once, exactly. `cameras` are of the world (scene/axes.h), `near_plane` is in its units.
-/// Shows progress.
+/// Draws each view once, exactly. `cameras` and `near_plane` are in world coordinates (scene/axes.h). Shows
+/// progress.
 Weights weigh(gl::Context& context, const Model& model, const std::vector<Camera>& cameras, double near_plane,
               bool with_colours = false);
 

@@ -50,7 +50,7 @@ std::uint64_t bytes_in(ModelFormat format, std::size_t count, int degree) {
 
 std::vector<std::string> kernel_loss(const Model& model, ModelFormat format) {
   if (model.kernel_px2 == KERNEL_PX2 || (format == ModelFormat::ply && is_mip_splatting(model))) return {};
-  return {fmt::format("{} does not store the low-pass of {:.4g} px^2: draw it with --kernel-px2 {:.4g}",
+  return {fmt::format("{} does not store the low-pass of {:.4g} px^2: draw it with --eps2d {:.4g}",
                       row_of(format).name, model.kernel_px2, model.kernel_px2)};
 }
 

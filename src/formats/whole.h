@@ -8,7 +8,7 @@ namespace binosplat {
 /// Returns whether a file is complete: a PNG by its chunks' checksums, an OpenEXR in scan lines by its
 /// blocks, a WebP by the size in its header, JSON by parsing it. Does not unpack pixels. Returns false for
 /// other, missing and unreadable files.
-bool is_whole(const std::filesystem::path& file);
+bool is_whole(const std::filesystem::path& path);
 
 /// Returns whether a SOG has its meta.json and all files that it names, complete.
 bool is_whole_sog(const std::filesystem::path& meta);

@@ -10,11 +10,12 @@ namespace binosplat::gl {
 
 namespace {
 
-// Uploads and read-backs use pieces of this size. NVIDIA moves data ten times faster through a mapped buffer
-// than through glGetNamedBufferSubData, and a piece limits the memory that the driver pins.
+// Uploads and read-backs are split into pieces of this size. Read-backs copy a piece to a mapped buffer: with
+// NVIDIA's driver this is ten times as fast as glGetNamedBufferSubData. The size limits the memory that the
+// driver pins.
 constexpr std::int64_t piece_bytes = std::int64_t{64} << 20;
 
-// A binding of size 0 is an error.
+// At least 16 bytes: GL rejects a binding of size 0.
 std::int64_t rounded(std::int64_t bytes) { return std::max<std::int64_t>((bytes + 15) / 16 * 16, 16); }
 
 }  // namespace
@@ -58,7 +59,7 @@ void Buffer::grow(std::int64_t bytes) {
   if (before == 0) return;
   gl.MemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
   gl.CopyNamedBufferSubData(before, id_, 0, 0, bytes_before);
-  gl.Finish();  // later uploads overtook a clear on an H200 (driver 580)
+  gl.Finish();  // without it, later uploads may overtake a clear (H200, driver 580)
   gl.DeleteBuffers(1, &before);
   context_.count_allocation(-bytes_before);
 }
@@ -100,7 +101,7 @@ void Buffer::allocate(std::int64_t bytes) {
             context_.renderer(), bytes >> 20, label_, context_.allocated_bytes() >> 20));
   }
   bytes_ = bytes;
-  if (use_ != Use::read) context_.count_allocation(bytes);  // others are in the CPU's memory
+  if (use_ != Use::read) context_.count_allocation(bytes);  // `read` buffers are in the CPU's memory
   gl.ObjectLabel(GL_BUFFER, id_, -1, label_.c_str());
 }
 

@@ -10,11 +10,12 @@
 
 namespace binosplat::gl {
 
-/// A buffer for storage or uniform blocks, with a name for debuggers and error texts. Empty until reserved.
-/// The contents are undefined until written.
+/// A buffer for storage or uniform blocks, with a name for debuggers and error texts. It is empty until
+/// reserved, and its contents are undefined until written.
 class Buffer {
  public:
-  /// `written` and `read` buffers stay mapped: the CPU writes through room(), or reads through mapped().
+  /// A `written` buffer stays mapped, and the CPU writes through room(). A `read` buffer stays mapped, and
+  /// the CPU reads through mapped().
   enum class Use { on_gpu, written, read };
   Buffer(Context& context, std::string label, Use use = Use::on_gpu);
   ~Buffer();
@@ -29,8 +30,8 @@ class Buffer {
   /// Makes room for at least `bytes` and keeps the contents. Throws as reserve() does.
   void grow(std::int64_t bytes);
 
-  /// Makes room, and writes from the start. Draws that read this buffer must be complete: with NVIDIA's
-  /// driver 580 uploads overtook them, and a picture showed lines of the next one.
+  /// Makes room, and writes from the start. Commands that read this buffer must be complete: with NVIDIA's
+  /// driver 580 an upload may overtake them, and a picture shows lines of the next one.
   template <typename T>
   void upload(std::span<const T> data) {
     reserve(static_cast<std::int64_t>(data.size_bytes()));
@@ -41,8 +42,9 @@ class Buffer {
     upload(std::span<const T>(data));
   }
 
-  /// Makes room for `count` elements and returns it for writing, without the driver's extra copy of an
-  /// upload. Earlier commands that read this buffer must be complete (gl/fence.h). Do not read through it.
+  /// Makes room for `count` elements and returns the mapped memory for writing; do not read from it. This
+  /// avoids a copy that upload() makes in the driver. Earlier commands that read this buffer must be complete
+  /// (gl/fence.h).
   template <typename T>
   std::span<T> room(std::size_t count) {
     reserve(static_cast<std::int64_t>(count * sizeof(T)));
@@ -56,18 +58,18 @@ class Buffer {
     return std::span(static_cast<const T*>(mapped_) + first, count);
   }
 
-  /// Writes elements from element `first` on, within the reserved size; the others stay.
+  /// Writes elements from element `first` on, within the reserved size. All others keep their values.
   template <typename T>
   void upload_part(std::span<const T> data, std::size_t first) {
     write(data.data(), static_cast<std::int64_t>(data.size_bytes()),
           static_cast<std::int64_t>(first * sizeof(T)));
   }
 
-  /// Copies `bytes` of another buffer, from its byte `first` on, to byte `at` of the reserved size; the rest
-  /// stays.
+  /// Copies `bytes` bytes from byte `first` of another buffer to byte `at` of this one, within the reserved
+  /// size. All other bytes keep their values.
   void copy(const Buffer& from, std::int64_t first, std::int64_t bytes, std::int64_t at);
 
-  /// Makes room for this many bytes, all zero.
+  /// Makes room for `bytes` bytes, and sets them to zero.
   void reserve_zeros(std::int64_t bytes);
 
   /// Reads `count` elements from element `first` on, after all earlier commands.

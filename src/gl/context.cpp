@@ -26,7 +26,7 @@ std::string text(const Functions& gl, GLenum name) {
   return value == nullptr ? "" : value;
 }
 
-// Calls `open`. If this OpenGL is unavailable, stores the reason and returns null.
+// Calls `open`. If it throws Error(no_gl), appends the reason to `reasons` and returns null.
 template <typename Open>
 std::unique_ptr<Context> attempt(const Open& open, std::string& reasons) {
   try {
@@ -34,12 +34,12 @@ std::unique_ptr<Context> attempt(const Open& open, std::string& reasons) {
   } catch (const Error& error) {
     if (error.code() != ExitCode::no_gl) throw;
     const std::string reason = fmt::format("\n  {}", error.what());
-    if (!reasons.ends_with(reason)) reasons += reason;  // two ways may need the same missing library
+    if (!reasons.ends_with(reason)) reasons += reason;  // two backends may lack the same library
     return nullptr;
   }
 }
 
-/// A line for each environment variable that selects Mesa's driver or version.
+/// Returns a line for each set environment variable that selects Mesa's driver or version.
 std::string mesa_overrides() {
   std::string lines;
   for (const char* name : {"GALLIUM_DRIVER", "MESA_LOADER_DRIVER_OVERRIDE", "MESA_GL_VERSION_OVERRIDE"}) {
@@ -51,8 +51,9 @@ std::string mesa_overrides() {
   return lines;
 }
 
-/// Finds the function that returns the current context, in the library of the current context; null: unknown.
-/// The caller's loader cannot find it: glX's and EGL's return a function even for unknown names.
+/// Returns the function that returns the current context, from the library that made the current context;
+/// null: unknown. The caller's get_proc_address cannot find it: GLX's and EGL's return a function even for
+/// unknown names.
 void* (*find_current_handle())() {
   struct Source {
     const char *library, *function;
@@ -114,7 +115,7 @@ void Context::initialise(GetProcAddress get_proc_address, std::string backend, b
   set_program_cache(ProgramCache::default_folder());
   if (own && has_extension(functions_, "GL_KHR_parallel_shader_compile"))
     functions_.MaxShaderCompilerThreadsKHR(
-        UINT32_MAX);  // as many as the driver likes; NVIDIA's requires the call
+        UINT32_MAX);  // no limit; NVIDIA's driver compiles in parallel only after this call
 
   read_limits();
   GLint bindings = 0;
@@ -149,7 +150,8 @@ void Context::read_limits() {
   functions_.GetQueryiv(GL_TIMESTAMP, GL_QUERY_COUNTER_BITS, &bits);
   limits_.timestamp_bits = static_cast<std::uint32_t>(bits);
   functions_.GetInteger64v(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &limits_.storage_block_bytes);
-  // llvmpipe reports 128 MiB and works up to 2 GiB, where a read crashes. No driver may bind more than that.
+  // llvmpipe reports 128 MiB, but bindings of up to 2 GiB work; reads beyond 2 GiB crash. Other drivers are
+  // limited to 2 GiB, too.
   const std::int64_t two_gib = std::int64_t{1} << 31;
   limits_.storage_block_bytes = software() ? two_gib : std::min(limits_.storage_block_bytes, two_gib);
 }
@@ -227,7 +229,7 @@ void Context::prepare(const std::function<void()>& record) {
       const auto program = next++;
       try {
         if (!program->second.is_complete()) complete(variants, program);
-      } catch (const Error&) {  // using the program reports it
+      } catch (const Error&) {  // reported when the program is used
       }
     }
   }
@@ -249,7 +251,7 @@ void Context::set_program_cache(const std::filesystem::path& folder) {
 }
 
 std::vector<GLenum> Context::take_errors() const {
-  // A lost context may report without end.
+  // A lost context may report errors without end.
   constexpr std::size_t most = 16;
   std::vector<GLenum> errors;
   while (errors.size() < most) {

@@ -8,7 +8,7 @@
 
 namespace binosplat::gl {
 
-/// One way to a context. Listing opens it briefly.
+/// A way to open a context. list_devices() opens each briefly, to read its limits.
 struct Device {
   std::string options;  // the command line options that choose it
   bool usable = false;

@@ -96,7 +96,7 @@ std::vector<StageSpan> Dispatcher::read_spans() {
     std::uint64_t ns = 0;
     context_.gl().GetQueryObjectui64v(marks_[i].query, GL_QUERY_RESULT, &ns);
     const auto at = static_cast<std::int64_t>(ns);
-    // Drivers without timestamps report 0.
+    // Drivers without timestamps report 0: then all times are 0.
     if (i > 0) spans.back().end_ns = std::max(at, spans.back().begin_ns);
     if (i + 1 < marks_.size()) spans.push_back({marks_[i].stage, at, at});
   }

@@ -1,7 +1,6 @@
 #pragma once
-// Dispatches all work. It splits dispatches that exceed a driver's group count, labels them for debuggers,
-// and times them by stage. It refuses a dispatch that lacks a buffer or uniform, for which GL would silently
-// read zeros.
+// Dispatches all work. Splits dispatches that exceed the driver's limit of work groups, labels stages for
+// debuggers, and times them. Refuses a dispatch that lacks a buffer or uniform: GL would silently read zeros.
 
 #include <cstdint>
 #include <initializer_list>
@@ -14,12 +13,11 @@
 
 namespace binosplat::gl {
 
-/// The size of a dispatch. Shaders find their place with group_index() and thread_index() of
-/// shared/grid.glsl. They return if it is beyond their count, because a split dispatch has some groups too
-/// many.
+/// The size of a dispatch. Shaders get their index from group_index() or thread_index() of shared/grid.glsl.
+/// They must return if the index is beyond their count: a split dispatch may have more groups than requested.
 struct DispatchSize {
-  std::uint64_t groups = 0;           // direct
-  const Buffer* arguments = nullptr;  // or indirect: three uints at `offset`, already split
+  std::uint64_t groups = 0;           // of a direct dispatch
+  const Buffer* arguments = nullptr;  // of an indirect one: group counts x, y, z as uints at byte `offset`
   std::int64_t offset = 0;
 
   /// One invocation for each of `count` objects, `local_size` per group.
@@ -56,7 +54,7 @@ struct StageSpan {
   double ms() const { return static_cast<double>(end_ns - begin_ns) * 1e-6; }
 };
 
-/// The time of each stage, in order of first appearance.
+/// The time of each stage. Sums spans of equal name; stages are in the order of their first spans.
 std::vector<StageTime> sums_of(const std::vector<StageSpan>& spans);
 
 class Dispatcher {
@@ -68,7 +66,7 @@ class Dispatcher {
 
   Context& context() { return context_; }
 
-  /// Starts a frame: forgets the last frame's stages.
+  /// Starts a frame, and discards the stages of the last frame.
   void begin_frame() { marks_.clear(); }
   /// Later dispatches belong to the stage `name`. The times of a repeated name are summed.
   void begin_stage(const char* name);
@@ -85,12 +83,13 @@ class Dispatcher {
   void start(const Program& program, const DispatchSize& work, std::initializer_list<Binding> bindings,
              std::initializer_list<Uniform> uniforms = {});
 
-  /// Draws the whole bound framebuffer by a fragment shader (SavedDrawing of gl/state.h).
+  /// Runs a fragment shader for every pixel of the bound framebuffer (SavedDrawing of gl/state.h sets the
+  /// state).
   void draw_whole(const Program& program, std::initializer_list<Binding> bindings,
                   std::initializer_list<Uniform> uniforms) {
     draw(program, 3, bindings, uniforms);
   }
-  /// Draws this many vertices, as triangles, into it.
+  /// Draws `vertices` vertices as triangles into the bound framebuffer.
   void draw(const Program& program, int vertices, std::initializer_list<Binding> bindings,
             std::initializer_list<Uniform> uniforms = {});
 
@@ -99,8 +98,8 @@ class Dispatcher {
 
   /// Waits until the GPU has completed the frame.
   void wait() { frame_end_.wait(); }
-  /// The times of a completed frame's stages, in order, from timestamps (llvmpipe reports nothing between a
-  /// GL_TIME_ELAPSED pair).
+  /// The times of a completed frame's stages, in order. They come from timestamps, because GL_TIME_ELAPSED
+  /// queries report nothing on llvmpipe.
   std::vector<StageSpan> read_spans();
   /// Waits, then returns the time of each stage.
   std::vector<StageTime> wait_and_time() {

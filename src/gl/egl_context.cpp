@@ -1,5 +1,5 @@
 // EGL contexts without a window. Loads libEGL at run time: a machine without it gets a message instead of a
-// loader error, and the caller's own context needs no EGL.
+// loader error, and a caller's context may need no EGL.
 
 #include <EGL/egl.h>
 #include <EGL/eglext.h>
@@ -140,7 +140,8 @@ std::unique_ptr<Context> open_egl_device(int device) {
   }
   std::string reasons;
   for (int i = 0; i < static_cast<int>(list.size()); ++i) {
-    // A software device is only used on request: surfaceless is the usual way to the same llvmpipe.
+    // Uses a software device only if `device` selects it. By default llvmpipe is opened through the
+    // surfaceless platform.
     if (device >= 0 ? i != device : is_software(list[static_cast<std::size_t>(i)])) continue;
     try {
       return std::make_unique<EglContext>(EGL_PLATFORM_DEVICE_EXT, list[static_cast<std::size_t>(i)],

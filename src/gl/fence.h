@@ -13,7 +13,7 @@ class Fence {
   Fence(const Fence&) = delete;
   Fence& operator=(const Fence&) = delete;
 
-  /// Marks the commands so far; replaces the last mark.
+  /// Marks all commands so far. Replaces the last mark.
   void set();
   /// Waits until the GPU has run the marked commands, if any. Throws std::runtime_error if the wait fails.
   void wait();

@@ -6,7 +6,8 @@ namespace binosplat::gl {
 
 namespace {
 
-// Checked first: older contexts lack functions, and the first missing one would not explain why.
+// Checks the version before functions are loaded: an older context lacks some, and an error about the first
+// missing function would not name the cause.
 void check_version(GetProcAddress get_proc_address) {
   if (get_proc_address == nullptr)
     fail("get_proc_address is null: expected a function such as eglGetProcAddress");
@@ -22,7 +23,7 @@ void check_version(GetProcAddress get_proc_address) {
   };
   const std::string_view version = text(GL_VERSION);
   if (version.empty()) throw Error(ExitCode::no_gl, no_context);
-  // "4.6.0 DRIVER", or "OpenGL ES 3.2 DRIVER".
+  // The text is "4.6.0 DRIVER" or "OpenGL ES 3.2 DRIVER".
   const bool is_es = version.starts_with("OpenGL ES");
   if (!is_es && version >= "4.5") return;
   throw Error(

@@ -1,6 +1,6 @@
 #pragma once
-// The OpenGL entry points that the project calls, loaded by the context's own getProcAddress. EGL, OSMesa and
-// a caller's context may exist in one process, and their pointers differ.
+// The OpenGL entry points that the project calls. Each context loads them by its own getProcAddress: contexts
+// of EGL, OSMesa and a caller may exist in one process, and their pointers differ.
 
 #include <GL/glcorearb.h>
 
@@ -8,7 +8,7 @@
 
 namespace binosplat::gl {
 
-// X(name without gl, the upper-case name in GL's function pointer types)
+// X(name without gl, name in upper case as in the pointer type PFNGL...PROC)
 #define BINOSPLAT_GL_FUNCTIONS(X)                                                       \
   X(ActiveTexture, ACTIVETEXTURE)                                                       \
   X(AttachShader, ATTACHSHADER)                                                         \
@@ -121,7 +121,7 @@ struct Functions {
 #undef BINOSPLAT_GL_MEMBER
   /// From GL_KHR_parallel_shader_compile; null without it.
   PFNGLMAXSHADERCOMPILERTHREADSKHRPROC MaxShaderCompilerThreadsKHR = nullptr;
-  /// From GL_EXT_memory_object; null without it. The headers lack it.
+  /// From GL_EXT_memory_object; null without it. GL/glcorearb.h lacks its type.
   using GetBytes = void(APIENTRY*)(GLenum name, GLuint index, GLubyte* bytes);
   GetBytes GetUnsignedBytei_vEXT = nullptr;
 };
@@ -129,9 +129,9 @@ struct Functions {
 constexpr const char* no_context =
     "no OpenGL context is current on this thread: make binosplat's context current first";
 
-/// Loads the table of the current context. Throws Error(no_gl) without a current context, for one older than
-/// 4.5 or of OpenGL ES, and for a missing entry point, which it names. Throws Error(bad_input) for a null
-/// function.
+/// Loads the entry points of the current context. Throws Error(no_gl) if no context is current, if it is
+/// older than 4.5 or of OpenGL ES, or if an entry point is missing. Throws Error(bad_input) if
+/// get_proc_address is null.
 Functions load_functions(GetProcAddress get_proc_address);
 
 /// Whether the current context has an extension.

@@ -13,9 +13,9 @@ namespace binosplat::gl {
 namespace {
 
 constexpr GLenum device_uuid = 0x9597;                     // GL_DEVICE_UUID_EXT
-constexpr std::chrono::milliseconds between_readings{20};  // more often might hold up the driver
+constexpr std::chrono::milliseconds between_readings{20};  // more frequent readings might delay the driver
 
-/// In the library's format: GPU-8-4-4-4-12 digits.
+/// Returns the UUID in NVML's format: "GPU-", then 8-4-4-4-12 hexadecimal digits.
 std::string text_of(const GpuClock::Uuid& uuid) {
   std::string text = "GPU";
   for (std::size_t k = 0; k < uuid.size(); ++k) {
@@ -35,7 +35,7 @@ std::optional<GpuClock::Uuid> uuid_of(const Context& context) {
 
 }  // namespace
 
-/// The used part of NVML.
+/// The functions of NVML (NVIDIA's management library) that are used here.
 struct GpuClock::Library {
   using Device = struct nvmlDevice_st*;
   static constexpr int shader_clock = 1;
@@ -45,7 +45,7 @@ struct GpuClock::Library {
     if (handle != nullptr) dlclose(handle);
   }
 
-  /// Finds all functions; returns whether none is missing.
+  /// Loads all functions. Returns false if one is missing.
   bool find() {
     const auto find_one = [&](const char* name, auto& function) {
       function = reinterpret_cast<std::decay_t<decltype(function)>>(dlsym(handle, name));

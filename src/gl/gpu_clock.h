@@ -14,20 +14,21 @@
 
 namespace binosplat::gl {
 
-/// Reads the clock repeatedly in its own thread, because a reading may take longer than a frame.
+/// Reads the clock rate repeatedly in a separate thread, because a reading may take longer than a frame.
 class GpuClock {
  public:
   using Uuid = std::array<std::uint8_t, 16>;
 
-  /// For the GPU of the context.
+  /// Reads the clock rate of the context's GPU.
   explicit GpuClock(const Context& context);
-  /// For the GPU with this UUID in the library of this name; without a UUID, its only GPU.
+  /// Reads the clock rate of the GPU with this UUID; without a UUID, of the only GPU that the library
+  /// reports. `library` is the file name of NVIDIA's library.
   GpuClock(const char* library, const std::optional<Uuid>& uuid);
   ~GpuClock();
   GpuClock(const GpuClock&) = delete;
   GpuClock& operator=(const GpuClock&) = delete;
 
-  /// MHz, some milliseconds old; none if unavailable.
+  /// The clock rate in MHz, read some milliseconds ago; none if unavailable.
   std::optional<double> mhz() const;
   /// Why the clock is unavailable; empty if it is available.
   const std::string& problem() const { return problem_; }
@@ -39,7 +40,7 @@ class GpuClock {
   std::unique_ptr<Library> library_;
   std::string problem_;
   std::atomic<unsigned> mhz_ = 0;
-  std::jthread thread_;  // last, so that it ends first
+  std::jthread thread_;  // declared last, so that it ends before the other members are destroyed
 };
 
 }  // namespace binosplat::gl

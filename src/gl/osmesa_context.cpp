@@ -1,5 +1,5 @@
-// Mesa as a library. It is loaded at run time, so that neither the program nor a bundle for GPUs depends on
-// Mesa. Its few names are defined here, so that no package of headers is needed.
+// OSMesa, Mesa as a library. It is loaded at run time, so that the program, and bundles of it for GPUs, do
+// not depend on Mesa. Its few constants are defined here, so that the build needs no headers of Mesa.
 
 #include <dlfcn.h>
 
@@ -49,8 +49,9 @@ const OsMesa& osmesa() {
   return loaded;
 }
 
-/// Makes Mesa draw with llvmpipe during its lifetime. OSMesa crashes if the environment selects a driver that
-/// it was built without, such as d3d12, which WSL's users set for other programs. Its other drivers lack 4.5.
+/// Selects llvmpipe in the environment during its lifetime. OSMesa crashes if the environment selects a
+/// driver that its build lacks, such as d3d12, which users of WSL set for other programs. OSMesa's other
+/// drivers lack OpenGL 4.5.
 class WithLlvmpipe {
  public:
   WithLlvmpipe() {
@@ -99,7 +100,7 @@ class OsMesaContext final : public Context {
 
  private:
   void* context_ = nullptr;
-  std::array<std::uint8_t, 4> pixel_{};  // its default framebuffer, which stays unused
+  std::array<std::uint8_t, 4> pixel_{};  // the default framebuffer, which is not used
 };
 
 }  // namespace

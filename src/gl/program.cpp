@@ -28,8 +28,8 @@ std::string vertex_shader_of(const std::string& fragment_shader) {
   return embedded_shaders().contains(own) ? own : "whole.vert";
 }
 
-/// Runs the program with no work groups. Drivers such as llvmpipe compile a program at its first run: this
-/// keeps that out of timed stages.
+/// Runs the program with 0 work groups. Drivers such as llvmpipe compile a program at its first run, which
+/// would otherwise happen in a timed stage.
 void run_nothing(const Functions& gl, std::uint32_t program) {
   constexpr std::array<std::uint32_t, 3> groups{};
   std::uint32_t buffer = 0;
@@ -138,7 +138,8 @@ void Program::reflect() {
   };
   add_blocks(GL_SHADER_STORAGE_BLOCK, GL_SHADER_STORAGE_BUFFER);
   add_blocks(GL_UNIFORM_BLOCK, GL_UNIFORM_BUFFER);
-  // Only values are uniforms here: images are bound to units, and members of a block have no location.
+  // Keeps only values: images and samplers are bound to units instead, and members of a block have no
+  // location.
   for_each_resource(*gl_, id_, GL_UNIFORM, GL_TYPE, [&](const char* name, std::int32_t type) {
     const std::int32_t location = gl_->GetUniformLocation(id_, name);
     if (type == GL_UNSIGNED_INT && location >= 0) uniforms_.push_back({name, location});

@@ -25,18 +25,19 @@ class Program {
     std::int32_t location;
   };
 
-  /// Loads the program from the cache, or starts to compile and link it; drivers may do so for several at
-  /// once. A name that ends with .frag is a fragment shader's, linked with the vertex shader of the same
-  /// name, or else with whole.vert.
+  /// Loads the program from the cache, or starts to compile and link it; drivers may compile several programs
+  /// at once. `name` is a shader file. A fragment shader (.frag) is linked with the vertex shader of the same
+  /// name, or with whole.vert if there is none.
   Program(const Functions& gl, const std::string& name, const Defines& defines,
           const std::filesystem::path& folder, const ProgramCache& cache);
   ~Program();
 
-  /// Waits for compiler and linker, stores the result in the cache, and reads the names. Call it before using
-  /// the program. Throws Error(no_gl) with the driver's log, in which places are file:line.
+  /// Waits for compiler and linker, stores the binary in the cache, and reads the names of blocks and
+  /// uniforms. Call it before using the program. If compiling or linking fails, throws Error(no_gl) with the
+  /// driver's log, whose places are converted to file:line.
   void complete(const ProgramCache& cache);
   bool is_complete() const { return is_complete_; }
-  /// Whether the cache lacked it; valid until it is complete.
+  /// Whether the program is compiled because the cache lacked it. Valid until complete().
   bool is_compiled() const { return !shaders_.empty(); }
 
   Program(Program&& other) noexcept;
@@ -46,9 +47,9 @@ class Program {
 
   std::uint32_t id() const { return id_; }
   const std::string& name() const { return name_; }
-  std::uint32_t local_size() const { return local_size_; }            // invocations of a work group; 1: none
-  const std::vector<Block>& blocks() const { return blocks_; }        // only those that the shader uses
-  const std::vector<Uniform>& uniforms() const { return uniforms_; }  // the same, outside blocks
+  std::uint32_t local_size() const { return local_size_; }      // invocations of a work group; 1 for .frag
+  const std::vector<Block>& blocks() const { return blocks_; }  // only blocks that the shader uses
+  const std::vector<Uniform>& uniforms() const { return uniforms_; }  // only used uints outside of blocks
 
  private:
   /// A shader that the driver is compiling.
@@ -65,9 +66,9 @@ class Program {
 
   const Functions* gl_;
   std::string name_;
-  std::string text_;  // of all shaders, until they are compiled
+  std::string text_;  // source of all shaders; the cache's key; empty once complete
   std::uint32_t id_ = 0;
-  std::vector<Shader> shaders_;  // all its shaders, until it is complete
+  std::vector<Shader> shaders_;  // empty once complete, or if the cache had the program
   bool is_complete_ = false;
   std::uint32_t local_size_ = 1;
   std::vector<Block> blocks_;

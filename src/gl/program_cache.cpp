@@ -16,7 +16,8 @@ namespace binosplat::gl {
 
 namespace {
 
-// FNV-1a. It only names the file, which also holds the whole key for comparison.
+// FNV-1a: the name of a file, and the checksum of its content. Names may collide, so a file also has the
+// complete key.
 std::uint64_t hash(const std::string& text) {
   std::uint64_t h = 14695981039346656037ull;
   for (const char c : text) h = (h ^ static_cast<unsigned char>(c)) * 1099511628211ull;
@@ -29,7 +30,7 @@ ProgramCache::ProgramCache(std::filesystem::path folder, std::string driver)
     : folder_(std::move(folder)), driver_(std::move(driver)) {}
 
 std::filesystem::path ProgramCache::default_folder() {
-  // XDG's specification ignores relative paths: they would depend on the current folder.
+  // Ignores a relative path, as XDG's specification requires.
   const char* cache = std::getenv("XDG_CACHE_HOME");
   if (cache != nullptr && std::filesystem::path(cache).is_absolute())
     return std::filesystem::path(cache) / "binosplat" / "programs";
@@ -47,7 +48,7 @@ std::filesystem::path ProgramCache::file(const std::string& key) const {
   return folder_ / fmt::format("{:016x}.bin", hash(key));
 }
 
-// A file holds the key, a checksum of the rest, and the rest.
+// A file has the key, a checksum of the content, and the content.
 std::optional<std::string> ProgramCache::read(const std::string& wanted) const {
   if (folder_.empty()) return std::nullopt;
   std::error_code ignored;
@@ -73,12 +74,12 @@ void ProgramCache::write(const std::string& wanted, const std::string& kept) con
     out.write(kept);
     out.commit(false);
   } catch (const Error&) {
-    // Without a cache programs only start slower.
+    // Without the cache, programs only start more slowly.
   }
 }
 
 bool ProgramCache::load(const Functions& gl, std::uint32_t program, const std::string& source) const {
-  // NVIDIA's driver crashes on a damaged binary, so the checksum comes first.
+  // NVIDIA's driver crashes on a damaged binary, so read() compares the checksum before.
   const std::optional<std::string> kept = read(key(source));
   GLenum format = 0;
   if (!kept || kept->size() <= sizeof(format)) return false;

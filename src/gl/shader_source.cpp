@@ -61,7 +61,7 @@ void ShaderSource::append(const std::string& name, const std::string& from) {
 std::string ShaderSource::with_file_names(const std::string& log) const {
   std::string out;
   for (std::string_view rest = log; !rest.empty();) {
-    // FILE:LINE or FILE(LINE)
+    // Replaces a place of the form FILE:LINE or FILE(LINE) at the begin of a line.
     std::string_view after = rest;
     const bool may_be_place = out.empty() || out.ends_with('\n') || out.ends_with("ERROR: ");
     const auto file = may_be_place ? take_number(after) : std::nullopt;

@@ -62,7 +62,7 @@ SavedState::~SavedState() {
   if (scissors_ != GL_FALSE) gl_.Enablei(GL_SCISSOR_TEST, 0);
   if (encodes_ != GL_FALSE) gl_.Enable(GL_FRAMEBUFFER_SRGB);
   if (discards_ != GL_FALSE) gl_.Enable(GL_RASTERIZER_DISCARD);
-  // A current program that was deleted no longer exists.
+  // If the saved program was marked for deletion, it ended when another became current.
   const auto program = static_cast<GLuint>(program_);
   gl_.UseProgram(gl_.IsProgram(program) == GL_TRUE ? program : 0);
 }
@@ -102,7 +102,7 @@ SavedDrawing::SavedDrawing(const Context& context, std::uint32_t framebuffer, st
     enabled_[k] = gl_.IsEnabled(test);
     if (enabled_[k] != GL_FALSE) gl_.Disable(test);
   }
-  gl_.Enable(GL_DEPTH_TEST);  // depth writes need the test
+  gl_.Enable(GL_DEPTH_TEST);  // without the test GL writes no depths
   gl_.DepthFunc(GL_ALWAYS);
   gl_.DepthMask(GL_TRUE);
   gl_.ClipControl(GL_LOWER_LEFT, GL_NEGATIVE_ONE_TO_ONE);

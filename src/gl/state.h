@@ -1,5 +1,5 @@
 #pragma once
-// Saves and restores the state of a context that drawing changes, for contexts that others also use.
+// Saves and restores the GL state that drawing changes, for contexts that the caller also uses.
 
 #include <array>
 #include <cstdint>
@@ -10,17 +10,17 @@
 
 namespace binosplat::gl {
 
-/// Saves all state that a frame, and pictures written into a texture or framebuffer, change, and restores it
-/// when destroyed. This is the program; storage and uniform buffers, those of the first
-/// storage_bindings_needed bindings, of binding 0 and the general ones; the buffer of indirect dispatches;
-/// the images of the first MAX_CANVASES units; the scissor test of index 0, the conversion to sRGB and the
-/// rasterizer's discarding.
+/// Saves the state that binosplat changes when it draws a frame or writes a picture into a texture or
+/// framebuffer. Restores it when destroyed. The state is: the current program; the first
+/// storage_bindings_needed indexed storage bindings, uniform binding 0 and both generic buffer bindings; the
+/// buffer of indirect dispatches; the images of the first MAX_CANVASES units; the scissor test of index 0,
+/// GL_FRAMEBUFFER_SRGB and GL_RASTERIZER_DISCARD.
 ///
-/// A current program that was deleted cannot be restored; then none is current. Frames and pictures change no
-/// other state, such as vertex arrays, framebuffers, textures, samplers, other images, pixel store, clear
-/// values, viewports, masks, tests, blending and the debug callback. Drawing a triangle changes some of
-/// these, which a SavedDrawing restores. Do not use it within transform feedback or conditional rendering.
-/// Active queries count the work done here.
+/// If the current program was marked for deletion, it cannot be restored; then none is current. Frames and
+/// pictures change no other state, such as vertex arrays, framebuffers, textures, samplers, other images,
+/// pixel store, clear values, viewports, masks, tests, blending and the debug callback. Drawing a triangle
+/// changes more state, which SavedDrawing restores. Do not draw within transform feedback or conditional
+/// rendering. Active queries also count binosplat's work.
 class SavedState {
  public:
   explicit SavedState(const Context& context);
@@ -28,14 +28,14 @@ class SavedState {
   SavedState(const SavedState&) = delete;
   SavedState& operator=(const SavedState&) = delete;
 
-  /// Sets the state in which a copy reaches a framebuffer whole and unchanged: no scissors, no conversion to
-  /// sRGB, no discarding (NVIDIA's driver also discards copies).
+  /// Sets the state in which a copy writes all pixels of a framebuffer, with unchanged values: no scissor
+  /// test, no conversion to sRGB, no rasterizer discard (on NVIDIA's driver it also discards copies).
   void set_plain() const;
 
  private:
   struct Range {
     GLint buffer = 0;
-    std::int64_t offset = 0, size = 0;  // bytes; size 0: the whole buffer
+    std::int64_t offset = 0, size = 0;  // bytes; a size of 0 means the whole buffer
   };
   struct Image {
     GLint texture = 0, level = 0, layered = 0, layer = 0, access = 0, format = 0;
@@ -51,8 +51,9 @@ class SavedState {
   Range uniforms_;
 };
 
-/// Saves the 2D textures and samplers of the first 2 MAX_CANVASES units, and restores them when destroyed. A
-/// frame with mesh depths reads the caller's textures through these units. Use it with a SavedState.
+/// Saves the 2D textures and samplers of the first 2 * MAX_CANVASES texture units, and restores them when
+/// destroyed. A frame with mesh depths binds the caller's textures to these units. Use it together with a
+/// SavedState.
 class SavedTextures {
  public:
   explicit SavedTextures(const Context& context);
@@ -70,10 +71,9 @@ class SavedTextures {
   std::array<Unit, std::size_t{2} * MAX_CANVASES> units_;
 };
 
-/// Saves the state for drawing a triangle into a depth texture, and restores it when destroyed. In between,
-/// the triangle writes the whole texture. The state is the framebuffer and vertex array to draw with,
-/// viewport 0, clip control, polygon mode, and the tests of depth, stencil, faces and clip distances. Use it
-/// with a SavedState.
+/// Sets the state in which a triangle writes every pixel of a depth texture; restores the previous state when
+/// destroyed. The state is the draw framebuffer, the vertex array, viewport 0, clip control, polygon mode,
+/// depth and stencil tests, face culling and clip distances. Use it together with a SavedState.
 class SavedDrawing {
  public:
   SavedDrawing(const Context& context, std::uint32_t framebuffer, std::uint32_t vertices, int width,

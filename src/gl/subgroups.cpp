@@ -18,12 +18,12 @@ namespace {
 
 constexpr const char* check_shader = "subgroups_check.comp";
 
-/// The work group of a shader with subgroups.
+/// The size of a work group of a shader with subgroups.
 struct GroupShape {
   std::uint32_t columns, rows;
 };
 
-/// The shapes of sorts and scans, and of blend_subgroups.comp.
+/// The work groups of all shaders with subgroups: sorts and scans, then blend_subgroups.comp.
 constexpr std::array group_shapes = {GroupShape{256, 1}, GroupShape{1024, 1}, GroupShape{32, 2},
                                      GroupShape{32, 4}, GroupShape{32, 8}};
 
@@ -89,7 +89,7 @@ std::string why_no_subgroups(Context& context) {
     std::string found = run_subgroup_tests(context);
     context.program_cache().store_result(test_name, found);
     return found;
-  } catch (const Error& error) {  // a compiler without a feature that its driver reports
+  } catch (const Error& error) {  // the driver reports a feature that its compiler lacks
     if (error.code() != ExitCode::no_gl) throw;
     return fmt::format("its shaders with subgroups do not compile: {}", error.what());
   }

@@ -7,14 +7,14 @@
 
 namespace binosplat::gl {
 
-/// Returns why shaders must not use subgroups here, as in "its subgroups have 64 invocations"; empty if they
-/// may. They may if GL_KHR_shader_subgroup has all required features in groups of 32, and small dispatches in
-/// those shaders' group shapes find all lanes in place. The program cache stores the result. Does not change
-/// the context's state.
+/// Returns why shaders must not use subgroups in this context, such as "its subgroups have 64 invocations".
+/// Empty if they may: GL_KHR_shader_subgroup has all required features in subgroups of 32, and
+/// run_subgroup_tests() finds no fault. The program cache stores the result of the tests. Does not change the
+/// context's state.
 std::string why_no_subgroups(Context& context);
 
-/// Runs those dispatches, whatever the driver and the cache report. Returns the fault found, or an empty
-/// text.
+/// Runs small dispatches that test the subgroups, with the work group shapes of all shaders with subgroups.
+/// Ignores the driver's claims and the cache. Returns the worst fault, or an empty text.
 std::string run_subgroup_tests(Context& context);
 
 }  // namespace binosplat::gl

@@ -7,8 +7,8 @@
 
 namespace binosplat::gl {
 
-/// A 2D texture of one level. It has its own storage, or is a view of a level and layer of another texture. A
-/// view's format has as many bits a pixel.
+/// A 2D texture of one level. It has storage, or is a view of a level and layer of another texture. A view's
+/// format must have as many bits per pixel as the other texture's.
 class Texture {
  public:
   Texture(Context& context, GLenum format, int width, int height);
@@ -32,7 +32,7 @@ class Texture {
   std::uint32_t id_ = 0;
 };
 
-/// Reads texels unchanged: overrides the filter and the comparison of a texture.
+/// A sampler that reads texels unchanged. It overrides a texture's filter and depth comparison.
 class Sampler {
  public:
   explicit Sampler(Context& context);

@@ -8,17 +8,19 @@
 
 namespace binosplat::gl {
 
-/// A number that a shader is compiled with.
+/// A number that a shader gets as a #define.
 struct Number {
   const char* name;
   std::uint64_t value;
-  std::uint64_t count;         // number of legal values, from 0 on
-  const char* word = nullptr;  // the value's name, defined as NAME_NAME: it selects the variant's files
-  bool is_real = false;        // the bits of a float; 0 keeps the shader's default
+  std::uint64_t count;  // number of legal values, from 0 on
+  /// The name of the value, or null. The shader gets it as <name>_NAME, and includes files by it.
+  const char* word = nullptr;
+  bool is_real = false;  // `value` is the bits of a float; 0 keeps the shader's default
 };
 
-/// Combines all numbers into one, unique among the shader's variants: all list the same numbers in one order.
-/// Throws std::logic_error for an illegal value, and if 64 bits are too few.
+/// Combines the numbers of a variant into a key that is unique among the shader's variants. All variants of a
+/// shader must list the same numbers in the same order. Throws std::logic_error for an illegal value, or if
+/// 64 bits are too few.
 std::uint64_t key_of(std::span<const Number> numbers);
 
 Defines defines_of(std::span<const Number> numbers);

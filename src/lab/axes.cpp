@@ -80,7 +80,7 @@ class Block {
   const nlohmann::json& object_;
 };
 
-/// One key of a block, and how it sets a member.
+/// One key of a block, and the function that sets a member to its value.
 struct Key {
   const char* name;
   nlohmann::json otherwise;
@@ -90,7 +90,7 @@ struct Key {
 // The views on which the tolerance is found: the measured views, or training views.
 constexpr Choice found_on_choices[] = {{"test", "the views that are measured"}, {"training", "others"}};
 
-constexpr std::size_t most_settings = 10000;  // of all blocks together
+constexpr std::size_t most_settings = 10000;  // limit for all blocks together
 
 /// Appends all combinations of a block's lists. The last key varies fastest.
 void add_settings(const Block& block, std::vector<BenchSettings>& settings) {
@@ -250,7 +250,7 @@ Axes load_axes(const std::string& preset_or_file) {
   if (preset != preset_files().end()) return parse_axes(preset_or_file, preset->second);
   std::error_code ignored;
   if (!std::filesystem::exists(preset_or_file, ignored))
-    fail("--axes {}: neither a preset ({}) nor a file", preset_or_file, fmt::join(axes_presets(), ", "));
+    fail("--suite {}: neither a preset ({}) nor a file", preset_or_file, fmt::join(axes_presets(), ", "));
   return parse_axes(preset_or_file, std::string(as_text(MappedFile(preset_or_file).bytes())));
 }
 

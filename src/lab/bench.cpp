@@ -24,14 +24,16 @@ namespace binosplat::lab {
 
 namespace {
 
-constexpr double reference_db = 60.0;  // against float64; a lower value means that a driver draws wrongly
-// Pairs at the threshold may fall on either side, and calibrated tolerances lie at such thresholds. At most
-// half of the tolerance's loss may come from them.
+// The least PSNR against the float64 reference. If it is lower, the driver draws wrongly.
+constexpr double reference_db = 60.0;
+// fp32 and float64 may decide differently whether to drop a splat-tile pair close to its threshold, and found
+// tolerances often bring pairs there. These pairs may cause at most half (3 dB) of the tolerance's squared
+// error.
 constexpr double share_db = 3.0;
 
 const glm::vec3 black(0.0f);
 
-// The float64 analysis of contributions takes seconds a view.
+// Few, because the float64 analysis of contributions takes seconds per view.
 constexpr std::size_t contribution_views = 3;
 constexpr float paper_far = 100.0f;  // world units: end of AdaGScale's table by depth
 
@@ -56,13 +58,14 @@ bool same_inset(const Image& a, const Image& b, const stereo::FoveatedEye& parts
   return true;
 }
 
-/// The gaze along the eye's axis, through the principal point. If that is not the picture's middle, angles
-/// are slightly wrong.
+/// The gaze along the eye's axis, through the principal point. If the principal point is not the picture's
+/// middle, angles are slightly wrong.
 measure::Gaze gaze_of(const shared::View& eye) {
   return {eye.lens[2], eye.lens[3], glm::degrees(2.0 * std::atan(0.5 * eye.width / eye.lens[0]))};
 }
 
-/// Means over pictures of one size, weighted by pixels: of whole pictures, and by rings around the gaze.
+/// Returns the % of pixels with a visible difference, mean over pictures of one size. Appends a detail for
+/// each ring around the gaze, with means over the ring's pixels in all pictures.
 double pooled(const std::vector<measure::FoveatedComparison>& found, std::vector<Row>& details) {
   struct OfRing {
     double to = 0.0, share = 0.0, squared_error = 0.0, visible = 0.0;
@@ -104,7 +107,7 @@ double mean_of(const std::vector<Image>& images) {
   return sum / pixels;
 }
 
-/// Adds the work of a frame, one of `frames`.
+/// Adds one frame to `work`, which is the mean over `frames` frames.
 void add_work(const render::Frame& frame, const render::FrameReport& report, std::size_t frames,
               FrameWork& work) {
   const double weight = 1.0 / static_cast<double>(frames);
@@ -124,7 +127,7 @@ constexpr const char* quality_numbers[] = {
     "visible",       "alphas",  "alphas_visible", "pairs_removed", "reported_db",     "gaussians",
     "photo_psnr_db", "drop_db", "photo_ssim",     "photo_flip",    "attempts"};
 
-/// The means over the views, and the worst view.
+/// Stores the means over the views, and the worst view.
 void put_means(const std::vector<Row>& views, Row& row) {
   for (const char* name : quality_numbers) put(row, name, mean_number(views, name));
   const auto psnr = [](const Row& view) {
@@ -259,7 +262,7 @@ double Bench::work_ms(const BenchSettings& settings, std::size_t points) {
   first.transmittance = first.transmittance == TRANSMITTANCE_DEPTH ? TRANSMITTANCE_ONE : first.transmittance;
   BenchDrawer drawer = this->drawer(first);
   double ms = 0.0;
-  for (int n = 0; n < 2; ++n) {  // in the first one drivers compile the programs
+  for (int n = 0; n < 2; ++n) {  // the first frame does not count: drivers compile programs in it
     const auto start = Clock::now();
     drawer.draw(what_.first());
     ms = ms_since(start);
@@ -273,8 +276,9 @@ double Bench::work_ms(const BenchSettings& settings, std::size_t points) {
   return ms * frames * static_cast<double>(points);
 }
 
-// Compares a small picture with the float64 reference. Rules that use measurements have no reference; other
-// points verify their stages. Levels of detail are compared with the finest.
+// Compares a small picture with the float64 reference. Skips this for settings that use measurements, levels
+// of detail, or another order or projection, because other points verify their stages. Then checks the first
+// view: pixels are finite, an exact inset equals the exact picture, and frames repeat bit for bit.
 std::string Bench::verify(const BenchSettings& settings) {
   const bool by_reference = settings.transmittance == TRANSMITTANCE_ONE && settings.quality == 0.0f &&
                             !settings.detail && !settings.order && !settings.projection;
@@ -347,7 +351,7 @@ void Bench::time_views(BenchDrawer& drawer, Row& row) {
   const bool software = context_.software(), follows = drawer.follows();
   bool settled = true;
   render::FrameReport last;
-  std::vector<double> repeats, all_ms, submit_ms;  // repeats: means over views
+  std::vector<double> repeats, all_ms, submit_ms;  // repeats: means over the views
   std::vector<CpuUse> cpu_repeats;
   std::vector<Typical> turns;
   for (int repeat = 0; repeat < effort_.repeats; ++repeat) {
@@ -407,7 +411,7 @@ void Bench::measure_views(const BenchSettings& settings, BenchDrawer& drawer, Po
         levels.predicted_db);
     if (settings.quality > 0.0f) put(row, "reported_db", capped(report.quality), "attempts", report.attempts);
     if (v == 0) point.picture = for_page(composite(drawn.front(), black));
-    if (settings.foveation) continue;  // its pixels belong to two pictures
+    if (settings.foveation) continue;  // pixels of inset and context are not comparable
     add_work(drawer.frame(), report, what_.views.size(), work);
     put(row, "alphas", mean_of(drawer.frame().read_debug_view(SHOW_ALPHAS)), "alphas_visible",
         mean_of(drawer.frame().read_debug_view(SHOW_VISIBLE)));
@@ -429,7 +433,7 @@ void Bench::measure_views(const BenchSettings& settings, BenchDrawer& drawer, Po
   }
 }
 
-// Computes only PSNR and drops, from sums on the GPU. Reads back only the first picture.
+// Measures only PSNR and drops, from sums on the GPU. Reads back only the first picture.
 void Bench::measure_by_sums(const BenchSettings& settings, BenchDrawer& drawer, Point& point) {
   const Calibrator::Cost cost = calibrator(false, false, settings).cost(settings);
   std::vector<Row> views;
@@ -462,7 +466,7 @@ Point Bench::measure(BenchSettings settings) {
     put(point.row, "problem", problem);
     return point;
   }
-  // A moving head is drawn without depth, unless popping is compared, which needs it.
+  // Frames of a moving head have no depths, unless popping is measured, which needs them.
   if (!what_.stretches.empty() && !effort_.popping) settings.depth = Depth::none;
   BenchDrawer drawer = this->drawer(settings);
   if (!what_.stretches.empty()) {

@@ -26,16 +26,16 @@ class Bench {
   Bench(gl::Context& context, std::function<const Model&()> load, BenchCase what, const BenchEffort& effort);
   ~Bench();
 
-  /// Estimates the time for this many similar points, in ms. Draws two frames.
+  /// Estimates the time to measure `points` points with similar settings, in ms. Draws two frames.
   double work_ms(const BenchSettings& settings, std::size_t points);
 
   /// Measures one point. A point that fails verification is not timed and has a problem instead. If the
-  /// finest levels of a scene do not fit, the numbers that need them are missing, and "no_exact" gives the
-  /// reason. TRANSMITTANCE_DEPTH uses a table of the training views, or else of the bench's own. Throws Error
-  /// if the GPU cannot draw the views at all.
+  /// finest levels of a scene do not fit into memory, the row lacks all numbers that need them, and its value
+  /// "no_exact" gives the reason. TRANSMITTANCE_DEPTH uses a table measured in the training views, or in the
+  /// bench's own views if it has no training views. Throws Error if the GPU cannot draw the views at all.
   Point measure(BenchSettings settings);
 
-  /// The contributions of single Gaussians (contributions.h) as details, with bounds of the paper's table.
+  /// Measures the contributions of single Gaussians (contributions.h) and returns them as details.
   Point contributions();
 
  private:
@@ -62,6 +62,7 @@ class Bench {
   Calibrator& calibrator(bool training, bool drop, const BenchSettings& settings);
   BenchDrawer drawer(const BenchSettings& settings);
   void find_tolerance(BenchSettings& settings, Row& row);
+  /// Returns the problem of these settings, or "".
   std::string verify(const BenchSettings& settings);
 
   void time_views(BenchDrawer& drawer, Row& row);
@@ -82,7 +83,7 @@ class Bench {
   std::unique_ptr<ExactFrames> exact_frames_;
   Seen exact_frames_seen_ = {-1, -1};
   std::map<std::optional<float>, DepthTable> tables_;
-  std::map<std::tuple<bool, bool, Seen>, std::unique_ptr<Calibrator>> calibrators_;  // keys: arguments
+  std::map<std::tuple<bool, bool, Seen>, std::unique_ptr<Calibrator>> calibrators_;  // by arguments
 };
 
 }  // namespace binosplat::lab

@@ -1,5 +1,5 @@
 #pragma once
-// The objects of a measurement: views, successive frames, or a turning head.
+// The views that a measurement draws: single views, successive frames, or those of a turning head.
 
 #include <functional>
 #include <memory>
@@ -19,44 +19,47 @@
 
 namespace binosplat::lab {
 
-/// One frame: a single camera, or both eyes.
+/// The views of one frame: a single camera, or both eyes.
 struct BenchView {
   std::string name;
   std::vector<shared::View> eyes;
-  std::optional<Image> photo = {};  // of the only eye, in its size
+  std::optional<Image> photo = {};  // for a single camera only, in its size
   glm::mat4x3 exposure{1.0f};       // applied to pictures before the comparison
 };
 
 /// Successive frames. Drawing starts without earlier measurements, as in a program that has just started.
 struct Stretch {
   std::vector<std::vector<shared::View>> frames;  // the views of each frame
-  std::size_t moving = 0;                         // number of frames that count; then the head stands still
+  std::size_t moving = 0;                         // number of frames before the head stops; only these count
 };
 
-/// The first frames of `count` stretches of `length` frames, spread evenly over `total`, both ends included.
-/// Fewer if they would overlap; one at 0 if none fits.
+/// Returns the first frame of each of `count` stretches of `length` frames. The stretches are spread evenly
+/// over `total` frames from the first to the last; a single one is in the middle. Returns fewer if they would
+/// overlap, and only 0 if none fits.
 std::vector<std::size_t> stretch_starts(std::size_t total, std::size_t length, std::size_t count);
 
-/// The levels that a model was brought to.
+/// The levels that a model has loaded.
 struct LoadedLevels {
   std::size_t gaussians = 0;
-  std::optional<double> predicted_db = {};  // PSNR against the finest; none: not predicted
+  std::optional<double> predicted_db = {};  // PSNR against the finest levels; none: not predicted
 };
 
-/// A model whose levels follow the views; without `load_levels` its levels are fixed.
+/// A model whose levels follow the views: `load_levels` loads the levels that some views need. Without
+/// `load_levels` the levels are fixed.
 struct FollowingModel {
   std::shared_ptr<render::GpuModel> model;
-  std::function<LoadedLevels(std::span<const shared::View> views)> load_levels = {};  // reads needed levels
+  std::function<LoadedLevels(std::span<const shared::View> views)> load_levels = {};
 };
 
 /// Exactly one of the three is set: views, stretches or turned.
 struct BenchCase {
   std::vector<BenchView> views;
   std::vector<Stretch> stretches;
-  std::optional<Camera> turned;  // in the model's axes
+  std::optional<Camera> turned;  // the camera of a turning head, in the model's axes
   double near_plane = near_default;
   shared::View small = {};  // few pixels, to compare with the float64 reference
-  /// The views in the world, and training views for tolerances and tables by depth, if requested.
+  /// `tested` has the cameras of `views` in world coordinates, if each view is a single camera. `training`
+  /// has the views in which tolerances and depth tables are found, if the axes request training views.
   std::vector<CalibrationView> tested, training;
   std::function<FollowingModel(const DetailRequest&)> follow;  // only for a scene with levels of detail
 
@@ -65,16 +68,17 @@ struct BenchCase {
 };
 
 struct BenchEffort {
-  int frames = 30;                               // timed, per view and repeat
-  int repeats = 3;                               // passes over everything; their spread is the noise
-  double ppd = measure::flip_pixels_per_degree;  // for FLIP
-  std::optional<Peaks> peaks = {};               // of the GPU; adds floors to whole pictures
-  bool perception = true;  // SSIM, FLIP and blended pixels; else only PSNR, which is fast
-  bool seen = false;       // visibility of errors for a gaze along each axis
+  int frames = 30;                               // timed frames per view and repeat
+  int repeats = 3;                               // passes over all frames; the spread of times is the noise
+  double ppd = measure::flip_pixels_per_degree;  // pixels per degree, for FLIP
+  std::optional<Peaks> peaks = {};               // the GPU's rates; if set, adds floors (floors.h)
+  bool perception = true;  // also measures SSIM, FLIP and alphas per pixel; PSNR alone is fast
+  bool seen = false;       // measures visible differences for a gaze along each eye's axis
   bool popping = false;    // measures popping in the first stretch
 };
 
-/// `count` indices spread evenly over `all`, both ends included; all if there are no more.
+/// Returns `count` indices spread evenly over 0 to `all` - 1, both ends included, or all indices if there are
+/// fewer.
 std::vector<std::size_t> spread_evenly(std::size_t all, std::size_t count);
 
 }  // namespace binosplat::lab

@@ -1,5 +1,6 @@
 #pragma once
-// Draws frames by bench settings: whole or foveated, at the finest levels or at those that views need.
+// Draws frames with bench settings: whole or foveated pictures, at fixed levels or at levels that follow the
+// views.
 
 #include <utility>
 #include <vector>

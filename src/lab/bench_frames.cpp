@@ -18,12 +18,12 @@ namespace binosplat::lab {
 
 namespace {
 
-constexpr std::array apart_frames = {1, 7};
+constexpr std::array apart_frames = {1, 7};  // popping is measured between frames so far apart
 constexpr std::int64_t exact_bytes = std::int64_t{8} << 30;  // memory for exact frames on the GPU
 
 bool is_moving(const Row& frame) { return text(frame, "part") == "moving"; }
 
-/// Summarises the moving frames, and those at rest after them.
+/// Stores a summary of the moving frames and of the frames at rest after them.
 void put_summary(const std::vector<Row>& frames, double exact_pairs, Row& row) {
   std::vector<Row> moving, stop, once;
   for (const Row& frame : frames) {
@@ -48,15 +48,15 @@ void put_summary(const std::vector<Row>& frames, double exact_pairs, Row& row) {
   }
 }
 
-/// The picture in black, with its depth.
+/// The picture with black colours and its own depths.
 Picture uncoloured(Picture picture) {
   for (glm::vec4& colour : picture.colour) colour = {0.0f, 0.0f, 0.0f, colour.a};
   return picture;
 }
 
-/// Popping: changes between frames of the first eye that motion does not explain. Warps a frame to a later
-/// one by the drawn depth (stereo/disagreement.h) and compares. The method of StopThePop (Radl et al. 2024,
-/// section 5), with depths and poses instead of estimated flow.
+/// Measures popping: changes between frames of the first eye that motion does not explain. Warps each frame
+/// to a later one by its drawn depths (stereo/disagreement.h), and compares the two. Follows StopThePop (Radl
+/// et al. 2024, section 5), but warps by depths and poses instead of estimated optical flow.
 void put_popping(BenchDrawer& drawer, const Stretch& stretch, Row& row) {
   std::vector<Picture> pictures;
   drawer.frame().start_over();

@@ -1,5 +1,5 @@
-// Measures a point along turns of a head at one place: the changes of colours along fixed rays. Ideally there
-// are none.
+// Measures how much the colours along fixed rays change when a head turns at one place. Ideally they stay
+// equal.
 
 #include <fmt/core.h>
 
@@ -16,12 +16,12 @@ namespace binosplat::lab {
 namespace {
 
 constexpr float difference_gain = 8.0f;     // brightens the picture of differences
-constexpr double seen_error = 5.0 / 255.0;  // in a colour from 0 to 1
+constexpr double seen_error = 5.0 / 255.0;  // visible change of a colour from 0 to 1
 constexpr double field_degrees = 60.0;      // width and height of the field of rays
 constexpr double turns_degrees[] = {0.25, 1.0, 5.0, 15.0, 45.0};
-constexpr double summary_degrees = 15.0;  // means and picture are of this turn
+constexpr double summary_degrees = 15.0;  // the point's means and picture are those of this turn
 
-/// Number of rays, evenly spread over the field in the head's picture; fewer on a CPU.
+/// Columns and rows of rays in the field; fewer if the CPU draws.
 glm::ivec2 rays_of(const gl::Context& context) {
   return context.software() ? glm::ivec2(16, 12) : glm::ivec2(48, 36);
 }
@@ -32,7 +32,7 @@ struct HeadAxis {
 };
 const std::array<HeadAxis, 3> head_axes = {{{"up", {0, 1, 0}}, {"across", {1, 0, 0}}, {"ahead", {0, 0, 1}}}};
 
-/// Points of the camera's picture, row by row. Some may lie outside.
+/// The point of each ray in the camera's picture, row by row. Some may lie outside the picture.
 std::vector<glm::dvec2> field_of(const Camera& camera, const glm::ivec2& rays) {
   const double reach = std::tan(glm::radians(0.5 * field_degrees));
   std::vector<glm::dvec2> points;
@@ -40,7 +40,7 @@ std::vector<glm::dvec2> field_of(const Camera& camera, const glm::ivec2& rays) {
     for (int column = 0; column < rays.x; ++column) {
       const glm::dvec2 slope =
           reach * glm::dvec2((2.0 * column + 1.0) / rays.x - 1.0, (2.0 * row + 1.0) / rays.y - 1.0);
-      // At a pixel's centre, as in a picture.
+      // Rays go through pixel centres, as in a picture.
       points.push_back(
           glm::floor(glm::dvec2(camera.fx, camera.fy) * slope + glm::dvec2(camera.cx, camera.cy)));
     }
@@ -48,7 +48,7 @@ std::vector<glm::dvec2> field_of(const Camera& camera, const glm::ivec2& rays) {
   return points;
 }
 
-/// The colours of rays as a picture, one pixel a ray; black if `shown` lacks the ray.
+/// The colours of rays as a picture with one pixel per ray. Pixels of rays that `shown` lacks are black.
 Image rays_picture(const std::vector<glm::vec3>& colours, const std::vector<std::size_t>& shown,
                    const glm::ivec2& rays) {
   Image image(rays.x, rays.y, 3);
@@ -59,8 +59,8 @@ Image rays_picture(const std::vector<glm::vec3>& colours, const std::vector<std:
   return image;
 }
 
-/// Compares with the straight head, for rays that both pictures show. Writes their differences to
-/// `difference`.
+/// Compares the turned head's colours with the straight head's, for rays that both pictures show. Writes the
+/// amplified differences to `difference`.
 Row compare_turned(const Image& straight, const Image& turned, const std::vector<std::size_t>& shown,
                    Image& difference) {
   if (shown.empty()) return Row::object();
@@ -89,7 +89,7 @@ void Bench::measure_turns(const BenchSettings& settings, Point& point) {
   const Camera& camera = *what_.turned;
   const glm::ivec2 rays = rays_of(context_);
   const std::vector<glm::dvec2> field = field_of(camera, rays);
-  // A ray has no picture, by which anchors of Scaffold-GS are culled.
+  // Scaffold-GS culls anchors outside the picture, but single rays have no picture.
   const render::FrameSettings drawn{
       .order = settings.order, .projection = settings.projection, .anchor_cull = false};
   render::Frame frame(gpu_model());

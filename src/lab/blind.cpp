@@ -24,11 +24,12 @@ Camera small(const Camera& camera) {
   return resized(camera, scaled(camera.width), scaled(camera.height));
 }
 
-// Whether the middle of a visible Gaussian lies well within the picture. Its pixel then shows it, whatever
-// its shape. Most views pass this test without drawing. `camera` is in the model's axes.
+// Whether the middle of a visible Gaussian lies well within the picture. The pixel at the middle then shows
+// the Gaussian, whatever its shape. Most views pass this test, which draws nothing. `camera` is in the
+// model's axes.
 bool has_middle(const Model& model, const Camera& camera, double near_plane) {
-  // The nearest pixel's centre is at most half a pixel away along each axis, and the low-pass is at least as
-  // wide.
+  // The nearest pixel centre is at most 0.5 px away along each axis. The splat's variance is at least
+  // kernel_px2, so alpha at this centre is at least 2 / 255.
   const double not_faint = 2.0 / 255.0 * std::exp(0.25 / model.kernel_px2);
   if (model.antialiased || model.scaffold) return false;
   for (std::size_t i = 0; i < model.count(); ++i) {

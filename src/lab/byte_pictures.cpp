@@ -50,7 +50,7 @@ std::vector<double> BytePictures::errors(const render::Frame& frame, std::span<c
   dispatcher_.begin_stage("byte error");
   std::uint32_t first = 0, first_sum = 0;
   for (std::size_t v = 0; v < views.size(); ++v) {
-    // One dispatch a view, so that no work group spans two.
+    // One dispatch per view, so that no workgroup has pixels of two views.
     dispatcher_.run(dispatcher_.context().program("byte_error.comp"),
                     gl::DispatchSize::threads(pixels_of(views[v]), THREADS),
                     {{"Colours", frame.colours()}, {"Kept", kept}, {"Sums", sums_}},

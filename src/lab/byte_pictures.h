@@ -1,6 +1,6 @@
 #pragma once
-// Keeps 8-bit pictures on the GPU, one word a pixel, and measures the error of later frames against them. For
-// the exact frames of a path, of which none is read back.
+// Keeps 8-bit pictures on the GPU, 4 bytes per pixel, and measures the error of later frames against them. So
+// no exact frame of a path need be read back.
 
 #include <span>
 #include <vector>
@@ -15,20 +15,21 @@ class BytePictures {
  public:
   explicit BytePictures(gl::Context& context);
 
-  /// Bytes of the pictures of these views.
+  /// Returns the bytes that keep() needs for these views.
   static std::int64_t bytes(std::span<const shared::View> views);
 
-  /// Keeps the pictures, over black, of the last frame, which drew `views`.
+  /// Stores in `kept` the pictures, over black, that `frame` has just drawn of `views`.
   void keep(const render::Frame& frame, std::span<const shared::View> views, gl::Buffer& kept);
 
-  /// The mean squared error of each view over its pixels and channels, between 8-bit pictures; exactly 0 if
-  /// equal. `kept` holds views of the same sizes.
+  /// Returns each view's mean squared error over pixels and channels, between the 8-bit pictures of `frame`
+  /// and of `kept`, for colours from 0 to 1. It is exactly 0 if the pictures are equal. `kept` must hold
+  /// pictures of the same sizes.
   std::vector<double> errors(const render::Frame& frame, std::span<const shared::View> views,
                              const gl::Buffer& kept);
 
  private:
   gl::Dispatcher dispatcher_;
-  gl::Buffer sums_;  // a uint for each work group
+  gl::Buffer sums_;  // one uint per workgroup
 };
 
 }  // namespace binosplat::lab

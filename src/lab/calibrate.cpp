@@ -23,7 +23,7 @@ static void fields(const auto& io, Some<Calibrator::Cost> auto& c) {
 
 namespace {
 
-// Precision of searches: users give drops in tenths of a dB, and qualities in whole dB.
+// Precision of searches: users request drops in tenths of a dB, and qualities in integer dB.
 constexpr double drop_within_db = 0.01, quality_within_db = 0.05;
 
 double psnr_of(double squared_error) {
@@ -39,7 +39,7 @@ Picture as_picture(const Image& photo) {
 
 }  // namespace
 
-/// The picture to compare a view with, on the GPU, and the dB of its exact picture.
+/// The picture that a view is compared with, on the GPU, and the numbers of the view's exact frame.
 struct Calibrator::Reference {
   Reference(gl::Context& context, std::span<const Picture> pictures, std::uint64_t pairs)
       : error(context, pictures), exact_pairs(pairs) {}
@@ -88,7 +88,7 @@ Calibrator::Cost Calibrator::cost(const render::FrameSettings& settings) {
 Calibrator::Cost Calibrator::cost(const Model& other, int drawings,
                                   const std::function<void(std::size_t)>& after_view) {
   render::Frame frame(context_, other);
-  // The GPU's clock dropped while the model was made.
+  // The GPU's clock drops while the CPU makes and uploads a model.
   if (drawings > 1) raise_clock(context_, 500.0, [&] { frame.draw(std::span(&views_.front(), 1)); });
   return cost(frame, {}, drawings, after_view);
 }
@@ -144,7 +144,7 @@ CalibrationEntry Calibrator::find(render::FrameSettings settings, double target_
   };
   measure::ToleranceSearch search;
   search.start = settings.tolerance;
-  search.narrowest = 1e-3;  // a tolerance larger by a thousandth saves nothing
+  search.narrowest = 1e-3;  // a tolerance that is 0.1 % larger saves nothing
   search.within = sign < 0 ? drop_within_db : quality_within_db;
   const measure::FoundTolerance found = measure::find_tolerance(value, sign * target_db, search);
   settings.tolerance = static_cast<float>(found.tolerance);
@@ -192,7 +192,9 @@ ThresholdCalibration calibrate(gl::Context& context, const Model& model,
     settings.depth_table = c.depth_table;
     settings.order = exact.order;
     settings.projection = exact.projection;
-    // A rule's tolerance is similar for another source. Each saved step of the search is a frame, or eight.
+    // Start at the tolerance that the same rule has with another source of transmittance: the two are
+    // similar. Each step that this saves is one frame per view, or settling_frames with measured
+    // transmittance.
     if (!c.entries.empty() && c.entries.back().th == settings.th && c.entries.back().tolerance > 0.0)
       settings.tolerance = static_cast<float>(c.entries.back().tolerance);
     c.entries.push_back(calibrator.find(settings, wanted.target.db));

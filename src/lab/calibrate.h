@@ -1,7 +1,7 @@
 #pragma once
-// Finds the transmittance bound by depth (AdaGScale, sections 3.2 and 3.4). Also finds, for each rule and
-// source, the tolerance that reaches a target in some views of a model. Pictures stay on the GPU; only sums
-// are read back.
+// Measures the transmittance bound at each depth (AdaGScale, sections 3.2 and 3.4). Also finds, for each rule
+// and source of transmittance, the tolerance that reaches a target in some views of a model. Pictures stay on
+// the GPU; only sums are read back.
 
 #include <functional>
 #include <memory>
@@ -19,48 +19,50 @@
 
 namespace binosplat::lab {
 
-/// Returns the result of `measure` for a step of this name, or that of an interrupted earlier run.
+/// Returns the result of the step named `step`: the stored one of an interrupted run, or else that of
+/// `measure`.
 using StepCache = std::function<nlohmann::ordered_json(
     const std::string& step, const std::function<nlohmann::ordered_json()>& measure)>;
 
 struct CalibrationView {
-  Camera camera;               // in the world (scene/axes.h)
+  Camera camera;               // in world coordinates (scene/axes.h)
   std::optional<Image> photo;  // RGB in the camera's size
   glm::mat4x3 exposure{1.0f};  // applied to pictures before the comparison (exposed() of base/image.h)
 };
 
-/// Training, held-back and test views. Views that a model was fitted to underestimate its error, so others
-/// validate it.
+/// Training, held-back and test views of `trim` and `refit`. A model is fitted to the training views, which
+/// therefore underestimate its error. So the held-back views validate it.
 struct ViewSplit {
-  std::vector<Camera> training;            // in the world
-  std::vector<CalibrationView> held_back;  // at least one; their mean decides
-  std::vector<CalibrationView> test;       // only reported, decide nothing; may be empty
-  // The same two in the cameras' own size if that is larger, else empty. A bound must hold in both sizes.
+  std::vector<Camera> training;            // in world coordinates
+  std::vector<CalibrationView> held_back;  // at least one; their mean loss must stay within the bound
+  std::vector<CalibrationView> test;       // their loss is only reported; may be empty
+  // held_back and test in the cameras' own size if that is larger, else empty. A bound must hold in both
+  // sizes.
   std::vector<CalibrationView> held_back_own, test_own;
   double near_plane = near_default;  // world units
 };
 
 /// Options of a Calibrator.
 struct CalibratorOptions {
-  StepCache cache = {};                  // for costs
+  StepCache cache = {};                  // stores each result of cost(settings)
   std::optional<int> order, projection;  // of the exact pictures; none: the model's
 };
 
 /// Measures the cost of drawing settings for a model in some views.
 class Calibrator {
  public:
-  /// Draws the exact pictures. Context and model must outlive it. Throws Error without views, if only some
-  /// have photos, or if the target is a drop and they have none.
+  /// Draws the exact pictures. Context and model must outlive this object. Throws Error without views, or if
+  /// the target is a drop and a view has no photo of its size.
   Calibrator(gl::Context& context, const Model& model, const std::vector<CalibrationView>& views,
              double near_plane, CalibrationTarget::Kind kind, CalibratorOptions options = {});
   ~Calibrator();
 
   struct Cost {
-    double mean_db = 0.0;  // in the target's unit: drop, or PSNR (at most 100)
+    double mean_db = 0.0;  // by the target's kind: the drop against photos, or the PSNR (at most 100)
     double worst_db = 0.0;
     std::size_t worst_view = 0;
     double pairs_removed = 0.0;   // share of the exact frame's pairs, mean over the views
-    std::vector<double> view_db;  // for each view
+    std::vector<double> view_db;  // of each view, as mean_db
     double pairs = 0.0;           // mean over the views
     double ms = 0.0;              // GPU time of a frame, mean over the views
   };
@@ -73,8 +75,8 @@ class Calibrator {
   /// PSNR of the exact pictures against the photos, mean over the views; 100 without photos.
   double exact_photo_db() const;
 
-  /// The cost of another model in the same axes, drawn exactly. `ms` is the median of `drawings` frames a
-  /// view. Calls `after_view(views)` after each view.
+  /// The cost of another model in the same axes, drawn exactly. Each view is drawn `drawings` times, and its
+  /// median time counts. Calls `after_view(n)` after the n-th view, counted from 1.
   Cost cost(const Model& other, int drawings = 1, const std::function<void(std::size_t)>& after_view = {});
 
   DepthTable depth_table(const measure::DepthTableSettings& settings = {});
@@ -97,7 +99,7 @@ class Calibrator {
   std::vector<std::unique_ptr<Reference>> references_;
 };
 
-/// The target of a calibration, and the settings of its table. Everything is drawn in the table's order and
+/// The target of a calibration, and the settings of its depth table. All pictures have the table's order and
 /// projection.
 struct CalibrationSettings {
   CalibrationTarget target;
@@ -106,10 +108,11 @@ struct CalibrationSettings {
   StepCache cache = {};
 };
 
-/// The settings that a calibration has entries for: the inexact ones of these rules.
+/// Returns the settings of the inexact rules among these: a calibration has one entry for each.
 std::vector<render::FrameSettings> calibrated_settings(const std::vector<Rule>& rules = all_rules());
 
-/// Measures the table of bounds by depth, then finds every entry, and calls `done(entries, of)` after each.
+/// Measures the depth table, then finds the tolerance of each entry. Calls `done(n, entries)` after the n-th
+/// of all entries.
 ThresholdCalibration calibrate(gl::Context& context, const Model& model,
                                const std::vector<CalibrationView>& views, double near_plane,
                                const CalibrationSettings& wanted,

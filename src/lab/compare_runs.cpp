@@ -12,8 +12,8 @@ namespace binosplat::lab {
 
 namespace {
 
-constexpr double least_share = 0.02;      // smallest relative change of a time
-constexpr double found_by_chance = 0.01;  // of pairs of equal runs
+constexpr double least_share = 0.02;      // smallest relative change of a time to report
+constexpr double found_by_chance = 0.01;  // share of comparisons of equal runs that report a change by chance
 constexpr double least_db = 0.01, least_pairs = 1e-3;
 
 /// A point that both runs measured.
@@ -23,11 +23,11 @@ struct BothRuns {
   std::string name;
 };
 
-/// One time of both runs, for each repeat.
+/// One kind of time of a point in both runs.
 struct TimePair {
   std::string name;
   double was = 0.0, is = 0.0;   // ms, the means
-  std::vector<double> changes;  // logarithm of the factor, per repeat
+  std::vector<double> changes;  // per repeat, the logarithm of new over old time
   double least = least_share;   // smallest relative change to report
 };
 
@@ -42,7 +42,7 @@ std::vector<double> times_of(const Row& row, const char* name) {
   return times;
 }
 
-/// The times to compare of two points; empty if they have none, or different numbers of repeats.
+/// The times of a point to compare; empty if the runs have none, or different numbers of frames or repeats.
 std::vector<TimePair> times_of(const BothRuns& both) {
   const auto both_have = [&](const char* list) {
     return both.was->contains(list) && both.is->contains(list);
@@ -50,14 +50,15 @@ std::vector<TimePair> times_of(const BothRuns& both) {
   std::vector<TimePair> pairs;
   if (number(*both.was, "frames") != number(*both.is, "frames")) return pairs;
   const char* frames = both_have("cpu_repeats_ms") ? "cpu_repeats_ms" : "repeats_ms";
-  // On a CPU, waiting depends on the machine's other load.
+  // If the CPU draws, wall times also depend on other programs, so they are not compared.
   const bool by_cpu = std::string_view(frames) == "cpu_repeats_ms";
   for (const auto& [list, what] : {std::pair{frames, ""}, {"wall_repeats_ms", ", wall"}}) {
     if (by_cpu && list != frames) continue;
     const std::vector<double> was = times_of(*both.was, list), is = times_of(*both.is, list);
     if (was.empty() || was.size() != is.size()) continue;
     TimePair& pair = pairs.emplace_back(TimePair{both.name + what, mean(was), mean(is), {}});
-    // On a shared CPU, computing also takes longer, because caches are shared.
+    // Other programs also slow the computation itself, because they share its caches. So a change must exceed
+    // the share of time that threads waited for them.
     for (const Row* run : {both.was, both.is}) {
       const double waited = number(*run, "waited");
       if (by_cpu && !std::isnan(waited)) pair.least = std::max(pair.least, 0.01 * waited);

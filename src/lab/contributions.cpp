@@ -32,7 +32,8 @@ double bound_at(const DepthTable& table, double depth) {
   return bound > 0.0f ? static_cast<double>(bound) : 1.0;
 }
 
-/// The transmittance bound of each Gaussian by each of `known`; empty for the true T of each pixel.
+/// For each formula of `known`, the transmittance that it assumes for each Gaussian; empty for "alpha T",
+/// which uses the true T of each pixel.
 std::array<std::vector<double>, known.size()> bounds_by(const std::vector<reference::Splat>& splats,
                                                         const std::vector<double>& largest,
                                                         const DepthTable& table) {
@@ -43,7 +44,8 @@ std::array<std::vector<double>, known.size()> bounds_by(const std::vector<refere
   return bounds;
 }
 
-/// max(T) of the Gaussians in each bin of depth, up to the depth within which 95 % of them lie.
+/// Appends a row for each bin of depth, with max(T) of its Gaussians. The last bin ends at the depth within
+/// which 95 % of the Gaussians lie.
 void add_by_depth(const std::vector<ShownGaussian>& shown, const DepthTable& table, std::vector<Row>& rows) {
   if (shown.empty()) return;
   std::vector<double> depths;
@@ -66,7 +68,8 @@ void add_by_depth(const std::vector<ShownGaussian>& shown, const DepthTable& tab
   }
 }
 
-/// Contributions of fragments by their distance from the Gaussian's middle.
+/// Appends a row for each bin of distance from the Gaussian's middle, with the contributions of its
+/// fragments.
 void add_by_distance(std::vector<reference::DistanceBin> bins, std::vector<Row>& rows) {
   while (!bins.empty() && bins.back().fragments == 0) bins.pop_back();
   double all = 0.0, nearer = 0.0;
@@ -83,7 +86,7 @@ void add_by_distance(std::vector<reference::DistanceBin> bins, std::vector<Row>&
 
 std::vector<Row> contributions(const Model& model, std::span<const BenchView> views, const DepthTable& table,
                                const DepthTable& fitted) {
-  std::array<std::array<std::vector<Row>, skipped_shares.size()>, known.size()> skipping;  // by view
+  std::array<std::array<std::vector<Row>, skipped_shares.size()>, known.size()> skipping;  // rows by view
   std::vector<reference::DistanceBin> distances;
   std::vector<ShownGaussian> shown;
   for (const BenchView& one : views) {

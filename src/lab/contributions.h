@@ -1,7 +1,7 @@
 #pragma once
-// Measures single Gaussians as AdaGScale's figures 4 to 6 do: contributions to a view by distance from their
-// middles, transmittance in front of them by depth, and the loss without the lowest contributions. In float64
-// on the CPU, so independent of the frame's settings.
+// Measures single Gaussians as in AdaGScale's figures 4 to 6. The figures show contributions by distance from
+// the Gaussian's middle, transmittance by depth, and the loss if the lowest contributions are skipped. All
+// numbers are computed in float64 on the CPU, so frame settings do not affect them.
 
 #include <span>
 #include <vector>
@@ -12,12 +12,11 @@
 
 namespace binosplat::lab {
 
-/// Rows of three kinds, by their key "of", over the first eyes of all views:
-/// skipping: quality without the lowest contributions. "by" names the transmittance used; means over the
-/// views.
-/// distance: alpha T of fragments, by their distance from the Gaussian's middle in px.
-/// depth: max(T) of blended Gaussians, by view depth in world units.
-/// T_upper(depth) comes from `table` for skipping, and from `fitted` for the bins of depth.
+/// Returns rows of three kinds, named in their column "of", for the first eye of each view:
+/// - skipping: the PSNR without the lowest contributions, mean over the views. "by" has the formula of the
+///   contributions, in which T_upper(depth) comes from `table`.
+/// - distance: alpha T of fragments, by their distance from the Gaussian's middle in px.
+/// - depth: max(T) of blended Gaussians by view depth in world units, and T_upper from `fitted`.
 std::vector<Row> contributions(const Model& model, std::span<const BenchView> views, const DepthTable& table,
                                const DepthTable& fitted);
 

@@ -1,5 +1,5 @@
 #pragma once
-// Tables as CSV, for spreadsheets.
+// Writes tables as CSV, for spreadsheets.
 
 #include <string>
 
@@ -7,8 +7,8 @@
 
 namespace binosplat::lab {
 
-/// A line of column names, if any, then a line a row: plain numbers, quoted texts. Empty and non-finite cells
-/// are empty.
+/// Returns a line of column names, if there are any, then a line per row. Texts are quoted. Numbers that are
+/// not finite become empty cells.
 std::string csv(const Table& table);
 
 }  // namespace binosplat::lab

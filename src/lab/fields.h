@@ -1,6 +1,6 @@
 #pragma once
-// JSON of structs. object(key, value, ...) writes; fields(io, it) names each member once, to write and to
-// read.
+// Converts structs to JSON and back. object(key, value, ...) returns a JSON object. A struct's function
+// fields(io, it) names each member once, for writing and for reading.
 
 #include <cmath>
 #include <concepts>
@@ -31,7 +31,8 @@ struct FieldWriter {
   }
 };
 
-/// Reads existing keys. In files, null represents a number that is not finite.
+/// Reads the keys that exist, and leaves other members unchanged. In files, null represents a number that is
+/// not finite.
 struct FieldReader {
   const nlohmann::ordered_json& json;
 

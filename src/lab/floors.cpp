@@ -34,7 +34,7 @@ double seconds(gl::Context& context, int floor, std::uint32_t count, std::uint32
   return best / 1000.0;
 }
 
-/// Operations per second; `operations` is per invocation and round.
+/// Operations per second, if an invocation makes `operations` of them per round.
 double rate(gl::Context& context, int floor, double operations, const gl::Buffer& from,
             const gl::Buffer& to) {
   const auto count = static_cast<std::uint32_t>(to.bytes() / 16);
@@ -45,7 +45,7 @@ double rate(gl::Context& context, int floor, double operations, const gl::Buffer
 }
 
 // Multiply-adds of a Gaussian in a view (docs/method.md 2): axes 21, view space 9, J R M 30, C2 and conic 15,
-// tile box 15. Its colour takes 20 for the basis, and a sum over the harmonics for each channel.
+// tile box 15. Its colour adds 20 for the basis of the harmonics, and one per coefficient.
 constexpr double projection_fmas = 90.0, basis_fmas = 20.0;
 
 struct Least {
@@ -55,7 +55,7 @@ struct Least {
 }  // namespace
 
 Peaks measure_peaks(gl::Context& context) {
-  // Larger than any cache, except on llvmpipe, where half a GiB takes long.
+  // Each of the two buffers is larger than any cache, except on llvmpipe, which takes long for half a GiB.
   const std::int64_t bytes = context.software() ? std::int64_t{16} << 20 : std::int64_t{256} << 20;
   Peaks peaks;
   gl::Buffer from(context, "floor: from"), to(context, "floor: to");
@@ -65,7 +65,7 @@ Peaks measure_peaks(gl::Context& context) {
     const double s = seconds(context, FLOOR_BYTES, static_cast<std::uint32_t>(bytes / 16), 1, from, to);
     peaks.bytes = 2.0 * static_cast<double>(bytes) / s;
   }
-  // Splats that cover all pixels and never end one.
+  // Splats that cover all pixels and are too faint to end a pixel's blend.
   std::vector<glm::vec4> splats;
   for (int n = 0; n < 256; ++n) {
     splats.emplace_back(n % 16, n / 16, 0.0f, 0.02f);
@@ -85,12 +85,13 @@ std::vector<StageFloor> profile(const FrameWork& work, const Peaks& peaks) {
   const double gaussian_bytes = half ? sizeof(render::Halves) : sizeof(shared::Gaussian);
   const double splat_bytes = half ? sizeof(render::Halves) : sizeof(shared::Splat);
   std::map<std::string, Least> least;
-  // Reads every Gaussian and writes its key; reads harmonics of those in view; writes splats and coverages.
+  // Reads every Gaussian and writes its key. Reads the harmonics of Gaussians in view. Writes splats and
+  // coverages.
   least["project"] = {work.gaussians * (gaussian_bytes + 4) + work.in_view * (half ? 2 : 4) * harmonics +
                           work.splats * (splat_bytes + 4),
                       work.gaussians * projection_fmas + work.splats * (basis_fmas + harmonics)};
   least["project"].seconds = least["project"].operations / peaks.fmas;
-  // Coverages are read twice (to count and to place), depths once for both eyes.
+  // Reads coverages twice (to count and to place entries), and depths once for both eyes.
   least["bin"] = {work.splats * 10 + work.supertile_pairs * 8};
   least["sort"] = {work.supertile_pairs * 8 + work.pairs * 4 + work.tiles * 8};
   least["blend"] = {work.pairs * (splat_bytes + 4) + work.pixels * 20, work.alphas};

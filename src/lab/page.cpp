@@ -51,7 +51,7 @@ void check(const Table& t) {
   }
 }
 
-// Check before anything becomes JSON: an exception during the conversion would leak memory.
+// html() checks before it makes JSON, because an exception during the conversion would leak memory.
 void check(const Section& s) {
   for (const auto* table : {&s.table, &s.numbers}) {
     if (*table) check(**table);

@@ -48,26 +48,26 @@ struct Table {
   bool operator==(const Table&) const = default;
 };
 
-/// How a chart draws a table, by names of columns. For each column of `y`, a series has the rows with equal
-/// text in `by`, or all rows if `by` is empty. Cells without a number are skipped; if no `y` has numbers, the
-/// page says so.
+/// Describes how a chart draws a table, whose columns it names. Each column of `y` makes one series for each
+/// text in the column `by`, or a single series if `by` is empty. Cells without a number are skipped; if no
+/// column of `y` has numbers, the page says so.
 struct Chart {
   std::string x;
   std::vector<std::string> y;
   std::string by = {};
-  std::string label = {};               // column of a point's tooltip
+  std::string label = {};               // column with the text of a point's tooltip
   std::string filled = {};              // column; points are filled if it is "yes", else hollow
-  std::string title = {};               // of the vertical axis; empty: the first of `y`
+  std::string title = {};               // title of the value axis; empty: the first of `y`
   std::vector<std::string> order = {};  // texts in `by` whose series come first
-  bool bars = false;                    // horizontal, stacked by series, over names in `x`
+  bool bars = false;                    // draws a horizontal bar per name in `x`, stacked by series
   bool zero = false;                    // the vertical axis starts at 0
-  bool areas = false;                   // stacked by series, over numbers in `x`
+  bool areas = false;                   // draws areas over the numbers in `x`, stacked by series
   bool line = true;                     // joins the points of a series in their order
-  bool steps = false;                   // in steps: a value holds until the next
+  bool steps = false;                   // lines have steps: a value holds until the next point
   bool dots = true;
-  bool front = false;                 // adds a stepped line through the filled points
-  std::string spread = {};            // column of the horizontal error bar
-  bool log_x = false, log_y = false;  // needs values above 0
+  bool front = false;                 // adds a stepped line through the best of the filled points
+  std::string spread = {};            // column with half the length of a horizontal error bar
+  bool log_x = false, log_y = false;  // logarithmic axes, which skip values of 0 and less
 };
 
 /// A small picture, scaled up to the available width.
@@ -76,38 +76,40 @@ struct Figure {
   Image image;  // RGB, grey or with alpha
 };
 
-/// The picture reduced by a whole factor to at most `widest` px, so that a page can hold many.
+/// Returns the picture, reduced by an integer factor to a width of at most `widest` px, so that a page can
+/// hold many pictures.
 Image for_page(const Image& image, int widest = 640);
 
 /// The GPU and its driver, for the page's facts.
 std::string device_text(const gl::Context& context);
 
-/// One section of the page: a sentence about the scene's result, a chart and a table.
+/// One section of the page: a sentence about the results, a chart and a table.
 struct Section {
   std::string id;  // for links and the chart's SVG
   std::string title;
   std::string sentence;
   std::optional<Table> table = {};
   std::optional<Chart> chart = {};
-  std::optional<Table> numbers = {};  // the chart's data, collapsed; none: the chart uses `table`
+  std::optional<Table> numbers = {};  // the chart's data, shown collapsed; none: the chart draws `table`
   std::string problem = {};           // why there are no results
   std::vector<Figure> figures = {};
-  bool compared = false;  // figures have one size and are overlaid in pairs with a slider
+  bool compared = false;  // overlays two figures at a time, with a slider; all must have one size
 };
 
 struct Page {
   std::string title;
   std::string sentence;
-  std::vector<std::pair<std::string, Cell>> facts;  // scene, device, date
+  std::vector<std::pair<std::string, Cell>> facts;  // such as scene and device, with their names
   std::vector<Section> sections;
 };
 
-/// The complete file, with all results, which it offers to save. Supports light and dark, 400 px width and
-/// print. Colours are safe for colour-blind readers and never the only mark. Throws std::logic_error if a
-/// row's length differs from the columns', or if a chart names an unknown column.
+/// Returns the complete file. It contains `data`, which a button saves as JSON. It supports light and dark
+/// mode, widths from 400 px on, and print. Colours are safe for colour-blind readers, and series also differ
+/// by symbol and dash. Throws std::logic_error if a row has more or fewer cells than there are columns, or
+/// if a chart names an unknown column.
 std::string html(const Page& page, const nlohmann::ordered_json& data);
 
-/// Writes the page completely or not at all. Throws Error if that fails.
+/// Writes the page completely, or throws Error and writes no page.
 void save_page(const std::filesystem::path& path, const Page& page, const nlohmann::ordered_json& data);
 
 }  // namespace binosplat::lab

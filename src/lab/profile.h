@@ -1,5 +1,5 @@
 #pragma once
-// Analyses a recording of frames: its slow frames, their causes, and the resource that bounds them all.
+// Analyses a recording of frames: which frames are slow and why, and whether GPU or CPU bounds them.
 
 #include <cstdint>
 #include <functional>
@@ -17,12 +17,13 @@ namespace binosplat::lab {
 
 /// Describes a recording for its readers.
 struct ProfileFacts {
-  std::string scene, motion, drawing;  // the model; "tour walk"; "exact"
+  std::string scene, motion, drawing;  // such as "fox.ply", "tour walk", "exact"
   std::string device;
   bool is_software = false;  // the CPU draws
 };
 
-/// Result of an additional experiment: the share of a frame's time that this --quality saves.
+/// The result of an additional experiment: `share` is the part of a frame's time that `--quality quality_db`
+/// saves.
 struct Saving {
   double quality_db = 0.0, share = 0.0;
 };
@@ -32,7 +33,7 @@ constexpr int worst_picture_width = 320;  // px
 struct Profile {
   ProfileFacts facts;
   render::Recording recording;
-  std::vector<std::optional<Image>> pictures;  // left eye of the worst frames, in their order
+  std::vector<std::optional<Image>> pictures;  // left eyes, in the order of ProfileSummary::worst
   std::optional<Saving> saving;
   std::vector<CpuUse> cpu;  // CPU time of each frame, all threads; only with a software renderer
 };
@@ -43,37 +44,39 @@ struct Quantiles {
 
 struct ProfileSummary {
   Quantiles wall, gpu, cpu;           // ms
-  std::vector<gl::StageTime> stages;  // on the GPU: means over all frames
-  std::vector<gl::StageTime> usual;   // GPU stages and CPU work: medians
+  std::vector<gl::StageTime> stages;  // GPU stages: means over all frames
+  std::vector<gl::StageTime> usual;   // GPU stages and CPU work: medians over all frames
   std::size_t missed = 0;             // frames that ended after the next one was due
   std::size_t gpu_bound = 0;          // frames whose GPU time exceeds their CPU time
   std::optional<Quantiles> mhz;
-  std::size_t slow_clock = 0;      // frames below 95 % of the fastest clock
+  std::size_t slow_clock = 0;      // frames whose GPU clock was below 95 % of the fastest one
   std::vector<std::size_t> worst;  // up to ten slowest frames, slowest first
 };
 
 /// Times of a frame in ms.
 double gpu_ms(const render::FrameRecord& frame);  // of all its drawings
-double cpu_ms(const render::FrameRecord& frame);  // of the drawing thread, without waiting
+double cpu_ms(const render::FrameRecord& frame);  // of the drawing thread, without its waits for the GPU
 
 bool is_missed(const render::Recording& recording, std::size_t n);
 
 /// The fastest clock of all frames, MHz; 0 if unknown.
 double fastest_mhz(const render::Recording& recording);
 
-/// As render::events_of(), with the names of programs, and with low clocks relative to `fastest`.
+/// Returns render::events_of() of frame `n` with the names of compiled programs. Adds an event if the clock
+/// was below 95 % of `fastest` MHz.
 std::vector<render::FrameEvent> events_of(const render::Recording& recording, std::size_t n, double fastest);
 
 /// Throws Error for a recording without frames.
 ProfileSummary summary_of(const Profile& profile);
 
-/// The causes of a frame's long time: its events, and the parts that took longer than usual.
+/// Explains why frame `n` took long: by its events, and by the stage or CPU work that most exceeds its usual
+/// time.
 std::string reason_of(const Profile& profile, const ProfileSummary& summary, std::size_t n);
 
 /// The resource that bounds the frames, as in "GPU (blend 61 %)".
 std::string bound_of(const Profile& profile, const ProfileSummary& summary);
 
-/// The next thing to try; empty if there is none.
+/// Suggests what to try next to make frames faster; empty if there is nothing.
 std::string advice_of(const Profile& profile, const ProfileSummary& summary);
 
 /// The summary for a terminal.
@@ -81,10 +84,10 @@ std::vector<std::string> lines_of(const Profile& profile, const ProfileSummary& 
 
 /// The columns of frames.csv: a row for each frame, or for `count` frames from `first` on.
 Table frames_table(const render::Recording& recording, std::size_t first = 0, std::size_t count = SIZE_MAX);
-/// Number of rows made at once, since all rows of a long run would fill the memory.
+/// Number of rows to make at once, because all rows of a long run would fill the memory.
 constexpr std::size_t rows_at_once = 1000;
 
-/// Takes the next part of a file's text.
+/// Receives the next part of a file's text.
 using Write = std::function<void(std::string_view)>;
 
 void write_frames(const render::Recording& recording, const Write& write);

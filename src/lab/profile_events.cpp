@@ -17,9 +17,9 @@ using render::FrameEvent;
 using render::FrameRecord;
 using render::Recording;
 
-constexpr double slow_share = 0.95;  // of a run's fastest clock; slower frames are marked
+constexpr double slow_share = 0.95;  // of the run's fastest clock; frames with a slower clock are marked
 
-/// The programs that the frame's thread compiled or loaded, from its spans.
+/// The programs that were compiled or loaded during the frame, from their spans.
 std::string programs_of(const Recording& recording, const FrameRecord& frame) {
   std::set<std::string> names;
   for (const Span& span : recording.spans) {
@@ -31,7 +31,8 @@ std::string programs_of(const Recording& recording, const FrameRecord& frame) {
   return fmt::format("{}", fmt::join(names, ", "));
 }
 
-/// The times of a frame: GPU stages, then CPU work. A software renderer draws while it submits.
+/// The times of a frame: GPU stages, then CPU work. A software renderer draws while it submits, so its submit
+/// time would count the stages twice.
 std::vector<gl::StageTime> parts_of(const FrameRecord& frame, bool is_software) {
   std::vector<gl::StageTime> parts = gl::sums_of(frame.report.spans);
   const render::CpuTimes& cpu = frame.report.cpu;
@@ -51,7 +52,8 @@ Quantiles quantiles_of(const std::vector<double>& values) {
   return {quantile(values, 0.5), quantile(values, 0.9), quantile(values, 0.99), quantile(values, 1.0)};
 }
 
-/// The stages of all frames in order of appearance, each with `sum` over its values.
+/// The parts (stages, CPU work) of all frames in order of appearance. The time of a part is `sum` of its
+/// times in all frames, such as the mean.
 template <typename Parts, typename Sum>
 std::vector<gl::StageTime> over_frames(const Recording& recording, const Parts& parts, const Sum& sum) {
   std::vector<gl::StageTime> all;

@@ -15,7 +15,7 @@ namespace {
 constexpr double busy_ms = 1000.0;           // time for a GPU to raise its clock
 constexpr double levels_wait_ms = 10'000.0;  // longest wait for the levels of the first frame
 constexpr double usual_frame_ms = 1000.0 / 90.0;
-constexpr double slow_ms = 300.0;  // skips the experiment for slower frames
+constexpr double slow_ms = 300.0;  // saving() skips slower frames
 
 /// Sleeps until shortly before `due`, then polls the clock.
 void wait_until(Clock::time_point due) {
@@ -83,13 +83,13 @@ render::Recording ProfileDrawer::record(const std::function<void(std::size_t)>& 
   for (std::size_t n = 0; n < run_.frames.size(); ++n) {
     render::FrameRecord frame{.due = Clock::now(), .views = run_.frames[n]};
     if (run_.fps > 0.0) {
-      // The next multiple of the period.
+      // The next multiple of the period. Multiples that passed during the last frame are skipped.
       if (n > 0) ticks = std::max(ticks, std::ceil((Clock::now() - start) / period));
       frame.due = start + std::chrono::duration_cast<Clock::duration>(ticks * period);
       wait_until(frame.due);
       ticks += 1.0;
     }
-    const CpuUse before = CpuUse::now(context_);  // before the frame, to exclude its cost
+    const CpuUse before = CpuUse::now(context_);  // takes time, so it precedes frame.begin
     frame.begin = Clock::now();
     frame.levels = follow_levels(frame.views, drawn_ms);
     frame.report = draw(frame.views, settings_now());
@@ -123,7 +123,8 @@ std::optional<Saving> ProfileDrawer::saving(std::size_t frame, double quality_db
   for (int n = 0; n < (context_.software() ? 4 : 16); ++n)
     before.push_back(draw(views, run_.settings).total_ms);
   for (int n = 0; n < (context_.software() ? 4 : 16); ++n) after.push_back(draw(views, less).total_ms);
-  // The first frame searches its tolerance. One in four measures its error, which counts.
+  // The first frame also searches its tolerance, so it does not count. Every fourth frame measures its error,
+  // which is part of the cost of a quality.
   after.erase(after.begin());
   return Saving{quality_db, 1.0 - mean(after) / quantile(before, 0.5)};
 }

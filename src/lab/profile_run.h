@@ -18,21 +18,22 @@ struct ProfileRun {
   std::vector<std::vector<shared::View>> frames;  // the views of each frame
   render::FrameSettings settings;
   std::optional<stereo::Foveation> foveation;
-  double fps = 0.0;  // frame rate; 0: as fast as possible
-  bool asks_clock = true;
+  double fps = 0.0;        // frame rate; 0: as fast as possible
+  bool asks_clock = true;  // reads the GPU's clock rate
 };
 
 class ProfileDrawer {
  public:
-  /// `stream` owns the model if its levels follow the views, else null. Both must outlive this.
+  /// `stream` owns the model if its levels follow the views; else `stream` is null. `run` and `stream` must
+  /// outlive this object.
   ProfileDrawer(std::shared_ptr<render::GpuModel> model, const ProfileRun& run, Stream* stream);
 
   /// Draws the first frame until the GPU's clock is high, programs are compiled and levels are loaded. None
   /// of these frames is recorded. Returns the time of the last one in ms.
   double warm_up();
 
-  /// Draws all frames, starting without measurements. A frame that is late delays the frames that become due
-  /// meanwhile.
+  /// Draws and records all frames. The first one uses no earlier measurements. At a fixed frame rate, each
+  /// frame begins at a multiple of the period; a late frame delays all that follow by whole periods.
   render::Recording record(const std::function<void(std::size_t done)>& progress);
 
   /// CPU time of each recorded frame, all threads; empty unless the CPU draws.
@@ -41,7 +42,8 @@ class ProfileDrawer {
   /// A small picture of the left eye in a frame, at the current levels.
   Image picture(std::size_t frame);
 
-  /// The time that an exact frame would save at `quality_db`; none if measuring takes long.
+  /// Measures the time that `quality_db` would save in a frame. Returns none if the profile's own frames are
+  /// inexact or foveated, or if they take too long to measure (slow_ms).
   std::optional<Saving> saving(std::size_t frame, double quality_db);
 
  private:

@@ -81,7 +81,7 @@ std::string advice_of(const Profile& profile, const ProfileSummary& summary) {
            "and --quality save no time";
   if (profile.saving && profile.saving->share > 0.02)
     return fmt::format(
-        "--quality {:g} would save {:.0f} % of a frame: binosplat bench {} --axes headset compares settings",
+        "--quality {:g} would save {:.0f} % of a frame: binosplat bench {} --suite headset compares settings",
         profile.saving->quality_db, 100.0 * profile.saving->share, profile.facts.scene);
   if (summary.slow_clock > 0 && summary.missed > 0)
     return "keep the GPU's clock up (nvidia-smi --lock-gpu-clocks), and look at what is left";

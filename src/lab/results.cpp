@@ -19,7 +19,7 @@ struct Column {
   const char *name, *title;
 };
 
-/// In the order of files. The columns up to `family` identify a point.
+/// All columns, in the order of the files. The columns before `family` identify a point.
 constexpr Column columns[] = {
     {"scene", "scene"},
     {"eyes", "eyes"},
@@ -138,7 +138,7 @@ Cell cell_of(const Row& row, const std::string& name) {
   return found->is_string() ? Cell(found->get<std::string>()) : Cell();
 }
 
-/// Half the range of the repeats.
+/// Half the range of the repeats, ms; 0 if unknown.
 double noise_of(const Row& row) {
   const double noise = number(row, "noise_ms");
   return std::isnan(noise) ? 0.0 : noise;

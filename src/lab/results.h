@@ -15,14 +15,15 @@
 
 namespace binosplat::lab {
 
-/// The PSNR in dB of equal pictures in means, charts and files. Their true PSNR is infinite.
+/// The PSNR in dB that means, charts and files use for equal pictures, whose true PSNR is infinite.
 constexpr double equal_db = 100.0;
 
 double capped(double db);
-/// The PSNR of several pictures from the mean of their squared errors; capped.
+/// Returns the PSNR of several pictures together, by the mean of their squared errors; capped. `db` has the
+/// PSNR of each.
 double pooled_db(const std::vector<double>& db);
 
-/// A JSON object: values by column name, without unknown ones.
+/// A JSON object of values by column name. Unknown values are absent.
 using Row = nlohmann::ordered_json;
 
 /// Sets values by name. Omits empty optionals and non-finite numbers.
@@ -54,14 +55,14 @@ std::vector<double> numbers(const std::vector<Row>& rows, const std::string& nam
 /// Mean of a column's numbers; NaN without any.
 double mean_number(const std::vector<Row>& rows, const std::string& name);
 
-/// The column of a stage's GPU time, and its inverse.
+/// Convert between the name of a stage and the column of its GPU time.
 std::string stage_column(const std::string& stage);
 std::optional<std::string> stage_of(const std::string& column);
 
 /// The title of a column for readers.
 std::string title_of(const std::string& column);
 
-/// The columns that occur in any row, in the order of docs/measuring.md, without lists.
+/// The columns that occur in any row, in the order of `columns` in results.cpp. Omits columns of lists.
 std::vector<std::string> columns_of(std::span<const Row> rows);
 /// All known columns except those of stages.
 std::vector<std::string> all_columns();
@@ -72,8 +73,8 @@ Table table_of(std::span<const Row> rows, const std::vector<std::string>& wanted
 /// CSV with a line per row and a column per name.
 std::string csv(std::span<const Row> rows);
 
-/// A measured or planned point. `row` has its identity (scene, case, settings), then the results of the
-/// whole, or a "problem". `details` are of views, frames and so on; "of" names their kind.
+/// A measured or planned point. `row` has its identity (scene, case, settings), then its results or a
+/// "problem". Each of `details` describes a view, a frame or the like; its column "of" names this kind.
 struct Point {
   Row row = Row::object();
   std::vector<Row> details = {};
@@ -81,7 +82,7 @@ struct Point {
 
   bool tried() const { return row.contains("device"); }
   bool measured() const { return tried() && !row.contains("problem"); }
-  /// The values that comparable points share, as in "fox, one eye, size own, views".
+  /// The name of the chart in which the point is compared, as in "fox, one eye, size own, along views".
   std::string chart() const;
 };
 
@@ -94,20 +95,21 @@ struct Results {
 Row identity_of(const Row& row);
 
 /// Adds values relative to other points of a chart. "pareto": no other point is faster beyond noise and at
-/// least as accurate. "speed": the exact point's time over this one's.
+/// least as accurate. "speed": the exact point's time divided by this point's.
 void add_relative_columns(std::vector<Point>& points);
 /// The exact point, at the finest levels, of the same chart, order and projection; null if not measured.
 const Point* exact_of(const std::vector<Point>& points, const Point& point);
 
-/// For several scenes, adds means of each setting over all of them: geometric of "speed", arithmetic of
-/// losses and removed pairs.
+/// If there are several scenes, adds a point for each setting that all scenes have, with the geometric mean
+/// of "speed", and arithmetic means of losses and removed pairs.
 void add_means(std::vector<Point>& points);
 
-/// All rows with details as JSON, and the inverse. Throws Error, naming `place`, for another kind of file.
+/// Convert all rows with their details to JSON and back. rows_of() throws Error, which begins with `place`,
+/// for a file of another kind.
 nlohmann::ordered_json to_json(const Results& results, nlohmann::ordered_json plan);
 std::vector<Row> rows_of(const nlohmann::ordered_json& json, const std::string& place);
 
-/// results.csv; and details.csv, whose rows start with their point's identity.
+/// The text of results.csv, and that of details.csv, whose rows begin with their point's case and name.
 std::string csv(const std::vector<Point>& points);
 std::string details_csv(const std::vector<Point>& points);
 
@@ -116,7 +118,7 @@ Page results_page(const Results& results);
 
 /// The changes between two runs.
 struct RunComparison {
-  std::vector<std::string> lines;  // changes beyond noise and failed comparisons; last: a count
+  std::vector<std::string> lines;  // changes beyond noise, failed comparisons, and last a count of changes
   std::size_t matched = 0;         // points in both runs
   std::size_t timed = 0;           // matched points with comparable times
   double slower_percent = 0.0;     // largest slowdown beyond noise; 0: none
@@ -127,7 +129,8 @@ struct RunComparison {
 /// time has changed if it differs by more than 2 % and more than the repeats' scatter explains: Student's t,
 /// with one false alarm in a hundred pairs of equal runs. The scatter is that of all points together, or the
 /// point's own if larger. On a CPU, compares CPU time, which must also differ by more than the share of time
-/// that threads waited for other programs. PSNR has changed by 0.01 dB, pairs by 0.1 %.
+/// that threads waited for other programs. A PSNR has changed if it differs by more than 0.01 dB, a number of
+/// pairs by more than 0.1 %.
 RunComparison compare_runs(const std::vector<Row>& before, const std::vector<Row>& now);
 
 }  // namespace binosplat::lab

@@ -12,12 +12,13 @@ namespace binosplat::lab {
 
 namespace {
 
-constexpr double good_db = 40.0;     // an error that is hardly visible
-constexpr double hardly_seen = 1.0;  // % of the pixels
+constexpr double good_db = 40.0;  // PSNR at which errors are hardly visible
+constexpr double hardly_seen =
+    1.0;  // %; the page names the fastest point with fewer visibly different pixels
 constexpr const char* means_begin = "mean of ";
 
-// AdaGScale, table IV: pairs removed relative to FlashGS at drops of 0.1 to 0.5 dB, with K tuned on the test
-// views; mean over the paper's scenes.
+// AdaGScale, table IV: % of pairs removed relative to FlashGS at drops of 0.1 to 0.5 dB, with K tuned on the
+// test views; mean over the paper's scenes.
 constexpr struct {
   double drop_db, removed;
 } paper_removed[] = {{0.1, 31.0}, {0.2, 35.8}, {0.3, 38.9}, {0.4, 41.2}, {0.5, 43.1}};
@@ -120,8 +121,8 @@ Section accuracy(const ChartPoints& chart) {
               {"name", "family", "pareto", "frame_ms", "noise_ms", "psnr_db"}, drawn);
 }
 
-/// The points on the front and the exact one. For searched tolerances: the tile tests, and the points of the
-/// middle target.
+/// The points on the Pareto front and the exact one. If tolerances were searched, these are instead the
+/// exact points of all tile tests, and the points with the middle target that were tuned on the test views.
 std::vector<const Point*> chosen(const ChartPoints& chart) {
   std::set<double> targets;
   const auto target = [](const Point* p) {
@@ -235,7 +236,8 @@ void add_seen(const ChartPoints& chart, std::vector<Section>& sections) {
       table_of(chart.details("ring", chart.measured), {"name", "from", "to", "share", "psnr_db", "seen"});
 }
 
-/// Every frame of the settings with the middle requested quality, or of all settings.
+/// Plots every frame of the exact point and of settings with the middle one of the requested qualities. Plots
+/// all settings if none requests a quality.
 void add_frames(const ChartPoints& chart, std::vector<Section>& sections) {
   std::set<double> asked;
   for (const Point* point : chart.measured) {
@@ -300,7 +302,7 @@ void add_levels(const ChartPoints& chart, std::vector<Section>& sections) {
            Chart{.x = "Gaussians", .y = {"PSNR dB", "reported dB"}, .label = "setting"}));
 }
 
-/// The growth of frame times with scenes, at equal settings.
+/// Plots frame times over the Gaussians drawn, to compare scenes at equal settings.
 void add_growth(const std::vector<ChartPoints>& charts, std::vector<Section>& sections) {
   std::vector<Row> rows;
   for (const ChartPoints& chart : charts) {
@@ -317,7 +319,7 @@ void add_growth(const std::vector<ChartPoints>& charts, std::vector<Section>& se
                           {"scene", "name", "gaussians", "frame_ms"}, drawn));
 }
 
-/// The gains of searched tolerances, as in AdaGScale's tables III and IV and figure 8.
+/// Plots the gains of searched tolerances, as in AdaGScale's tables III and IV and figure 8.
 void add_targets(const ChartPoints& chart, std::vector<Section>& sections) {
   for (const char* target : {"max_drop", "min_psnr"}) {
     std::vector<Row> tuned, trained;

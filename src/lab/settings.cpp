@@ -25,9 +25,10 @@ DetailRequest parse_detail(const std::string& text, const std::string& option) {
   const std::optional<double> number = take_real(rest);
   std::string unit(rest);
   for (char& c : unit) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  if (number && std::isfinite(*number) && unit.empty() && *number >= 0.0) return {.spacing_px = *number};
+  if (number && std::isfinite(*number) && (unit.empty() || unit == "px") && *number >= 0.0)
+    return {.spacing_px = *number};
   if (number && unit == "db" && *number >= 20.0 && *number <= 80.0) return {.db = *number};
-  fail("{} {}: expected pixels as in 5, or decibels from 20 to 80 as in 40dB", option, text);
+  fail("{} {}: expected pixels as in 5px, or decibels from 20 to 80 as in 40dB", option, text);
 }
 
 std::string text_of(const DetailRequest& detail) {

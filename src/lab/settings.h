@@ -11,7 +11,7 @@
 
 namespace binosplat::lab {
 
-/// Parses --detail: "5" (px) or "40dB". Throws Error, which begins with `option`, for other text.
+/// Parses --detail: "5px" (or "5") or "40dB". Throws Error, which begins with `option`, for other text.
 DetailRequest parse_detail(const std::string& text, const std::string& option = "--detail");
 /// "40dB" or "5px".
 std::string text_of(const DetailRequest& detail);
@@ -20,10 +20,11 @@ std::string text_of(const DetailRequest& detail);
 struct BenchSettings : render::FrameSettings {
   std::optional<stereo::Foveation> foveation;
   std::optional<DetailRequest> detail;  // for scenes with levels of detail; none: the finest
-  std::optional<float> far;             // end of the table by depth, world units; none: fits the scene
-  /// Searches the largest tolerance with this mean: dB lost against photos, or PSNR against exact pictures.
+  std::optional<float> far;             // end of the depth table, world units; none: fits the scene
+  /// If one is set, the bench searches the largest tolerance within it: the largest mean dB lost against
+  /// photos, or the smallest mean PSNR against exact pictures.
   std::optional<double> max_drop, min_psnr;
-  bool found_on_training = false;  // searches in training views; else in measured ones
+  bool found_on_training = false;  // searches that tolerance in training views, else in measured ones
 
   BenchSettings() = default;
   BenchSettings(const render::FrameSettings& whole)  // NOLINT(google-explicit-constructor): nothing is lost
@@ -35,19 +36,20 @@ struct BenchSettings : render::FrameSettings {
 /// All values that affect the picture and its time, under their names in files.
 Row row_of_settings(const BenchSettings& settings);
 
-/// One line for legends: "ellipse", "peripheral, last, 0.5", "ellipse, inset 20, context 0.4". Omits tiles of
-/// `ellipse` (unless exact) and of 16 px.
+/// One line for legends: "ellipse", "peripheral, last, 0.5", "ellipse, inset 20, context 0.4". Omits the tile
+/// test `ellipse` unless the rule is exact, and the tile size 16 px.
 std::string describe(const BenchSettings& settings);
 
-/// The same without the requested number (tolerance, quality, dB lost, detail): one line of a chart.
+/// describe() without the requested number (tolerance, quality, dB lost, detail). Points of equal family are
+/// one series of a chart.
 std::string describe_family(const BenchSettings& settings);
 
-/// Checks settings of a file as render::check_choice() does. Errors begin with `place`. A threshold needs
-/// exactly one of a tolerance and the targets to search it for.
+/// Checks settings of a file as render::check_choice() does. Also, an inexact rule needs exactly one of
+/// tolerance, quality, max_drop and min_psnr. Errors begin with `place`.
 void check(const std::string& place, const BenchSettings& settings);
 
-/// Whether the picture is exact by definition: it drops no visible pair and uses no fp16, fewer pixels or
-/// coarser levels.
+/// Whether the picture is exact by definition: it drops no visible pair, is not foveated, and uses neither
+/// fp16 nor coarser levels.
 bool is_exact(const BenchSettings& settings);
 
 }  // namespace binosplat::lab

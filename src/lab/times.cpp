@@ -10,7 +10,8 @@ namespace binosplat::lab {
 
 namespace {
 
-/// The typical value(frame): medians of both kinds of frames, averaged by their counts.
+/// The typical value(frame): the median over frames that measure transmittance and the median over the
+/// others, averaged by the numbers of frames.
 template <typename Value>
 double typical(const Reports& frames, const Value& value) {
   double sum = 0.0;

@@ -1,5 +1,5 @@
 #pragma once
-// Frame times on the GPU, and typical values of them.
+// Computes typical GPU times of frames, and reads the CPU time of this process.
 
 #include <span>
 #include <vector>
@@ -20,23 +20,24 @@ struct Typical {
   std::vector<gl::StageTime> stages;  // ms
 };
 
-/// The medians over frames of one view, which ignore single slow frames. Frames that measure an error take
-/// longer; the medians of both kinds are averaged by their counts.
+/// Returns medians over frames of one view, so that single slow frames do not count. Frames that measure
+/// transmittance take longer. Their median and that of the other frames are averaged, weighted by the numbers
+/// of frames.
 Typical typical_of(const Reports& frames);
-/// The mean. Takes the stages of the first element.
+/// Returns the mean of each time; the stages are those of the first element.
 Typical mean_of(std::span<const Typical> all);
 
-/// CPU time of this process's threads, and the time that they waited while others had the CPU, in ms.
+/// CPU time of this process's threads, and the time that they waited while other programs had the CPU, in ms.
 struct CpuUse {
   double used = 0.0, waited = 0.0;
 
-  /// Since the process started. Zero, at no cost, unless the CPU draws.
+  /// Returns the times since the process started. If a GPU draws, returns zeros without reading them.
   static CpuUse now(const gl::Context& context);
   CpuUse since(const CpuUse& before) const { return {used - before.used, waited - before.waited}; }
   void operator+=(const CpuUse& other) { used += other.used, waited += other.waited; }
 };
 
-/// Stores the mean of the repeats, their noise, and the slowest frames.
+/// Stores the mean of the repeats, their noise, and the times of the slowest frames.
 void put_times(const std::vector<double>& repeats, const std::vector<double>& all_ms, Row& row);
 
 /// Stores the time of each stage.

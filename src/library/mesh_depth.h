@@ -12,14 +12,15 @@
 
 namespace binosplat::library {
 
-/// One depth per view, and a texture view of each layer of an array, which must live as long.
+/// One mesh depth per view, and the texture views that read layers of arrays. Keep the texture views as long
+/// as the list.
 struct MeshDepths {
   std::vector<render::MeshDepth> list;
   std::vector<std::unique_ptr<gl::Texture>> layers;
 };
 
 /// Appends a view's mesh depth. Throws Error(bad_input) for a texture that is smaller than the view or not as
-/// MeshDepth requires, and for planes that bound nothing.
+/// MeshDepth requires, and for planes that enclose no range.
 void add_mesh_depth(gl::Context& context, const View& view, const Argument& argument, MeshDepths& depths);
 
 }  // namespace binosplat::library

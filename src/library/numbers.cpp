@@ -21,7 +21,7 @@ bool is_finite(const Vector& v) {
 /// Whether the columns are orthonormal, up to rounding.
 bool are_directions(const glm::dmat3& axes) { return orthonormality_error(axes) < 1e-3; }
 
-/// Throws Error(bad_input) if the value's number is not between 0 and that of `last`.
+/// Throws Error(bad_input) if `value` is not one of the enumerators from 0 to `last`.
 template <typename Enum>
 void check_named(Enum value, Enum last, const char* argument) {
   const int number = static_cast<int>(value);

@@ -38,11 +38,11 @@ struct Renderer::Impl {
     std::shared_ptr<render::GpuModel> on_gpu;
   };
 
-  /// What a frame draws.
+  /// The content of a frame.
   struct Scene {
     std::vector<render::Instance> instances;
-    std::vector<SplatStream::Impl*> streams;  // of the instances
-    glm::dvec3 origin{0.0};                   // world units: the frame's positions are relative to it
+    std::vector<SplatStream::Impl*> streams;  // the instances' streams
+    glm::dvec3 origin{0.0};                   // world units; the frame's positions are relative to this point
   };
 
   Impl(GetProcAddress get_proc_address, Precision kept_in) : precision(library::precision_of(kept_in)) {
@@ -81,7 +81,7 @@ struct Renderer::Impl {
     model.stream->context = nullptr;
     model.stream->is_drawn = false;
   }
-  /// Makes the frame, of a model that a Frame needs in any case.
+  /// Creates `frame` and `presenter`. A Frame needs a model, even if a World later replaces it.
   void draw_with(std::shared_ptr<render::GpuModel> drawn) {
     frame = std::make_unique<stereo::FoveatedFrame>(std::move(drawn));
     presenter = std::make_unique<stereo::Presenter>(*context);
@@ -95,7 +95,7 @@ struct Renderer::Impl {
     return found->second;
   }
 
-  /// The single model that the renderer was made with, in its own world.
+  /// The model with which the renderer was created, in its own world.
   Scene own_scene() const {
     if (held.empty() || held.begin()->first != ModelId{})
       fail("this renderer was made without a model: draw a World of instances");
@@ -131,7 +131,8 @@ struct Renderer::Impl {
   void submit_or_prepare(std::span<const View> views, const Placement& placement, Scene scene,
                          const Settings& settings, bool prepares);
 
-  /// Logs and returns the errors that OpenGL has recorded since the last call. They are the caller's.
+  /// Logs and returns the errors that OpenGL has recorded since the last call. The caller's commands caused
+  /// them.
   std::vector<std::uint32_t> callers_errors() const {
     std::vector<std::uint32_t> errors;
     for (const GLenum error : context->take_errors()) {
@@ -158,7 +159,7 @@ struct Renderer::Impl {
 
   int precision;  // PRECISION_
   std::unique_ptr<gl::Context> context;
-  const Model no_model;  // of renderers that are made without one
+  const Model no_model;  // for renderers that are created without a model
   std::map<ModelId, HeldModel> held;
   std::uint32_t next_id = 0;
   std::optional<Submitted> submitted;
@@ -178,7 +179,7 @@ Renderer::Renderer(GetProcAddress get_proc_address, SplatStream& stream, Precisi
 Renderer::Renderer(GetProcAddress get_proc_address, Precision precision)
     : impl_(std::make_unique<Impl>(get_proc_address, precision)) {
   const gl::SavedState saved(*impl_->context);
-  impl_->next_id = 1;  // the first is the model that a renderer is made with
+  impl_->next_id = 1;  // 0 is the model with which other renderers are created
   impl_->draw_with(std::make_shared<render::GpuModel>(*impl_->context, impl_->no_model, impl_->precision));
 }
 Renderer::~Renderer() {
@@ -234,7 +235,7 @@ void Renderer::prepare(std::span<const View> views, const World& world, const Se
   impl.submit_or_prepare(views, world.placement, impl.scene_of(world), settings, true);
 }
 
-// To the frame that draws the views, or compiles what drawing them takes.
+// Passes the views to `frame`, which draws them or, if `prepares`, compiles the programs for them.
 void Renderer::Impl::submit_or_prepare(std::span<const View> views, const Placement& placement, Scene scene,
                                        const Settings& settings, bool prepares) {
   if (submitted) fail("a frame is under way: call finish() before the next submit()");
@@ -268,7 +269,7 @@ void Renderer::Impl::submit_or_prepare(std::span<const View> views, const Placem
   const auto lacks_table = [](const render::Instance& one) { return one.place.depth_table.bounds.empty(); };
   if (settings.depth_table.bounds.empty() && !scene.instances.empty() &&
       std::ranges::none_of(scene.instances, lacks_table))
-    with_table.depth_table = scene.instances.front().place.depth_table;  // which no instance uses
+    with_table.depth_table = scene.instances.front().place.depth_table;  // for checks; no instance uses it
   const render::FrameSettings over = library::frame_settings(with_table, views, precision);
   const auto is_decoded = [](const render::Instance& one) { return one.model->model().scaffold != nullptr; };
   if (settings.cyclopean && std::ranges::none_of(scene.instances, is_decoded))

@@ -27,7 +27,8 @@ int number_of(auto choice, const auto& choices) {
   return static_cast<int>(std::ranges::find(choices, choice) - std::begin(choices));
 }
 
-/// Refuses illegal combinations, with the library's names; render::check_choice uses the program's.
+/// Throws Error for illegal combinations, with the library's names of settings. render::check_choice uses the
+/// names of the program's options.
 void check_choices(const Settings& s) {
   if (s.quality && s.tolerance)
     fail("settings.tolerance with settings.quality: each chooses the tolerance: leave one of them out");

@@ -7,17 +7,18 @@
 
 namespace binosplat::library {
 
-/// Throws Error(bad_input) for unknown values and illegal settings; render::Frame checks the rest.
+/// Throws Error(bad_input) for unknown values and illegal settings. render::Frame checks the remaining ones.
 render::FrameSettings frame_settings(const Settings& from, std::span<const View> views,
                                      int precision = PRECISION_FULL);
 
-/// Returns TH_ of shared/axes.h: `otherwise` if there is no threshold, tolerance or quality.
+/// Returns a TH_ of shared/axes.h. If the settings have no threshold, tolerance or quality, returns
+/// `otherwise`.
 int rule_of(const Settings& settings, int otherwise);
 Threshold threshold_of(int number);
 int transmittance_of(Transmittance transmittance);  // TRANSMITTANCE_
 Transmittance transmittance_of(int number);
 
-/// The number in shared/axes.h. Both throw Error(bad_input) for a number without a name.
+/// Return the number in shared/axes.h. Both throw Error(bad_input) for a value that has no name there.
 int precision_of(Precision precision);
 int layout_of(Layout layout);
 

@@ -11,9 +11,9 @@ struct SplatStream::Impl {
   explicit Impl(std::shared_ptr<Stream> opened) : stream(std::move(opened)) {}
 
   std::shared_ptr<Stream> stream;  // not null
-  gl::Context* context = nullptr;  // of its renderer; null without one
-  int precision = 0;               // its renderer's, PRECISION_
-  bool is_drawn = false;           // by a submitted, unfinished frame
+  gl::Context* context = nullptr;  // the renderer's context; null without a renderer
+  int precision = 0;               // the renderer's PRECISION_
+  bool is_drawn = false;           // a submitted, unfinished frame draws the stream
 };
 
 }  // namespace binosplat

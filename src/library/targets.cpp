@@ -16,7 +16,7 @@ GLint attached(const gl::Functions& gl, std::uint32_t framebuffer, GLenum place,
   return value;
 }
 
-constexpr GLenum places_end = GL_COLOR_ATTACHMENT0 + 8;  // every driver has at least eight
+constexpr GLenum places_end = GL_COLOR_ATTACHMENT0 + 8;  // every driver has at least eight attachments
 
 /// The size in px of the object attached at `place`; 0 if it was deleted.
 glm::ivec2 size_attached(const gl::Functions& gl, std::uint32_t framebuffer, GLenum place, GLint kind) {
@@ -97,7 +97,7 @@ void Targets::check_colour(const Target& target, const glm::ivec2& size, const A
   }
   const TextureLevel level = texture_level(context_, {target.texture, target.level, target.layer}, argument);
   check_within(level.size, {target.x, target.y}, size, argument);
-  // Mutable storage may have faults besides its format, so it is always checked.
+  // Mutable storage may be incomplete even in a drawable format, so it is always tested.
   if (level.immutable && drawable_.contains(level.format)) return;
   const gl::Functions& gl = context_.gl();
   if (framebuffer_ == 0) gl.CreateFramebuffers(1, &framebuffer_);

@@ -30,8 +30,8 @@ class Targets {
   void check_depth(const DepthTarget& target, const Argument& argument) const;
 
   gl::Context& context_;
-  GLint largest_ = 0;              // px, a side of a texture
-  std::uint32_t framebuffer_ = 0;  // created at first use; tests textures of other formats than `drawable_`
+  GLint largest_ = 0;              // px, the maximum side of a texture
+  std::uint32_t framebuffer_ = 0;  // created at first use; tests formats that are not in drawable_
   std::set<GLint> drawable_ = {};  // formats that passed the test
 };
 

@@ -1,12 +1,12 @@
 #pragma once
-// The conditions for comparing two pictures.
+// The conditions under which two pictures can be compared.
 
 #include "base/error.h"
 #include "base/image.h"
 
 namespace binosplat::measure {
 
-/// Throws Error unless both have the same size and channels, and at least one pixel.
+/// Throws Error unless both pictures have the same size and number of channels, and at least one pixel.
 inline void require_comparable(const Image& a, const Image& b) {
   if (a.width != b.width || a.height != b.height) {
     fail("pictures of {} x {} and {} x {} px cannot be compared: expected equal sizes", a.width, a.height,

@@ -33,7 +33,7 @@ bool prepare_comparison(Image& a, Image& b, const Background& background) {
   }
   for (Image* image : {&a, &b}) {
     if (image->channels == 1 && a.channels != b.channels) *image = composite_over(behind, *image);
-    // An EXR may hold values outside 0 to 1, which a PNG of the same picture lacks.
+    // Clamps, because an EXR may have values outside 0 to 1, and a PNG of the same picture has none.
     for (float& value : image->data) value = std::isfinite(value) ? value : NAN;
     *image = clamped(*image);
   }

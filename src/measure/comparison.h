@@ -1,5 +1,5 @@
 #pragma once
-// The difference of two pictures, in all numbers that `binosplat compare` prints.
+// The difference of two pictures by all metrics that `binosplat compare` prints.
 
 #include "base/image.h"
 #include "measure/flip.h"
@@ -7,7 +7,7 @@
 
 namespace binosplat::measure {
 
-/// If a value is not a number, all metrics are NaN, and `largest` has its place.
+/// If a picture has a NaN, all metrics are NaN, and `largest` has the place of the first NaN.
 struct Comparison {
   double psnr = 0.0;
   double ssim = 0.0;
@@ -15,20 +15,22 @@ struct Comparison {
   Difference largest;
 };
 
-/// Whether an image has alpha other than 1.
+/// Whether an image has a pixel whose alpha is not 1.
 bool is_see_through(const Image& image);
 
-/// RGB of any image: grey as three equal channels, transparent pixels over a background.
+/// Converts any image to RGB: grey becomes three equal channels, and transparent pixels are composited over
+/// the background.
 Image composite_over(const glm::vec3& background, const Image& image);
 
-/// Prepares two pictures for a comparison as on a screen. Clamps values to [0, 1], turns infinite ones into
-/// NaN, and repeats grey if the other picture has colour. Drops alpha that is 1 everywhere. With a
-/// background, or if only one picture is transparent, composites over it (default black). Else keeps alpha,
-/// which then counts as a channel. Returns whether it composited transparent pixels.
+/// Prepares two pictures for a comparison as on a screen. Clamps values to [0, 1], turns infinite values into
+/// NaN, and repeats grey in three channels if the other picture has colour. Drops alpha if it is 1 everywhere
+/// in both. Given a background, or if only one picture has an alpha channel, composites both over the
+/// background (default black). Otherwise keeps alpha, which then counts as a channel. Returns whether it
+/// composited transparent pixels.
 bool prepare_comparison(Image& a, Image& b, const Background& background = {});
 
-/// PSNR in dB between a picture with its exposure (exposed() of base/image.h) and a photo, both rounded to 8
-/// bits.
+/// PSNR in dB between a picture and a photo, both rounded to 8 bits. The exposure is applied to the picture
+/// first (exposed() of base/image.h).
 double photo_psnr(const Image& picture, const glm::mat4x3& exposure, const Image& photo);
 
 /// Compares two prepared pictures. Throws Error if they cannot be compared (measure/comparable.h).

@@ -10,18 +10,18 @@
 
 namespace binosplat::measure {
 
-/// Default number of views to measure a table in.
+/// The default number of views in which programs measure a table.
 constexpr std::size_t depth_table_views = 16;
 
 struct DepthTableSettings {
   int bins = 20;  // the paper's number
-  /// End of the bins, world units; the paper's is 100. None: the depth within which 95 % of the measured
-  /// Gaussians lie, so that the bins fit the scene.
+  /// The depth at which the last bin ends, in world units; 100 in the paper. None: the 95 % quantile of the
+  /// measured Gaussians' depths, so that the bins fit the scene.
   std::optional<float> far;
   std::optional<int> order, projection;  // as in render::FrameSettings
 };
 
-/// Measures a table view by view, for programs that draw other frames in between.
+/// Measures a table view by view. Programs may draw other frames in between.
 class DepthTableMeasurement {
  public:
   /// Throws Error for invalid settings.
@@ -30,8 +30,8 @@ class DepthTableMeasurement {
   /// Draws the view exactly, and measures max(T) of each Gaussian on the GPU.
   void add(render::Frame& frame, const shared::View& view);
 
-  /// The largest max(T) over all views of the Gaussians in each bin of view depth (of distance with
-  /// PROJECTION_TANGENT). 0 for an empty bin; frames then use 1.
+  /// Returns for each bin the largest max(T) of its Gaussians over all views. Bins divide the view depth, or
+  /// the distance with PROJECTION_TANGENT. An empty bin has 0, for which frames use 1.
   DepthTable table() const;
 
  private:
@@ -39,7 +39,8 @@ class DepthTableMeasurement {
   std::vector<render::MeasuredGaussian> measured_;
 };
 
-/// Measures all views at once. The frame must be of the same model. Throws Error for invalid settings.
+/// Measures all views, and returns their table. All must be views of the frame's model. Throws Error for
+/// invalid settings.
 DepthTable measure_depth_table(render::Frame& frame, std::span<const shared::View> views,
                                const DepthTableSettings& settings = {});
 

@@ -17,11 +17,11 @@ namespace binosplat::measure {
 namespace {
 
 // The paper's constants, under its names.
-constexpr double q_c = 0.7, p_c = 0.4, p_t = 0.95;  // colour: exponent, and the knee's position and value
-constexpr double w_degrees = 0.082;                 // features: width of the detector
+constexpr double q_c = 0.7, p_c = 0.4, p_t = 0.95;  // colour: exponent, position and value of the knee
+constexpr double w_degrees = 0.082;                 // features: width of the feature detector, degrees
 constexpr double q_f = 0.5;                         // features: exponent
 
-using Kernel = std::vector<double>;  // odd length; the middle is at zero
+using Kernel = std::vector<double>;  // of odd length, for offsets from -n to n
 
 /// One value per pixel, rows from the top.
 struct Plane {
@@ -43,7 +43,7 @@ void fill_plane(Plane& plane, const Value& value) {
   });
 }
 
-/// Applies a separable kernel. Beyond an edge, the edge's values continue.
+/// Applies a separable kernel. Pixels beyond an edge have the value of the nearest pixel on the edge.
 Plane filtered(const Plane& in, const Kernel& along_x, const Kernel& along_y) {
   Plane rows(in.width, in.height), out(in.width, in.height);
   const int rx = static_cast<int>(along_x.size() / 2), ry = static_cast<int>(along_y.size() / 2);
@@ -62,8 +62,8 @@ Plane filtered(const Plane& in, const Kernel& along_x, const Kernel& along_y) {
   return out;
 }
 
-// Colour spaces: linear sRGB, XYZ relative to its white, linearised CIELAB (YCxCz), CIELAB.
-// sRGB's primaries under D65, x 0.3127, y 0.3290.
+// Colour spaces: linear sRGB, XYZ relative to sRGB's white, linearised CIELAB (YCxCz), CIELAB. The matrix has
+// sRGB's primaries, and D65 (x 0.3127, y 0.3290) as white.
 const glm::dmat3 xyz_of_rgb = glm::transpose(glm::dmat3(0.41239080, 0.35758434, 0.18048079,  //
                                                         0.21263901, 0.71516868, 0.07219232,  //
                                                         0.01933082, 0.11919478, 0.95053215));
@@ -98,12 +98,12 @@ glm::dvec3 hunt_lab(const glm::dvec3& rgb) {
   return {l, 0.01 * l * 500.0 * (f(r.x) - f(r.y)), 0.01 * l * 200.0 * (f(r.y) - f(r.z))};
 }
 
-/// HyAB, the distance for large differences: city block in lightness, Euclidean in chroma.
+/// HyAB, a colour distance for large differences: |difference of lightness| + Euclidean distance in chroma.
 double hyab(const glm::dvec3& a, const glm::dvec3& b) {
   return std::abs(a.x - b.x) + std::hypot(a.y - b.y, a.z - b.z);
 }
 
-/// Kernel of `value(i)` for i from -radius to radius.
+/// Returns the kernel with the weights `value(i)` for i from -radius to radius.
 template <typename Value>
 Kernel kernel(int radius, const Value& value) {
   Kernel k;
@@ -113,7 +113,8 @@ Kernel kernel(int radius, const Value& value) {
 
 double sum_of(const Kernel& k) { return std::accumulate(k.begin(), k.end(), 0.0); }
 
-/// Contrast sensitivity of one opponent channel: sum of a sqrt(pi / b) exp(-pi^2 x^2 / b), x in degrees.
+/// The contrast sensitivity of an opponent channel: the sum over its terms of a sqrt(pi / b) exp(-pi^2 x^2 /
+/// b), x in degrees.
 struct Sensitivity {
   struct Term {
     double a, b;
@@ -124,7 +125,7 @@ const std::array<Sensitivity, 3> sensitivities = {
     {{{{1.0, 0.0047}}}, {{{1.0, 0.0053}}}, {{{34.1, 0.04}, {13.5, 0.025}}}}};
 constexpr double widest_b = 0.04;
 
-/// Filters a channel with the eye's contrast sensitivity. The kernel's weights have sum 1.
+/// Filters a channel with the eye's contrast sensitivity. The sum of the weights is 1.
 Plane seen(const Plane& in, const Sensitivity& sensitivity, double ppd) {
   constexpr double pi = std::numbers::pi;
   const int radius = static_cast<int>(std::ceil(3.0 * std::sqrt(widest_b / (2.0 * pi * pi)) * ppd));
@@ -141,14 +142,15 @@ Plane seen(const Plane& in, const Sensitivity& sensitivity, double ppd) {
   return out;
 }
 
-/// Normalises positive weights to sum 1 and negative ones to sum -1.
+/// Scales positive weights so that their sum is 1, and negative weights so that their sum is -1.
 void balance(Kernel& k) {
   double above = 0.0, below = 0.0;
   for (const double v : k) (v > 0.0 ? above : below) += std::abs(v);
   for (double& v : k) v /= v > 0.0 ? above : below;
 }
 
-/// Strength of edges (first derivatives of a Gaussian) and of points and lines (second derivatives).
+/// The strength of edges, found by first derivatives of a Gaussian, and of points and lines, found by second
+/// ones.
 struct Features {
   Plane edge;
   Plane point;
@@ -176,7 +178,7 @@ Features features(const Plane& luminance, double ppd) {
 
 /// A picture after the eye's filters, as FLIP compares it.
 struct SeenByEye {
-  Planes lab;  // after the eye's resolution, with the Hunt effect
+  Planes lab;  // CIELAB with the Hunt effect, filtered by contrast sensitivity
   Features features;
 };
 
@@ -205,10 +207,10 @@ SeenByEye see(const Image& image, double ppd) {
   return {std::move(planes), features(luminance, ppd)};
 }
 
-/// The colour difference from 0 to 1. Usual differences use most of the range.
+/// The colour difference from 0 to 1. Differences below p_c of the largest one use the range up to p_t.
 double colour_difference(const glm::dvec3& a, const glm::dvec3& b) {
   static const double largest =
-      std::pow(hyab(hunt_lab({0.0, 1.0, 0.0}), hunt_lab({0.0, 0.0, 1.0})), q_c);  // green and blue
+      std::pow(hyab(hunt_lab({0.0, 1.0, 0.0}), hunt_lab({0.0, 0.0, 1.0})), q_c);  // between green and blue
   const double difference = std::pow(hyab(a, b), q_c), usual = p_c * largest;
   if (difference < usual) return p_t / usual * difference;
   return p_t + (difference - usual) / (largest - usual) * (1.0 - p_t);

@@ -14,21 +14,21 @@ namespace binosplat::measure {
 
 namespace {
 
-constexpr double threshold_least = 1.0 / 64.0;  // CT0, alpha and e2 of Geisler and Perry
+constexpr double threshold_least = 1.0 / 64.0;  // Geisler and Perry's CT0; below: their alpha and e2
 constexpr double decay = 0.106;
 constexpr double half_resolution_degrees = 2.3;
 
-// Luminance of a screen's black, relative to its white.
+// The luminance of a screen's black, relative to its white.
 constexpr float black_level = 0.005f;
 
-// Cycles per degree. Coarser gratings count as shading.
+// Cycles per degree. Coarser structures are left in the last band.
 constexpr double coarsest = 0.25;
 
 constexpr double ring_ends[] = {0, 5, 10, 20, 30, 40, 60, 90};
 
 // The rays of a picture, and the gaze.
 struct GazeRays {
-  double focal, x, y;  // px
+  double focal, x, y;  // px; (x, y) is the picture's middle
   glm::dvec3 gaze;
 
   GazeRays(const Image& picture, const Gaze& at)
@@ -41,7 +41,7 @@ struct GazeRays {
   double eccentricity(const glm::dvec3& ray) const {
     return glm::degrees(std::atan2(glm::length(glm::cross(ray, gaze)), glm::dot(ray, gaze)));
   }
-  // From the solid angle of the pixel.
+  // The root of the number of pixels in a square degree around the ray.
   double pixels_per_degree(const glm::dvec3& ray) const {
     return glm::radians(1.0) * focal * std::pow(glm::length(ray) / focal, 1.5);
   }
@@ -83,7 +83,7 @@ Image reduced(const Image& image) {
   return out;
 }
 
-// The inverse at one pixel of the larger picture, with the same kernel.
+// Returns one pixel of the picture with twice the resolution, interpolated from `small` with the same kernel.
 float expanded(const Image& small, int x, int y) {
   const auto weights = [](int place) {
     return place % 2 == 0 ? glm::vec3(0.125f, 0.75f, 0.125f) : glm::vec3(0.0f, 0.5f, 0.5f);
@@ -96,8 +96,9 @@ float expanded(const Image& small, int x, int y) {
   return sum;
 }
 
-// A grating has a quarter of a cycle per pixel of this level. Returns its share that passes the finer levels
-// and lies in this level's band. The kernel passes cos^4 of half the phase between pixels.
+// Returns the share of a grating's amplitude that lies in the band of `level`, if the grating has a quarter
+// of a cycle per pixel of this level. The finer levels' kernels and the filter of this band reduce it: a
+// kernel passes cos^4 of half the phase between neighbouring pixels.
 double passed(int level) {
   double share = 1.0 - std::pow(std::cos(glm::radians(45.0)), 8.0);
   for (int k = 1; k <= level; ++k) share *= std::pow(std::cos(glm::radians(45.0) / std::exp2(k)), 4.0);
@@ -105,7 +106,7 @@ double passed(int level) {
 }
 
 void check(const Image& picture, const Gaze& gaze) {
-  // Written so that values that are not finite fail, too.
+  // The negated conditions also refuse NaN.
   if (!(gaze.fov_degrees >= 1.0 && gaze.fov_degrees <= 170.0))
     fail("a field of view of {} degrees: expected 1 to 170", gaze.fov_degrees);
   if (!(gaze.x >= 0 && gaze.x <= picture.width && gaze.y >= 0 && gaze.y <= picture.height))
@@ -127,8 +128,8 @@ Image times_threshold(const Image& a, const Image& b, const Gaze& gaze) {
   const GazeRays seen(a, gaze);
   Image out(a.width, a.height, 1);
   Image of_a = luminance(a), of_b = luminance(b);
-  // Bands of an octave each, and the rest below them. Each band counts as its lowest well-passed frequency,
-  // so its threshold is never overestimated.
+  // Splits the pictures into bands of an octave each, and a last band with all lower frequencies. A band has
+  // the threshold of its lowest frequency, so thresholds are not overestimated.
   const auto frequency_at = [&](const glm::dvec3& ray, double pixel) {
     return 0.25 * seen.pixels_per_degree(ray) / pixel;
   };
@@ -155,7 +156,7 @@ Image times_threshold(const Image& a, const Image& b, const Gaze& gaze) {
     parallel_for(out.height, [&](int y) {
       for (int x = 0; x < out.width; ++x) {
         const float here = at(times, (x + side / 2) / side, (y + side / 2) / side);
-        // Written so that NaN stays.
+        // The negated condition keeps NaN.
         if (!(out.at(x, y, 0) >= here)) out.at(x, y, 0) = here;
       }
     });

@@ -18,10 +18,10 @@ constexpr int window_size = 11;  // px
 constexpr int window_middle = window_size / 2;
 constexpr double window_sigma = 1.5;
 
-/// A value as on a screen: clamped. NaN stays.
+/// A value as a screen shows it: clamped to [0, 1]. Keeps NaN.
 double shown(float value) { return std::clamp(double(value), 0.0, 1.0); }
 
-/// |a - b|; infinite if either is not a number, so that every limit fails.
+/// |a - b|; infinite if either is NaN, so that it exceeds every limit.
 double absolute_error(float a, float b) {
   if (a == b) return 0.0;  // also two infinities of the same sign
   const double error = std::abs(double(a) - double(b));
@@ -51,8 +51,8 @@ double ssim_of(const Moments& m) {
          ((m.a * m.a + m.b * m.b + c1) * (variance_a + variance_b + c2));
 }
 
-/// Sum of SSIM over a row of windows whose first row of pixels is `y`. The window is separable: first down
-/// each column, then along the row.
+/// The sum of SSIM over a row of windows, whose uppermost pixel row is `y`. The window is separable: sums
+/// each column first, then along the row.
 double ssim_row(const Image& a, const Image& b, int y, int channel,
                 const std::array<double, window_size>& window) {
   std::vector<Moments> columns(static_cast<std::size_t>(a.width));
@@ -83,7 +83,7 @@ double ssim_row(const Image& a, const Image& b, int y, int channel,
   return sum;
 }
 
-// Summed over pixels and channels.
+// The squared error, summed over pixels and channels.
 double squared_error(const Image& a, const Image& b) {
   require_comparable(a, b);
   double sum = 0.0;
@@ -116,7 +116,7 @@ double ssim(const Image& a, const Image& b) {
   const int columns = a.width - window_size + 1, rows = a.height - window_size + 1;
   if (columns <= 0 || rows <= 0) return std::numeric_limits<double>::quiet_NaN();
   const std::array<double, window_size> window = gaussian_window();
-  // One sum per row, added in order, so that the result does not depend on threads.
+  // Adds one sum per row in a fixed order, so that the result does not depend on the number of threads.
   std::vector<double> sums(static_cast<std::size_t>(rows));
   parallel_for(rows, [&](int y) {
     for (int c = 0; c < a.channels; ++c) sums[static_cast<std::size_t>(y)] += ssim_row(a, b, y, c, window);

@@ -1,5 +1,5 @@
 #pragma once
-// The difference of two pictures. Both must have the same size and channels (else: Error). Alpha, if any,
+// Metrics for the difference of two pictures, which must have the same size and channels (else: Error). Alpha
 // counts as a channel. To compare 8-bit pictures, quantise both first (base/image.h).
 
 #include <span>
@@ -13,17 +13,17 @@ namespace binosplat::measure {
 /// number.
 double psnr(const Image& a, const Image& b);
 
-/// The PSNR of several pictures together, such as both eyes', over a background. Both sides have equal
-/// numbers.
+/// The PSNR over the pixels of several pictures, such as both eyes', composited over a background. `a` and
+/// `b` have equally many pictures.
 double psnr(std::span<const Picture> a, std::span<const Picture> b, const Background& background);
 
 /// Structural similarity (Wang et al. 2004): Gaussian window of 11 x 11 px, sigma 1.5, K1 0.01, K2 0.03,
-/// range 1, values clamped to [0, 1]. The mean over channels and all windows within the picture. 1 for equal
-/// pictures; NaN if the picture is smaller than the window or has NaN.
+/// dynamic range 1, values clamped to [0, 1]. Returns the mean over channels and all windows within the
+/// picture: 1 for equal pictures, NaN if the picture is smaller than the window or has a NaN.
 double ssim(const Image& a, const Image& b);
 
-/// The largest absolute error of a channel, and its place. Values are not clamped: use clamped() for those of
-/// a screen. The first in row order of several equal errors; infinite if a value is not a number.
+/// The largest absolute error of a channel value, and its place: the first in row order. The error is
+/// infinite if a value is NaN. Values are not clamped; for an error as on a screen, pass clamped() pictures.
 struct Difference {
   double max = 0.0;
   int x = 0;
@@ -32,17 +32,19 @@ struct Difference {
 };
 Difference largest_difference(const Image& a, const Image& b);
 
-/// Share of the channels, 0 to 1, whose absolute error exceeds `limit`. Values are not clamped.
+/// The share, 0 to 1, of channel values whose absolute error exceeds `limit`. Values are not clamped.
 double share_beyond(const Image& a, const Image& b, double limit);
 
-/// The 99.9 % quantile of absolute errors, which a few pixels cannot change. If it is 0, the largest error.
+/// The 99.9 % quantile of absolute errors, which does not depend on a few outliers. If it is 0, returns the
+/// largest error.
 double common_error(const Image& a, const Image& b);
 
-/// The gain for a readable difference picture: the largest power of two that keeps `error` at or below 1. 1
-/// for equal pictures.
+/// The gain for a difference picture: the largest power of two with gain * error <= 1. For an error of 0 it
+/// is 1.
 double difference_gain(double error);
 
-/// Absolute error times `gain`, clamped to 1, in grey or RGB. Alpha's error appears in all three channels.
+/// Returns the absolute error times `gain`, at most 1, as grey or RGB. An error of alpha appears in all three
+/// channels.
 Image difference_picture(const Image& a, const Image& b, double gain);
 
 /// Values clamped to [0, 1].

@@ -51,7 +51,7 @@ std::vector<glm::vec3> colours_at(render::Frame& frame, const Camera& camera,
       one.cx -= pixel.x;
       one.cy -= pixel.y;
       views.push_back(make_view(one, near_plane));
-      views.back().slopes = whole.slopes;  // the affine projection's slopes are those of the whole picture
+      views.back().slopes = whole.slopes;  // the affine projection clamps as in the whole picture
     }
     frame.draw(views, settings);
     for (const Picture& picture : frame.read_pictures()) colours.emplace_back(picture.colour.front());

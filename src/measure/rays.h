@@ -1,5 +1,5 @@
 #pragma once
-// Colours along rays while the camera turns in place: equal rays should keep their colours.
+// Measures the colours along fixed rays while a camera turns in place. They should not change.
 
 #include <glm/glm.hpp>
 #include <span>
@@ -10,21 +10,21 @@
 
 namespace binosplat::measure {
 
-/// The camera turned in place by `radians` about `axis`, a unit vector in its own frame.
+/// Returns the camera turned in place by `radians` about `axis`, a unit vector in the camera's axes.
 Camera turned(const Camera& camera, const glm::dvec3& axis, double radians);
 
-/// The unit vector, in the world, from the camera through a point of its picture. (0, 0) is the centre of the
-/// first pixel.
+/// Returns the unit vector, in world axes, from the camera through a point of its picture. (0, 0) is the
+/// centre of the first pixel.
 glm::dvec3 ray_through(const Camera& camera, const glm::dvec2& pixel);
 
-/// The point of the picture on a ray from the camera; NaN if the ray points backward.
+/// Returns the point at which a ray from the camera meets the picture; NaN if the ray points backward.
 glm::dvec2 pixel_of(const Camera& camera, const glm::dvec3& ray);
 
-/// Whether the picture contains a point.
+/// Whether a point lies in the picture.
 bool is_inside(const Camera& camera, const glm::dvec2& pixel);
 
-/// The colours over black at points of the camera's picture, which may lie between pixels. Draws each point
-/// as a picture of one pixel, in frames of MAX_VIEWS.
+/// Returns the colours over black at points of the camera's picture, which may lie between pixel centres.
+/// Draws each point as a view of one pixel, with up to MAX_VIEWS views per frame.
 std::vector<glm::vec3> colours_at(render::Frame& frame, const Camera& camera,
                                   std::span<const glm::dvec2> pixels, const render::FrameSettings& settings,
                                   double near_plane = near_default);

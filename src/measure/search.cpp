@@ -10,14 +10,14 @@ namespace binosplat::measure {
 
 namespace {
 
-/// An evaluation: the logarithm of a tolerance, in which PSNR is nearly linear, and its value relative to the
-/// aim.
+/// An evaluation: the logarithm of a tolerance, and the value minus the aim. PSNR is nearly linear in the
+/// logarithm.
 struct Asked {
   double log_tolerance, above;
 };
 
-/// The next tolerance: the zero of a line through both evaluations, kept away from both, so that the bracket
-/// always shrinks.
+/// Returns the logarithm of the next tolerance: the zero of the line through both evaluations. It stays at
+/// least 5 % of the bracket away from both, so that the bracket shrinks.
 double between(const Asked& holds, const Asked& fails) {
   double share = holds.above / (holds.above - fails.above);
   if (!std::isfinite(share)) share = 0.5;
@@ -42,8 +42,8 @@ FoundTolerance find_tolerance(const std::function<double(double tolerance)>& val
     const double tolerance = std::clamp(std::exp(next), search.smallest, search.largest);
     const double at_tolerance = value(tolerance);
     ++found.evaluations;
-    // The Illinois rule: an end of the bracket that stays for two rounds counts half. The line then passes
-    // the aim, and the bracket closes from both sides.
+    // The Illinois rule: if an end of the bracket stays for two rounds, halves its value for the line. The
+    // next zero then lies closer to this end, and the bracket shrinks from both sides.
     if (at_tolerance >= target) {
       if (fails && last_held) fails->above *= 0.5;
       holds = {next, at_tolerance - aim};
@@ -58,7 +58,7 @@ FoundTolerance find_tolerance(const std::function<double(double tolerance)>& val
     last_held = at_tolerance >= target;
     if (holds && fails) {
       if (fails->log_tolerance - holds->log_tolerance < search.narrowest)
-        return found;  // the value has a step here
+        return found;  // the value has a step between the two
       next = between(*holds, *fails);
     } else {
       next = std::clamp(next + (holds ? step : -step), low, high);

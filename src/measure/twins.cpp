@@ -22,7 +22,7 @@ using render::ModelBuffers;
 using render::OrderGroup;
 using render::Stage;
 
-// Stores a cone in the form of shaders/projection/tangent.glsl.
+// Stores a cone as shaders/projection/tangent.glsl does: signs mark wide splats and means behind the eye.
 void keep_cone(const reference::Splat& s, shared::Splat& out) {
   const glm::dmat2 q(s.cone->form);
   out.conic = glm::vec4(glm::dvec4(q[0][0], q[0][1], q[1][1], 1 / std::sqrt(glm::determinant(q))));
@@ -42,7 +42,7 @@ shared::Splat to_shared(const reference::Splat& s) {
   return out;
 }
 
-// The views that decode the model for view v.
+// The views with which view v shares decoded Gaussians.
 reference::Decoding decoding_for(const FramePlan& plan, std::uint32_t v) {
   const std::uint32_t begin = v - v % plan.views_per_decoding;
   const std::uint32_t end = std::min(begin + plan.views_per_decoding, plan.requested_views);
@@ -132,7 +132,7 @@ ViewResult reference_view(const Model& model, const FramePlan& plan, std::uint32
   reference::set_thresholds(result.splats, settings.th, plan.tolerance);
   const std::vector<std::uint32_t> order = reference::depth_order(result.splats);
   if (settings.tiles == TILES_ALL) {
-    // One list for the whole view, as on the GPU.
+    // All tiles of the view share one list, as on the GPU.
     result.lists = {1,
                     1,
                     static_cast<std::uint32_t>(settings.tile_size),
@@ -149,7 +149,7 @@ ViewResult reference_view(const Model& model, const FramePlan& plan, std::uint32
 // The Gaussians that an order group draws, in index order, and the slot of each.
 struct Slots {
   std::vector<std::uint32_t> indices;
-  std::vector<std::uint32_t> of;  // slot by Gaussian; only for those in `indices`
+  std::vector<std::uint32_t> of;  // slot of each Gaussian; valid only for Gaussians in `indices`
 };
 
 Slots make_slots(const FramePlan& plan, OrderGroup group, const std::vector<ViewResult>& results) {
@@ -164,9 +164,9 @@ Slots make_slots(const FramePlan& plan, OrderGroup group, const std::vector<View
   return slots;
 }
 
-using Entry = glm::uvec2;  // bits of the depth; splat and tiles (supertiles.glsl)
+using Entry = glm::uvec2;  // bits of the depth, then splat and tiles (supertiles.glsl)
 
-// Entries by supertile, each in blending order.
+// The entries of each supertile, front to back.
 using Supertiles = std::vector<std::vector<Entry>>;
 
 Supertiles entries_of(const FramePlan& plan, const std::vector<Slots>& slots,
@@ -179,7 +179,7 @@ Supertiles entries_of(const FramePlan& plan, const std::vector<Slots>& slots,
     std::vector<std::uint32_t> rank(plan.gaussian_count);
     for (std::uint32_t r = 0; r < order.size(); ++r) rank[order[r]] = r;
     const std::uint32_t side = SUPERTILE_SIDE, across = (lists.tiles_x + side - 1) / side;
-    std::vector<std::map<std::uint32_t, Entry>> found(plan.supertiles_of(v));  // by rank
+    std::vector<std::map<std::uint32_t, Entry>> found(plan.supertiles_of(v));  // by place in `order`
     for (std::uint32_t t = 0; t + 1 < lists.begin.size(); ++t) {
       const std::uint32_t x = t % lists.tiles_x, y = t / lists.tiles_x;
       for (std::uint32_t k = lists.begin[t]; k < lists.begin[t + 1]; ++k) {
@@ -195,7 +195,7 @@ Supertiles entries_of(const FramePlan& plan, const std::vector<Slots>& slots,
   return supertiles;
 }
 
-// Uploads the outputs of the stage bin: entries and the items to sort.
+// Uploads the outputs of the stage bin: entries, and an item for each list to sort (sort_items.glsl).
 void upload_entries(const Supertiles& supertiles, FrameBuffers& buffers) {
   std::vector<Entry> entries;
   shared::Counters counters{};
@@ -250,8 +250,8 @@ void upload_lists(const FramePlan& plan, const Supertiles& supertiles, FrameBuff
   buffers.lists.tile_values.upload(values);
 }
 
-// Uploads the outputs of the stage project. Marks all splats as large, so that bin_large.comp tests their
-// tiles.
+// Uploads the outputs of the stage project. Marks all splats as IN_MANY_SUPERTILES, so that bin_large.comp
+// computes their tiles.
 void upload_projection(const FramePlan& plan, const std::vector<Slots>& slots,
                        const std::vector<ViewResult>& results, FrameBuffers& buffers) {
   std::vector<shared::Splat> splats(std::size_t{plan.view_count()} * buffers.slots);

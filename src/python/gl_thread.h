@@ -18,10 +18,10 @@ namespace binosplat::python {
 
 class GlThread {
  public:
-  /// Throws Error, as every call does, in a process that was forked after such a thread started: threads and
-  /// OpenGL drivers do not survive a fork.
+  /// The constructor and all calls throw Error in a process that was forked after a GlThread started, because
+  /// threads and OpenGL drivers do not survive a fork.
   GlThread();
-  /// Do not destroy it in a forked process, where the thread to join does not exist.
+  /// Do not destroy a GlThread in a forked process, where the thread to join does not exist.
   ~GlThread();
   GlThread(const GlThread&) = delete;
   GlThread& operator=(const GlThread&) = delete;
@@ -41,7 +41,7 @@ class GlThread {
     return result;
   }
 
-  /// The same, but waits: returns the result of `work` or rethrows its exception.
+  /// Queues `work` and waits. Returns the result of `work` or rethrows its exception.
   template <typename Work>
   auto run(Work work) -> decltype(work()) {
     return start(std::move(work)).get();

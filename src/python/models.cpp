@@ -34,7 +34,7 @@ std::shared_ptr<Model> model_at(const std::filesystem::path& path, const std::op
   return model;
 }
 
-/// A model of arrays with equal numbers of rows; sh is (N, 1, 3), (N, 4, 3), (N, 9, 3) or (N, 16, 3).
+/// Makes a model from arrays with equal numbers of rows; sh is (N, 1, 3), (N, 4, 3), (N, 9, 3) or (N, 16, 3).
 std::shared_ptr<Model> model_of(const Dense<double>& means, const Dense<>& quats, const Dense<>& scales,
                                 const Dense<>& opacities, const Dense<>& sh, const std::string& name,
                                 const std::string& axes, bool antialiased) {
@@ -66,7 +66,7 @@ py::array array_of_rows(const std::vector<Row>& rows) {
                       reinterpret_cast<const Value*>(rows.data()));
 }
 
-/// Positions relative to zero; far models need doubles.
+/// Positions relative to the world's zero instead of the model's origin. Models far from zero need doubles.
 py::array means_of(const Model& model) {
   if (model.axes.origin == glm::dvec3(0.0)) return array_of_rows(model.position);
   std::vector<glm::dvec3> means;

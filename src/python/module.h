@@ -30,17 +30,18 @@ void add_renderer(py::module_& module);
 template <typename T = float>
 using Dense = py::array_t<T, py::array::c_style>;
 
-/// The picture as float32: (height, width, channels), or (height, width) for one channel. Takes over its
-/// memory.
+/// Returns the picture as float32: (height, width, channels), or (height, width) for one channel. Takes over
+/// the picture's memory.
 py::array array_of(Image&& image);
 
 /// Both eyes of a head, as the package's class Rig stores them.
 struct Rig {
   Camera head;                                // used if there are no `eyes`
-  std::optional<std::array<Camera, 2>> eyes;  // a given pair
+  std::optional<std::array<Camera, 2>> eyes;  // two given eyes
   stereo::RigSettings settings;
 
-  /// The eyes in the frame of a model with these axes (scene/axes.h). Throws Error as stereo::make_rig does.
+  /// Returns the eyes in the frame of reference of a model with these axes (scene/axes.h). Throws Error as
+  /// stereo::make_rig does.
   stereo::EyePair pair(const ModelAxes& axes = {}, double near_plane = near_default) const;
 };
 

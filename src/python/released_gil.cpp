@@ -37,7 +37,7 @@ void wait_for_all() {
 ReleasedGil::ReleasedGil() : state_(PyEval_SaveThread()) { ++alive; }
 
 ReleasedGil::~ReleasedGil() {
-  // After its end, Python would let the thread continue.
+  // After Python has ended, PyEval_RestoreThread() would let the thread continue.
   if (python_is_gone) sleep_to_the_end();
   try {
     PyEval_RestoreThread(state_);

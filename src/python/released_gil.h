@@ -1,5 +1,5 @@
 #pragma once
-// Work without Python's lock.
+// Lets threads work without Python's lock.
 
 #include <pybind11/pybind11.h>
 
@@ -9,10 +9,10 @@
 
 namespace binosplat::python {
 
-/// Releases Python's lock while it exists, as py::gil_scoped_release. The thread must not call Python, and
-/// must own all that it uses: Python's shutdown frees objects of daemon threads. If Python has ended
-/// meanwhile, the thread sleeps until the process ends. Otherwise Python would end it by an exception that no
-/// destructor can pass.
+/// Releases Python's lock while the object exists, as py::gil_scoped_release does. Meanwhile the thread must
+/// not call Python, and must own all that it uses, because Python's shutdown frees the objects of daemon
+/// threads. If Python ends meanwhile, the destructor puts the thread to sleep until the process ends.
+/// Otherwise Python would end the thread by an exception, which must not leave a destructor.
 class ReleasedGil {
  public:
   ReleasedGil();
@@ -20,19 +20,21 @@ class ReleasedGil {
   ReleasedGil(const ReleasedGil&) = delete;
   ReleasedGil& operator=(const ReleasedGil&) = delete;
 
-  /// Call it once, when the module is created: from then on the process waits for such threads before it
-  /// ends. Otherwise drivers and libraries that have shut down crash threads that still use them.
+  /// Call it once, when the module is created. From then on the process waits for all threads without
+  /// Python's lock before it ends. Otherwise threads would crash in drivers and libraries that have shut
+  /// down.
   static void outlive_all();
 
-  /// Whether Python ends because of an uncaught KeyboardInterrupt. The process then does not wait: it ends by
-  /// the signal, and skips the exit handlers of drivers.
+  /// Whether Python ends because of an uncaught KeyboardInterrupt. The process then does not wait for
+  /// threads: it ends by the signal, and skips the exit handlers of drivers.
   static bool ends_by_interrupt();
 
  private:
   PyThreadState* state_;
 };
 
-/// Work without Python. While one exists, the process does not end, as with ReleasedGil.
+/// For threads that never call Python. While a ProcessKeepAlive exists, the process does not end, as with
+/// ReleasedGil.
 class ProcessKeepAlive {
  public:
   ProcessKeepAlive();

@@ -57,7 +57,7 @@ void check(const Settings& settings, const Model& model, bool given) {
     fail("transmittance last needs follow=True: the previous frame measures it");
 }
 
-/// The views of a camera, or of both eyes, in the model's frame.
+/// The views of a camera, or of both eyes, in the model's frame of reference.
 std::vector<shared::View> views_of(const std::variant<Camera, Rig>& view, const ModelAxes& axes,
                                    double near_plane) {
   if (const auto* camera = std::get_if<Camera>(&view))
@@ -130,13 +130,13 @@ py::tuple arrays_of(Drawn drawn) {
 
 using SeenBy = std::variant<Camera, Rig>;
 
-// Holds the Renderer here, so that it survives Python's shutdown.
+// The shared pointer keeps the Renderer alive during Python's shutdown.
 py::tuple draw(const std::shared_ptr<Renderer>& renderer, const SeenBy& view, const Settings& settings) {
   const Views views = views_of(view, renderer->model().axes, settings.near_plane);
   return arrays_of(awaited(renderer->draw(views, settings)));
 }
 
-/// The frames of draw_all(). The GPU draws the next one while Python uses the last one.
+/// The frames of draw_all(). The GPU draws the next frame while Python uses the last one.
 class Frames {
  public:
   Frames(std::shared_ptr<Renderer> renderer, const Settings& settings)
@@ -152,7 +152,7 @@ class Frames {
     awaited(renderer_->begin(path_, views(first), settings_));
   }
 
-  /// Returns the frame submitted before, and submits `following`.
+  /// Returns the frame that was submitted before, and submits `following`.
   py::tuple next(const std::optional<SeenBy>& following) {
     const std::optional<Views> more = following ? std::optional(views(*following)) : std::nullopt;
     return arrays_of(awaited(renderer_->next(path_, more, settings_)));
@@ -169,7 +169,7 @@ class Frames {
   bool has_begun_ = false;
 };
 
-/// Models, their matrices row by row, and their opacities.
+/// One tuple per instance: its model, its matrix row by row, and its opacity.
 using Instances = std::vector<std::tuple<std::shared_ptr<Model>, std::array<double, 16>, float>>;
 
 void place(const std::shared_ptr<Renderer>& renderer, const Instances& instances) {

@@ -46,7 +46,7 @@ inline Drawn drawn_of(render::FrameReport report, const std::vector<Picture>& pi
 
 using Views = std::vector<shared::View>;
 
-/// The settings of a frame. `follow`: it uses the previous frame's measurements.
+/// The settings of a frame. If `follow`, the frame uses the previous frame's measurements.
 struct Settings {
   render::FrameSettings frame;
   render::ThresholdPolicy policy;
@@ -54,7 +54,7 @@ struct Settings {
   bool follow = false;
 };
 
-/// The settings of a frame of these views.
+/// Returns the settings of a frame of these views: the calibration may complete them.
 inline render::FrameSettings frame_of(const Settings& settings, const Views& views, const Model& model) {
   return settings.policy.settings(settings.frame, views.front(), model.axes);
 }
@@ -65,7 +65,7 @@ struct Placed {
   render::InstancePlace place;
 };
 
-/// A sequence of frames. The GPU draws the next one while Python uses the last one.
+/// A sequence of frames. The GPU draws the next frame while Python uses the last one.
 struct Path {
   Path(gl::Context& context, std::shared_ptr<render::GpuModel> model)
       : frame(std::move(model)), read_back(context) {}
@@ -93,7 +93,7 @@ class Renderer {
     if (is_here && !(ReleasedGil::ends_by_interrupt() && thread_->is_busy())) {
       close();
     } else {
-      // Leak all that the thread may still use.
+      // Leaks all objects that the thread may still use.
       static_cast<void>(thread_.release());
       static_cast<void>(on_gpu_.release());
       static_cast<void>(std::make_unique<std::shared_ptr<const Model>>(model_).release());
@@ -150,7 +150,7 @@ class Renderer {
     });
   }
 
-  /// Does not wait for the thread.
+  /// Destroys the path later, on the thread. Does not wait for this.
   void end(std::uint64_t number) {
     thread_->start([this, number] {
       if (on_gpu_) on_gpu_->paths.erase(number);
@@ -170,7 +170,7 @@ class Renderer {
           frame(*context, model, precision),
           instances{{frame.model(), {}}} {}
 
-    /// Uploads each model once, and drops those that are not placed any more.
+    /// Uploads each model once, and drops models that are not in `placed`.
     void place(const std::vector<Placed>& placed, const Model& own, int precision) {
       struct Owner {
         Owner(std::shared_ptr<const Model> owned, gl::Context& context, int precision)
@@ -196,7 +196,7 @@ class Renderer {
     }
 
     std::unique_ptr<gl::Context> context;
-    std::map<const Model*, std::shared_ptr<render::GpuModel>> models;  // of the instances
+    std::map<const Model*, std::shared_ptr<render::GpuModel>> models;  // the instances' models
     render::Frame frame;
     std::vector<render::Instance> instances;
     std::map<std::uint64_t, Path> paths;

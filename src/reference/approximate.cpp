@@ -35,14 +35,16 @@ bool reaches_block(const Splat& splat, int x, int y, int tile_size) {
     conic = {form[0][0], form[0][1], form[1][1]};
     rho *= farthest_in_tile(*splat.cone, x, y, tile_size);
   }
-  const glm::dvec2 first = glm::ivec2(x, y) / APPROXIMATE_BLOCK * APPROXIMATE_BLOCK;  // of the block
+  const glm::dvec2 first =
+      glm::ivec2(x, y) / APPROXIMATE_BLOCK * APPROXIMATE_BLOCK;  // the block's first pixel
   const double det = conic.x * conic.z - conic.y * conic.y;
   const double tallest = std::sqrt(rho * conic.x / det);
   const double low = first.y - splat.mean.y, high = low + APPROXIMATE_BLOCK - 1;
   if (low > tallest || high < -tallest) return false;
-  // The row of the ellipse's rightmost point, relative to the mean.
+  // The y of the ellipse's rightmost point, relative to the mean.
   const double apex = -conic.y * std::sqrt(rho / (conic.z * det));
-  // The ellipse's leftmost (-1) or rightmost (1) column in the block's rows, relative to the mean.
+  // The x of the ellipse's leftmost (side -1) or rightmost (side 1) point in the block's rows, relative to
+  // the mean.
   const auto edge = [&](double side) {
     const double at = std::clamp(side * apex, low, high);
     const double width = std::sqrt(rho / conic.x * std::max(0.0, 1.0 - at * at / (tallest * tallest)));

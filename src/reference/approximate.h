@@ -1,6 +1,6 @@
 #pragma once
-// The approximations of the squared rule beyond pairs (docs/method.md 5.2): it skips splats in blocks of a
-// tile, and ends blocks that are dark.
+// The approximations of the rule `squared` in the blend (docs/method.md 5.2): it skips splats in blocks of a
+// tile, and ends dark blocks.
 
 #include "reference/project.h"
 #include "shared/axes.h"
@@ -8,18 +8,18 @@
 
 namespace binosplat::reference {
 
-/// How the lists of tiles are blended.
+/// The approximations with which lists of tiles are blended; by default none.
 struct Approximation {
   bool by_blocks = false;           // skips splats in blocks where their alpha is below Th
-  double dark_transmittance = 0.0;  // a block ends once T is at most this in all its pixels; 0: never
+  double dark_transmittance = 0.0;  // a block ends once T is at most this in each pixel; 0: never
 
   bool any() const { return by_blocks || dark_transmittance > 0.0; }
 };
 
-/// The approximation of a tile test and a rule of shared/axes.h; `tolerance` is as for threshold().
+/// Returns the approximation for a tile test and a rule of shared/axes.h; `tolerance` is threshold()'s.
 Approximation approximation_of(int tiles, int th, double tolerance);
 
-/// Whether a splat is blended in the block of pixel (x, y). Tiles have `tile_size` px.
+/// Whether a splat is blended in the block that contains pixel (x, y). Tiles have a side of `tile_size` px.
 bool reaches_block(const Splat& splat, int x, int y, int tile_size);
 
 }  // namespace binosplat::reference

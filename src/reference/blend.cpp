@@ -21,8 +21,8 @@ double mesh_at(const TileLists& lists, int width, const glm::ivec2& pixel) {
   return lists.mesh_depths[static_cast<std::size_t>(pixel.y) * width + pixel.x];
 }
 
-/// Blends a block of a tile, from pixel `first` to before `end`, approximately. Once the block is dark,
-/// extrapolates the blended colours over the remaining transmittance.
+/// Blends the pixels [first, end) of a block approximately. Once the block is dark, extrapolates each pixel's
+/// colour to its remaining transmittance.
 void blend_block(const std::vector<Splat>& splats, std::span<const std::uint32_t> list,
                  const TileLists& lists, const glm::ivec2& first, const glm::ivec2& end, Picture& picture) {
   const Approximation& approximation = lists.approximation;

@@ -10,20 +10,21 @@
 
 namespace binosplat::reference {
 
-/// Planted faults for tests. Faults in data (a negated SH coefficient, a shifted mean) need no switch.
+/// Faults that tests plant in the blend. Faults in data, such as a negated SH coefficient or a shifted mean,
+/// need no switch.
 struct Faults {
-  bool stop_late = false;  // adds the Gaussian that crosses TRANSMITTANCE_MIN
+  bool stop_late = false;  // also blends the Gaussian before which a pixel must stop
 };
 
-/// Alphas of a blend, summed over pixels (docs/method.md 8 gives them per pixel). `evaluated` counts a GPU's
-/// work: all pixels of a tile walk its list until the last of them ends.
+/// Numbers of alphas, summed over pixels (docs/method.md 8.1 lists them per pixel). `evaluated` counts as a
+/// GPU works: all pixels of a tile walk its list until the last pixel ends.
 struct BlendCounts {
   std::uint64_t evaluated = 0;
   std::uint64_t visible = 0;  // blended
 };
 
-/// The picture of a view, computed in float64 and rounded to float once. Sets `counts` if given. Faults and
-/// counts require an exact blend.
+/// Returns the picture of a view, computed in float64 and rounded to float once. Sets `counts` if given.
+/// Throws Error for faults or counts with an approximate blend.
 Picture blend(const std::vector<Splat>& splats, const TileLists& lists, const shared::View& view,
               Faults faults = {}, BlendCounts* counts = nullptr);
 

@@ -1,5 +1,5 @@
 #pragma once
-// Blends one pixel exactly as docs/method.md 3 defines it. Private to this room.
+// Blends one pixel exactly as docs/method.md 3 defines it. Only for files in src/reference.
 
 #include <algorithm>
 #include <cmath>
@@ -24,8 +24,8 @@ struct PixelSum {
 
 enum class Verdict { skipped, blended, stopped };
 
-/// The alpha of a splat at pixel (x, y), before the comparison with tau. 0 without an exponential if q is
-/// negative, or beyond 2 ln 255 = 11.08, where even a sigma of 1 gives less than tau.
+/// The alpha of a splat at pixel (x, y), before the comparison with tau. 0 if q is negative. Also 0 if q
+/// exceeds 2 ln 255 = 11.08: even a sigma of 1 then gives less than tau, so the exponential is not needed.
 inline double alpha_at(const Splat& splat, int x, int y) {
   const double q = squared_distance(splat, {x, y});
   if (q < 0.0 || q > 11.1) return 0.0;
@@ -45,8 +45,8 @@ inline void add(PixelSum& sum, const Splat& splat, double z, double alpha) {
   sum.transmittance *= 1 - alpha;
 }
 
-/// Blends the list at a pixel behind the previous splats. Returns whether the pixel ended. Calls visit(index,
-/// alpha, sum so far, verdict) for each Gaussian before it is added.
+/// Blends a list at a pixel, behind the splats in `sum`. Returns whether the pixel ended. Calls visit(index,
+/// alpha, sum, verdict) for each Gaussian, with the sum before it.
 template <typename Visit>
 bool blend_on(PixelSum& sum, const std::vector<Splat>& splats, std::span<const std::uint32_t> list,
               const glm::ivec2& pixel, Faults faults, const Visit& visit) {
@@ -66,7 +66,7 @@ bool blend_on(PixelSum& sum, const std::vector<Splat>& splats, std::span<const s
   return false;
 }
 
-/// Blends a whole list.
+/// Blends a list at a pixel, from an empty sum. `visit` as in blend_on().
 template <typename Visit>
 PixelSum blend_pixel(const std::vector<Splat>& splats, std::span<const std::uint32_t> list,
                      const glm::ivec2& pixel, Faults faults, const Visit& visit) {

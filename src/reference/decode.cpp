@@ -27,13 +27,13 @@ std::vector<double> run(const Network& network, const std::vector<double>& input
   return layer(network.second, network.second_bias, hidden);
 }
 
-// The inputs of the networks that depend on the eye.
+// The networks' inputs that depend on the eye.
 struct AnchorRay {
   glm::dvec3 direction;  // from the eye to the anchor, unit length
   double distance;
 };
 
-// Feature and direction, and the distance for networks that use it.
+// The inputs of a network: feature, direction, and the distance if the network uses it.
 std::vector<double> inputs_of(const Network& network, const std::vector<double>& feature,
                               const AnchorRay& ray) {
   std::vector<double> inputs = feature;
@@ -42,8 +42,8 @@ std::vector<double> inputs_of(const Network& network, const std::vector<double>&
   return inputs;
 }
 
-// The feature of an anchor. A feature bank mixes it with itself at half and a quarter of the resolution, by
-// weights that depend on the ray.
+// The feature of anchor `n`. A feature bank mixes it with the same feature at half and at a quarter of the
+// resolution. The weights depend on the ray.
 std::vector<double> feature_of(const Scaffold& scaffold, std::size_t n, const AnchorRay& ray) {
   const std::size_t count = scaffold.feature_count;
   const float* stored = &scaffold.feature[n * count];
@@ -81,7 +81,7 @@ Decoded decode_one(const Scaffold& scaffold, std::size_t id, double alpha, const
   return decoded;
 }
 
-// The Gaussians of one anchor with positive opacity.
+// The Gaussians of anchor `n` that have positive opacity.
 std::vector<Decoded> decode_anchor(const Scaffold& scaffold, std::size_t n, const glm::dvec3& eye) {
   const glm::dvec3 towards = glm::dvec3(scaffold.position[n]) - eye;
   const double distance = glm::length(towards);
@@ -109,7 +109,7 @@ std::vector<Decoded> decode_anchor(const Scaffold& scaffold, std::size_t n, cons
 
 bool sees_anchor(const Scaffold& scaffold, std::size_t n, const shared::View& view) {
   const Splat splat = project({scaffold.position[n], scaffold.offset_scale[n], scaffold.rotation[n], 1.0},
-                              view);  // as trained
+                              view);  // low-pass without anti-aliasing, as trained
   return splat.drawn && touches_any(splat, TILES_AABB, ANCHOR_TILE, view);
 }
 

@@ -1,6 +1,6 @@
 #pragma once
-// Decodes the Gaussians of a Scaffold-GS model for an eye, in float64 (Lu et al. 2024). The judge of
-// src/render/decode.cpp.
+// Decodes the Gaussians of a Scaffold-GS model (Lu et al. 2024) for an eye, in float64. Tests judge
+// src/render/decode.cpp by it.
 
 #include <cstddef>
 #include <cstdint>
@@ -12,29 +12,32 @@
 
 namespace binosplat::reference {
 
-/// The views that decode a model.
+/// The views for which a Scaffold-GS model is decoded.
 struct Decoding {
-  /// Views that share Gaussians: the networks use the middle of their eyes. Empty: only the drawn view.
+  /// Views that share Gaussians, which are decoded for the midpoint of their eyes. Empty: only the drawn
+  /// view.
   std::vector<shared::View> views;
-  bool anchor_cull = true;  // as trained; false: also decodes anchors out of view
+  bool anchor_cull = true;  // true, as trained: skips anchors that no view sees
 };
 
 /// A decoded Gaussian with positive opacity.
 struct Decoded {
-  std::size_t id = 0;  // n * K + k
+  std::size_t id = 0;  // n * K + k, for Gaussian k of anchor n
   Gaussian gaussian;
   glm::dvec3 colour{0.0};
 };
 
-/// Whether a view sees an anchor: projects it as a Gaussian with its offsets' scales, whose 3-sigma square
-/// must touch a tile of 16 x 16 px, as with TILES_AABB.
+/// Whether a view sees anchor `n`. The anchor is projected as a Gaussian whose scales are `offset_scale`. It
+/// is seen if this Gaussian touches a tile of 16 x 16 px by TILES_AABB.
 bool sees_anchor(const Scaffold& scaffold, std::size_t n, const shared::View& view);
 
-/// The Gaussians with positive opacity of all anchors that any of `views` sees, in the order of their ids.
+/// Returns the Gaussians with positive opacity of all anchors that any of `views` sees, by ascending id. They
+/// are decoded for the midpoint of the views' eyes.
 std::vector<Decoded> decode(const Scaffold& scaffold, std::span<const shared::View> views,
                             bool anchor_cull = true);
 
-/// The splats of a view for a model of either kind, by index. Gaussians that are not decoded are not drawn.
+/// Returns the splats of a view by index of their Gaussian, for Scaffold-GS and other models. Gaussians that
+/// are not decoded are not `drawn`.
 std::vector<Splat> project_all(const Model& model, const shared::View& view, const Decoding& decoding,
                                const Perspective& perspective);
 

@@ -30,21 +30,21 @@ struct Seen {
   double det, det_free;   // with the low-pass and without
 };
 
-/// The covariance of scaled axes in a plane. Sums of squares give the determinants: xx yy - xy^2 would lose
-/// the width of a needle a million times as long.
+/// Returns the covariance of scaled axes in a plane. Computes determinants as sums of squares: xx yy - xy^2
+/// would cancel for a needle that is a million times as long as wide.
 Seen seen_in_plane(const glm::dmat3x2& axes, double low_pass) {
   const glm::dvec3 a = glm::row(axes, 0), b = glm::row(axes, 1), n = glm::cross(a, b);
   const double aa = glm::dot(a, a), bb = glm::dot(b, b), free = glm::dot(n, n);
   return {{aa + low_pass, glm::dot(a, b), bb + low_pass}, free + low_pass * (aa + bb + low_pass), free};
 }
 
-/// World to eye.
+/// The rotation from world axes to the eye's axes.
 glm::dmat3 axes_of(const shared::View& view) {
   return glm::transpose(glm::dmat3(glm::dvec3(view.row_x), glm::dvec3(view.row_y), glm::dvec3(view.row_z)));
 }
 
-/// J: the derivative of the projected point at v. Far outside the picture, slopes are clamped, which bounds
-/// splats that straddle the picture's edge (as in 3D-GS).
+/// J: the derivative of the projected point at v. Slopes are clamped far outside the picture, as in 3D-GS.
+/// This limits the size of splats that reach across the picture's edge.
 glm::dmat3x2 perspective_jacobian(const glm::dvec3& v, const shared::View& view) {
   const glm::dvec4 lens = view.lens;
   const double fx = lens[0], fy = lens[1];
@@ -54,7 +54,7 @@ glm::dmat3x2 perspective_jacobian(const glm::dvec3& v, const shared::View& view)
   return glm::dmat3x2(fx / v.z, 0.0, 0.0, fy / v.z, -fx * x / v.z, -fy * y / v.z);  // by columns
 }
 
-/// Real spherical harmonics with Condon-Shortley signs, in the order of models' coefficients.
+/// Real spherical harmonics with Condon-Shortley signs, in the order of a model's coefficients.
 std::array<double, 16> sh_basis(const glm::dvec3& d) {
   const double x = d.x, y = d.y, z = d.z;
   const double xx = x * x, yy = y * y, zz = z * z;
@@ -93,12 +93,12 @@ glm::dvec3 colour_towards(const Model& model, std::size_t i, const glm::dvec3& d
 
 namespace {
 
-/// The pixel coordinates at which the line through the eye and v intersects the picture's plane.
+/// The pixel coordinates at which the line through the eye and v meets the picture's plane.
 glm::dvec2 picture_point(const glm::dvec3& v, const shared::View& view) {
   return {view.lens[0] * v.x / v.z + view.lens[2] - 0.5, view.lens[1] * v.y / v.z + view.lens[3] - 0.5};
 }
 
-/// Affine: J maps the Gaussian at v into the picture.
+/// The affine projection: J transforms the Gaussian at v to the picture.
 void project_affine(const Gaussian& gaussian, const shared::View& view, const glm::dvec3& v,
                     const LowPass& low_pass, Splat& splat) {
   const Seen seen = seen_in_plane(perspective_jacobian(v, view) * axes_of(view) * scaled_axes(gaussian),
@@ -112,15 +112,15 @@ void project_affine(const Gaussian& gaussian, const shared::View& view, const gl
   if (low_pass.antialiased) splat.opacity *= std::sqrt(seen.det_free / seen.det);
 }
 
-/// Two directions that form a right-handed frame with the unit vector n.
+/// Two unit vectors that form a right-handed frame with the unit vector n.
 std::array<glm::dvec3, 2> across(const glm::dvec3& n) {
   const glm::dvec3 least = std::abs(n.x) < 0.6 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0);
   const glm::dvec3 first = glm::normalize(glm::cross(least, n));
   return {first, glm::cross(n, first)};
 }
 
-/// Tangent: drops each unit ray d perpendicularly onto the plane that touches the unit sphere in the
-/// Gaussian's direction. The point in this plane determines q.
+/// The tangent projection: drops each unit ray d at a right angle onto the plane that touches the unit sphere
+/// in the Gaussian's direction. q is a function of the point in this plane.
 void project_tangent(const Gaussian& gaussian, const shared::View& view, const glm::dvec3& v,
                      const LowPass& low_pass, Splat& splat) {
   const glm::dvec4 lens = view.lens;

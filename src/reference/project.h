@@ -1,7 +1,7 @@
 #pragma once
 // Projects a Gaussian into a view in float64 (docs/method.md 2; 3D Gaussian Splatting, Kerbl et al. 2023).
-// The judge of src/render/project.cpp: both are written from docs/method.md and share only constants and
-// structs.
+// Tests judge src/render/project.cpp by it. Both implement docs/method.md independently, and share only
+// constants and structs.
 
 #include <cstddef>
 #include <glm/glm.hpp>
@@ -22,51 +22,51 @@ struct Gaussian {
   double opacity = 0.0;
 };
 
-/// The splat of a Gaussian with PROJECTION_TANGENT (docs/method.md 2). With p = (x, y, 1) of a pixel,
-/// q = p^T form p / p^T ray p if facing . p > 0. Elsewhere it is invisible.
+/// The splat of a Gaussian with PROJECTION_TANGENT (docs/method.md 2). With p = (x, y, 1) for pixel (x, y), q
+/// = (p^T form p) / (p^T ray p). The splat is invisible unless facing . p > 0.
 struct Cone {
   glm::dmat3 form{0.0};
-  glm::dmat3 ray{0.0};  // |d|^2 of the pixel's ray d, with d.z = 1
-  /// The Gaussian's mean is behind the eye. The splat's mean is then on the line through both.
+  glm::dmat3 ray{0.0};  // p^T ray p = |d|^2, with d the pixel's ray and d.z = 1
+  /// Whether the Gaussian's mean is behind the eye. The splat's mean then lies on the line through the two.
   bool is_behind = false;
-  glm::dvec3 facing{0.0};  // cosine of the angle to the Gaussian, times |d|
+  glm::dvec3 facing{0.0};  // facing . p = |d| times the cosine of the angle between d and the Gaussian
 };
 
 /// A Gaussian in one view. Symmetric matrices are stored as (xx, xy, yy).
 struct Splat {
   glm::dvec2 mean{0.0};          // px; the centre of pixel (i, j) is (i, j)
-  double depth = 0.0;            // view z, world units; with a cone, distance to the eye
-  double order = 0.0;            // sorting key, world units
+  double depth = 0.0;            // view z, world units; with a cone, the distance from the eye
+  double order = 0.0;            // sort key, world units
   double opacity = 0.0;          // sigma, in [0, 1]
   glm::dvec3 covariance{0.0};    // C2 in px^2, with the low-pass
   glm::dvec3 conic{0.0};         // Q, the inverse of C2, in px^-2
-  double det = 0.0;              // of C2, px^4; with a cone, in px of the picture's middle
+  double det = 0.0;              // det C2, px^4; with a cone, (fx fy)^2 / det Qt (docs/method.md 2.2)
   glm::dvec3 colour{0.0};        // display-referred, at least 0, without upper limit
-  double threshold = ALPHA_MIN;  // Th: tile tests use the region with alpha >= Th; see threshold.h
+  double threshold = ALPHA_MIN;  // Th (threshold.h): tile tests use the region with alpha >= Th
   std::optional<Cone> cone;      // with PROJECTION_TANGENT; replaces covariance and conic
-  bool drawn = false;            // deeper than the near plane, det > 0, and Th (threshold.h) not above sigma
+  bool drawn = false;            // beyond the near plane, and det > 0; set_thresholds() may clear it
 };
 
-/// The low-pass filter of every splat (docs/method.md 2).
+/// The low-pass of all splats of a model (docs/method.md 2).
 struct LowPass {
   double kernel_px2 = KERNEL_PX2;  // variance, px^2
-  bool antialiased = false;        // reduces the opacity of widened splats
+  bool antialiased = false;        // true: reduces opacity as the low-pass widens splats
 };
 
-/// All members except the colour.
+/// Projects a Gaussian. Sets all members of the splat except the colour.
 Splat project(const Gaussian& gaussian, const shared::View& view, const LowPass& low_pass = {},
               const Perspective& perspective = {});
 
-/// Gaussian `i` of the model in a view, by default in the model's perspective. For Scaffold-GS, projects its
-/// stand-in.
+/// Projects Gaussian `i` of the model, by default with the model's sort order and projection. In a
+/// Scaffold-GS model this is not a decoded Gaussian, but the stand-in at its index.
 Splat project(const Model& model, std::size_t i, const shared::View& view,
               const std::optional<Perspective>& perspective = {});
 
-/// All Gaussians of the model, in its order and perspective. Scaffold-GS is decoded for this view alone, and
-/// ordered by id (decode.h).
+/// Projects all Gaussians of the model, with its sort order and projection. Elements are by index, in
+/// Scaffold-GS by id (decode.h). A Scaffold-GS model is decoded for this view alone.
 std::vector<Splat> project_all(const Model& model, const shared::View& view);
 
-/// The colour of Gaussian `i` along the unit vector `direction`, from the eye to the Gaussian in world axes.
+/// The colour of Gaussian `i`. `direction` is the unit vector from the eye to the Gaussian, in world axes.
 glm::dvec3 colour_towards(const Model& model, std::size_t i, const glm::dvec3& direction);
 
 }  // namespace binosplat::reference

@@ -1,6 +1,6 @@
 #pragma once
-// The float64 judge: renders a view of a model on the CPU as docs/method.md defines it. The single stages are
-// in project.h, threshold.h, tiles.h and blend.h.
+// The float64 reference: draws a view of a model on the CPU as docs/method.md defines it. Its stages are in
+// project.h, threshold.h, tiles.h and blend.h.
 
 #include <optional>
 
@@ -19,14 +19,15 @@ struct Settings {
   int tiles = TILES_ELLIPSE;
   int tile_size = TILE_SIZE_DEFAULT;  // px
   int th = TH_TAU;
-  double tolerance = 0.0;                  // for threshold()
+  double tolerance = 0.0;                  // the argument of threshold()
   std::vector<double> bounds;              // T_upper of each Gaussian; empty: 1 for all
   Decoding decoding;                       // for a Scaffold-GS model
   std::optional<Perspective> perspective;  // none: as the model was trained
-  std::vector<float> mesh_depths;          // for TileLists
+  std::vector<float> mesh_depths;          // the member of TileLists
 };
 
-/// The picture of a model in a view. Ignores the view's members for frames (from tiles_x on).
+/// Returns the picture of a model in a view. Ignores the members of the view that only frames use (from
+/// tiles_x on).
 Picture render(const Model& model, const shared::View& view, const Settings& settings = {});
 
 }  // namespace binosplat::reference

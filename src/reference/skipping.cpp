@@ -12,12 +12,12 @@ namespace binosplat::reference {
 
 namespace {
 
-// Scores are binned by their logarithm: 70 bins an octave (1 %), down to 2^-40.
+// Scores are binned by their logarithm, down to 2^-40. 70 bins per octave are 1 % wide.
 constexpr int bins_an_octave = 70, octaves = 40, bins = bins_an_octave * octaves;
 using Histogram = std::array<std::uint64_t, bins>;
 
 int bin_of(double score) {
-  // Equal scores may differ by rounding, so common values such as powers of two must not lie at a bin's edge.
+  // Shifts the edges of bins away from powers of two: such scores are common, and differ by rounding.
   const double octave = std::log2(std::max(score, 1e-300)) + octaves - 0.25 / bins_an_octave;
   return std::clamp(static_cast<int>(octave * bins_an_octave), 0, bins - 1);
 }
@@ -25,11 +25,11 @@ int bin_of(double score) {
 struct Fragment {
   std::uint32_t gaussian;
   double alpha;
-  double score;  // alpha times the assumed transmittance
-  int bin;       // of the score
+  double score;  // alpha times the transmittance that BlendInput assumes
+  int bin;       // bin_of(score)
 };
 
-/// A view's splats by tile, and the assumed transmittance of each Gaussian; empty: the true one.
+/// A view's splats and lists of tiles, and the transmittance to assume for each Gaussian (empty: its true T).
 struct BlendInput {
   const std::vector<Splat>& splats;
   const TileLists& lists;
@@ -37,7 +37,8 @@ struct BlendInput {
   std::span<const double> transmittances;
 };
 
-/// Calls visit(pixel, its fragments front to back) for every pixel of tiles [begin, end).
+/// Calls visit(pixel, fragments) for every pixel of the tiles [begin, end). The fragments of the pixel are
+/// front to back.
 template <typename Visit>
 void for_each_pixel(const BlendInput& input, std::size_t begin, std::size_t end, const Visit& visit) {
   const auto& [splats, lists, view, transmittances] = input;
@@ -65,7 +66,7 @@ void for_each_pixel(const BlendInput& input, std::size_t begin, std::size_t end,
   }
 }
 
-// Distance bins: below 1 px, then two an octave.
+// Distance bins: one below 1 px, then two per octave.
 constexpr std::size_t distance_bins = 23;
 
 std::size_t distance_bin(double px) {
@@ -90,7 +91,7 @@ std::vector<DistanceBin> contributions_by_distance(const std::vector<Splat>& spl
     sums[b].from = b == 0 ? 0.0 : std::exp2(octave - 0.5);
     sums[b].to = std::exp2(octave);
   }
-  constexpr double unit = 0x1p-28;  // sums of its multiples do not depend on order
+  constexpr double unit = 0x1p-28;  // sums of multiples of this do not depend on their order
   std::mutex adding;
   parallel_chunks(lists.begin.size() - 1, 1, [&](std::size_t begin, std::size_t end) {
     std::vector<DistanceBin> found(distance_bins);
@@ -116,7 +117,7 @@ std::vector<Skipped> skip_lowest(const std::vector<Splat>& splats, const TileLis
                                  std::span<const double> shares) {
   const BlendInput input{splats, lists, view, bounds};
   const std::size_t tiles = lists.begin.size() - 1;
-  std::array<std::uint64_t, bins + 1> below{};  // fragments in lower bins
+  std::array<std::uint64_t, bins + 1> below{};  // the number of fragments in lower bins
   std::mutex adding;
   parallel_chunks(tiles, 1, [&](std::size_t begin, std::size_t end) {
     Histogram counts{};

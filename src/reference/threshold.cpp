@@ -10,7 +10,7 @@ namespace binosplat::reference {
 
 namespace {
 
-/// Upper limit of a pair's area in px: a tile of 16 x 16, for every tile size.
+/// The upper limit of a pair's area in px, for every tile size: a tile of 16 x 16 px.
 constexpr double largest_area = 256.0;
 
 }  // namespace
@@ -23,7 +23,7 @@ double threshold(int th, double tolerance, const Splat& splat, double bound) {
       return ALPHA_MIN;
     case TH_PERIPHERAL:  // AdaGScale, equation 10: `tolerance` is K, in alpha * px^2
       return tolerance / (bound * 2.0 * std::numbers::pi * sqrt_det) + ALPHA_MIN;
-    case TH_SQUARED:  // drops pairs of a loss below kappa, `tolerance`, in px * squared colour
+    case TH_SQUARED:  // drops pairs that cost less than kappa = `tolerance`, px * squared colour
       return std::max(ALPHA_MIN,
                       std::sqrt(tolerance / std::min(largest_area, std::numbers::pi * sqrt_det)) / bound);
   }

@@ -1,7 +1,7 @@
 #pragma once
-// Th: a Gaussian with a smaller alpha is not paired with a tile (docs/method.md 5). With the squared rule the
-// blend also skips it in blocks where alpha is below Th (approximate.h). Otherwise the blend uses tau and the
-// true alpha.
+// Th: a Gaussian is paired with the tiles in which its alpha reaches Th (docs/method.md 5). With the rule
+// `squared`, the blend also skips it in blocks in which alpha is below Th (approximate.h). Apart from this,
+// the blend uses tau and the true alpha.
 
 #include <span>
 #include <vector>
@@ -11,13 +11,13 @@
 
 namespace binosplat::reference {
 
-/// Th of a splat by a rule of shared/axes.h, at least tau. threshold.cpp gives each rule's equation and the
-/// unit of `tolerance`. `bound` is T_upper: 1, or a measured transmittance (transmittance.h) with a floor.
-/// Throws Error if it is not above 0, which would cause holes.
+/// Returns Th of a splat by a rule `th` of shared/axes.h; at least tau. threshold.cpp has each rule's
+/// equation and the unit of `tolerance`. `bound` is T_upper: 1, or a measured transmittance (transmittance.h)
+/// with a lower limit. Throws Error unless `bound` is above 0: 0 would drop visible Gaussians.
 double threshold(int th, double tolerance, const Splat& splat, double bound);
 
-/// Sets Th of every splat. Unless the rule is TH_TAU, splats with Th > sigma are no longer drawn, whatever
-/// the tile test. `bounds` has an element per Gaussian; empty: 1 for all.
+/// Sets Th of every splat. `bounds` has T_upper of each Gaussian; empty: 1 for all. With rules other than
+/// TH_TAU, clears `drawn` of splats with Th > sigma, whatever the tile test.
 void set_thresholds(std::vector<Splat>& splats, int th, double tolerance,
                     std::span<const double> bounds = {});
 

@@ -11,7 +11,7 @@ namespace binosplat::reference {
 
 namespace {
 
-/// Columns x0 to x1 - 1 and rows y0 to y1 - 1 of tiles; empty if x1 <= x0 or y1 <= y0.
+/// The tiles in columns [x0, x1) and rows [y0, y1). Empty if x1 <= x0 or y1 <= y0.
 struct TileRange {
   int x0, y0, x1, y1;
 };
@@ -20,11 +20,12 @@ int tiles_along(shared::uint pixels, int tile_size) {
   return (static_cast<int>(pixels) + tile_size - 1) / tile_size;
 }
 
-/// A tile number truncated towards 0, as by C's cast to int, and clamped to 0..count.
+/// Truncates a tile's number towards 0, as C's cast to int does, and clamps it to [0, count].
 int clamped_tile(double tile, int count) { return static_cast<int>(std::clamp(tile, 0.0, double(count))); }
 
-/// The tiles of 3D-GS's 3-sigma square, with its roundings. The smaller eigenvalue has a floor, and the
-/// radius is a whole number of pixels. A mean left of or above the picture truncates towards 0.
+/// The tiles of 3D-GS's 3-sigma square, with the roundings of 3D-GS. The difference of the eigenvalues has a
+/// lower limit, and the radius in px is rounded up to an integer. A tile number left of or above the picture
+/// is truncated towards 0.
 TileRange aabb_tiles(const Splat& splat, int tile_size, int tiles_x, int tiles_y) {
   const double half_trace = 0.5 * (splat.covariance.x + splat.covariance.z);
   const double lambda1 = half_trace + std::sqrt(std::max(0.1, half_trace * half_trace - splat.det));
@@ -35,11 +36,11 @@ TileRange aabb_tiles(const Splat& splat, int tile_size, int tiles_x, int tiles_y
           clamped_tile(high.y, tiles_y)};
 }
 
-/// rho: alpha is at least Th where q is at most rho. Negative if sigma is below Th.
+/// rho: alpha is at least Th in pixels with q <= rho. Negative if sigma is below Th.
 double reach(const Splat& splat) { return 2.0 * std::log(splat.opacity / splat.threshold); }
 
-/// A box of three standard deviations along the ellipse's axes: unit vector of the longer axis, and half
-/// lengths along and across it (GSCore; eigenvalues without the floor of 3D-GS).
+/// The box of three standard deviations along the ellipse's axes (GSCore). Has the unit vector of the longer
+/// axis, and half the lengths along and across it. Unlike 3D-GS, it uses the exact eigenvalues.
 struct OrientedBox {
   glm::dvec2 axis;
   double along, across;
@@ -50,27 +51,28 @@ OrientedBox oriented_box(const Splat& splat) {
   const double half_difference = 0.5 * (c.x - c.z);
   const double spread = std::hypot(half_difference, c.y);
   const double lambda1 = 0.5 * (c.x + c.z) + spread, lambda2 = splat.det / lambda1;
-  // The angle of the longer axis is half that of (half_difference, xy); arbitrary for a circle.
+  // The angle of the longer axis is half the angle of the vector (half_difference, c.y); arbitrary for a
+  // circle.
   const double angle = 0.5 * std::atan2(c.y, half_difference);
   return {{std::cos(angle), std::sin(angle)}, 3.0 * std::sqrt(lambda1), 3.0 * std::sqrt(lambda2)};
 }
 
-/// Half the width and height of the oriented box.
+/// Half the width and height of the upright box around the oriented box.
 glm::dvec2 oriented_half_extents(const Splat& splat) {
   const OrientedBox box = oriented_box(splat);
   return glm::abs(box.axis) * box.along + glm::abs(glm::dvec2(box.axis.y, box.axis.x)) * box.across;
 }
 
-/// Half the width and height of the ellipse q = rho. They use C2, but the blend uses Q, and the two differ by
-/// the rounding of det: the box has a margin for it.
+/// Half the width and height of the ellipse q = rho. Computed from C2, whereas the blend uses Q. The margin
+/// covers the rounding of det, by which the two differ.
 glm::dvec2 snug_half_extents(const Splat& splat) {
   const glm::dvec3& c = splat.covariance;
   const double rho = reach(splat) * (1.0 + 1e-14 * c.x * c.z / splat.det) + 1e-14;
   return {std::sqrt(rho * c.x), std::sqrt(rho * c.z)};
 }
 
-/// The tiles with a pixel centre in the upright box of these half extents around the mean. A box between
-/// neighbouring columns or rows of centres has none: no alpha in it reaches Th.
+/// The tiles with a pixel centre in the upright box of half sizes `half` around the mean. A box that lies
+/// between neighbouring columns or rows of pixel centres has no tiles, because no pixel's alpha reaches Th.
 TileRange tiles_with_centres(const glm::dvec2& mean, const glm::dvec2& half, int tile_size,
                              const shared::View& view) {
   const glm::dvec2 first = glm::max(glm::ceil(mean - half), 0.0);
@@ -80,9 +82,8 @@ TileRange tiles_with_centres(const glm::dvec2& mean, const glm::dvec2& half, int
   return {low.x, low.y, high.x + 1, high.y + 1};
 }
 
-/// Whether the oriented box intersects a rectangle of pixel centres, given relative to the mean. Tests
-/// separating axes: the two of the picture, with the box's half extents, and the two of the box, with the
-/// rectangle's projected sides.
+/// Whether the oriented box intersects the rectangle [low, high] of pixel centres, relative to the mean.
+/// Tests four separating axes: the picture's two axes and the box's two axes.
 bool oriented_box_meets(const Splat& splat, const glm::dvec2& low, const glm::dvec2& high) {
   const glm::dvec2 upright = oriented_half_extents(splat);
   if (low.x > upright.x || high.x < -upright.x || low.y > upright.y || high.y < -upright.y) return false;
@@ -94,14 +95,13 @@ bool oriented_box_meets(const Splat& splat, const glm::dvec2& low, const glm::dv
   return !apart(box.axis, box.along) && !apart({-box.axis.y, box.axis.x}, box.across);
 }
 
-/// Whether the smallest q over a rectangle of pixel centres, given relative to the mean, is at most rho. If
-/// the mean lies outside, the smallest q lies on a side that faces the mean: left or right, above or below,
-/// or either.
+/// Whether the smallest q over the rectangle [low, high] of pixel centres, relative to the mean, is at most
+/// rho. If the mean lies outside, the smallest q lies on a side that faces the mean. One or two sides do.
 bool ellipse_meets(const Splat& splat, const glm::dvec2& low, const glm::dvec2& high) {
   const glm::dvec3& c = splat.conic;
   const double rho = reach(splat);
   const glm::dvec2 nearest =
-      glm::clamp(glm::dvec2(0.0), low, high);  // 0 in an axis whose side does not face the mean
+      glm::clamp(glm::dvec2(0.0), low, high);  // x is 0 if low.x <= 0 <= high.x; y likewise
   const auto within_reach = [&](double dx, double dy) {
     const double xx = c.x * dx * dx, xy = 2 * c.y * dx * dy, yy = c.z * dy * dy;
     // The margin prevents that rounding drops a tile in which the blend, with other rounding, reaches Th.
@@ -112,16 +112,17 @@ bool ellipse_meets(const Splat& splat, const glm::dvec2& low, const glm::dvec2& 
          within_reach(std::clamp(-c.y * nearest.y / c.x, low.x, high.x), nearest.y);
 }
 
-/// The level of aabb and obb: three standard deviations.
+/// The level of TILES_AABB and TILES_OBB: q at three standard deviations.
 constexpr double three_sigma = 9.0;
 
 double level_of(const Splat& splat, int tiles) {
   return tiles == TILES_AABB || tiles == TILES_OBB ? three_sigma : reach(splat);
 }
 
-/// A splat whose ellipse at `level` is the section of a narrow cone with the picture.
+/// For a narrow cone: returns a splat whose ellipse q = level is the curve in which the cone q = level meets
+/// the picture.
 Splat section_of(const Splat& splat, double level) {
-  const glm::dmat3 g = splat.cone->form - level * splat.cone->ray;  // below 0 inside
+  const glm::dmat3 g = splat.cone->form - level * splat.cone->ray;  // p^T g p < 0 inside the cone q = level
   const glm::dmat2 inverse = glm::inverse(glm::dmat2(g));
   const glm::dvec2 linear(g[2][0], g[2][1]);
   Splat section = splat;
@@ -132,13 +133,13 @@ Splat section_of(const Splat& splat, double level) {
   section.det = glm::determinant(inverse) * scale * scale;
   section.conic = glm::dvec3(c[1][1], -c[0][1], c[0][0]) / section.det;
   section.cone.reset();
-  // Exclude the other half of the double cone, which is behind the eye.
+  // Excludes the half of the double cone that is behind the eye.
   section.drawn = scale > 0.0 && glm::dot(splat.cone->facing, glm::dvec3(section.mean, 1)) > 0.0;
   return section;
 }
 
-/// Whether the smallest q on a segment of the picture is at most `level`. q is a ratio of quadratic
-/// polynomials on it; the zeros of its derivative are those of a third one.
+/// Whether the smallest q on the segment from `from` to `to` is at most `level`. Along the segment, q is a
+/// ratio of two quadratic polynomials. Its derivative is zero at the zeros of a third quadratic polynomial.
 bool cone_meets(const Splat& splat, const glm::dvec2& from, const glm::dvec2& to, double level) {
   const glm::dvec3 a(from, 1), b(to - from, 0);
   const glm::dmat3 &form = splat.cone->form, &ray = splat.cone->ray;
@@ -154,8 +155,8 @@ bool cone_meets(const Splat& splat, const glm::dvec2& from, const glm::dvec2& to
   return false;
 }
 
-/// Whether the smallest q over a rectangle of pixel centres is at most `level`. It lies at the mean or on a
-/// side.
+/// Whether the smallest q over the rectangle [low, high] of pixel centres is at most `level`. The smallest q
+/// lies at the mean or on a side.
 bool cone_meets_rectangle(const Splat& splat, const glm::dvec2& low, const glm::dvec2& high, double level) {
   if (!splat.cone->is_behind && glm::all(glm::lessThanEqual(low, splat.mean)) &&
       glm::all(glm::lessThanEqual(splat.mean, high)))
@@ -165,11 +166,13 @@ bool cone_meets_rectangle(const Splat& splat, const glm::dvec2& low, const glm::
          cone_meets(splat, high, left, level) || cone_meets(splat, left, low, level);
 }
 
-/// The range of columns in which a wide splat is visible in rows from `low` to `high`, in pixel coordinates,
-/// slightly too large (docs/method.md 4). The first exceeds the second if it is invisible.
+/// The range of x, slightly too large, in which a wide splat is visible in the rows from y = `low` to `high`,
+/// in pixel coordinates (docs/method.md 4). If the splat is invisible, the begin of the range exceeds its
+/// end.
 glm::dvec2 wide_across(const Splat& splat, double low, double high, const shared::View& view) {
   const Cone& cone = *splat.cone;
-  // q |d|^2 is the sum of two squares of linear functions of the pixel; the second does not depend on x.
+  // q |d|^2 is the sum of the squares of two linear functions of the pixel. The second function does not
+  // depend on x.
   const glm::dvec3 first = cone.form[0] / std::sqrt(cone.form[0][0]);
   const double down = std::sqrt(std::max(0.0, cone.form[1][1] - first.y * first.y));
   const double level = 2.0 * std::log(splat.opacity / ALPHA_MIN);
@@ -197,7 +200,7 @@ glm::dvec2 wide_across(const Splat& splat, double low, double high, const shared
   return cone.facing.x == 0.0 && ahead <= 0.0 ? glm::dvec2(1.0, 0.0) : seen;
 }
 
-/// The candidate tiles for shape_meets().
+/// The tiles on which shape_meets() then decides.
 TileRange candidate_tiles(const Splat& splat, int tiles, int tile_size, const shared::View& view) {
   if (splat.cone && splat.drawn && tiles != TILES_ALL) {
     if (tiles != TILES_AABB && !(splat.opacity >= splat.threshold)) return {0, 0, 0, 0};
@@ -210,7 +213,7 @@ TileRange candidate_tiles(const Splat& splat, int tiles, int tile_size, const sh
   switch (tiles) {
     case TILES_AABB:
       return aabb_tiles(splat, tile_size, tiles_x, tiles_y);
-    case TILES_OBB:  // one pixel larger: it may touch a rectangle between its pixel centres
+    case TILES_OBB:  // one pixel larger: the box may touch a tile's rectangle between pixel centres
       if (!(splat.opacity >= splat.threshold)) return {0, 0, 0, 0};
       return tiles_with_centres(splat.mean, oriented_half_extents(splat) + 1.0, tile_size, view);
     case TILES_SNUG:
@@ -223,7 +226,7 @@ TileRange candidate_tiles(const Splat& splat, int tiles, int tile_size, const sh
   fail("tile test {}: expected one of shared/axes.h", tiles);
 }
 
-/// Whether the shape of `tiles` intersects tile (tx, ty), one of the candidates.
+/// Whether the shape of the tile test `tiles` intersects tile (tx, ty), one of candidate_tiles().
 bool shape_meets(const Splat& splat, int tiles, int tile_size, int tx, int ty, const shared::View& view) {
   const glm::dvec2 first(tx * tile_size, ty * tile_size);
   const glm::dvec2 last = glm::min(first + double(tile_size), glm::dvec2(view.width, view.height)) - 1.0;
@@ -238,7 +241,7 @@ bool shape_meets(const Splat& splat, int tiles, int tile_size, int tx, int ty, c
   const glm::dvec2 low = first - splat.mean, high = last - splat.mean;
   if (tiles == TILES_OBB) return oriented_box_meets(splat, low, high);
   if (tiles == TILES_ELLIPSE) return ellipse_meets(splat, low, high);
-  return true;  // the candidates of the others are the splat's tiles
+  return true;  // with other tile tests a splat touches all candidates
 }
 
 /// Calls visit(tile number) for every tile of the splat.
@@ -304,7 +307,8 @@ TileLists make_lists(const std::vector<Splat>& splats, const std::vector<std::ui
   lists.tiles_x = static_cast<std::uint32_t>(tiles_along(view.width, tile_size));
   lists.tiles_y = static_cast<std::uint32_t>(tiles_along(view.height, tile_size));
 
-  // Counts each tile's entries, sums the counts to each list's begin, then fills the lists in depth order.
+  // Counts each tile's splats, computes the begins of the lists from the counts, then fills the lists in sort
+  // order.
   lists.begin.assign(std::size_t{lists.tiles_x} * lists.tiles_y + 1, 0);
   for (const std::uint32_t i : order) {
     for_each_tile(splats[i], tiles, tile_size, view, [&](std::size_t tile) { ++lists.begin[tile + 1]; });

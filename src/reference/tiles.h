@@ -12,24 +12,24 @@
 
 namespace binosplat::reference {
 
-/// Whether the cone's outline may differ from an ellipse at any visible level (docs/method.md 4).
+/// Whether the splat is wide: its level lines may not be ellipses at all visible levels (docs/method.md 2.2).
 bool is_wide(const Cone& cone);
 
 /// q of a splat at a point of the picture (docs/method.md 2 and 3); infinite if the ray points away.
 double squared_distance(const Splat& splat, const glm::dvec2& at);
 
-/// Indices of drawn splats, nearest first; equal depths by index.
+/// Indices of the drawn splats, front to back. The index breaks ties.
 std::vector<std::uint32_t> depth_order(const std::vector<Splat>& splats);
 
-/// For each tile, in rows from the top, the Gaussians that it blends, nearest first.
+/// The Gaussians that each tile blends, front to back. Tiles are in rows from the top.
 struct TileLists {
   std::uint32_t tiles_x = 0;
   std::uint32_t tiles_y = 0;
   std::uint32_t tile_size = 0;           // px
-  std::vector<std::uint32_t> begin;      // tiles + 1: tile t owns gaussians from begin[t] to begin[t + 1] - 1
+  std::vector<std::uint32_t> begin;      // tiles + 1 elements: tile t has gaussians [begin[t], begin[t + 1])
   std::vector<std::uint32_t> gaussians;  // indices into the model
-  Approximation approximation;           // applied when blending
-  /// The view z of a mesh in each pixel, in rows; splats beyond it are hidden. Empty: no mesh.
+  Approximation approximation;           // with which blend() blends the lists
+  /// The view z of a mesh in each pixel, row by row. Splats beyond it are not drawn. Empty: no mesh.
   std::vector<float> mesh_depths = {};
 
   std::size_t pairs() const { return gaussians.size(); }
@@ -38,22 +38,22 @@ struct TileLists {
   std::span<const std::uint32_t> at_pixel(int x, int y) const;
 };
 
-/// Whether a splat belongs to tile (tx, ty) of the view; false if it is not drawn. `tiles` is a tile test of
-/// shared/axes.h. R is the tile's rectangle of pixel centres, clipped to the picture. rho = 2 ln(sigma / Th),
-/// with the splat's own Th:
-/// - TILES_AABB: exactly as 3D-GS, independent of sigma and Th.
-/// - TILES_OBB: the box of three standard deviations along the ellipse's axes intersects R (GSCore); sigma >=
-///   Th.
+/// Whether a splat is paired with tile (tx, ty) of the view by the tile test `tiles` of shared/axes.h; false
+/// if the splat is not drawn. R is the rectangle of the tile's pixel centres, clipped to the picture, and rho
+/// = 2 ln(sigma / Th):
+/// - TILES_AABB: as in 3D-GS, independent of sigma and Th.
+/// - TILES_OBB: sigma >= Th, and the box of three standard deviations along the ellipse's axes intersects R
+///   (GSCore).
 /// - TILES_SNUG: the upright box around q <= rho contains a pixel centre of R (Speedy-Splat).
 /// - TILES_ELLIPSE: as TILES_SNUG, and the smallest q over R is at most rho.
 /// - TILES_ALL: always.
 bool touches(const Splat& splat, int tiles, int tile_size, int tx, int ty, const shared::View& view);
 
-/// Whether it belongs to any tile of the view.
+/// Whether a splat is paired with any tile of the view.
 bool touches_any(const Splat& splat, int tiles, int tile_size, const shared::View& view);
 
-/// The lists of all tiles of a view. `order` comes from depth_order(). Skips splats that are no longer
-/// `drawn`.
+/// Returns the lists of all tiles of a view. `order` is the result of depth_order(). Skips splats whose
+/// `drawn` has been cleared since.
 TileLists make_lists(const std::vector<Splat>& splats, const std::vector<std::uint32_t>& order,
                      const shared::View& view, int tiles, int tile_size = TILE_SIZE_DEFAULT);
 

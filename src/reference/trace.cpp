@@ -24,7 +24,8 @@ double largest_channel(const glm::dvec3& colour) {
   return std::max({std::abs(colour.r), std::abs(colour.g), std::abs(colour.b)});
 }
 
-/// Keeps the better explanation: within the band the larger change, else the closer decision.
+/// Replaces `best` by this decision if it is the better explanation: within the band the larger change,
+/// otherwise the closer decision.
 void consider(NearDecision& best, double distance, const glm::dvec3& change, std::uint32_t gaussian,
               double band) {
   const NearDecision candidate{distance, largest_channel(change), gaussian};
@@ -33,8 +34,8 @@ void consider(NearDecision& best, double distance, const glm::dvec3& change, std
   if (better) best = candidate;
 }
 
-/// The change if Gaussian `visit` fell on the other side of tau: alpha T (c - C_behind). C_behind is the
-/// colour of all splats behind it, at full transmittance (docs/method.md 5).
+/// The change of the pixel if this Gaussian's alpha fell on the other side of tau: alpha T (c - C_behind).
+/// C_behind is the colour behind the Gaussian as if T were 1 (docs/method.md 5).
 glm::dvec3 change_by_alpha(const Visit& visit, const glm::dvec3& colour, const glm::dvec3& final_colour) {
   const double t = visit.before.transmittance;
   const glm::dvec3 own = visit.alpha * t * colour;
@@ -43,8 +44,8 @@ glm::dvec3 change_by_alpha(const Visit& visit, const glm::dvec3& colour, const g
                                            : own - visit.alpha * (rest - own) / (1 - visit.alpha);
 }
 
-/// The change if two blended neighbours swapped. If the farther one stopped the pixel, the nearer one then
-/// does.
+/// The change of the pixel if two neighbours swapped. If the farther one stopped the pixel, the nearer one
+/// would stop it after the swap.
 glm::dvec3 change_by_swap(const Visit& nearer, const glm::dvec3& nearer_colour, const Visit& farther,
                           const glm::dvec3& farther_colour) {
   const double t = nearer.before.transmittance;
@@ -53,8 +54,9 @@ glm::dvec3 change_by_swap(const Visit& nearer, const glm::dvec3& nearer_colour, 
   return t * nearer.alpha * farther.alpha * (nearer_colour - farther_colour);
 }
 
-/// The splat that stopped the pixel may have a near neighbour behind it. If that came first, it would be
-/// blended before the pixel stops. Considers the first visible one.
+/// Behind the splat that stopped the pixel there may be another splat of nearly the same depth. If the two
+/// swapped, the other splat would be blended before the pixel stops. Considers the first visible splat
+/// behind.
 void consider_behind(NearDecision& best, const std::vector<Splat>& splats,
                      std::span<const std::uint32_t> list, const Visit& last, int x, int y) {
   const double limit = splats[last.gaussian].depth;

@@ -1,6 +1,7 @@
 #pragma once
-// Explains why a pixel differs: finds the decisions of the blend that rounding could change, and their
-// effects. Two correct blends of different precision differ visibly only where such a decision differs.
+// Explains why a pixel differs between two renderers: finds the decisions of the blend that rounding could
+// change, and their effects. Correct blends of different precision differ visibly only if they decide
+// differently.
 
 #include <cstdint>
 #include <limits>
@@ -14,23 +15,24 @@ namespace binosplat::reference {
 
 /// A decision of the blend that rounding could change, and its effect on the pixel.
 struct NearDecision {
-  double distance = std::numeric_limits<double>::infinity();  // relative; infinity: no such decision
-  double change = 0.0;         // largest change of a colour channel, over black
-  std::uint32_t gaussian = 0;  // the one concerned; of two neighbours the farther one
+  double distance = std::numeric_limits<double>::infinity();  // relative; infinity: no decision
+  double change = 0.0;         // the largest change of a colour channel over black, if decided differently
+  std::uint32_t gaussian = 0;  // the Gaussian decided about; of two neighbours the farther one
 };
 
-/// The closest decisions of a pixel. For each kind: the one with the largest change among those within the
-/// band that fp32 may cross, or else the closest one.
+/// A pixel's most important decision of each kind. Among decisions within the band (below) in which fp32 may
+/// decide differently, this is the decision with the largest change. If no decision lies in the band, it is
+/// the closest decision.
 struct PixelTrace {
-  NearDecision alpha;         // an alpha against tau
-  NearDecision stop;          // T (1 - alpha) against TRANSMITTANCE_MIN
-  NearDecision depth;         // relative gap of depth between two visible neighbours
+  NearDecision alpha;         // whether an alpha reaches tau
+  NearDecision stop;          // whether T (1 - alpha) reaches TRANSMITTANCE_MIN
+  NearDecision depth;         // which of two visible neighbours is in front: the relative gap of their depths
   std::uint64_t walked = 0;   // entries of the list until the pixel ended
   std::uint64_t visible = 0;  // blended entries
 
-  /// The largest change among the decisions within their bands; 0 if there are none.
+  /// The largest change among the decisions that lie within their bands; 0 without such decisions.
   double largest_change() const;
-  /// One line: the likeliest cause of a difference, and its largest effect.
+  /// Returns the likeliest cause of a difference and its largest effect, in one line.
   std::string explain() const;
 };
 

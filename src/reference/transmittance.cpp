@@ -9,9 +9,9 @@ namespace binosplat::reference {
 
 namespace {
 
-/// Measures each pair within its tile, and then joins the pairs of each Gaussian, so that threads do not
-/// matter. `measure(of_pair, alpha, transmittance)` updates a pair's value. `join(of_gaussian, of_pair)`
-/// updates a Gaussian's value, from `start` on.
+/// Measures each splat-tile pair, and then joins the pairs of each Gaussian in order, so that the result does
+/// not depend on threads. `measure(of_pair, alpha, transmittance)` updates a pair's value, which begins at 0.
+/// `join(of_gaussian, of_pair)` updates a Gaussian's value, which begins at `start`.
 template <typename Measure, typename Join>
 std::vector<double> measure_pairs(const std::vector<Splat>& splats, const TileLists& lists,
                                   const shared::View& view, double start, const Measure& measure,

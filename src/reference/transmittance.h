@@ -1,5 +1,6 @@
 #pragma once
-// Measures each Gaussian's visibility in a view, which Th may use in the next frame (docs/method.md 5).
+// Measures each Gaussian in a view: max(T), which Th may use in the next frame (docs/method.md 5), weight,
+// and visibility.
 
 #include <vector>
 
@@ -8,25 +9,25 @@
 
 namespace binosplat::reference {
 
-/// Value of a Gaussian in no tile's list: outside the view, or dropped by Th.
+/// The max(T) of a Gaussian that is in no tile's list: it is outside the view, or Th dropped it.
 constexpr double not_seen = -1.0;
 
-/// For each Gaussian, max(T): the largest T in front of it over the pixels that blend it. 0 if no pixel
-/// blends it, because all ended earlier or its alpha is below tau; not_seen if no tile lists it. The result
-/// does not depend on the number of threads.
+/// Returns max(T) of each Gaussian: the largest T in front of it over the pixels that blend it. It is
+/// not_seen if no tile lists the Gaussian. It is 0 if no pixel blends it, because all pixels ended before or
+/// alpha is below tau. The result does not depend on the number of threads.
 std::vector<double> measure_transmittance(const std::vector<Splat>& splats, const TileLists& lists,
                                           const shared::View& view);
 
-/// For each Gaussian, the blending weight alpha * T, summed over the pixels that blend it.
+/// Returns the blending weight of each Gaussian: alpha T, summed over the pixels that blend it.
 std::vector<double> measure_weights(const std::vector<Splat>& splats, const TileLists& lists,
                                     const shared::View& view);
 
-/// For each Gaussian, alpha T^2, summed over the pixels that blend it at a T of at least VISIBILITY_LEAST:
-/// the visibility of its errors.
+/// Returns the visibility of each Gaussian: alpha T^2, summed over the pixels that blend it with a T of at
+/// least VISIBILITY_LEAST. It weights the errors of the Gaussian.
 std::vector<double> measure_visibility(const std::vector<Splat>& splats, const TileLists& lists,
                                        const shared::View& view);
 
-/// Converts a measurement for set_thresholds(): at least `floor`, and 1 for Gaussians that were not seen.
+/// Converts max(T) to the bounds of set_thresholds(): at least `floor`, and 1 for not_seen.
 std::vector<double> floored(std::vector<double> measured, double floor);
 
 }  // namespace binosplat::reference

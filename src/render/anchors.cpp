@@ -16,7 +16,7 @@ std::vector<const Network*> networks_of(const Scaffold& scaffold) {
   return networks;
 }
 
-// Features among a network's inputs; view direction and distance come on top.
+// The number of features among a network's inputs. View direction and distance follow the features.
 std::size_t features_in(const Scaffold& scaffold, std::size_t network) {
   return network < 3 ? scaffold.feature_count : 0;
 }
@@ -38,12 +38,13 @@ std::vector<shared::Anchor> pack_anchors(const Scaffold& s, std::size_t first, s
   return packed;
 }
 
-// Strides of the features' resolutions: full; with a feature bank a quarter, half, full.
+// The strides through a feature, one per resolution: full; with a feature bank a quarter, half and full.
 std::vector<std::size_t> strides_of(const Scaffold& scaffold) {
   return scaffold.bank ? std::vector<std::size_t>{4, 2, 1} : std::vector<std::size_t>{1};
 }
 
-// The contribution of anchor n's feature to one hidden unit. Summed in float64, so that it is rounded once.
+// The contribution of anchor n's feature to one hidden unit. The sum is in float64, so that it is rounded
+// only once.
 double from_feature(const Scaffold& scaffold, std::size_t n, std::size_t stride, const Network& network,
                     std::size_t unit) {
   const std::size_t features = scaffold.feature_count;

@@ -15,15 +15,15 @@ struct AnchorBuffers {
 
   std::uint32_t count = 0;
   gl::Buffer anchors;    // Anchor
-  gl::Buffer offsets;    // float (anchor, K, 3)
-  gl::Buffer view_free;  // vec4 (resolution, network, quad, anchor), see networks.glsl
+  gl::Buffer offsets;    // float by (anchor, k below K, axis)
+  gl::Buffer view_free;  // vec4 by (resolution, network, quad, anchor): networks.glsl
 };
 
-/// The networks; without weights for other models.
+/// The networks of a Scaffold-GS model; empty for other models.
 struct NetworkBuffers {
   explicit NetworkBuffers(gl::Context& context) : weights(context, "networks") {}
 
-  /// Uploads, with the chosen appearance in the colours' bias.
+  /// Uploads the networks. The colour network's bias includes the chosen appearance.
   void upload(const Scaffold& scaffold);
 
   gl::Buffer weights;        // vec4, see networks.glsl
@@ -32,7 +32,7 @@ struct NetworkBuffers {
   bool bank = false;         // whether the model has a feature bank
 };
 
-/// Bytes of the anchors and networks on the GPU.
+/// Returns the bytes of the anchors on the GPU, including offsets and view_free.
 std::int64_t anchor_bytes(const Scaffold& scaffold);
 
 }  // namespace binosplat::render

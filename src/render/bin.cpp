@@ -9,10 +9,10 @@ namespace binosplat::render {
 
 namespace {
 
-// Counts or writes the entries of all splats in few supertiles.
+// Counts the entries of all splats in few supertiles, or writes them if `fills`.
 void bin_small(gl::Dispatcher& dispatcher, const FramePlan& plan, bool fills, FrameBuffers& buffers) {
   gl::Context& context = dispatcher.context();
-  // Each pass covers as many supertiles of a view as fit in shared memory.
+  // Each dispatch covers as many supertiles of a view as have room for their counters in shared memory.
   const auto at_a_time = static_cast<std::uint32_t>(
       std::min<std::int64_t>(context.limits().shared_bytes, std::int64_t{48} << 10) / 4 - 64);
   const std::array variant = {gl::Number{"FILLS", fills, 2}, gl::Number{"SUPERTILES", at_a_time, 1 << 14},

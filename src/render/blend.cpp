@@ -21,10 +21,10 @@ struct BlendTask {
   float scale = 0.0f;          // of the transposed blend
 };
 
-constexpr double large_tiles = 8.0;  // tiles per splat from which short lists use large_splats
+constexpr double large_tiles = 8.0;  // with more tiles per splat, short lists use large_splats
 
 // Measurements other than visibility, and TILES_ALL with its one list per view, use the general program. A
-// software renderer runs several invocations in one of its own, and its loads take the time.
+// software renderer runs several invocations as one, and spends its time on loads; it has a program for this.
 BlendProgram program_for(const gl::Context& context, const FramePlan& plan, const BlendVariant& v) {
   const bool is_plain = v.draws() ? v.measure == MEASURE_NONE : v.measure == MEASURE_VISIBILITY;
   if (!is_plain || plan.settings.tiles == TILES_ALL || v.tile_size != TILE_SIZE_DEFAULT)
@@ -33,16 +33,17 @@ BlendProgram program_for(const gl::Context& context, const FramePlan& plan, cons
   return context.software() ? BlendProgram::software : BlendProgram::general;
 }
 
-// Whether a tile may be 42 degrees wide. A splat fades at 69 degrees from its direction (docs/method.md 2.2).
-// So one ray of the tile may show a splat that lies behind another ray.
+// Whether a tile may be 42 degrees wide. A splat is visible up to 69 degrees from its direction
+// (docs/method.md 2.2). So such a tile may show a splat along one ray while the splat lies behind another
+// ray, over 90 degrees away.
 bool has_broad_tiles(const FramePlan& plan) {
   return std::ranges::any_of(plan.views, [&](const shared::View& view) {
     return std::min(view.lens.x, view.lens.y) < 2.0f * static_cast<float>(plan.settings.tile_size);
   });
 }
 
-// The exact blend does not depend on the tile test: equal lists give equal bits. A pixel's colour does not
-// depend on the tile size, either. In neither blend does it depend on the pixels per invocation.
+// In the exact blend a pixel's colour depends neither on the tile test nor on the tile size. In the exact and
+// in the approximate blend it is independent of the number of pixels per invocation.
 const gl::Program& program(gl::Context& context, const FramePlan& plan, const BlendTask& task,
                            bool long_lists, bool large_splats) {
   BlendVariant v{.tile_size = plan.settings.tile_size,
@@ -80,7 +81,7 @@ void run(gl::Dispatcher& dispatcher, const FramePlan& plan, FrameBuffers& buffer
   }
   for (std::size_t k = 0; k < plan.meshes.depths.size(); ++k)
     buffers.nearest.bind(static_cast<GLuint>(MAX_CANVASES + k), plan.meshes.depths[k].texture);
-  if (task.tiles_a_splat == 0.0) program(context, plan, task, false, true);  // a later frame may need it
+  if (task.tiles_a_splat == 0.0) program(context, plan, task, false, true);  // compiles it for a later frame
   const auto draw = [&](bool long_lists, const gl::DispatchSize& size) {
     dispatcher.start(program(context, plan, task, long_lists, task.tiles_a_splat > large_tiles), size,
                      {{"Frame", buffers.parameters},
@@ -103,7 +104,7 @@ void run(gl::Dispatcher& dispatcher, const FramePlan& plan, FrameBuffers& buffer
   draw(true, gl::DispatchSize::indirect(buffers.counters, offsetof(shared::Counters, long_x)));
   draw(false, gl::DispatchSize::of_groups(plan.tile_count()));
   dispatcher.wait_for_writes();
-  if (on_canvases) context.gl().MemoryBarrier(GL_ALL_BARRIER_BITS);  // for any use of the pictures
+  if (on_canvases) context.gl().MemoryBarrier(GL_ALL_BARRIER_BITS);  // before any use of the pictures
 }
 
 }  // namespace
@@ -118,7 +119,7 @@ void blend(gl::Dispatcher& dispatcher, const FramePlan& plan, bool measures, dou
 void blend_debug_view(gl::Dispatcher& dispatcher, const FramePlan& plan, int what, FrameBuffers& buffers) {
   buffers.pictures.debug_values.reserve(plan.pixel_count * 4);
   buffers.pictures.debug_transmittance.reserve(4);  // bound by all debug views, read by one
-  if (what == SHOW_TRANSMITTANCE) {                 // needs max(T), measured first
+  if (what == SHOW_TRANSMITTANCE) {                 // shows max(T), which is measured first
     buffers.pictures.debug_transmittance.reserve_zeros(std::int64_t{buffers.slots} * plan.view_count() * 4);
     run(dispatcher, plan, buffers, {.measure = MEASURE_TRANSMITTANCE, .debug_view = SHOW_VISIBLE},
         buffers.pictures.debug_transmittance);
@@ -151,7 +152,7 @@ void throw_if_truncated(const gl::Context& context, const shared::Counters& coun
   if (counters.truncated_lists == 0) return;
   throw Error(ExitCode::out_of_memory,
               fmt::format("{} ended a tile's list early: too many Gaussians in one tile for this driver. Use "
-                          "smaller tiles (`render --tile`) or a smaller model.",
+                          "smaller tiles (`render --tile-size`) or a smaller model.",
                           context.renderer()));
 }
 

@@ -94,7 +94,7 @@ void FrameBuffers::upload(const FramePlan& plan, bool uses_measured) {
   if (!of_instances.empty()) instance_views.upload(of_instances);
   if (!by_depth) return;
   for (float& bound : tables) bound = bound > 0.0f ? std::max(bound, static_cast<float>(BOUND_FLOOR)) : 1.0f;
-  if (tables.empty()) tables.push_back(1.0f);  // a buffer that is bound has some size
+  if (tables.empty()) tables.push_back(1.0f);  // a bound buffer must not be empty
   transmittance.depth_tables.upload(tables);
 }
 
@@ -127,7 +127,7 @@ void FrameBuffers::reserve(const FramePlan& plan, std::span<const std::shared_pt
   projected.coverages.reserve(splats * 4);
   projected.large.reserve(splats * 4);
   lists.large_offset = static_cast<std::uint32_t>(capacity.pairs);
-  // Splitting long lists needs a second place for each entry.
+  // Splitting long lists copies each entry to a second place.
   const std::int64_t behind =
       capacity.rounds > 0 ? std::max(capacity.large_pairs, capacity.pairs) : capacity.large_pairs;
   lists.entries.reserve((capacity.pairs + behind) * 8);

@@ -22,7 +22,7 @@ struct DrawnBuffers {
         indices(context, "indices of the Gaussians drawn") {}
 
   gl::Buffer arguments;  // DispatchArguments
-  gl::Buffer indices;    // Gaussian by slot
+  gl::Buffer indices;    // uint by slot: the index of a Gaussian
 };
 
 /// A Gaussian that a view draws, and its slot.
@@ -38,34 +38,34 @@ struct FrameBuffers {
   /// Uploads the frame's parameters, views and table by depth.
   void upload(const FramePlan& plan, bool uses_measured);
 
-  /// Allocates `capacity` for a frame of this plan. Call it before upload().
+  /// Allocates buffers of `capacity` for a frame of this plan. Call it before upload().
   void reserve(const FramePlan& plan, std::span<const std::shared_ptr<ModelBuffers>> models,
                const Capacity& capacity);
 
-  /// Call it once a frame is complete. If the frame measured, swaps `next_bounds` with `bounds` for the next
-  /// one.
+  /// Call it when a frame is complete. If the frame measured, its `next_bounds` become the `bounds` of the
+  /// next frame.
   void swap_bounds(bool measured_now);
 
   /// The Gaussians that the last frame drew in its view `v`, in index order.
   std::vector<DrawnGaussian> read_drawn(const FramePlan& plan, std::uint32_t v) const;
 
-  /// The views that project the models.
+  /// The views with which `project` projects the models.
   const gl::Buffer& views_of_instances(const FramePlan& plan) const {
     return plan.instances.empty() ? views : instance_views;
   }
 
-  std::uint32_t slots = 0;  // capacity: Gaussians of one order group
+  std::uint32_t slots = 0;  // capacity for Gaussians of one order group
 
   gl::Buffer parameters;      // FrameParameters
-  gl::Buffer views;           // View; the error sample's is the last
+  gl::Buffer views;           // View; the last is the error sample's
   gl::Buffer instance_views;  // View by (instance, view); used if the plan has instances
   gl::Buffer region_rows;     // uvec2 by row of tiles of a view; used if a view has a region
   gl::Buffer counters;        // Counters
 
   /// The upper bounds of transmittance: a table by depth, or measured values by (view, Gaussian). A frame
-  /// reads `bounds` and writes `next_bounds`. Empty if no frame measures.
+  /// reads `bounds` and writes `next_bounds`. If no frame measures, the buffers of measured values are empty.
   struct Transmittance {
-    gl::Buffer depth_tables;                          // float by bin: the settings', then instances'
+    gl::Buffer depth_tables;  // float by bin: the settings' table, then the instances'
     std::unique_ptr<gl::Buffer> bounds, next_bounds;  // float
     gl::Buffer measured;                              // uint by splat: the bits of the largest T as a float
   } transmittance;
@@ -94,21 +94,21 @@ struct FrameBuffers {
   struct Lists {
     std::uint32_t large_offset = 0;  // index of the first entry of large splats, after all others
     gl::Buffer entries;  // uvec2 (depth, entry) by supertile; then (supertile, entry) of large splats
-    gl::Buffer supertile_counts;  // uint; 0 between frames
-    gl::Buffer supertile_ends;    // uint: the place of each list's next entry
+    gl::Buffer supertile_counts;  // uint by supertile; 0 between frames
+    gl::Buffer supertile_ends;    // uint by supertile: the place of its list's next entry
     std::uint32_t item_room = 0;  // capacity for items of each kind
-    gl::Buffer items;             // uvec4 by kind: sort_items.glsl
-    gl::Buffer slab_tiles;        // uint by slab and tile of its list: sort_split.comp
+    gl::Buffer items;             // uvec4 by kind: lists to sort (sort_items.glsl)
+    gl::Buffer slab_tiles;        // uint by (slab, tile of its list): sort_split.comp
 
     // The lists that the blend reads:
-    gl::Buffer tile_ranges;  // begin and end by tile; with --tiles all, a view's list is at its first tile
-    gl::Buffer tile_values;  // splats
+    gl::Buffer tile_ranges;  // uvec2 by tile: begin, end in tile_values; TILES_ALL: at a view's first tile
+    gl::Buffer tile_values;  // uint: indices of splats
     gl::Buffer long_lists;   // tiles with more than LONG_LIST pairs
   } lists;
 
   /// The results of the blend.
   struct Pictures {
-    gl::Buffer canvases;      // Canvas by view, for pictures that go to canvases instead of the next two
+    gl::Buffer canvases;      // Canvas by view; a frame on canvases leaves colours unwritten
     gl::Buffer colours;       // vec4 by pixel: C, T
     gl::Buffer z_sums;        // float by pixel
     gl::Buffer mesh_sources;  // MeshSource by view

@@ -20,7 +20,7 @@ struct Canvas {
   bool linear = false;       // the image stores linear light instead of display values
 };
 
-/// The largest integer of the image's colour channels; 0 for floats.
+/// The largest integer value of a colour channel in this format; 0 for floating-point formats.
 constexpr std::uint32_t steps_of(GLenum format) {
   if (format == GL_RGBA8) return 255;
   if (format == GL_RGB10_A2) return 1023;

@@ -1,6 +1,6 @@
 #pragma once
-// How to draw a frame in tests, when locating a fault, and in other passes over the same lists. A correct
-// picture never depends on it.
+// Options for tests, for locating a fault, and for other passes over a frame's lists. A correct picture never
+// depends on them.
 
 #include <cstdint>
 #include <functional>
@@ -20,28 +20,28 @@ struct FrameBuffers;
 struct FramePlan;
 struct ModelBuffers;
 
-/// Replaces the stages up to `until`: fill() writes their results into the buffers. For Stage::blend it
-/// returns the pictures instead. measure/twins.h has that of the float64 reference.
+/// Replaces the stages up to `until`: fill() writes their results into the buffers. For Stage::blend, fill()
+/// returns the pictures instead. measure/twins.h has the stand-in by the float64 reference.
 struct StandIn {
   Stage until;
   std::function<std::vector<Picture>(const Model&, const FramePlan&, ModelBuffers&, FrameBuffers&)> fill;
 };
 
 struct DebugOptions {
-  /// Initial room in Gaussians in view and in pairs; 0: the frame chooses. A frame that needs more grows its
-  /// buffers and is drawn again.
+  /// Initial capacity for Gaussians in view and for pairs; 0: the frame chooses. A frame that needs more
+  /// grows its buffers and is drawn again.
   std::int64_t slots = 0;
   std::int64_t pairs = 0;
   std::optional<StandIn> stand_in;
   /// The lists also hold splats that are visible only between pixel centres, for ray_blend.h. Requires
   /// TILES_ELLIPSE.
   bool between_pixels = false;
-  /// z_sums() has the visibility of each pixel instead of depths: the sum of alpha T^2, without a unit.
+  /// z_sums() stores each pixel's visibility instead of a depth: the sum of alpha T^2 over its splats.
   bool visibility_as_depth = false;
   /// Appends a stage, such as compositing. Called after the last stage, before the frame waits for the GPU;
   /// called again if the frame is drawn again.
   std::function<void(gl::Dispatcher&)> extra_stage;
-  const char* extra_stage_name = "extra";  // that stage's name
+  const char* extra_stage_name = "extra";  // name of the extra stage
 };
 
 /// Throws Error for illegal values, and for a stand-in in a frame that would use earlier measurements.

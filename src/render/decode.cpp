@@ -7,10 +7,10 @@ namespace binosplat::render {
 
 namespace {
 
-// Bytes of shared memory that every driver has.
+// Bytes of shared memory that every driver offers.
 constexpr std::int64_t shared_bytes = 32768;
 
-// The anchor cull uses the tiles of 3D Gaussian Splatting.
+// The anchor cull uses the tile test and the tile size of 3D Gaussian Splatting.
 std::array<gl::Number, 12> decode_variant(const FramePlan& plan, const NetworkBuffers& networks) {
   const FrameSettings& s = plan.settings;
   const std::int64_t weights = networks.bytes <= shared_bytes ? networks.bytes / 16 : 0;

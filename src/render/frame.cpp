@@ -26,7 +26,8 @@ void check(const CallersTextures& textures, std::size_t views, const FrameSettin
   if (debug.stand_in) fail("mesh depths with a stand-in, which ignores meshes");
 }
 
-// Adds an earlier attempt's times to the last one, which is the frame.
+// Adds the times of earlier attempts, in `report`, to the report of the newest attempt, and stores the sum in
+// `report`.
 void add(FrameReport attempt, FrameReport& report) {
   attempt.attempts += report.attempts;
   attempt.redrawn += report.redrawn;
@@ -72,7 +73,7 @@ void Frame::place(std::vector<Instance> instances) {
   const auto same = [](const Drawn& a, const Drawn& b) {
     return a.model == b.model && a.instances == b.instances;
   };
-  if (std::ranges::equal(drawn, drawn_, same)) return;  // and what was noted of their uploads holds
+  if (std::ranges::equal(drawn, drawn_, same)) return;  // the stored numbers of uploads stay valid
   drawn_ = std::move(drawn);
   model_buffers_.clear();  // frees the models that are gone
 }
@@ -172,7 +173,7 @@ void Frame::begin(PlanRequest request) {
   check(debug, settings);
   if (debug.stand_in && !is_plain()) fail("a stand-in: only for one model in its own world");
   if (!model_buffers_.empty() && model_buffers_.front()->precision != settings.precision)
-    model_buffers_.clear();  // first, because both precisions may not fit together
+    model_buffers_.clear();  // before the next upload, because both precisions may not fit together
   bool is_other = model_buffers_.empty();
   std::uint32_t instance_count = 0;
   std::vector<std::shared_ptr<ModelBuffers>> held;
@@ -198,7 +199,7 @@ CallersTextures Frame::submitted_textures(bool with_canvases) const {
   return all;
 }
 
-// Starts an attempt with a probe. Its result is the next tolerance, or the end of the search.
+// Starts an attempt with a probe. The probe's result determines the next tolerance, or ends the search.
 void Frame::start_search() {
   submitted_.searches = true;
   const Probe probe = tolerance_control_.next_probe(submitted_.views, submitted_.settings);

@@ -32,34 +32,34 @@ struct CpuTimes {
 
 /// The cost and the properties of a drawn frame.
 struct FrameReport {
-  std::uint64_t visible = 0;          // Gaussians drawn, summed over the order groups (1 for parallel eyes)
-  std::uint64_t pairs = 0;            // Gaussian-tile pairs over all views, including a probe's
-  std::uint64_t supertile_pairs = 0;  // sorted entries: pairs with supertiles; both eyes may share one
-  std::uint32_t order_groups = 0;
-  int attempts = 0;                   // with settings.quality: drawings until the frame reached it
+  std::uint64_t visible = 0;          // Gaussians drawn, summed over the order groups
+  std::uint64_t pairs = 0;            // Gaussian-tile pairs over all views, including the probe's
+  std::uint64_t supertile_pairs = 0;  // sorted entries: splat-supertile pairs; two eyes may share an entry
+  std::uint32_t order_groups = 0;     // 1 for parallel eyes
+  int attempts = 0;                   // with settings.quality: drawings until the frame reached the quality
   int redrawn = 0;                    // drawings that were repeated because a buffer was too small
-  std::vector<gl::StageTime> stages;  // GPU time of the complete drawing, summed over attempts
-  double total_ms = 0;                // their sum
+  std::vector<gl::StageTime> stages;  // GPU times, summed over attempts, without drawings that overflowed
+  double total_ms = 0;                // sum of `stages`
   std::vector<gl::StageSpan> spans;   // spans of all stages, also of drawings that overflowed
   CpuTimes cpu;                       // of all drawings
   int programs_made = 0;              // programs that were compiled for the frame, or loaded from the cache
-  std::int64_t gpu_bytes = 0;         // in buffers, including the model's
+  std::int64_t gpu_bytes = 0;         // size of all buffers, including the model's
   int tile_size = 0;                  // px
   float tolerance = 0.0f;             // K or kappa of the frame
-  bool used_measured = false;         // the frame used the transmittance that an earlier one measured
+  bool used_measured = false;         // the frame used transmittance that an earlier frame measured
   bool measured = false;              // the frame measured transmittance for later frames
   bool sampled_error = false;         // the frame also drew some tiles exactly, to measure its error
-  bool is_cut = false;  // no earlier measurements could be used: it is the first, or follows a camera cut
+  bool is_cut = false;  // the frame could not use earlier measurements: a first frame, or after a camera cut
   bool on_canvases = false;  // the pictures are on the caller's canvases only
-  double quality = 0.0;      // with settings.quality: PSNR in dB, from this frame's and earlier probes
-  bool quality_is_estimate = false;  // measured on a part of this frame
+  double quality = 0.0;      // with settings.quality: PSNR in dB, from the probes of this and earlier frames
+  bool quality_is_estimate = false;  // the quality was measured on a part of this frame
 };
 
 /// A Gaussian that a frame drew in a view, and its largest transmittance.
 struct MeasuredGaussian {
   std::uint32_t index = 0;     // in the model
-  float depth = 0.0f;          // view z, with PROJECTION_TANGENT the distance, in world units
-  float transmittance = 0.0f;  // max(T) without the lower limit of the bounds; 0 if no pixel blends it
+  float depth = 0.0f;          // world units: view z, or with PROJECTION_TANGENT the distance from the eye
+  float transmittance = 0.0f;  // max(T), not raised to BOUND_FLOOR; 0 if no pixel blends the Gaussian
 };
 
 class Frame {
@@ -67,36 +67,36 @@ class Frame {
   /// Several Frames may draw one model; each has its own buffers and history. The context must be current in
   /// every call.
   explicit Frame(std::shared_ptr<GpuModel> model);
-  /// Uploads the model for this Frame alone; the model must outlive it. Throws as GpuModel does.
+  /// Uploads the model for this Frame alone. The model must outlive the Frame. Throws as GpuModel does.
   Frame(gl::Context& context, const Model& model, int precision = PRECISION_FULL)
       : Frame(std::make_shared<GpuModel>(context, model, precision)) {}
 
-  /// Sets the models that the next frames draw, and their places. Initially it is the Frame's own model, once
-  /// and in its own world. All instances are sorted and blended together. Throws Error for a
-  /// Scaffold-GS model that is not alone in its own world.
+  /// Sets the instances that the next frames draw. Initially this is the Frame's own model, once and in its
+  /// own world. All instances are sorted and blended together. Throws Error for a Scaffold-GS model that is
+  /// moved, or not the only instance.
   void place(std::vector<Instance> instances);
 
-  /// Draws all views at once and waits for the GPU: submit() and finish(). Neighbouring views with equal
-  /// depths (third row and anchor are bit-equal) are projected together. Each eye of a rig has the same bits,
-  /// drawn together with the other or alone. If a buffer overflows, it grows and the frame is drawn again.
+  /// Draws all views at once and waits for the GPU: submit() and finish(). Successive views of equal depths
+  /// (third row and anchor are bit-equal) are projected together. In full precision an eye of a rig has the
+  /// same bits alone and with the other eye. If a buffer overflows, it grows and the frame is drawn again.
   /// After GpuModel::reload() the tolerance stays, but measured transmittance is dropped. Throws Error: bad
   /// views or settings (bad_input), no memory (out_of_memory).
   ///
-  /// With canvases, the blend writes pictures there instead of into colours(). It writes depths into
-  /// z_sums(): one row of every `depth_rows` (1 or 2), 0 for a pixel without depth. It writes into colours()
-  /// as usual for a probe, a stand-in of the blend, and a tile size other than the default.
-  /// FrameReport::on_canvases reports which.
+  /// With canvases, the blend writes pictures into them instead of into colours(). It writes final depths
+  /// into z_sums(): one row of every `depth_rows` (1 or 2), and 0 for a pixel without depth. A frame with a
+  /// probe, a stand-in, or a tile size other than the default still writes into colours();
+  /// FrameReport::on_canvases is then false.
   ///
-  /// With mesh depths, splats behind meshes are not drawn, and z_sums() always has depths. A pixel that is at
-  /// most half covered has the mesh's. Excludes measured transmittance and stand-ins.
+  /// With mesh depths, splats behind meshes are not drawn, and z_sums() always has final depths. A pixel that
+  /// is at most half covered has the mesh's depth. Mesh depths exclude measured transmittance and stand-ins.
   FrameReport draw(std::span<const shared::View> views, const FrameSettings& settings = {},
                    const DebugOptions& debug = {}, const CallersTextures& textures = {}) {
     submit(views, settings, debug, textures);
     return finish();
   }
 
-  /// Passes a frame as of draw() to the driver and returns while the GPU draws. Call finish() before the next
-  /// frame of this Frame, and before reading anything of this one.
+  /// Passes a frame to the driver, as draw() does, and returns while the GPU draws. Call finish() before this
+  /// Frame's next frame, and before reading any result.
   void submit(std::span<const shared::View> views, const FrameSettings& settings = {},
               const DebugOptions& debug = {}, const CallersTextures& textures = {});
 
@@ -108,11 +108,11 @@ class Frame {
   /// Whether the GPU has finished the frame. finish() may still have to draw it again.
   bool is_done() { return dispatcher_.is_done(); }
 
-  /// Waits for the frame. Draws it again if a buffer was too small or its quality missed.
+  /// Waits for the frame. Draws the frame again if a buffer was too small or the quality was missed.
   FrameReport finish();
 
-  /// Same as draw() with settings.tolerance, but ends after stage `last`, whose results are in buffers(). The
-  /// next frame uses measurements of complete frames only.
+  /// Same as draw() with settings.tolerance, but ends after stage `last`, whose results are in buffers().
+  /// Later frames use no measurements of a frame that ended early.
   FrameReport draw_until(Stage last, std::span<const shared::View> views, const FrameSettings& settings = {},
                          const DebugOptions& debug = {}, const std::optional<Probe>& probe = {});
 
@@ -126,32 +126,33 @@ class Frame {
   /// The next frame uses no earlier measurements.
   void forget() { history_.forget(); }
 
-  /// The next frame is drawn as the first one: it also drops the tolerance that was found for a quality.
+  /// The next frame starts like a first frame: it also uses no tolerance that was found for a quality.
   void start_over() {
     forget();
     tolerance_control_ = {};
   }
 
-  /// The measurements of the last frame in its view `v`, in index order. Empty if it did not measure
-  /// (FrameReport), and after a reload of the model.
+  /// The measurements of the last frame in its view `v`, in index order. Empty if the frame did not measure
+  /// (FrameReport), for placed instances, and after a reload of the model.
   std::vector<MeasuredGaussian> read_measured(std::uint32_t v) const;
 
   /// A debug view of the last frame, SHOW_ALPHAS to SHOW_MEDIAN_DEPTH of shared/axes.h: one image of one
   /// channel per view, below 0 for a pixel without a value. Walks the frame's lists again. Throws Error if a
-  /// stand-in replaced the blend: its lists are not on the GPU.
+  /// stand-in replaced the blend, because its lists are not on the GPU.
   std::vector<Image> read_debug_view(int what);
 
   const std::shared_ptr<GpuModel>& model() const { return model_; }
   /// The pictures on the GPU: vec4 (C, T) by pixel; each view begins at its pixel_offset. Undefined if a
   /// stand-in replaced the blend, and for a frame on canvases.
   const gl::Buffer& colours() const { return buffers_.pictures.colours; }
-  /// Z by pixel, in the same order. For a frame on canvases: depths, see draw(). Undefined with Depth::none.
+  /// Z by pixel, in the order of colours(). For frames on canvases or with mesh depths: final depths, see
+  /// draw(). Undefined with Depth::none.
   const gl::Buffer& z_sums() const { return buffers_.pictures.z_sums; }
   /// The views of the last frame, with tiles, offsets and groups; a probe's comes last.
   const std::vector<shared::View>& views() const { return plan_.views; }
   const FramePlan& plan() const { return plan_; }
   FrameBuffers& buffers() { return buffers_; }
-  /// The first drawn model's. Valid once a frame was drawn.
+  /// The buffers of the first drawn model. Valid after the first frame.
   ModelBuffers& model_buffers() { return *model_buffers_.front(); }
 
  private:
@@ -164,7 +165,7 @@ class Frame {
     std::vector<MeshDepth> mesh_depths;
     int depth_rows = 1;
     Stage last = Stage::probe;
-    bool searches = false;  // whether it searches the tolerance for its quality: each attempt has a probe
+    bool searches = false;  // the frame searches a tolerance for its quality: each attempt has a probe
   };
 
   CallersTextures submitted_textures(bool with_canvases) const;
@@ -192,11 +193,11 @@ class Frame {
   std::shared_ptr<GpuModel> model_;
   std::vector<Drawn> drawn_;           // each model once
   std::vector<InstancePlace> places_;  // FramePlan::instances
-  /// Of drawn_; empty until a frame draws these models.
+  /// By drawn_; empty until a frame draws these models.
   std::vector<std::shared_ptr<ModelBuffers>> model_buffers_;
   gl::Dispatcher dispatcher_;
   FrameBuffers buffers_;
-  bool is_prepared_ = false;  // prepare() has compiled its programs
+  bool is_prepared_ = false;  // prepare() or a frame has compiled the programs
   Submitted submitted_;
   FramePlan plan_;
   Measuring measuring_;

@@ -42,7 +42,7 @@ void check_needs(const FrameSettings& s, std::size_t views, std::span<const Inst
   }
 }
 
-// The models' Gaussians, each as often as its instances draw it.
+// Adds the models. Counts each model's Gaussians once per instance.
 void add_models(FramePlan& plan, std::vector<PlannedModel> models) {
   std::uint64_t count = 0, room = 0;
   for (const PlannedModel& model : models) {
@@ -60,7 +60,8 @@ bool draws_some(const FrameSettings& settings) {
   return !std::all_of(settings.regions.begin(), settings.regions.end(), std::mem_fn(&ViewRegion::is_whole));
 }
 
-// Appends a view, or its probe. It joins the last order group if the depths are equal.
+// Appends a view, or the probe of a view. If its depths equal those of the view before, it joins that view's
+// order group.
 void add_view(FramePlan& plan, shared::View view, const ViewRegion& region,
               const std::optional<Probe>& probe = {}) {
   const Probe tiles = probe.value_or(Probe{});
@@ -105,8 +106,8 @@ void add_view(FramePlan& plan, shared::View view, const ViewRegion& region,
   plan.views.push_back(view);
 }
 
-// The second eye's offset in columns of supertiles, for objects at this depth and parallel views. Wraps
-// around: from 0 to the columns of a row.
+// Returns the disparity of objects at this depth in two parallel views, in columns of supertiles. A negative
+// disparity wraps around, so the result lies from 0 up to the number of columns.
 std::uint32_t disparity(const shared::View& first, const shared::View& second, int tile, double depth) {
   if (!(depth > 0.0)) return 0;
   const auto across = static_cast<int>((first.tiles_x + SUPERTILE_SIDE - 1) / SUPERTILE_SIDE);
@@ -148,7 +149,8 @@ int FramePlan::depth() const {
   return !canvases.empty() && depth_rows == 2 ? DEPTH_MEDIAN_OF_TWO_ROWS : DEPTH_MEDIAN;
 }
 
-// Lists are sorted by z, or by the distance from a point at this distance from each eye.
+// Lists are sorted by z, or by the distance from `centre`. No eye is farther than `farthest` from `centre`.
+// So, measured from an eye, a splat may be nearer than its predecessor by up to twice `farthest`.
 float FramePlan::depth_slack() const {
   if (perspective.order == ORDER_DEPTH && perspective.projection == PROJECTION_AFFINE) return 0.0f;
   if (perspective.order != ORDER_DISTANCE || perspective.projection != PROJECTION_TANGENT)

@@ -25,7 +25,7 @@ struct OrderGroup {
 };
 
 /// The error sample: tiles of one view that are also drawn exactly, to measure the error of the frame's
-/// tolerance. One of every `step` x `step` tiles, starting at `column` and `row`.
+/// tolerance. It has one of every `step` x `step` tiles, starting at `column` and `row`.
 struct Probe {
   std::uint32_t view = 0;
   std::uint32_t step = 1;
@@ -35,17 +35,17 @@ struct Probe {
 
 /// The result of a probe.
 struct ProbeResult {
-  double squared_error = 0.0;  // mean over its pixels and channels, in squared steps of 8 bits
-  double unevenness = 0.0;     // variance of its tiles' errors over their squared mean
+  double squared_error = 0.0;  // mean over its pixels and channels; colours from 0 to 1, rounded to 8 bits
+  double unevenness = 0.0;     // variance of its tiles' errors, divided by their squared mean
 };
 
 /// The caller's meshes among the splats.
 struct Meshes {
   std::vector<MeshDepth> depths;        // by requested view; empty without meshes
-  std::vector<glm::uvec2> whole_sizes;  // px, by view: the size of the whole picture that a window belongs to
+  std::vector<glm::uvec2> whole_sizes;  // px, by view: size of the whole picture, of which a window is a part
 };
 
-/// The Gaussians of a model, and the number that it has room for.
+/// The number of a model's Gaussians, and the number for which the model has room.
 struct ModelSize {
   std::size_t gaussians = 0, room = 0;
 };
@@ -53,7 +53,7 @@ inline ModelSize size_of(const Model& model) { return {model.count(), std::max(m
 
 /// One of a frame's models. The frame's instances [first_instance, first_instance + instances) draw it.
 struct PlannedModel {
-  int degree = 0;  // of its SH
+  int degree = 0;  // of the spherical harmonics
   double kernel_px2 = KERNEL_PX2;
   bool antialiased = false;
   ModelSize size;  // of one instance
@@ -61,28 +61,28 @@ struct PlannedModel {
 };
 PlannedModel planned(const Model& model, const ModelSize& size);
 
-/// make_plan() derives it once from settings, views and model. history.h keeps the state that frames share.
+/// make_plan() derives the plan from settings, views and model; history.h keeps the state that frames share.
 struct FramePlan {
   FrameSettings settings;
-  float tolerance = 0.0f;            // K or kappa, of the settings or found for a quality
+  float tolerance = 0.0f;            // K or kappa: the settings', or found for a quality
   bool between_pixels = false;       // DebugOptions::between_pixels
   bool visibility_as_depth = false;  // DebugOptions::visibility_as_depth
   Perspective perspective;
   std::vector<PlannedModel> models;
-  std::vector<InstancePlace> instances;  // by model; empty: one model, once, in its own world
+  std::vector<InstancePlace> instances;  // grouped by model; empty: one model in its own world
   std::uint32_t gaussian_count = 0;      // of all instances
   std::uint32_t gaussian_room = 0;       // at least gaussian_count; larger if a model may grow
   std::vector<shared::View> views;       // the requested views, then the probe's
   std::uint32_t requested_views = 0;
   std::optional<Probe> probe;
   std::vector<OrderGroup> groups;
-  std::vector<glm::uvec2>
-      region_rows;  // by row of tiles of all views (tiles/regions.glsl), if any view has a region
+  /// By row of tiles of all views (tiles/regions.glsl); empty if no view has a region.
+  std::vector<glm::uvec2> region_rows;
   std::vector<Canvas> canvases;  // destinations of the pictures; empty: the frame's own buffer
-  int depth_rows = 1;            // with canvases: 1 stores depths of every row, 2 of every second one
+  int depth_rows = 1;            // with canvases: 1 stores depths of every row, 2 of every second row
   Meshes meshes;
   std::uint32_t supertile_count = 0;  // over all views
-  int list_views = 1;                 // views that share lists, set by share_lists()
+  int list_views = 1;                 // number of views that share a list, set by share_lists()
   std::int64_t pixel_count = 0;       // over all views
   // For Scaffold-GS; K is 0 for other models.
   std::uint32_t offset_count = 0;        // K
@@ -96,10 +96,10 @@ struct FramePlan {
   bool has_final_depths() const { return !canvases.empty() || !meshes.depths.empty(); }
   /// How much nearer a splat may be than its predecessors in a list, in world units; infinite: no limit.
   float depth_slack() const;
-  /// Whether splats are blended by blocks, which end once their pixels are opaque (docs/method.md 5.2).
+  /// Whether splats are blended by blocks that stop at dark pixels (docs/method.md 5.2).
   bool is_approximate() const { return settings.th == TH_SQUARED && settings.tiles == TILES_ELLIPSE; }
   std::uint32_t view_count() const { return static_cast<std::uint32_t>(views.size()); }
-  /// The tiles of all supertiles: slightly more than the pictures have.
+  /// The tiles of all supertiles: slightly more than the tiles of the pictures.
   std::uint32_t tile_count() const { return supertile_count * SUPERTILE_SIDE * SUPERTILE_SIDE; }
   std::uint32_t supertiles_of(std::uint32_t view) const {
     return (view + 1 < view_count() ? views[view + 1].supertile_offset : supertile_count) -
@@ -118,20 +118,20 @@ Perspective perspective_of(const FrameSettings& settings, const Model& model);
 /// Inputs of a plan besides settings.
 struct PlanRequest {
   std::vector<PlannedModel> models;      // empty: the model that make_plan() is given
-  std::vector<InstancePlace> instances;  // as FramePlan's
+  std::vector<InstancePlace> instances;  // as FramePlan::instances
   std::optional<Probe> probe;
-  std::optional<float> tolerance;  // replaces the settings'
+  std::optional<float> tolerance;  // replaces the settings' tolerance
   CallersTextures textures;
 };
 
-/// Lets both eyes, views 2k and 2k + 1, share lists (supertiles.glsl). All pairs must have equal depths,
-/// equal lenses and grids of equal size, and entries must have enough bits for `slots` Gaussians. Shifts the
-/// second eye's grid by the disparity at `middle_depth`, in world units; 0 or less: no shift.
+/// Lets eye pairs, views 2k and 2k + 1, share lists (supertiles.glsl), if possible. The eyes of a pair must
+/// have equal depths, focal lengths and grid sizes, and entries must have enough bits for `slots` Gaussians.
+/// Shifts the second eye's grid by the disparity at `middle_depth`, in world units; 0 or less: no shift.
 void share_lists(FramePlan& plan, std::int64_t slots, double middle_depth);
 
-/// Makes the plan for `size` instead of model.count(): the model in memory may have changed since its upload.
-/// Throws Error(bad_input) for no views, more than MAX_VIEWS, an empty or huge picture, and settings that
-/// contradict each other or the views.
+/// Makes the plan for `size` instead of model.count(), because the model in memory may have changed since its
+/// upload. Throws Error(bad_input) for no views, more than MAX_VIEWS, an empty or huge picture, and settings
+/// that contradict each other or the views.
 FramePlan make_plan(std::span<const shared::View> views, const FrameSettings& settings, const Model& model,
                     const ModelSize& size, const DebugOptions& debug, const PlanRequest& request = {});
 inline FramePlan make_plan(std::span<const shared::View> views, const FrameSettings& settings,

@@ -17,16 +17,16 @@ struct FrameLevels {
   std::size_t uploaded = 0;  // Gaussians
 };
 
-/// A frame's timing by a headset's runtime.
+/// A frame's timing as the headset's runtime reports it.
 struct FrameDisplay {
-  double predicted_ms = 0.0;  // predicted display time, since the first frame's
-  int missed = 0;             // display periods since the last frame in which no new frame was shown
+  double predicted_ms = 0.0;  // predicted display time, relative to the first frame's
+  int missed = 0;             // display periods without a new frame, since the last frame
 };
 
 struct FrameRecord {
   Clock::time_point due = {};    // scheduled begin; equals `begin` without a schedule
-  Clock::time_point begin = {};  // before its levels are updated
-  Clock::time_point end = {};    // after it is drawn
+  Clock::time_point begin = {};  // before the update of the levels
+  Clock::time_point end = {};    // after the drawing
   FrameReport report;
   std::vector<shared::View> views;
   std::size_t gaussians = 0;  // in the model

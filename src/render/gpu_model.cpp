@@ -21,8 +21,9 @@ shared::Gaussian gaussian_of(const Model& model, std::size_t i) {
 
 using Range = ModelChunks::Range;
 
-// The layout of one kind of a Gaussian's numbers on the GPU. pack(first, places, room) writes those of the
-// Gaussians first + place of the model, `words` for each. Unused words become zero.
+// The layout of Gaussians, or of their harmonics, on the GPU: `words` words for each Gaussian. For each of
+// `places`, pack(first, places, room) writes the words of the model's Gaussian first + place. Unused words
+// become zero.
 struct Packing {
   std::size_t words;
   std::function<void(std::size_t first, std::span<const std::uint32_t> places, std::span<std::uint32_t> room)>
@@ -66,7 +67,7 @@ Packing packing_of_harmonics(const Model& model, int precision) {
   });
 }
 
-// Uploads all of a page's Gaussians in pieces, because memory is slow at first touch.
+// Uploads all of a page's Gaussians in pieces through one array, because memory is slow at first touch.
 void upload_page(const Packing& packing, const ModelBuffers::Page& page, gl::Buffer& buffer) {
   constexpr std::size_t piece = 1 << 16;
   std::vector<std::uint32_t> packed(std::min<std::size_t>(piece, page.count) * packing.words);
@@ -167,8 +168,8 @@ std::int64_t ModelBuffers::room_in(const Page& page, const Model& model) const {
   return static_cast<std::int64_t>(std::min(page_step_, room));
 }
 
-// Writes zeros (opacity 0) from a Gaussian of the page on. Uses uploads, because later uploads to the same
-// place must not overtake this one.
+// Writes zeros (opacity 0) from Gaussian `first` of the page to the buffer's end. It does this by uploads,
+// because later uploads to the same place must not overtake the zeros.
 void ModelBuffers::clear_from(const Page& page, std::int64_t first) const {
   constexpr std::int64_t piece = std::int64_t{1} << 22;  // bytes
   const std::int64_t begin = first * gaussian_bytes(precision), end = page.gaussians->bytes();
@@ -228,7 +229,7 @@ std::shared_ptr<ModelBuffers> GpuModel::buffers_in(int precision) {
   if (const auto found = wanted.lock()) {
     latest_ = found;
   } else {
-    latest_.reset();  // first, because both precisions may not fit together
+    latest_.reset();  // before the upload, because both precisions may not fit together
     size_ = size_of(model_);
     latest_ = std::make_shared<ModelBuffers>(context_, model_, precision, page_gaussians_);
     wanted = latest_;

@@ -16,8 +16,8 @@
 namespace binosplat::render {
 
 /// The model in one precision, in pages small enough for a shader to address each buffer. A page of a
-/// Scaffold-GS model holds whole anchors. Each frame decodes their Gaussians and colours (as harmonics of
-/// degree 0) again, once per decoding: (decoding, id).
+/// Scaffold-GS model holds complete anchors. Each frame decodes the anchors' Gaussians, and their colours as
+/// harmonics of degree 0, into the order (decoding, index).
 struct ModelBuffers {
   struct Page {
     std::uint32_t first = 0;  // index of its first Gaussian in the model
@@ -27,8 +27,8 @@ struct ModelBuffers {
     std::unique_ptr<AnchorBuffers> anchors;
   };
 
-  /// Uploads the model. A page has at most `page_gaussians`; 0: as many as a shader can address in one
-  /// buffer.
+  /// Uploads the model. A page has at most `page_gaussians` Gaussians; 0: as many as a shader can address in
+  /// one buffer.
   ModelBuffers(gl::Context& context, const Model& model, int precision, std::uint32_t page_gaussians);
 
   /// Replaces the model by another one. Reuses buffers that are large enough.
@@ -54,13 +54,13 @@ struct ModelBuffers {
 
   std::uint32_t page_gaussians_;
   std::size_t page_step_ = 0;            // Gaussians
-  Scatter to_gaussians_, to_harmonics_;  // two: each waits until the GPU has read its last upload
+  Scatter to_gaussians_, to_harmonics_;  // two, as each waits until the GPU has read its last upload
 };
 
 class GpuModel {
  public:
-  /// Uploads the model in a PRECISION_ of shared/axes.h. Model and context must outlive it, and the context
-  /// must be current in every call. `page_gaussians` is for tests (see ModelBuffers). Throws
+  /// Uploads the model in a PRECISION_ of shared/axes.h. Model and context must outlive the GpuModel, and the
+  /// context must be current in every call. `page_gaussians` is for tests (see ModelBuffers). Throws
   /// Error(out_of_memory) if the GPU has no room.
   GpuModel(gl::Context& context, const Model& model, int precision = PRECISION_FULL,
            std::uint32_t page_gaussians = 0);
@@ -70,21 +70,22 @@ class GpuModel {
   /// The model's size at its last upload. Frames use it, because the model may have changed since.
   const ModelSize& size() const { return size_; }
 
-  /// Returns the model in that precision, and uploads it if no frame holds it. It stays on the GPU as long as
-  /// a frame holds it. The last requested precision also stays, until a reload while frames hold only the
-  /// other precision. Throws as the constructor does.
+  /// Returns the model in `precision`, and uploads it if no frame holds it. The buffers stay on the GPU as
+  /// long as a frame holds them. The last requested precision also stays, until a reload while frames hold
+  /// only the other precision. Throws as the constructor does.
   std::shared_ptr<ModelBuffers> buffers_in(int precision);
 
   /// Uploads the model again after a change: the same scene at other levels of detail. Reuses buffers that
-  /// are large enough. Frames compare `uploads` to detect that their measurements belong to another state.
+  /// are large enough. Frames compare uploads() to detect that their measurements belong to another state.
   /// Throws as the constructor does.
   void reload();
-  /// Uploads only these places (ModelBuffers::upload).
+  /// Uploads only the places in `changes` (ModelBuffers::upload).
   void reload(const ModelChunks::Changes& changes);
   int uploads() const { return uploads_; }
 
  private:
-  /// Calls upload() for each precision that is in use, and drops the other.
+  /// Calls upload() for each precision on the GPU. First frees the last requested precision if frames hold
+  /// only the other one.
   template <typename Upload>
   void upload_all(const Upload& upload);
 

@@ -12,7 +12,7 @@ namespace binosplat::render {
 namespace {
 
 constexpr float most = 65504.0f;
-constexpr float least = 0x1p-14f;  // the smallest number with all its bits in fp16
+constexpr float least = 0x1p-14f;  // the smallest normal number of fp16
 
 std::uint32_t pair(float a, float b) {
   return glm::packHalf2x16(glm::vec2(std::clamp(a, -most, most), std::clamp(b, -most, most)));

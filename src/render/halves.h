@@ -1,6 +1,6 @@
 #pragma once
 // Packs for `--precision half` on the CPU: Gaussians and splats in 32 bytes, SH coefficients in fp16;
-// halves.glsl unpacks them. Numbers beyond fp16 become its largest.
+// halves.glsl unpacks them. Numbers beyond fp16's range become its largest number.
 
 #include <array>
 #include <cstdint>
@@ -18,7 +18,7 @@ using Halves = std::array<std::uint32_t, 8>;
 Halves pack(const shared::Gaussian& gaussian);
 
 /// Mean, depth and rho are in fp32. The lower Cholesky factor L of the conic, opacity and colour are in fp16,
-/// with L.yx as the sum of two.
+/// with L.yx as the sum of two numbers.
 Halves pack(const shared::Splat& splat);
 
 /// Packs two numbers per word, the first in the low half. `packed` has room for all of them; the rest becomes

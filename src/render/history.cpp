@@ -11,7 +11,7 @@ namespace {
 constexpr double turn_max_degrees = 15.0;
 constexpr double move_max_of_depth = 0.1;
 constexpr int probe_every = 4;  // frames
-// Shares of the way to a camera cut, from which the next frame has a probe, or measures.
+// If a view has gone this share of the way to a camera cut, the next frame has a probe, or measures.
 constexpr double probe_share = 1.0 / 15.0;
 constexpr double measure_share = 1.0 / 3.0;
 
@@ -31,14 +31,15 @@ double moved(const shared::View& a, const shared::View& b) {
   return b.eye.w * glm::length(eye_a - eye_b);
 }
 
-// Whether the second view sees its model as the first does, within `share` of a camera cut.
+// Whether the two views of a model differ by at most `share` of the limits of a camera cut.
 bool is_near(const shared::View& a, const shared::View& b, double middle_depth, double share) {
   return turned_degrees(a, b) <= share * turn_max_degrees &&
          moved(a, b) <= share * move_max_of_depth * middle_depth &&
          std::abs(b.eye.w / a.eye.w - 1.0) <= share * move_max_of_depth;
 }
 
-// The rows of tiles of the requested views. Other rows are a camera cut: undrawn tiles measure nothing.
+// The rows of tiles of the requested views. Changed rows are a camera cut, because tiles that were not drawn
+// have measured nothing.
 std::span<const glm::uvec2> rows_asked(const FramePlan& plan) {
   const bool has_probe = plan.draws_regions() && plan.view_count() > plan.requested_views;
   return std::span(plan.region_rows)

@@ -1,6 +1,6 @@
 #pragma once
-// Remembers the last frames of a Frame. It decides whether their measurements still hold: the next frame must
-// show the same scene a moment later.
+// Stores the last frames of a Frame. Decides whether the next frame may use their measurements: it must show
+// the same scene a moment later.
 
 #include "render/frame_plan.h"
 #include "shared/types.h"
@@ -8,9 +8,9 @@
 namespace binosplat::render {
 
 /// Whether `now` follows `before` without a camera cut. The views must be equal in number, size, lens and
-/// regions. Each may turn by at most 15 degrees and move by at most a tenth of `middle_depth` (of the
-/// Gaussians drawn before, world units), in the world and in each instance's own. `share` scales these two
-/// limits.
+/// regions. Each view may turn by at most 15 degrees and move by at most a tenth of `middle_depth` (of the
+/// Gaussians that `before` drew, world units), both in the world and relative to each instance. An instance
+/// may grow by at most a tenth. `share` scales these limits.
 bool continues(const FramePlan& before, const FramePlan& now, double middle_depth, double share = 1.0);
 
 /// About the geometric mean of the drawn Gaussians' depths, in world units; 0 if nothing was drawn.
@@ -18,7 +18,7 @@ double middle_depth(const shared::Counters& counters);
 
 /// Whether a frame uses measured transmittance, and whether it measures.
 struct Measuring {
-  bool uses_last = false;  // an earlier frame measured for this one
+  bool uses_last = false;  // an earlier frame measured for this frame
   bool measures = false;   // this frame measures for later frames
 };
 
@@ -26,15 +26,16 @@ class FrameHistory {
  public:
   /// The next frame uses no earlier measurements.
   void forget() { last_ = measured_ = {}; }
-  /// `now` draws other Gaussians of the same scene: other levels of detail, or other instances.
+  /// Call it if `now` draws other Gaussians of the same scene: other levels of detail, or other instances.
+  /// Drops measured transmittance.
   void follow(const FramePlan& now);
 
   /// Whether `now` follows the last frame without a camera cut.
   bool continues_last(const FramePlan& now) const { return continues(last_, now, middle_depth_); }
 
-  /// Whether `now` needs no probe. Every fourth frame needs one. So does a frame in which an eye has gone a
-  /// fifteenth of the way to a camera cut since the last probe, such as a turn by a degree. Each call counts
-  /// as a frame.
+  /// Whether `now` needs no probe. Every fourth frame needs a probe. So does a frame if, since the last
+  /// probe, a view has gone a fifteenth of the way to a camera cut, such as a turn by a degree. Each call
+  /// counts as a frame.
   bool has_recent_probe(const FramePlan& now);
 
   /// Decides whether the frame uses measurements, and whether it measures (FrameSettings::measure_every).
@@ -48,7 +49,7 @@ class FrameHistory {
   FramePlan measured_;  // the last frame that measured
   FramePlan probed_;    // the last frame with a probe
   double middle_depth_ = 0.0;
-  int since_cut_ = 0;  // frames that used measurements
+  int since_cut_ = 0;  // frames since the cut that used measurements
   int since_measured_ = 0;
   int since_probed_ = 0;
 };

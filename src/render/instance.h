@@ -20,8 +20,8 @@ struct InstancePlace {
   glm::dmat3 rotation{1.0};
   glm::dvec3 translation{0.0};
   double scale = 1.0;      // above 0
-  float opacity = 1.0f;    // from 0 to 1, times each Gaussian's
-  DepthTable depth_table;  // with TRANSMITTANCE_DEPTH, in units of the model; empty: the settings'
+  float opacity = 1.0f;    // from 0 to 1; multiplies each Gaussian's opacity
+  DepthTable depth_table;  // with TRANSMITTANCE_DEPTH, in units of the model; empty: the settings' table
 
   /// Whether the frame's world is the model's own.
   bool is_plain() const {
@@ -30,11 +30,12 @@ struct InstancePlace {
   }
 };
 
-/// Returns the place of a model in a frame whose positions have the axes and the origin of `frame`, from its
-/// place in the cameras' world (scene/axes.h).
+/// Converts a model's place in the cameras' world (scene/axes.h) to its place in a frame whose positions have
+/// the axes and the origin of `frame`.
 InstancePlace in_frame(const InstancePlace& in_world, const ModelAxes& model, const ModelAxes& frame);
 
-/// Splits a matrix into a rotation, a scale above 0 and a translation; none for any other matrix.
+/// Splits a matrix into a rotation, a uniform scale above 0 and a translation. Returns none for any other
+/// matrix.
 std::optional<InstancePlace> place_of(const glm::dmat4& matrix);
 
 struct Instance {
@@ -42,9 +43,9 @@ struct Instance {
   InstancePlace place;
 };
 
-/// Returns the view in the model's own world: it maps a point of the model to the pixel and depth to which
-/// `view` maps the point's place in the frame's world. Views of equal depths keep equal depths. The caller
-/// sets its table by depth.
+/// Returns the view in the model's own world: it projects a point of the model to the same pixel and depth as
+/// `view` projects the placed point. Views of equal depths keep equal depths. The caller sets the new view's
+/// table by depth.
 shared::View view_of_instance(const shared::View& view, const InstancePlace& place);
 
 }  // namespace binosplat::render

@@ -11,17 +11,18 @@ namespace binosplat::render {
 
 std::uint32_t starting_slots(std::uint32_t gaussians) {
   constexpr std::uint32_t slots_start = 1u << 20;
-  // Some GPUs address no more splats of two eyes in one buffer; a window shows fewer Gaussians.
+  // Some GPUs cannot address more splats of two eyes in one buffer. Usually fewer Gaussians are in view.
   constexpr std::uint32_t slots_start_most = 1u << 24;
   return std::max(std::min(gaussians / 2, slots_start_most), std::min(gaussians, slots_start));
 }
 
 namespace {
 
-// The room of a first frame: some entries and tiles per Gaussian, enough for most models.
+// The capacity of a first frame: some entries and tiles per Gaussian, enough for most models.
 Capacity starting_room(const FramePlan& plan) {
   constexpr std::int64_t pairs_per_splat = 8;
-  // Growing models are shown while somebody moves, and growing their buffers takes 100 ms.
+  // A model that may grow starts with larger buffers: it is shown to a moving viewer, and growing buffers
+  // takes 100 ms.
   const int most_bits = plan.gaussian_room > plan.gaussian_count ? 24 : 23;
   const std::int64_t pairs =
       std::clamp(starting_slots(plan.gaussian_room) * std::int64_t{plan.view_count()} * pairs_per_splat,
@@ -56,7 +57,7 @@ MemoryNeeds memory_needs(const FramePlan& plan) {
 
 void Capacity::start(const FramePlan& plan, const DebugOptions& debug) {
   Capacity first = starting_room(plan);
-  // A stand-in needs all of its room at once.
+  // A stand-in reports no overflow, so its buffers have room for all Gaussians.
   if (debug.stand_in) first.slots = plan.gaussian_room;
   slots = debug.slots > 0 ? debug.slots : std::max(slots, first.slots);
   if (debug.pairs > 0) {

@@ -8,8 +8,8 @@
 
 namespace binosplat::render {
 
-/// Slots of a first frame: all Gaussians of a small model, a part of a large one, which is rarely all in
-/// view. A frame that needs more grows its buffers.
+/// Returns the slots of a first frame: all Gaussians of a small model, or a part of a large model, which is
+/// rarely all in view. If a frame needs more, its buffers grow.
 std::uint32_t starting_slots(std::uint32_t gaussians);
 
 /// The bytes of the model on the GPU, and the further bytes of a first frame.
@@ -23,14 +23,14 @@ MemoryNeeds memory_needs(const FramePlan& plan);
 struct Capacity {
   std::int64_t slots = 0;        // Gaussians of an order group
   std::int64_t pairs = 0;        // Gaussian-supertile pairs: entries
-  std::int64_t large_pairs = 0;  // the part of Gaussians in many supertiles
+  std::int64_t large_pairs = 0;  // the same for Gaussians in many supertiles, whose entries are stored apart
   std::int64_t tile_pairs = 0;   // Gaussian-tile pairs
   std::int64_t rounds = 0;       // rounds that split lists too long to sort at once
 
-  /// Starts with at least the sizes for a frame of this plan, or exactly the sizes that `asked` names.
+  /// Starts with at least the sizes for a frame of this plan, or exactly the sizes that `debug` sets.
   void start(const FramePlan& plan, const DebugOptions& debug);
 
-  /// Enlarges the overflowed buffers to the size they needed and a margin, and logs it. Throws
+  /// Enlarges each overflowed buffer to the size that it needed plus an eighth, and logs this. Throws
   /// Error(out_of_memory) for more pairs than can be counted.
   void grow(const FramePlan& plan, const shared::Counters& counters);
 };

@@ -6,7 +6,7 @@ namespace binosplat::render {
 
 namespace {
 
-// The picture's pixels in the sampled tiles along an axis.
+// The number of the picture's pixels in the sampled tiles along an axis.
 std::uint32_t pixels_along(std::uint32_t tiles, std::uint32_t first, std::uint32_t pitch, std::uint32_t side,
                            std::uint32_t picture) {
   std::uint32_t pixels = 0;

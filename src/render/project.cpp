@@ -12,8 +12,8 @@ namespace {
 struct DrawnPage {
   const PlannedModel& model;
   const ModelBuffers::Page& page;
-  std::uint32_t first;     // of the frame's Gaussians
-  const gl::Buffer& kept;  // only shaders that decode read it; other models bind any buffer
+  std::uint32_t first;     // index of the page's first Gaussian among the frame's
+  const gl::Buffer& kept;  // only shaders for Scaffold-GS read it; other models bind any buffer
 };
 
 std::vector<DrawnPage> pages_of(const FramePlan& plan, DrawnModels models, const FrameBuffers& buffers) {
@@ -35,11 +35,11 @@ constexpr std::uint32_t fills_a_gpu = 1u << 20;  // Gaussians: several times an 
 // view cost no memory.
 void cull(gl::Dispatcher& dispatcher, const FramePlan& plan, OrderGroup views, PairVariant variant,
           std::span<const DrawnPage> pages, FrameBuffers& buffers) {
-  // A probe has the Gaussians of its view, unless it is alone in its group.
+  // The probe draws Gaussians that the cull kept for its view, unless the probe is alone in its order group.
   const std::uint32_t end =
       views.begin < plan.requested_views ? std::min(views.end, plan.requested_views) : views.end;
-  // If a model does not fill the GPU, an invocation per eye takes no longer. In larger models one invocation
-  // tests both eyes, and one eye may decide for both.
+  // If a model does not fill the GPU, one invocation per eye takes no longer. In larger models one invocation
+  // tests both eyes, and skips the second eye if the first draws the Gaussian.
   const bool asks_both = !variant.measures && plan.gaussian_count >= fills_a_gpu;
   variant.eyes = end - views.begin > 1 && !asks_both ? 2 : 1;
   for (const DrawnPage& drawn : pages) {

@@ -14,7 +14,7 @@ ReadBack::Pictures::Pictures(ReadBack& of) : of_(of) {
   }
 }
 
-// Returns the buffers from any thread: only the context's thread may destroy them.
+// Returns the buffers for reuse. Any thread may call this, but only the context's thread may destroy buffers.
 ReadBack::Pictures::~Pictures() {
   const std::lock_guard lock(of_.mutex_);
   of_.free_.push_back(std::move(copy_));

@@ -13,7 +13,7 @@
 
 namespace binosplat::render {
 
-/// Copies pictures into memory that the CPU can read, and reuses it once they are taken.
+/// Copies pictures into buffers that the CPU can read. Reuses the buffers when their Pictures are destroyed.
 class ReadBack {
   struct Copy {
     explicit Copy(gl::Context& context)
@@ -38,7 +38,7 @@ class ReadBack {
     Pictures(const Pictures&) = delete;
     Pictures& operator=(const Pictures&) = delete;
 
-    /// Waits until the GPU has copied them. Call it on the context's thread, before take().
+    /// Waits until the GPU has copied the pictures. Call it on the context's thread, before take().
     void wait() { copy_->done.wait(); }
     /// Same as Frame::read_pictures(). On any thread.
     std::vector<Picture> take() const;
@@ -50,10 +50,10 @@ class ReadBack {
     std::unique_ptr<Copy> copy_;
     std::vector<shared::View> views_;
     bool has_depth_ = false;
-    std::vector<Picture> stood_in_;  // of a stand-in for the blend, which never were on the GPU
+    std::vector<Picture> stood_in_;  // pictures of a stand-in for the blend, which were never on the GPU
   };
 
-  /// Starts to copy the pictures of a drawn frame, on the context's thread. The Frame may draw the next one
+  /// Starts to copy the pictures of a drawn frame, on the context's thread. The Frame may draw its next frame
   /// at once.
   std::unique_ptr<Pictures> start(const Frame& frame);
 

@@ -26,7 +26,7 @@ ClockPair clock_pair(const gl::Context& context) {
 Clock::time_point Recording::cpu_time(std::int64_t gpu_ns) const {
   const double gpu_span = static_cast<double>(last.gpu_ns - first.gpu_ns);
   const double cpu_span = std::chrono::duration<double, std::nano>(last.cpu - first.cpu).count();
-  const double rate = gpu_span > 0.0 ? cpu_span / gpu_span : 1.0;  // the clocks drift apart by parts of 10^5
+  const double rate = gpu_span > 0.0 ? cpu_span / gpu_span : 1.0;  // the clocks drift by some 10 us per s
   const double since = rate * static_cast<double>(gpu_ns - first.gpu_ns);
   return first.cpu + std::chrono::nanoseconds(static_cast<std::int64_t>(since));
 }

@@ -21,9 +21,9 @@ struct ClockPair {
 struct Recording {
   std::vector<FrameRecord> frames;
   std::vector<Span> spans;    // of the CPU's threads
-  ClockPair first, last;      // at the begin and the end
-  double fps = 0.0;           // scheduled frames per second; 0: each begins when the last one is done
-  std::string no_clock = {};  // why frames lack `mhz`; empty: they have it
+  ClockPair first, last;      // at the begin and the end of the recording
+  double fps = 0.0;           // scheduled frames per second; 0: a frame begins when the last one is done
+  std::string no_clock = {};  // why FrameRecord::mhz is missing; empty: it is there
 
   /// The ms of a frame's period; 0 without a schedule.
   double budget_ms() const { return fps > 0.0 ? 1000.0 / fps : 0.0; }
@@ -33,8 +33,8 @@ struct Recording {
 
 class Recorder {
  public:
-  /// Starts the recording. The context must outlive it, and be current in every call. Reads the GPU's clock
-  /// rate from `clock`, unless that is null.
+  /// Starts the recording. The context must outlive the Recorder, and be current in every call. Reads the
+  /// GPU's clock rate from `clock`, unless `clock` is null.
   Recorder(const gl::Context& context, double fps, std::shared_ptr<const gl::GpuClock> clock);
 
   void add(FrameRecord frame);

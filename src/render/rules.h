@@ -7,13 +7,13 @@
 
 namespace binosplat::render {
 
-/// A rule of th_choices (shared/axes.h), where the unit of its tolerance is. shaders/threshold/NAME.glsl
-/// computes its Th, and reference/threshold.cpp the same in float64.
+/// A rule of th_choices (shared/axes.h), which also has the unit of the rule's tolerance.
+/// shaders/threshold/NAME.glsl computes its Th, and reference/threshold.cpp the same in float64.
 struct ThresholdRule {
   bool exact = false;       // drops only invisible pairs, and has no tolerance
   bool uses_bound = false;  // uses T_upper
-  /// The first tolerance of a search: gave 40 dB or slightly more on every shared scene at a focal length of
-  /// 700 px (docs/method.md 8).
+  /// The first tolerance of a search. It gave 40 dB or slightly more on every shared scene at a focal length
+  /// of 700 px (docs/method.md 8).
   double careful_tolerance = 0.0;
   double slope = 0.0;  // the mean squared error grows about as tolerance^slope
 };
@@ -28,7 +28,7 @@ static_assert(std::size(threshold_rules) == std::size(th_choices));
 
 constexpr bool is_exact(int th) { return threshold_rules[th].exact; }
 
-/// Whether a tile test makes every visible pair.
+/// Whether a tile test finds every visible pair.
 constexpr bool has_every_pair(int tiles) {
   return tiles == TILES_ELLIPSE || tiles == TILES_SNUG || tiles == TILES_ALL;
 }

@@ -22,7 +22,7 @@ void Scatter::upload(
     const auto now = places.first(std::min(places.size(), records_at_once));
     const std::size_t word_count = now.size() * words;
     read_.wait();
-    const std::size_t room = std::min(std::bit_ceil(all), records_at_once);  // all at once: growing is slow
+    const std::size_t room = std::min(std::bit_ceil(all), records_at_once);  // final size: growing is slow
     std::ranges::copy(now, places_.room<std::uint32_t>(room).begin());
     const auto records = records_.room<std::uint32_t>(room * words);
     const auto fill_some = [&](std::size_t begin, std::size_t end) {

@@ -12,18 +12,18 @@
 
 namespace binosplat::render {
 
-/// Uploads the records side by side; a shader then moves each to its place. A separate upload per place takes
-/// a driver 10 us, whatever its size.
+/// Uploads the records contiguously; a shader then moves each record to its place. A separate upload per
+/// place would take a driver 10 us, whatever its size.
 class Scatter {
  public:
-  /// The most records in one upload; fewer if the buffer has fewer. A larger upload is split, and each part
-  /// waits for the one before.
+  /// Maximum number of records in one upload; fewer if the buffer has fewer. A larger upload is split, and
+  /// each part waits until the GPU has read the part before.
   static constexpr std::size_t records_at_once = 1 << 18;
 
   explicit Scatter(gl::Context& context);
 
-  /// Writes records of `words` words of 4 bytes into the buffer. fill(places, room) makes some at a time. It
-  /// must write all words of each record: `room` is uninitialised.
+  /// Writes records of `words` words of 4 bytes into the buffer. fill(places, room) packs the records for
+  /// some of the places. It must write all words of each record, because `room` is uninitialised.
   void upload(
       const gl::Buffer& buffer, std::span<const std::uint32_t> places, std::size_t words,
       const std::function<void(std::span<const std::uint32_t> places, std::span<std::uint32_t> room)>& fill);

@@ -13,7 +13,7 @@ void check(const FrameSettings& s, std::string_view prefix) {
   if (!(s.quality >= 0.0f) || !std::isfinite(s.quality))
     fail("{}quality {}: expected dB, above zero", prefix, s.quality);
   if (is_exact(s.th) && (s.tolerance > 0.0f || s.quality > 0.0f)) {
-    fail("{0}{1} has no effect with {0}th {2}, which is exact", prefix,
+    fail("{0}{1} has no effect with the rule {2}, which is exact", prefix,
          s.tolerance > 0.0f ? "tolerance" : "quality", th_choices[s.th].name);
   }
   if (s.tolerance > 0.0f && s.quality > 0.0f)
@@ -34,7 +34,7 @@ void check_choice(const FrameSettings& s, std::string_view prefix) {
   if (s.quality > 0.0f && !(s.quality >= quality_least && s.quality <= quality_most))
     fail("{}quality {}: expected decibels from {} to {}", prefix, s.quality, quality_least, quality_most);
   if (!can_use(s.th, s.transmittance)) {
-    fail("{0}transmittance has no effect with {0}th {1}, which uses no transmittance bound", prefix,
+    fail("{0}transmittance has no effect with the rule {1}, which uses no transmittance bound", prefix,
          th_choices[s.th].name);
   }
 }

@@ -20,7 +20,7 @@ namespace binosplat::render {
 /// Whether frames measure transmittance for later frames.
 constexpr bool measures(int transmittance) { return transmittance == TRANSMITTANCE_LAST; }
 
-/// Frames after a camera cut until measured transmittance has settled; three are enough for most.
+/// Number of frames after a camera cut until measured transmittance has settled; mostly three suffice.
 constexpr int settling_frames = 8;
 
 struct FrameSettings {
@@ -28,29 +28,31 @@ struct FrameSettings {
   int th = TH_TAU;                        // TH_ of shared/axes.h
   int transmittance = TRANSMITTANCE_ONE;  // TRANSMITTANCE_ of shared/axes.h: the source of T_upper
   DepthTable depth_table;                 // with TRANSMITTANCE_DEPTH
-  /// With measured transmittance: measuring slows a frame, and the result holds for a while. At least one of
-  /// `measure_every` frames measures, and the first `measure_every` after a camera cut. A frame also measures
-  /// if an eye has gone a third of the way to a cut (history.h). Scaffold-GS models measure in every frame.
+  /// With measured transmittance: one of `measure_every` frames measures, because measuring slows a frame and
+  /// the result holds for a while. The first `measure_every` frames after a camera cut also measure. So does
+  /// a frame if a view has gone a third of the way to a cut since the last measurement (history.h).
+  /// Scaffold-GS models measure in every frame.
   int measure_every = settling_frames;
   float tolerance = 0.0f;  // the loss that Th may cause, in the unit of its rule (th_choices)
   /// dB. Above 0: the frame chooses its tolerance, so that the worst view has about this PSNR against the
   /// exact frame, both rounded to 8 bits. Some frames also draw tiles of a view exactly to measure their
-  /// error, from which the next tolerance follows. The first frame, and one that misses, is drawn again
-  /// (tolerance_control.h).
+  /// error, which determines the next tolerance. A first frame, and a frame that misses the quality, is drawn
+  /// again (tolerance_control.h).
   float quality = 0.0f;
-  int probe_tiles = 256;  // the least number of tiles of a probe, about; all tiles of a smaller view
+  int probe_tiles = 256;  // about the minimum number of tiles of a probe; a smaller view is probed whole
   /// DECODE_, for Scaffold-GS only. Cyclopean decodes views 2k and 2k + 1 once, for the point between their
   /// eyes.
   int decode = DECODE_EYES;
   /// ORDER_ and PROJECTION_ of shared/axes.h; none: as the model was trained. `distance` with `tangent` makes
   /// pictures that do not depend on the direction of the head.
   std::optional<int> order, projection;
-  bool anchor_cull = true;  // for Scaffold-GS: as trained; false: also decodes anchors out of view
+  bool anchor_cull = true;  // for Scaffold-GS; true: culls anchors as trained; false: decodes all
   /// px: 8, 16 or 32. Exact pictures do not depend on it.
   int tile_size = TILE_SIZE_DEFAULT;
   int precision = PRECISION_FULL;  // PRECISION_, for the model, the splats and the results
-  /// The median is the depth at which T falls below a half; z_sum is then (1 - T) times that. With none,
-  /// z_sum is 0, and a frame takes some 3 % less time. Foveated frames use the mean, on canvases none.
+  /// The median is the depth at which T falls below a half; z_sum is then (1 - T) times the median. With
+  /// none, z_sum is 0, and a frame takes some 3 % less time. Foveated frames use the mean, or none if they
+  /// are on canvases.
   Depth depth = Depth::mean;
   std::vector<ViewRegion> regions;  // the drawn part of each view; empty: all of every view
   glm::vec3 background{0.0f};       // behind the scene on canvases and in the probe only
@@ -60,17 +62,17 @@ struct FrameSettings {
 /// tolerance with a quality. `prefix` precedes the names of settings in the text: "--" for options.
 void check(const FrameSettings& settings, std::string_view prefix = "");
 
-/// Settings for the exact pictures of the same views: full precision, and decoded Gaussians for each eye.
-/// Keeps order, projection, anchor_cull and tile_size of `settings`.
+/// Returns settings for the exact pictures of the same views: in full precision, with Gaussians decoded for
+/// each eye. Keeps order, projection, anchor_cull and tile_size of `settings`.
 FrameSettings exact_of(const FrameSettings& settings);
 
-/// The legal range of a quality, dB. Below it no picture remains; above it a picture of 8 bits is the exact
-/// one.
+/// The legal range of a quality, dB. Below this range no picture remains; above it, a picture of 8 bits
+/// equals the exact one.
 constexpr double quality_least = 10.0, quality_most = 100.0;
 
-/// The same as check() for settings that a user chose, each of which must have an effect. It also throws for
-/// a transmittance with a rule that uses no bound. (A frame may measure with any rule, as measure_depth_table
-/// does.)
+/// The same as check() for settings that a user chose, each of which must have an effect. Also throws for a
+/// quality out of range, and for a transmittance with a rule that uses no bound. (A frame may measure with
+/// any rule, as measure_depth_table does.)
 void check_choice(const FrameSettings& settings, std::string_view prefix = "");
 
 }  // namespace binosplat::render

@@ -9,7 +9,7 @@ namespace binosplat::render {
 
 namespace {
 
-// Dispatches one group per list of a kind.
+// The size of a dispatch with one work group per list of a kind.
 gl::DispatchSize lists_of(std::uint32_t kind, const FrameBuffers& buffers) {
   return gl::DispatchSize::indirect(
       buffers.counters,
@@ -24,7 +24,7 @@ void sort(gl::Dispatcher& dispatcher, const FramePlan& plan, const Capacity& cap
   gl::Context& context = dispatcher.context();
   const auto rounds = static_cast<std::uint32_t>(capacity.rounds);
   const auto tile_pairs = static_cast<std::uint32_t>(capacity.tile_pairs);
-  // Compiled with the others, because a frame that needs it must not wait.
+  // Compiled together with the other programs, because a later frame that needs it must not wait.
   const gl::Program& split =
       context.program("sort_split.comp", std::array{subgroups_number(context), list_views_number(plan)});
   for (std::uint32_t round = 0; round < rounds; ++round) {
@@ -44,7 +44,8 @@ void sort(gl::Dispatcher& dispatcher, const FramePlan& plan, const Capacity& cap
                     {"capacity", tile_pairs}});
   }
   const auto sort_kind = [&](std::uint32_t kind) {
-    // A software renderer pays for each invocation at each barrier, and compiles each program for seconds.
+    // On a software renderer each invocation costs time at each barrier, so it uses few invocations. Each
+    // program takes seconds to compile there, so it uses two.
     const bool software = context.software();
     const std::uint32_t each = software ? 4 * SORT_EACH : SORT_EACH;
     const std::uint32_t most = 32 * SORT_EACH << std::min(kind, SORT_CLASSES - 1);  // entries of a list

@@ -11,7 +11,7 @@ namespace binosplat::render {
 
 namespace {
 
-constexpr std::uint32_t groups_most = 2048;  // the CPU reads back one sum a group
+constexpr std::uint32_t groups_most = 2048;  // the CPU reads back one sum per work group
 
 }  // namespace
 

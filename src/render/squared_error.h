@@ -25,7 +25,8 @@ class SquaredError {
 
   /// Appends the pixels that a frame has just drawn to the wanted pixels, which stay on the GPU.
   void add(const gl::Buffer& colours, std::uint32_t pixels);
-  /// The same for a window: its first pixel has the index `first`, and its rows are `pitch` pixels apart.
+  /// Writes the pixels into a window of the wanted pixels. The window's first pixel has the index `first`,
+  /// and its rows are `pitch` pixels apart.
   void add_window(const gl::Buffer& colours, glm::uvec2 size, std::uint32_t first, std::uint32_t pitch);
   /// Removes all wanted pixels.
   void clear() { pixels_ = 0; }

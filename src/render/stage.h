@@ -6,8 +6,8 @@
 
 namespace binosplat::render {
 
-/// `decode` runs for Scaffold-GS only, `probe` in frames that measure their error. A stage has one name here,
-/// in the programs, the files and the tests.
+/// `decode` runs for Scaffold-GS only, `probe` in frames that measure their error. Programs, files and tests
+/// use the same names of stages.
 enum class Stage { decode, project, bin, sort, blend, probe };
 constexpr std::array stage_names = {"decode", "project", "bin", "sort", "blend", "probe"};
 static_assert(stage_names.size() == static_cast<std::size_t>(Stage::probe) + 1);

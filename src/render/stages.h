@@ -21,11 +21,13 @@ void project(gl::Dispatcher& dispatcher, const FramePlan& plan, std::uint32_t gr
 /// Writes (depth, splat) into the list of every supertile that a splat of any view touches, in any order.
 void bin(gl::Dispatcher& dispatcher, const FramePlan& plan, const Capacity& capacity, FrameBuffers& buffers);
 
-/// Sorts each supertile's list front to back, ties by the Gaussian's index, and makes the lists of its tiles.
+/// Sorts each supertile's list front to back, and splats of equal depth by the Gaussian's index. Makes the
+/// lists of the supertile's tiles.
 void sort(gl::Dispatcher& dispatcher, const FramePlan& plan, const Capacity& capacity, FrameBuffers& buffers);
 
 /// Blends the pictures. If the frame `measures` the transmittance, also stores the largest T of each splat.
-/// `tiles_a_splat` is the last frame's, 0 if unknown; it affects only speed.
+/// `tiles_a_splat` is the mean number of tiles per splat in the last frame, or 0 if unknown; it affects only
+/// speed.
 void blend(gl::Dispatcher& dispatcher, const FramePlan& plan, bool measures, double tiles_a_splat,
            FrameBuffers& buffers);
 
@@ -37,20 +39,20 @@ void blend_debug_view(gl::Dispatcher& dispatcher, const FramePlan& plan, int wha
 void recolour(gl::Dispatcher& dispatcher, std::uint32_t slots, const gl::Buffer& colours,
               FrameBuffers& buffers);
 
-/// Adds to `sums`, for each splat: the sum over its pixels of alpha * T * `scale` times the picture in
-/// buffers.pictures.colours, which stays unchanged. `sums` has an ivec2 of 64 bits per channel, low first. No
-/// channel times `scale` may exceed TRANSPOSED_SCALE.
+/// For each splat, adds to `sums` the sum over its pixels of alpha * T * `scale` times the picture in
+/// buffers.pictures.colours, which stays unchanged. `sums` has 64 bits per channel, as an ivec2, low word
+/// first. No channel of the picture times `scale` may exceed TRANSPOSED_SCALE.
 void blend_transposed(gl::Dispatcher& dispatcher, const FramePlan& plan, FrameBuffers& buffers, float scale,
                       const gl::Buffer& sums);
 
-/// Adds to channel 0 of `sums`, in multiples of 1 / CHANGE_SCALE, the squared change of the picture without
-/// each splat, summed over its pixels. The splats' picture is in buffers.pictures.colours, which stays
-/// unchanged.
+/// For each splat, adds to channel 0 of `sums` the squared change of the picture if this splat is removed,
+/// summed over its pixels, in multiples of 1 / CHANGE_SCALE. The picture is in buffers.pictures.colours, and
+/// stays unchanged.
 void blend_changes(gl::Dispatcher& dispatcher, const FramePlan& plan, FrameBuffers& buffers,
                    const gl::Buffer& sums);
 
-/// The visibility pass: adds to `sums`, for each splat, the sum of alpha T^2 over its pixels. Pixels count
-/// while T is at least VISIBILITY_LEAST; the unit is 1 / VISIBILITY_SCALE. Each splat has two sums: of the
+/// The visibility pass: for each splat, adds to `sums` the sum of alpha T^2 over its pixels, in units of 1 /
+/// VISIBILITY_SCALE. A pixel ends when its T falls below VISIBILITY_LEAST. Each splat has two sums: of the
 /// low VISIBILITY_LOW_BITS of each tile's sum, and of the bits above.
 void blend_visibility(gl::Dispatcher& dispatcher, const FramePlan& plan, FrameBuffers& buffers,
                       const gl::Buffer& sums);
@@ -58,7 +60,7 @@ void blend_visibility(gl::Dispatcher& dispatcher, const FramePlan& plan, FrameBu
 /// Throws Error(out_of_memory) if the driver truncated a list of splats.
 void throw_if_truncated(const gl::Context& context, const shared::Counters& counters);
 
-/// Stores the frame's measurements for the next one. Does nothing in a frame that does not measure.
+/// Stores the frame's measurements for the next frame. Does nothing in a frame that does not measure.
 void store_measured(gl::Dispatcher& dispatcher, const FramePlan& plan, bool measures, FrameBuffers& buffers);
 
 /// Sums the squared error in the probe's tiles. Does nothing without a probe.

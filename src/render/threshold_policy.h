@@ -14,9 +14,9 @@ namespace binosplat::render {
 /// threshold rule. Every program and the library use it, so the same file gives the same pictures.
 class ThresholdPolicy {
  public:
-  /// Leaves settings unchanged.
+  /// A policy without a calibration, which leaves settings unchanged.
   ThresholdPolicy() = default;
-  /// `name` identifies the calibration in errors: its file.
+  /// `name` is the calibration's file, for errors.
   ThresholdPolicy(std::string name, ThresholdCalibration calibration)
       : name_(std::move(name)),
         calibration_(std::move(calibration)),
@@ -40,14 +40,14 @@ class ThresholdPolicy {
   /// The settings of a frame whose first view is `view`, in the model's frame of reference. A requested
   /// tolerance or quality stays, and only the table is added. Otherwise scales the entry's tolerance by
   /// (focal length / calibrated focal length)^1.25. That is 2.4 at twice the focal length, where K grew 2.2-
-  /// and 3.3-fold on two scenes and kappa 1.6- and 2.7-fold. Exact for a view that the calibration does not
-  /// cover. Throws as check() does.
+  /// and 3.3-fold on two scenes and kappa 1.6- and 2.7-fold. Returns exact settings for a view that the
+  /// calibration does not cover. Throws as check() does.
   FrameSettings settings(FrameSettings requested, const shared::View& view, const ModelAxes& axes) const;
 
  private:
   std::string name_;
   std::optional<ThresholdCalibration> calibration_;
-  double reach_ = 0.0;  // of the calibration; stored because each frame needs it
+  double reach_ = 0.0;  // the calibration's validity_distance(), which each frame needs
 };
 
 }  // namespace binosplat::render

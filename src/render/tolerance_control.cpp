@@ -9,39 +9,44 @@ namespace binosplat::render {
 
 namespace {
 
-// Each further probe of a view multiplies the weight of the earlier ones by this.
+// Each further probe of a view multiplies the weight of the view's earlier probes by this.
 constexpr double fading = 0.7;
-// The largest weight of all earlier probes over the new one's, because even a probe of the whole view ages.
+// All earlier probes together weigh at most this many times as much as the new probe, because even a probe of
+// the whole view ages.
 constexpr double carried_max = 1.25;
-// dB above the requested quality at which frames aim, because it is promised for the worst view and single
-// frames.
+// Frames aim at this many dB above the requested quality, because the quality is promised for the worst view
+// and for single frames.
 constexpr double margin = 0.3;
-// dB below the requested quality at which a frame is drawn again; and the range about the aim after a cut.
+// A frame that is more than `miss` dB below the requested quality is drawn again. After a cut, a frame is
+// drawn again if it lies outside the range from fresh_below dB under the aim to fresh_above dB over it.
 constexpr double miss = 0.75;
 constexpr double fresh_below = 0.3, fresh_above = 0.6;
-// The same for a single probe.
+// The same as `miss`, for a single probe.
 constexpr double miss_of_one = 1.75;
-// A probe's error over the expected one. Beyond this the scene has changed, and not only the sampled part of
-// it.
+// If a probe's error exceeds the expected error by this factor, the scene has changed, not only the sampled
+// part of it.
 constexpr double surprise = 2.7;
 // The relative standard deviation of a probe's result. A probe has as many tiles as this requires, and at
 // least one tile in `share_max`.
 constexpr double deviation = 0.12;
 constexpr double share_max = 64.0;
 constexpr double small_most = 1024.0;  // tiles
-// Attempts at a frame. The last is exact; only earlier ones reject a quality that is too good.
+// Maximum number of attempts at a frame. The last attempt is exact; the last three accept a quality that is
+// too good.
 constexpr int attempts_max = 8;
-// The largest factor of the tolerance from one frame to the next, and between attempts.
+// The largest factors by which the tolerance rises and falls from one frame to the next, and between
+// attempts.
 constexpr double step_up = 1.2, step_down = 2.0, step_searching = 30.0;
 constexpr double slope_min = 1.0, slope_max = 24.0, slope_up_min = 3.0;
 constexpr double tolerance_min = 1e-9, tolerance_max = 1e9;
 
-// dB: a requested quality that changes by at most `followed` is tracked from frame to frame, as when levels
-// of detail use a part of the error. A larger change starts a search. A rise by more than `unnoticed` needs a
-// probe.
+// dB. If the requested quality changes by at most `followed`, the tolerance follows it from frame to frame.
+// Levels of detail cause such changes, because they use a part of the error. A larger change starts a search.
+// A rise by more than `unnoticed` needs a probe.
 constexpr double followed = 3.5, unnoticed = 0.25;
 
-// Smaller pictures have smaller Gaussians. fox needed 0.027 (squared, last) at 160 px: less than in
+// Smaller pictures have smaller Gaussians, which need a smaller tolerance. With `squared` and `last`, fox
+// needed 0.148 at a focal length of 690 px and 0.027 at 160 px, so the tolerance falls faster than in
 // proportion.
 double careful_tolerance_at_40_db(const FrameSettings& s, double focal) {
   return threshold_rules[s.th].careful_tolerance * std::pow(std::min(1.0, focal / 700.0), 1.75);
@@ -98,12 +103,12 @@ Probe ToleranceControl::next_probe(std::span<const shared::View> views, const Fr
   is_small_ = is_small(view, settings);
   const auto side = static_cast<std::uint32_t>(settings.tile_size);
   const std::uint32_t across = (view.width + side - 1) / side, down = (view.height + side - 1) / side;
-  // All tiles after a cut; later the number grows with their variance.
+  // After a cut, a probe has all tiles. Later the number of tiles grows with the variance of their errors.
   const double all = static_cast<double>(across) * down;
   const double wanted = std::max(
       {static_cast<double>(settings.probe_tiles), all / share_max, unevenness_ / (deviation * deviation)});
   while (!whole_probe_ && (probe_.step + 1.0) * (probe_.step + 1.0) * wanted <= all) ++probe_.step;
-  // The golden ratio spreads the offsets of a few probes evenly.
+  // The golden ratio spreads the offsets of successive probes evenly.
   const std::uint32_t places = probe_.step * probe_.step;
   std::uint32_t stride = std::max(1u, static_cast<std::uint32_t>(std::lround(0.618 * places)));
   while (std::gcd(stride, places) != 1) ++stride;
@@ -129,7 +134,7 @@ float ToleranceControl::next_tolerance() {
   return static_cast<float>(tolerance_);
 }
 
-// The tolerance from one frame to the next.
+// The tolerance of a frame without a cut, from the error of the frames before.
 double ToleranceControl::followed_tolerance(double target) const {
   const double error = worst();
   if (error <= 0.0) return tolerance_ * step_up;
@@ -142,7 +147,7 @@ double ToleranceControl::searched_tolerance(double target) const {
   const Bracket& b = bracket_;
   if (b.held > 0.0 && b.missed > 0.0) {
     if (attempts_ > attempts_max - 2) return b.held;
-    double share = 0.5;  // position between the two, in logarithms
+    double share = 0.5;  // position between `held` and `missed`, in logarithms
     if (b.held_error > 0.0) share = std::log(target / b.held_error) / std::log(b.missed_error / b.held_error);
     return b.held * std::pow(b.missed / b.held, std::clamp(share, 0.1, 0.9));
   }
@@ -157,13 +162,14 @@ void ToleranceControl::add_probe(const ProbeResult& probed) {
   const double expected = error_now(view);
   const double error = probed.squared_error;
   const bool whole = probe_.step == 1;
-  // A new view has no expected error. Some tiles with a small error promise nothing about the others.
+  // If the error is far from the expected error, earlier probes do not count. A view without probes has no
+  // expected error. A small error in some tiles promises nothing about the other tiles.
   if (view.weight > 0.0 && !whole_probe_ &&
       (error > surprise * expected || (whole && surprise * error < expected))) {
     for (Estimate& any : views_) any.weight = any.measured ? any.weight : 0.0;
   }
   unevenness_ = std::max(probed.unevenness, fading * unevenness_);
-  // These tiles may be sky: the next probe is larger.
+  // Tiles with such a small error may show only sky, so the next probe is larger.
   const bool doubtful = view.weight > 0.0 && !whole_probe_ && !whole && surprise * error < expected;
   if (doubtful) unevenness_ = std::max(unevenness_, 16.0 * deviation * deviation * probe_tiles_);
   const bool follows = view.weight > 0.0 && expected > 0.0;
@@ -171,8 +177,8 @@ void ToleranceControl::add_probe(const ProbeResult& probed) {
   if (!doubtful) view.weight = std::min(view.weight, carried_max * probe_tiles_);
   const double together = view.weight + probe_tiles_;
   view.error = view.weight > 0.0 ? (view.weight * expected + probe_tiles_ * error) / together : error;
-  // Half of a change, in dB, applies to the other views. Between attempts the tolerance causes it, so all of
-  // it does.
+  // Half of the change in dB also applies to the other views. Between attempts the tolerance causes the
+  // change, so all of the change applies to them.
   if (follows && view.error > 0.0) {
     const double trend = std::pow(view.error / expected, attempts_ > 1 ? 1.0 : 0.5);
     for (Estimate& any : views_) {
@@ -226,7 +232,7 @@ void ToleranceControl::measured(const ProbeResult& probed, bool settled) {
     attempts_ = 0;
     bracket_ = {};
   }
-  // Further attempts probe the whole of this view: two views do not share an exponent.
+  // Further attempts probe all tiles of the same view, because each view has its own exponent.
   whole_probe_ = !is_final_ && (!goes_on || after_cut_);
   if (is_final_) {
     after_cut_ = false;

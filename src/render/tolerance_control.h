@@ -16,24 +16,26 @@ namespace binosplat::render {
 ///
 /// A rule's mean squared error grows as a power of its tolerance (docs/method.md 8: kappa^1.3, K^2 on trained
 /// scenes; kappa^10 if thousands of similar Gaussians vanish at once). Each search after a camera cut
-/// estimates the exponent anew. So the tolerance falls at once and rises carefully. It also follows small
-/// changes of the requested quality.
+/// estimates the exponent again. Because the exponent varies, the tolerance falls at once and rises slowly.
+/// The tolerance also follows small changes of the requested quality.
 ///
 /// A frame that misses the quality must be drawn again. After a camera cut, the frame is drawn again until
-/// every view holds. Later this happens if a probe shows much more error than expected. If a view is so small
-/// that a probe has all its tiles, the frame is drawn again until all views were measured. Each attempt is
+/// every view keeps the quality. A later frame is drawn again if its probe shows much more error than
+/// expected. If a view is so small that a probe has all its tiles, the frame is drawn again until all views
+/// were measured. Each attempt is
 ///   next_probe(), next_tolerance(), the drawing, measured(), and again unless is_final().
 class ToleranceControl {
  public:
   /// Forgets the measurements, because the views changed. The tolerance stays as a first guess.
   void forget();
 
-  /// Whether a frame of these settings can be drawn at tolerance() without a probe. False for views whose
-  /// probe has all tiles: single Gaussians may change their error by some dB per frame.
+  /// Whether a frame of these settings can be drawn at tolerance() without a probe. False for views so small
+  /// that a probe has all their tiles, because there single Gaussians may change the error by some dB per
+  /// frame.
   bool is_settled(std::span<const shared::View> views, const FrameSettings& settings) const;
   float tolerance() const { return static_cast<float>(tolerance_); }
 
-  /// The tiles that the next attempt also draws exactly: after a cut all of a view's.
+  /// The tiles that the next attempt also draws exactly. After a cut, these are all tiles of a view.
   Probe next_probe(std::span<const shared::View> views, const FrameSettings& settings);
 
   /// The tolerance for the next attempt.
@@ -56,10 +58,10 @@ class ToleranceControl {
     double error = 0.0;      // mean squared error of the view's probed tiles
     double weight = 0.0;     // number of tiles; older tiles count less
     double tolerance = 0.0;  // the tolerance of `error`
-    bool measured = false;   // on the whole view in this frame
+    bool measured = false;   // the error was measured on the whole view, in this frame
   };
-  // The largest tolerance at which attempts at one frame held, the smallest at which they missed, and their
-  // errors.
+  // Of the attempts at one frame: the largest tolerance that kept the quality, the smallest that missed it,
+  // and their errors.
   struct Bracket {
     double held = 0.0, held_error = 0.0;
     double missed = 0.0, missed_error = 0.0;
@@ -79,10 +81,10 @@ class ToleranceControl {
   bool is_small_ = false;       // a probe has all tiles of a view
   bool after_cut_ = true;       // no frame was completed since the cut
   bool whole_probe_ = true;     // after a cut or a miss: the next probe has all tiles of a view
-  std::size_t views_held_ = 0;  // views that hold in the frame after a cut
+  std::size_t views_held_ = 0;  // number of views that keep the quality in the frame after a cut
   bool is_final_ = true;
   bool exact_ = false;  // whether this attempt is exact
-  int attempts_ = 0;    // at this frame, for this view's tolerance
+  int attempts_ = 0;    // at this frame, for the probed view
   Bracket bracket_;
   std::uint32_t next_ = 0;    // index of the next probe, one per frame
   Probe probe_;               // of this attempt

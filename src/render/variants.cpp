@@ -17,9 +17,9 @@ struct BlendColumns {
   int height, ahead;
 };
 
-// Found by measurement (README.md). In the approximate blend, blend_blocks.comp has blocks of `height` rows
-// (docs/method.md 5.2). In the exact one, longer columns would cost llvmpipe more of the 65,535 rounds that
-// it allows for all loops. blend.comp needs an `ahead` that divides BLEND_UNROLL.
+// These numbers were the fastest (README.md). In the approximate blend, blend_blocks.comp has blocks of
+// `height` rows (docs/method.md 5.2). In the exact blend, longer columns would need more rounds of loops;
+// llvmpipe allows 65,535 rounds of all loops together. blend.comp needs an `ahead` that divides BLEND_UNROLL.
 BlendColumns columns_of(const BlendVariant& v) {
   if (v.debug_view) return {1, 1};
   if (v.program == BlendProgram::software) return {v.long_lists && v.approximate ? 4 : 8, 2};
@@ -83,8 +83,9 @@ std::array<gl::Number, 18> PairVariant::numbers() const {
 }
 
 bool BlendVariant::is_legal() const {
-  // Only the general program measures or shows values: there all pixels of a tile walk through its splats
-  // together. Visibility has all programs, because frames wait for it. Other tile sizes are for comparisons.
+  // Only the general program measures or makes debug views, because there all pixels of a tile walk through
+  // its splats together. All programs measure visibility, because frames wait for it. Only the general
+  // program has other tile sizes, which are for comparisons.
   const bool is_plain = draws() ? measure == MEASURE_NONE : measure == MEASURE_VISIBILITY;
   const bool is_default_tile = tile_size == TILE_SIZE_DEFAULT;
   if (program != BlendProgram::general && (!is_plain || !is_default_tile)) return false;

@@ -22,7 +22,7 @@ gl::Number subgroups_number(const gl::Context& context);
 /// The variant of the programs that decide which pairs exist: project_cull.comp, project.comp,
 /// bin_large.comp.
 struct PairVariant {
-  /// Of the plan's first model.
+  /// The variant for the plan's first model.
   explicit PairVariant(const FramePlan& plan);
   void take(const PlannedModel& model);
 
@@ -33,7 +33,7 @@ struct PairVariant {
   bool between_pixels;
   float kernel_px2 = 0.0f;  // 0: the default of shared/limits.h
   // Only some of these programs use the following:
-  bool measures = false;  // transmittance for later frames
+  bool measures = false;  // the frame measures transmittance for later frames
   int eyes = 1;           // invocations along y of project_cull.comp
   int sh_degree = 0;
   bool subgroups = false;

@@ -66,11 +66,11 @@ std::vector<glm::uvec2> region_rows(const ViewRegion& region, const shared::View
                                     const glm::uvec2& first, std::uint32_t step) {
   const glm::uvec2 size(view.width, view.height);
   const glm::uvec2 tiles = (size + tile - 1u) / tile;
-  // Whole tiles of the hole; the picture's edge may clip the last ones.
+  // The tiles that lie completely in the hole; the picture's edge may clip the last of them.
   const glm::uvec2 hole_begin = (region.hole_begin + tile - 1u) / tile;
   const glm::uvec2 hole_end =
       glm::max(hole_begin, glm::mix(region.hole_end / tile, tiles, glm::equal(region.hole_end, size)));
-  // The columns of the view's own tiles: a probe skips some.
+  // Converts columns of the picture's tiles to columns of the view's tiles, because a probe skips tiles.
   const auto packed = [&](const glm::uvec2& columns) {
     const glm::uvec2 there = (glm::max(columns, first.x) - first.x + step - 1u) / step;
     return there.x | there.y << 16;

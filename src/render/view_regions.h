@@ -12,25 +12,26 @@ namespace binosplat::render {
 
 struct FrameSettings;
 
-/// The drawn part of a view, and its accuracy. By default the whole view, as the frame's settings say.
-/// Regions do not change the order groups.
+/// The drawn part of a view, and its accuracy. By default the whole view is drawn, as the frame's settings
+/// request. Regions do not change the order groups.
 struct ViewRegion {
-  /// px. A window of the view's picture: only it is drawn and stored, with the same bits as in the whole
-  /// picture. Corner and size are multiples of BLEND_CELL px, or end at the picture's edge. A size of 0 also
-  /// reaches the edge. In Scaffold-GS models a window may have other Gaussians than the whole picture.
+  /// px. A window of the view's picture: only the window is drawn and stored, with the same bits as in the
+  /// whole picture. Corner and size are multiples of BLEND_CELL px, or the window ends at the picture's edge.
+  /// A size of 0 also reaches the edge. Not for Scaffold-GS models, where a window would decode other
+  /// Gaussians than the whole picture.
   glm::uvec2 corner{0}, size{0};
-  /// The drawn columns of tiles [x, y), one range per row of tiles. Other tiles, such as tiles that no lens
-  /// shows, get no pairs. Their pixels have C = 0 and T = 1. Tiles are of settings.tile_size px, counted from
-  /// the window's corner. Empty: all are drawn.
+  /// For each row of tiles, the range [x, y) of tile columns to draw. All other tiles, such as tiles that no
+  /// lens shows, get no splat-tile pairs; their pixels have C = 0 and T = 1. Tiles are of settings.tile_size
+  /// px, counted from the window's corner. Empty: all tiles are drawn.
   std::vector<glm::uvec2> columns;
-  /// px from the window's corner. Tiles within [hole_begin, hole_end) are not drawn.
+  /// px from the window's corner. Tiles inside the rectangle [hole_begin, hole_end) are not drawn.
   glm::uvec2 hole_begin{0}, hole_end{0};
   /// The ratio of the view's tolerance to the frame's. 0: the view is exact.
   float tolerance_share = 1.0f;
-  /// For a picture with fewer pixels than another one of the same view: (its pixels along an axis / the
-  /// other's) squared, below 1. The low-pass has the same width in px in every picture, so thin Gaussians
-  /// would be wider and brighter in the smaller one. This factor removes the weight that they gain.
-  /// Anti-aliased models ignore it: their Gaussians lose that weight anyway.
+  /// Set this for a picture with fewer pixels than another picture of the same view: the ratio of their
+  /// numbers of pixels, below 1. The low-pass has the same width in px in every picture, so thin Gaussians
+  /// would be wider and brighter in the smaller picture. This factor removes the weight that they gain.
+  /// Anti-aliased models ignore it, because their Gaussians never gain weight from the low-pass.
   float low_pass_share = 1.0f;
 
   bool is_window() const { return corner != glm::uvec2(0) || size != glm::uvec2(0); }
@@ -40,7 +41,7 @@ struct ViewRegion {
   }
 };
 
-/// Throws Error unless there are no regions or one for each of the `views`, and for regions that contradict
+/// Throws Error if there are regions, but not one for each of the `views`, and for regions that contradict
 /// the settings.
 void check_regions(const FrameSettings& settings, std::size_t views, bool is_scaffold);
 

@@ -8,13 +8,14 @@ namespace binosplat::xr {
 
 namespace {
 
-// The inputs of a kind of controller, relative to its hand; empty: it lacks the input.
+// The paths of a controller's inputs, relative to the path of its hand. Empty: the controller lacks the
+// input.
 struct Controller {
   const char* profile;
   const char* stick;
   const char* grab;
-  const char* left_menu;  // if only the left hand has it
-  const char* menu;       // if both hands have it
+  const char* left_menu;  // if only the left hand's controller has a menu button
+  const char* menu;       // if both controllers have a menu button
 };
 constexpr Controller controllers[] = {
     {"khr/simple_controller", "", "/input/select/click", "", "/input/menu/click"},

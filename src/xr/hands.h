@@ -29,7 +29,7 @@ class Hands {
   std::array<XrPath, 2> paths_;  // the hands' paths
   Owned<XrActionSet> set_;
   Owned<XrAction> pose_, stick_, grab_, menu_;
-  Owned<XrAction> gaze_;  // null, as its space, without eye tracking
+  Owned<XrAction> gaze_;  // null without eye tracking, as is gaze_space_
   std::array<Owned<XrSpace>, 2> spaces_;
   Owned<XrSpace> gaze_space_;
 };

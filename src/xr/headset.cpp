@@ -16,15 +16,15 @@ namespace {
 
 using std::chrono::milliseconds;
 
-constexpr double own_share = 0.8;  // of a frame's time; the runtime also draws
-// Sessions lost in a row without a drawn frame, after which the viewer ends.
+constexpr double own_share = 0.8;  // our share of a frame's time, because the runtime also draws
+// The viewer ends after this many lost sessions in a row in which it drew no frame.
 constexpr int sessions_most = 10;
 constexpr milliseconds between_sessions{500}, wait_most{10000};
-constexpr milliseconds between_polls{10};  // while no frames are requested
+constexpr milliseconds between_polls{10};  // while the runtime requests no frames
 
 double ms_of(XrDuration ns) { return 1e-6 * static_cast<double>(ns); }
 
-// The pose between both eyes, which may be canted.
+// The head's pose: midway between both eyes, which may be canted.
 Eye head_of(const std::vector<XrView>& views) {
   const Eye left = eye_of(views[0].pose), right = eye_of(views[1].pose);
   const double same_way = glm::sign(glm::dot(left.orientation, right.orientation));
@@ -37,7 +37,7 @@ class Viewer {
          const Callbacks& callbacks)
       : instance_(instance), renderer_(renderer), settings_(settings), callbacks_(callbacks) {}
 
-  /// Runs a session to its end. Returns false if it was lost.
+  /// Runs a session to its end. Returns false if the session was lost.
   bool run_session() try {
     Session session(instance_);
     Hands hands(session);
@@ -80,7 +80,7 @@ class Viewer {
     }
     if (views.empty()) {
       last_.reset();
-      last_shown_ = display;  // not missed: nothing was requested
+      last_shown_ = display;  // no periods are missed, because the runtime requested no picture
       return session.end_frame(display);
     }
     if (session.take_masks_changed()) projection.take_masks();
@@ -139,9 +139,9 @@ class Viewer {
   const Callbacks& callbacks_;
   std::optional<Walk> walk_;  // continues after a lost session
   std::optional<FrameBudget> budget_;
-  std::optional<XrTime> last_;               // display time of the last step
+  std::optional<XrTime> last_;               // display time of the last step of `walk_`
   XrTime first_shown_ = 0, last_shown_ = 0;  // display times of drawn frames; 0: none yet
-  std::vector<double> times_;                // ms
+  std::vector<double> times_;                // GPU time of each frame, ms
   bool tracked_ = true, leaving_ = false;
 };
 

@@ -11,11 +11,11 @@ namespace binosplat::xr {
 
 struct HeadsetSettings {
   double scale = 1.0;  // factor for the texture sizes that the runtime recommends
-  /// Drawing settings, with a background. Foveated pictures have no depths. The near plane is at the scale of
-  /// start.units_per_metre.
+  /// Drawing settings, with a background. Foveated pictures have no depths. The near plane is in world units
+  /// at start.units_per_metre. If the hands enlarge the world, it keeps its distance in metres.
   Settings drawing;
   std::optional<Calibration> calibration;  // completes `drawing`
-  std::optional<double> budget_ms;         // of a frame, kept by quality and size; 0: a share of the period
+  std::optional<double> budget_ms;         // frame time, kept by quality and size; 0: a share of the period
   Placement start;                         // at the eyes of a standing viewer (upright_at)
 };
 
@@ -26,13 +26,14 @@ struct Drawn {
   Clock::time_point begin = {}, end = {};
   double levels_ms = 0.0;   // CPU time for levels of detail
   double period_ms = 0.0;   // the runtime's period of frames
-  double display_ms = 0.0;  // display time since the first frame
-  int missed = 0;           // display periods without a new frame since the last one
+  double display_ms = 0.0;  // display time, relative to the first frame's
+  int missed = 0;           // display periods without a new frame, since the last frame
 };
 
 /// Callbacks of the program that shows a headset.
 struct Callbacks {
-  /// Called after each frame, and repeatedly while no frames are requested. Returning false ends the session.
+  /// Called after each frame, and repeatedly while the runtime requests no frames. Returning false ends the
+  /// session.
   std::function<bool()> step;
   /// Shows the left eye's picture, which is in the lower left corner of the target. May be empty.
   std::function<void(const Target& left, const glm::ivec2& size)> show = {};
@@ -45,9 +46,9 @@ struct Callbacks {
   std::function<void(Drawn frame)> drawn;
 };
 
-/// Draws in the current OpenGL context, the renderer's. If the runtime loses a session, starts another once
-/// the headset is back, within some seconds. Throws Error(no_gl) for failures of the runtime, and as
-/// Renderer::submit does.
+/// Draws in the renderer's OpenGL context, which must be current. If the runtime loses a session, waits some
+/// seconds for the headset and starts another session. Throws Error(no_gl) for failures of the runtime, and
+/// as Renderer::submit does.
 void run(Instance& instance, Renderer& renderer, const HeadsetSettings& settings, const Callbacks& callbacks);
 
 }  // namespace binosplat::xr

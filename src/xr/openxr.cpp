@@ -23,7 +23,7 @@ constexpr std::array optional_extensions = {
     XR_VARJO_QUAD_VIEWS_EXTENSION_NAME, XR_EXT_EYE_GAZE_INTERACTION_EXTENSION_NAME, "XR_EXT_local_floor"};
 
 void* open_loader() {
-  setenv("XR_LOADER_DEBUG", "none", 0);  // errors below replace its messages
+  setenv("XR_LOADER_DEBUG", "none", 0);  // the errors below replace the loader's messages
   void* const library = dlopen("libopenxr_loader.so.1", RTLD_NOW | RTLD_LOCAL);
   if (library == nullptr) {
     refuse(

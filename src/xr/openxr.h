@@ -1,6 +1,6 @@
 #pragma once
-// OpenXR's functions and runtime. The first call opens the loader: no program links to it, so all other
-// features work without it.
+// OpenXR's functions and runtime. The first call opens the loader. No program links to the loader, so all
+// other features work without it.
 
 #define XR_NO_PROTOTYPES
 #define XR_USE_GRAPHICS_API_OPENGL
@@ -26,7 +26,7 @@ PFN_xrVoidFunction find(const char* name);
 
 /// Calls OpenXR's xrNAME and returns its unchecked result.
 #define XR_CALL(name, ...) reinterpret_cast<PFN_xr##name>(find("xr" #name))(__VA_ARGS__)
-/// The same, checked.
+/// The same, with check().
 #define XR(name, ...) check(XR_CALL(name, __VA_ARGS__), "xr" #name)
 
 /// The name of a result, as in "XR_ERROR_RUNTIME_FAILURE".
@@ -37,8 +37,8 @@ struct Lost {
   bool instance = false;
 };
 
-/// Returns the result of `call`. Throws Error(no_gl) with both for a failure, and Lost if session or instance
-/// is lost.
+/// Returns `result`, unless it is a failure. Throws Lost if the session or the instance is lost. Throws
+/// Error(no_gl) for other failures; its text names the call and the result.
 XrResult check(XrResult result, const char* call);
 
 /// Throws Error(no_gl) for a fault of the runtime or the headset.
@@ -81,12 +81,12 @@ using Owned = std::unique_ptr<std::remove_pointer_t<Handle>, Destroy>;
 
 /// A runtime and its headset.
 struct Instance {
-  /// Connects to the runtime and finds the headset. Throws Error(no_gl), with one line, without loader,
-  /// runtime or headset, and if the runtime does not support OpenGL through EGL.
+  /// Connects to the runtime and finds the headset. Throws Error(no_gl), with a text of one line, if there is
+  /// no loader, runtime or headset, or if the runtime does not support OpenGL through EGL.
   Instance();
 
   bool has(std::string_view extension) const { return std::ranges::count(extensions, extension) > 0; }
-  /// Whether there are four views instead of two: both wide ones, then both insets.
+  /// Whether there are four views instead of two: both wide views, then both insets.
   bool has_insets() const { return views != XR_VIEW_CONFIGURATION_TYPE_PRIMARY_STEREO; }
   XrResult find_headset();  // updates `system`; succeeds if a headset is connected
   XrPath path(const std::string& text) const;
@@ -98,7 +98,7 @@ struct Instance {
     return reinterpret_cast<Function>(found);
   }
 
-  std::vector<const char*> extensions;  // enabled ones
+  std::vector<const char*> extensions;  // the enabled extensions
   Owned<XrInstance> handle;
   XrSystemId system = XR_NULL_SYSTEM_ID;
   std::string runtime, headset;  // "Monado 21.0.0"; the headset's name

@@ -17,20 +17,22 @@ namespace {
 // Distance of the far plane of depths, m.
 constexpr double far_metres = 1000.0;
 
-// Depths have fewer pixels by this factor along each side. Runtimes reproject pictures with them, for which
-// sharp edges are unnecessary. Server GPUs fill depths slowly (an H200 takes 2.3 ms for two at full size).
+// Depth textures are smaller than pictures by this factor along each side. Runtimes use depths to reproject
+// pictures, which needs no sharp edges. Server GPUs fill depths slowly (an H200 takes 2.3 ms for two textures
+// of full size).
 constexpr int depth_step = 8;
 
 constexpr std::array<std::int64_t, 3> depth_formats = {GL_DEPTH_COMPONENT32F, GL_DEPTH_COMPONENT24,
                                                        GL_DEPTH_COMPONENT16};
 
-// Index of a view when drawn: the views of an eye are adjacent, so that they are projected together.
+// The index of a view in a frame. The views of an eye are adjacent there, so that they are projected
+// together.
 std::size_t place_of(std::size_t view, std::size_t views) {
   return views == 4 ? (view % 2) * 2 + view / 2 : view;
 }
 
-// A picture in the plane at a distance of 1 ahead: its upper left corner, and the vector to its lower right
-// one.
+// A picture in the plane at distance 1 in front of the eye: its upper left corner, and the vector from there
+// to its lower right corner.
 struct Frustum {
   explicit Frustum(const Fov& fov)
       : corner(std::tan(fov.left), std::tan(fov.up)),
@@ -39,14 +41,14 @@ struct Frustum {
   glm::dvec2 corner, across;
 };
 
-// Excludes the inset's area from the wide view, except for a margin in which runtimes may mix both. Only if
-// both have the same pose.
+// Cuts a hole for the inset into the wide view, if both views have the same pose. The hole is smaller than
+// the inset by a margin, in which runtimes may mix both views.
 void add_inset(View& wide, const View& inset) {
   const Frustum of_wide(wide.eye.fov), of_inset(inset.eye.fov);
   const double share = wide.size.x / of_wide.across.x / (inset.size.x / of_inset.across.x);
   wide.region.low_pass_share = static_cast<float>(std::min(1.0, share * share));
   if (wide.eye.position != inset.eye.position || wide.eye.orientation != inset.eye.orientation) return;
-  constexpr double margin = 0.1;  // of the inset's sides
+  constexpr double margin = 0.1;  // share of the inset's width and height
   const auto pixels = [&](double at) {
     const glm::dvec2 point = of_inset.corner + at * of_inset.across;
     return glm::uvec2(glm::clamp((point - of_wide.corner) / of_wide.across, 0.0, 1.0) *
@@ -86,7 +88,7 @@ std::vector<glm::uvec2> visible_columns(const Mask& mask, const Fov& fov, const 
   constexpr double tile = ViewRegion::tile, infinite = std::numeric_limits<double>::infinity();
   const Frustum picture(fov);
   const glm::ivec2 tiles = (size + ViewRegion::tile - 1) / ViewRegion::tile;
-  // For each row, the least and largest x of the triangles' edges between its heights.
+  // For each row of tiles, the minimum and maximum x of the triangles' edges within the row.
   std::vector<glm::dvec2> spans(static_cast<std::size_t>(tiles.y), {infinite, -infinite});
   const auto corner = [&](std::size_t k) {
     const XrVector2f& v = mask.vertices[mask.indices[k]];
@@ -170,8 +172,8 @@ Projection::Projection(const Session& session, double scale, bool composed)
     };
     const glm::ivec2 size(side(view.recommendedImageRectWidth, view.maxImageRectWidth),
                           side(view.recommendedImageRectHeight, view.maxImageRectHeight));
-    // Compute shaders write in place, through a view of the sRGB texture. If the runtime forbids that,
-    // through a copy.
+    // Compute shaders write in place, through a view of the sRGB texture. If the runtime forbids this, the
+    // renderer copies its own picture.
     ViewTextures of{
         Swapchain(session, GL_SRGB8_ALPHA8, size,
                   XR_SWAPCHAIN_USAGE_COLOR_ATTACHMENT_BIT | XR_SWAPCHAIN_USAGE_SAMPLED_BIT,

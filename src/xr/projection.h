@@ -10,12 +10,13 @@ namespace binosplat::xr {
 
 /// A ring of the runtime's textures. One at a time is acquired and drawn.
 struct Swapchain {
-  /// 2D textures with one sample, in a format that the runtime offers, for `usage`, and for `more` if the
-  /// runtime allows it. Throws Error(no_gl) if it creates none.
+  /// Creates 2D textures with one sample, in a format that the runtime offers, for `usage`, and for `more` if
+  /// the runtime allows it. Throws Error(no_gl) if the runtime creates none.
   Swapchain(const Session& session, std::int64_t format, const glm::ivec2& wanted,
             XrSwapchainUsageFlags usage, XrSwapchainUsageFlags more = 0);
 
-  /// Waits until the runtime has read a texture, and returns its name. Call release() before the frame ends.
+  /// Waits until the runtime has read a texture, and returns the texture's name. Call release() before the
+  /// frame ends.
   std::uint32_t acquire() const;
   void release() const { XR(ReleaseSwapchainImage, handle.get(), nullptr); }
 
@@ -25,15 +26,15 @@ struct Swapchain {
   std::vector<std::uint32_t> textures;
 };
 
-/// The visible part of a view (XR_KHR_visibility_mask): triangles at a distance of 1 ahead, x right and y up.
-/// Empty: all of the view.
+/// The visible part of a view (XR_KHR_visibility_mask): triangles in the plane at distance 1 in front of the
+/// eye, x right and y up. Empty: all of the view.
 struct Mask {
   std::vector<XrVector2f> vertices;
   std::vector<std::uint32_t> indices;  // three per triangle
 };
 
-/// For each row of tiles of a picture, the columns visible through the lens, in the form of ViewRegion, with
-/// a margin of a pixel. Empty: all.
+/// Returns ViewRegion::columns: for each row of tiles of a picture, the columns visible through the lens,
+/// with a margin of a pixel. Empty: all.
 std::vector<glm::uvec2> visible_columns(const Mask& mask, const Fov& fov, const glm::ivec2& size);
 
 class Projection {
@@ -42,9 +43,9 @@ class Projection {
   /// for foveated pictures, which have neither depths nor regions.
   Projection(const Session& session, double scale, bool composed);
 
-  /// Acquires textures for the located views, and returns the views to draw: pictures of `scale` times the
-  /// textures' sides. The views of an eye are adjacent. Of four views, the wide ones have holes for the
-  /// insets. Insets are exact unless the settings have a quality.
+  /// Acquires textures for the located views, and returns the views to draw: each picture has `scale` times
+  /// its texture's width and height. The views of an eye are adjacent. Of four views, the wide ones have
+  /// holes for the insets. Insets are exact unless the settings have a quality.
   std::vector<View> begin(std::span<const XrView> located, const Placement& placement, double scale,
                           const Settings& settings);
 
@@ -73,7 +74,7 @@ class Projection {
 /// Converts a pose to the library's eye.
 Eye eye_of(const XrPosef& pose, const XrFovf& fov = {});
 
-/// The gaze of each eye, for Foveation::gaze, clamped to slightly within its picture.
+/// The gaze of each eye, for Foveation::gaze, clamped to slightly inside the eye's picture.
 std::vector<glm::dvec2> gaze_of(const XrPosef& gaze, std::span<const XrView> located);
 
 }  // namespace binosplat::xr

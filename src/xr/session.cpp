@@ -34,7 +34,7 @@ XrGraphicsBindingEGLMNDX binding_of_current_context() {
   if (binding.context == EGL_NO_CONTEXT) refuse("OpenXR takes contexts of EGL only, and none is current");
   binding.getProcAddress = opened<PFNEGLGETPROCADDRESSPROC>("eglGetProcAddress");
   binding.display = OPENED(eglGetCurrentDisplay)();
-  EGLint id = 0, count = 0;  // config of the context; 0: created without
+  EGLint id = 0, count = 0;  // config of the context; 0: the context has none
   OPENED(eglQueryContext)(binding.display, binding.context, EGL_CONFIG_ID, &id);
   const EGLint wanted[] = {EGL_CONFIG_ID, id, EGL_NONE};
   if (id != 0) OPENED(eglChooseConfig)(binding.display, wanted, &binding.config, 1, &count);

@@ -9,7 +9,8 @@ namespace binosplat::xr {
 
 constexpr XrPosef no_move = {{0.0f, 0.0f, 0.0f, 1.0f}, {0.0f, 0.0f, 0.0f}};
 
-/// The loader of functions for the current OpenGL context. Throws Error(no_gl) if that is not one of EGL.
+/// Returns the function loader of the current OpenGL context. Throws Error(no_gl) if this is not a context of
+/// EGL.
 GetProcAddress get_proc_address();
 
 class Session {
@@ -23,11 +24,11 @@ class Session {
   /// x right, y up, z backward, metres. The origin is on the floor, or at the head's first position.
   XrSpace space() const { return space_.get(); }
   bool on_floor() const { return space_type_ != XR_REFERENCE_SPACE_TYPE_LOCAL; }
-  /// Whether the space is the room's. The head does not start at its origin.
+  /// Whether the space is the room's. The head does not start at a room's origin.
   bool on_stage() const { return space_type_ == XR_REFERENCE_SPACE_TYPE_STAGE; }
 
-  /// Handles pending events, and begins and ends the session accordingly. Returns false after its end. Throws
-  /// Lost.
+  /// Handles pending events, and begins and ends the session accordingly. Returns false after the session's
+  /// end. Throws Lost.
   bool poll();
   /// Whether the runtime expects frames.
   bool running() const { return running_; }

@@ -11,15 +11,15 @@ namespace {
 constexpr double eyes_above_floor = 1.6;  // m, of a standing viewer
 constexpr double metres_a_second = 1.5;
 constexpr double degrees_a_push = 30.0;
-constexpr double pushed = 0.7, let_go = 0.4;  // stick positions, with hysteresis
+constexpr double pushed = 0.7, let_go = 0.4;  // stick deflections that begin and end a push
 constexpr double slack = 0.15;                // dead zone of sticks at rest
-constexpr double scale_most = 100.0;          // limit of scaling, up and down, relative to the start
+constexpr double scale_most = 100.0;          // maximum factor of scaling up and down, relative to the start
 
 double beyond_slack(double push) {
   return std::copysign(std::max(0.0, std::abs(push) - slack) / (1.0 - slack), push);
 }
 
-// The head's heading, level; forward if it looks straight up or down.
+// The head's horizontal heading. If the head looks straight up or down, the space's forward direction.
 glm::dvec3 heading_of(const Eye& head) {
   const glm::dvec4 q = glm::normalize(head.orientation);
   const glm::dvec3 ahead = glm::dquat(q.w, q.x, q.y, q.z) * glm::dvec3(0.0, 0.0, -1.0);
@@ -34,7 +34,7 @@ Placement upright_at(const glm::dvec3& position, const glm::dmat3& rotation, con
   const glm::dvec3 above = glm::normalize(up);
   const auto level = [&](const glm::dvec3& v) { return v - glm::dot(v, above) * above; };
   glm::dvec3 forward = level(rotation[2]);
-  // Straight up or down: use the direction of the upper edge.
+  // If the camera looks straight up or down, uses the direction of its picture's upper edge.
   if (glm::length(forward) < 1e-3) forward = -level(rotation[1]);
   forward = glm::normalize(forward);
   return {position, {glm::cross(forward, above), above, -forward}, units_per_metre};
@@ -44,7 +44,7 @@ Placement start_of(Placement eyes, bool on_floor, const Eye* head) {
   if (on_floor) eyes.origin -= eyes_above_floor * eyes.units_per_metre * eyes.axes[1];
   if (head == nullptr) return eyes;
   const glm::dvec3 ahead = heading_of(*head);
-  const double turned = std::atan2(-ahead.x, -ahead.z);  // to the left
+  const double turned = std::atan2(-ahead.x, -ahead.z);  // radians to the left
   eyes.axes *= glm::mat3_cast(glm::angleAxis(-turned, glm::dvec3(0.0, 1.0, 0.0)));
   eyes.origin -= eyes.units_per_metre * (eyes.axes * glm::dvec3(head->position.x, 0.0, head->position.z));
   return eyes;

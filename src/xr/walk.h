@@ -1,6 +1,6 @@
 #pragma once
-// Moves a head through a model by hands: updates the placement of OpenXR's space in the model's world. Pure
-// maths; the space has x right, y up, z backward, in metres.
+// Moves a viewer through a model by hand controllers: updates the placement of OpenXR's space in the model's
+// world. Pure maths; the space has x right, y up, z backward, in metres.
 
 #include <binosplat/eyes.h>
 
@@ -16,14 +16,16 @@ struct Hand {
   bool grabs = false;
 };
 
-/// A space with its origin at a camera, upright, with the camera's heading. The columns of `rotation` are the
-/// camera's axes right, down and forward in the world. `up` is in the world, of any length.
+/// Returns an upright placement that has its origin at a camera and the camera's heading. The columns of
+/// `rotation` are the camera's axes right, down and forward in the world. `up` is in the world, of any
+/// length.
 Placement upright_at(const glm::dvec3& position, const glm::dmat3& rotation, const glm::dvec3& up,
                      double units_per_metre);
 
-/// The first placement of OpenXR's space, for a standing viewer with eyes at upright_at(). If its origin is
-/// on the floor, the origin is placed 1.6 m lower. In some spaces heads do not start at the origin, as in the
-/// middle of a room. Then pass `head`: the space is placed so that it is there and has that heading.
+/// Returns the first placement of OpenXR's space, for a standing viewer. `eyes` is upright_at() of the eyes.
+/// If the space's origin is on the floor, the origin is placed 1.6 m below the eyes. In some spaces, such as
+/// a room's, the head does not start at the origin. Then pass the head's pose as `head`: the space is placed
+/// so that the head starts at `eyes`, with the heading of `eyes`.
 Placement start_of(Placement eyes, bool on_floor, const Eye* head = nullptr);
 
 class Walk {
@@ -33,10 +35,10 @@ class Walk {
   const Placement& placement() const { return placement_; }
   void reset() { placement_ = start_; }
 
-  /// Moves by the input of the last `seconds`. The left stick walks on the level, relative to the head's
-  /// heading. The right one turns by 30 degrees a push, and raises or lowers the head if pushed forward or
-  /// back. A hand that grabs holds the world in place; two hands also turn it about the vertical and scale
-  /// it.
+  /// Moves by the input of the last `seconds`. The left stick walks horizontally, relative to the head's
+  /// heading. The right stick turns by 30 degrees per push to the side; pushed forward or back, it raises or
+  /// lowers the head. A hand that grabs drags the world along; two hands also turn the world about the
+  /// vertical and scale it.
   void step(const Eye& head, const std::array<Hand, 2>& hands, double seconds);
 
  private:

@@ -44,15 +44,15 @@ Words amd_drawings() {
       "",
       "--mono --antialias",
       "--order distance",
-      "--tile 8",
-      "--tile 32",
+      "--tile-size 8",
+      "--tile-size 32",
       "--precision half",
       "--precision half --projection tangent",
-      "--precision half --tiles snug --tile 32",
+      "--precision half --tiles snug --tile-size 32",
       "--frames 3 --tolerance 0.1 --transmittance last --projection tangent --precision half",
       "--frames 5 --quality 40",
-      "--frames 5 --quality 40 --th peripheral --transmittance depth",
-      "--frames 5 --quality 40 --transmittance last --tile 32",
+      "--frames 5 --quality 40 --threshold peripheral --transmittance depth",
+      "--frames 5 --quality 40 --transmittance last --tile-size 32",
       "--frames 5 --quality 40 --projection tangent --precision half",
       "--foveate inset=20deg,context=0.4",
       "--foveate inset=20deg,context=0.4 --tolerance 0.1 --transmittance last --precision half",
@@ -70,7 +70,8 @@ Words amd_drawings() {
   for (const auto& th : th_choices) {
     if (&th == &th_choices[TH_TAU]) continue;  // exact
     for (const auto& from : transmittance_choices)
-      all.push_back(fmt::format("--frames 3 --tolerance 0.1 --th {} --transmittance {}", th.name, from.name));
+      all.push_back(
+          fmt::format("--frames 3 --tolerance 0.1 --threshold {} --transmittance {}", th.name, from.name));
   }
   for (const auto& view : show_choices) {
     for (const char* more : {"", "--tolerance 0.1"})
@@ -95,8 +96,8 @@ constexpr AmdRun amd_runs[] = {
     {"convert model.ply -o model.spz --report 1"},
     {"bench model.ply --turn --size 36x24 -o turn"},
     {"bench model.ply --motion still --frames 2 --rule squared,one --size 36x24 -o motion"},
-    {"bench model.ply --axes axes.json -o bench", 1},
-    {"bench model.ply --axes one.json --floors -o floors", 1},
+    {"bench model.ply --suite axes.json -o bench", 1},
+    {"bench model.ply --suite one.json --floors -o floors", 1},
 };
 
 // Programs that this driver is never given: those for subgroups of 32 invocations, which AMD's are not as

@@ -37,7 +37,7 @@ double sum(const Image& image) {
 TEST_F(Antialias, GoesByTheFileThenByTheRunBesideItAndByOptionsBeforeAll) {
   const Image plain = drawn();
   EXPECT_FALSE(has(said, "anti-aliasing"));
-  const Image forced = drawn({"--antialias"}), thin = drawn({"--kernel-px2", "0.001"});
+  const Image forced = drawn({"--antialias"}), thin = drawn({"--eps2d", "0.001"});
   EXPECT_LT(sum(forced), 0.5 * sum(plain));
   EXPECT_NE(plain.data, thin.data);
   const std::string run = folder / "cfg.yml", ours = "\nresult_dir: results\n",
@@ -59,7 +59,7 @@ TEST_F(Antialias, GoesByTheFileThenByTheRunBesideItAndByOptionsBeforeAll) {
       {"", unaliased, {"--antialias"}, forced, ""},
       {"", "antialiased: true\n", {}, plain, ""},  // of another program
       {"", along_rays, {}, thin, "warning: " + run + ": it was trained by 3DGUT"},
-      {"", along_rays, {"--kernel-px2", "0.3"}, plain, ""},
+      {"", along_rays, {"--eps2d", "0.3"}, plain, ""},
   };
   for (const auto& one : cases) {
     file.comments = one.comments;
@@ -72,12 +72,12 @@ TEST_F(Antialias, GoesByTheFileThenByTheRunBesideItAndByOptionsBeforeAll) {
 
 // Mip-Splatting's files say by their filter that their kernel is the narrow one.
 TEST_F(Antialias, FiltersMeanANarrowKernel) {
-  const Image wide = drawn({"--antialias"}), narrow = drawn({"--antialias", "--kernel-px2", "0.1"});
+  const Image wide = drawn({"--antialias"}), narrow = drawn({"--antialias", "--eps2d", "0.1"});
   EXPECT_NE(narrow.data, wide.data);
   file.columns.emplace_back("filter_3D");
   for (auto& row : file.rows) row.push_back(0.0);
   EXPECT_EQ(drawn().data, narrow.data);
-  EXPECT_EQ(drawn({"--kernel-px2", "0.3"}).data, wide.data);
+  EXPECT_EQ(drawn({"--eps2d", "0.3"}).data, wide.data);
 }
 
 }  // namespace

@@ -17,7 +17,7 @@ struct BenchAlong : SceneTest {
   json bench(const std::string& axes, const Words& more, const Words& scenes = {}) {
     write_text(folder / "axes.json", axes);
     fs::remove_all(out);
-    const Outcome outcome = well(run_into_out(joined(joined({"bench", "--axes", folder / "axes.json"}, more),
+    const Outcome outcome = well(run_into_out(joined(joined({"bench", "--suite", folder / "axes.json"}, more),
                                                      scenes.empty() ? Words{model} : scenes)));
     printed = outcome.out;
     said = outcome.err;
@@ -227,7 +227,7 @@ TEST_F(BenchLevelsCommand, WhatIsWrongIsNamed) {
   add_cameras();
   expect_refused_after({"bench"},
                        {{{model, "--detail", "30dB"}, model + " is not a folder with levels of detail"},
-                        {{"demo:room", "--axes", "levels"}, "`binosplat levels MODEL -o DIR` makes"},
+                        {{"demo:room", "--suite", "levels"}, "`binosplat levels MODEL -o DIR` makes"},
                         {{made, "--detail", "30dB"}, beside}});
   expect_refused_after({"bench", made, "--cameras", folder / "cameras.json", "--detail"},
                        {{{"30dB", "--view", "no-such"}, "--view no-such"},
@@ -251,10 +251,10 @@ TEST_F(BenchAlong, WhatMakesNoSenseIsNamed) {
        {{"--path", alone}, "two cameras or more"},
        {{"--path", alone, "--motion", "walk"}, "are measured one by one"},
        {{"--turn", "--motion", "walk"}, "are measured one by one"},
-       {{"--motion", "walk", "--axes", folder / "foveated.json"},
+       {{"--motion", "walk", "--suite", folder / "foveated.json"},
         "foveated pictures are measured along views"},
-       {{"--axes", folder / "pair.json"}, "find tolerances in single views"},
-       {{"--axes", folder / "drop.json"}, "'max_drop' needs photos: name them with --photos"},
+       {{"--suite", folder / "pair.json"}, "find tolerances in single views"},
+       {{"--suite", folder / "drop.json"}, "'max_drop' needs photos: name them with --photos"},
        {{"--size", "big"}, "--size big: expected own, WxH"},
        {{"--tour", "crawl"}, "--tour crawl"},
        {{"--turn", "--view", "no-such"}, "--view no-such"}});

@@ -24,7 +24,7 @@ struct BenchTest : SceneTest {
     return run_program(joined({"bench", "-o", to}, words));
   }
   Outcome measure(const std::string& to, const Words& more = {}) const {
-    return bench(joined({model, "--axes", axes}, more), to);
+    return bench(joined({model, "--suite", axes}, more), to);
   }
   static json results(const std::string& of) { return load_json(of + "/results.json"); }
 };
@@ -75,7 +75,7 @@ TEST_F(BenchTest, MeasuresEveryPoint) {
 }
 
 TEST_F(BenchTest, GoesOnWhereItWas) {
-  Program run({"bench", model, "--axes", axes, "-o", out});
+  Program run({"bench", model, "--suite", axes, "-o", out});
   wait_for_file(out + "/points/00002.json");
   run.send(SIGINT);
   EXPECT_EQ(run.wait().code, -SIGINT);
@@ -181,19 +181,19 @@ TEST_F(BenchTest, ErrorsSayWhatToDo) {
   write_text(list, "[1, 2]");
   write_text(text, "{\"points\"");
   expect_refused_after({"bench"},
-                       {{{model, "--axes", other, "-o", whole}, "has points of another run"},
-                        {{model, "--axes", folder / "none.json"}, "none.json"},
-                        {{model, "--axes", list}, "list.json: expected an object"},
-                        {{model, "--axes", axes, "--shard", "3/2"}, "--shard 3/2: expected I/N"},
-                        {{model, model, "--axes", axes}, "two scenes are called model"},
+                       {{{model, "--suite", other, "-o", whole}, "has points of another run"},
+                        {{model, "--suite", folder / "none.json"}, "none.json"},
+                        {{model, "--suite", list}, "list.json: expected an object"},
+                        {{model, "--suite", axes, "--shard", "3/2"}, "--shard 3/2: expected I/N"},
+                        {{model, model, "--suite", axes}, "two scenes are called model"},
                         {{model, "demo:room", "--photos", folder.path()}, "are of one scene"},
                         {{}, "needs scenes to measure, or --merge"},
                         {{model, "--merge", whole}, "needs scenes to measure, or --merge"},
                         {{"--merge", folder.path()}, "plan.json"},
                         {{"--merge", whole, "--compare", text, "-o", whole}, "text.json: not JSON"},
                         {{"--merge", whole, "--compare", list, "-o", whole}, "not the results.json of a"},
-                        {{folder / "missing.ply", "--axes", axes}, "missing.ply"},
-                        {{model, "--axes", axes, "-o", model}, "is a file where a folder is needed"}});
+                        {{folder / "missing.ply", "--suite", axes}, "missing.ply"},
+                        {{model, "--suite", axes, "-o", model}, "is a file where a folder is needed"}});
 }
 
 }  // namespace

@@ -35,7 +35,7 @@ TEST_F(CalibrateTest, ViewsThatSeeNothingHaveNoSay) {
                              "view side looks away from the model"},
                             {{"trim", model, "--quality", "25", "-o", folder / "t.ply"}, none},
                             {{"refit", model, "--against", "exact", "-o", folder / "t.ply"}, none}});
-  for (const Words& axes : {Words{"--axes", "quick"}, {"--axes", "paper"}, {"--motion", "walk"}}) {
+  for (const Words& axes : {Words{"--suite", "quick"}, {"--suite", "paper"}, {"--motion", "walk"}}) {
     EXPECT_TRUE(ended(run_into_out(joined({"bench", model, "--size", "36x24"}, axes)), 2,
                       "the model is visible in none of its views"))
         << axes[1] << " into a folder in which the ones before left nothing";
@@ -152,15 +152,15 @@ TEST_F(CalibrateTest, ViewsForTestsHaveNoSay) {
     return names;
   };
   EXPECT_EQ(taken({}), "cbedhgf") << "a and i are for tests";
-  EXPECT_EQ(taken({"--hold-out", "3"}), "cbeihf") << "a, d and g are for tests";
+  EXPECT_EQ(taken({"--test-every", "3"}), "cbeihf") << "a, d and g are for tests";
 }
 
 TEST_F(CalibrateTest, GoesWithItsOrderAndProjection) {
   ASSERT_TRUE(good(calibrate({"--quality", "38", "--view", "front", "--order", "distance", "--projection",
                               "tangent", "--size", "36x24"})));
   EXPECT_EQ(load_json(file)["projection"], "tangent");
-  const Words by = {"--mono",        "--view", "front", "--size",   "36x24",
-                    "--calibration", file,     "--th",  "adagscale"};
+  const Words by = {"--mono",        "--view", "front",       "--size",   "36x24",
+                    "--calibration", file,     "--threshold", "adagscale"};
   EXPECT_TRUE(ended(
       render(by), 2,
       "is for order distance and projection tangent, but the frame uses order depth and projection affine"));
@@ -172,7 +172,7 @@ TEST_F(CalibrateTest, GoesWithItsOrderAndProjection) {
   const Words by_tolerance = joined(same, {"--tolerance", "0.5"});
   EXPECT_EQ(reported(by_tolerance)["views"][0]["tolerance"], 0.5);
   EXPECT_TRUE(ended(render(joined(by_tolerance, {"--transmittance", "last"})), 2,
-                    "--th adagscale uses its table by depth"));
+                    "--threshold adagscale uses its table by depth"));
 }
 
 TEST_F(CalibrateTest, ErrorsSayWhatToDo) {
@@ -189,7 +189,7 @@ TEST_F(CalibrateTest, ErrorsSayWhatToDo) {
   expect_refused({{{"--calibration", folder / "none.json"}, "none.json"},
                   {{"--calibration", model}, "not valid JSON"},
                   {{"--calibration", file, "--tolerance", "1"}, "leave one of them out"},
-                  {{"--calibration", file, "--th", "tau"}, "has no effect with --th tau"},
+                  {{"--calibration", file, "--threshold", "tau"}, "has no effect with --threshold tau"},
                   {{"--calibration", folder / "cut.json"},
                    "has no entry for threshold squared with transmittance one"}});
 }

@@ -119,7 +119,7 @@ TEST_F(ExposureTest, CountsInBenchesAndBounds) {
              R"({"views": 1, "frames": 1, "repeats": 2, "sizes": ["own"], "settings": [{}]})");
   const auto db = [&](const std::string& exposure) -> double {
     const std::string to = folder / ("bench_" + fs::path(exposure).stem().string());
-    EXPECT_TRUE(good(run_program({"bench", model, "--axes", folder / "axes.json", "--photos", photos,
+    EXPECT_TRUE(good(run_program({"bench", model, "--suite", folder / "axes.json", "--photos", photos,
                                   "--exposure", exposure, "-o", to})));
     return load_json(to + "/results.json")["points"][0]["photo_psnr_db"];
   };

@@ -177,12 +177,14 @@ TEST_F(LevelErrors, SayWhatToDo) {
   expect_refused({{{"--gpu-memory", "100"}, none},
                   {{"--gpu-memory", "100", "--lod", "1"}, "leave one of them out"},
                   {{"--detail", "2"}, none},
+                  {{"--detail", "2px"}, none},
                   {{"--detail", "40DB"}, none},
                   {{"--detail", "2", "--lod", "1"}, "leave one of them out"},
                   {{"--detail-report"}, "--detail"},
                   {{"--gpu-memory", "0"}, "--gpu-memory"}});
-  for (const char* wrong : {"-1", "inf", "5px", "dB", "40 dB", "19.9dB", "80.1dB", "-40dB"})
-    expect_refused({{{"--detail", wrong}, "expected pixels as in 5, or decibels from 20 to 80 as in 40dB"}});
+  for (const char* wrong : {"-1", "inf", "5 px", "dB", "40 dB", "19.9dB", "80.1dB", "-40dB"})
+    expect_refused(
+        {{{"--detail", wrong}, "expected pixels as in 5px, or decibels from 20 to 80 as in 40dB"}});
   expect_refused_after({"render", "demo:room"},
                        {{{"--gpu-memory", "100"}, "--gpu-memory is for model files"}});
 }

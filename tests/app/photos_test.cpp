@@ -101,7 +101,7 @@ TEST_F(Photos, WhatCannotBeReadIsFoundBeforeTheModel) {
       {"trim", {"--max-drop", "1", "-o", folder / "t.ply"}},
       {"refit", {"-o", folder / "f.ply"}},
       {"bench", {"-o", folder / "new"}},
-      {"bench", {"--axes", "paper", "-o", folder / "new"}},
+      {"bench", {"--suite", "paper", "-o", folder / "new"}},
   };
   const auto refused = [&](const std::string& bytes, const std::string& said) {
     write_text(photo, bytes);

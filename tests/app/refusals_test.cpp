@@ -93,8 +93,8 @@ TEST_F(Refusals, Layouts) {
 
 TEST_F(Refusals, Drawing) {
   expect_refused({
-      {{"--th", "squared"}, "needs --tolerance, --quality or --calibration"},
-      {{"--th", "tau", "--quality", "40"}, "--quality has no effect"},
+      {{"--threshold", "squared"}, "needs --tolerance, --quality or --calibration"},
+      {{"--threshold", "tau", "--quality", "40"}, "--quality has no effect"},
       {{"--tolerance", "1", "--quality", "40"}, "--tolerance with --quality"},
       {{"--quality", "40", "--reference-until", "project"}, "--reference-until"},
       {{"--tolerance", "1", "--transmittance", "last", "--reference-until", "project"}, "--reference-until"},
@@ -104,7 +104,7 @@ TEST_F(Refusals, Drawing) {
       {{"--reference-until", "lunch"}, "see: binosplat render --help"},
       {{"--shader-dir", "/no/such/folder"}, "/no/such/folder"},
       {{"--device", "0", "--backend", "surfaceless"}, "surfaceless has none"},
-      {{"--kernel-px2", "0"}, "--kernel-px2"},
+      {{"--eps2d", "0"}, "--eps2d"},
   });
 }
 
@@ -233,7 +233,7 @@ TEST_F(Refusals, Numbers) {
   }
   const std::pair<Words, Words> options_of[] = {
       {render,
-       {"--tolerance", "--near", "--fov", "--fps", "--kernel-px2", "--gpu-memory", "--max-memory",
+       {"--tolerance", "--near", "--fov", "--fps", "--eps2d", "--gpu-memory", "--max-memory",
         "--units-per-metre", "--ipd", "--cant", "--convergence", "--spacing", "--detail", "--seconds"}},
       {trim, {"--max-drop"}},
       {calibrate, {"--max-drop", "--far"}},

@@ -151,7 +151,7 @@ TEST_F(Render, JsonHasWhatWasPrinted) {
   add_cameras();
   const Outcome outcome =
       well(render({"--json", folder / "r.json", "--frames", "4", "--ipd", "0.07", "--units-per-metre", "2",
-                   "--convergence", "3", "--tiles", "aabb", "--tile", "8"}));
+                   "--convergence", "3", "--tiles", "aabb", "--tile-size", "8"}));
   const json report = load_json(folder / "r.json");
   EXPECT_EQ(report["version"], "0.1.0");
   EXPECT_EQ(report["scene"]["gaussians"], 300);

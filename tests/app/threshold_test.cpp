@@ -24,7 +24,7 @@ TEST_F(ThresholdOptions, AToleranceMakesFewerPairs) {
   EXPECT_EQ(exact["settings"]["th"], "tau");
   EXPECT_EQ(lossy["settings"]["th"], "squared");
   EXPECT_LT(pairs_of(lossy), pairs_of(exact));
-  EXPECT_LT(pairs_of(city({"--th", "peripheral", "--tolerance", "2"})), pairs_of(exact));
+  EXPECT_LT(pairs_of(city({"--threshold", "peripheral", "--tolerance", "2"})), pairs_of(exact));
   const Words last = {"--tolerance", "0.1", "--transmittance", "last", "--frames", "3"};
   EXPECT_LT(pairs_of(city(last)), pairs_of(lossy));
   EXPECT_LE(pairs_of(city({"--tolerance", "0.1", "--transmittance", "depth"})), pairs_of(lossy));

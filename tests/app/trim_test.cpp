@@ -113,7 +113,7 @@ TEST_F(TrimTest, CandidatesHaveTheModelsLowPassAndItsLossIsSaid) {
   save_ply(model, thin);
   write_text(folder / "cfg.yml", "result_dir: x\nwith_eval3d: true\nwith_ut: true\n");
   fs::create_directories(folder / "to");
-  const std::string sentence = "does not store the low-pass of 0.001 px^2: draw it with --kernel-px2 0.001";
+  const std::string sentence = "does not store the low-pass of 0.001 px^2: draw it with --eps2d 0.001";
   const auto trimmed_to = [&](const char* name) {
     return run_program(
         {"trim", model, "--quality", "30", "-o", folder / "to" / name, "--json", folder / "r.json"});

@@ -42,7 +42,7 @@ TEST_F(View, BadOptionsEndBeforeAnyWindow) {
       {{"--view", "a", "--view", "b"}, "--view a b"},
       {{"--layout", "multi-view"}, "multi-view"},
       {{"--show", "colour"}, "--show"},
-      {{"--th", "squared"}, "--tolerance"},
+      {{"--threshold", "squared"}, "--tolerance"},
       {{"--fps", "10"}, "--fps is for a folder with several models, not for demo:room"},
   };
   for (const auto& [words, said] : cases) EXPECT_TRUE(ended(view(words), 2, said));
@@ -171,8 +171,8 @@ TEST_F(ViewOnADisplay, ShowsWhatRenderDraws) {
   key("h");
   key("t");  // of pictures that are not exact any more: the next of all
   const Image third = shown();
-  const Words approximate = {"--layout", "cross-eyed", "--tiles",     "obb",
-                             "--th",     "peripheral", "--tolerance", "0.15"};
+  const Words approximate = {"--layout",    "cross-eyed", "--tiles",     "obb",
+                             "--threshold", "peripheral", "--tolerance", "0.15"};
   EXPECT_TRUE(same(third, rendered("key_000", approximate)));
   EXPECT_FALSE(same(third, crossed)) << "tiles and th changed nothing";
 
@@ -193,10 +193,10 @@ TEST_F(ViewOnADisplay, ShowsWhatRenderDraws) {
 TEST_F(ViewOnADisplay, DrawsByACalibrationAndFlipsToTheExactPicture) {
   const std::string file = folder / "calibration.json";
   ASSERT_TRUE(good(run_program({"calibrate", model, "--quality", "36", "-o", file})));
-  open_whole({"--th", "adagscale", "--calibration", file});
+  open_whole({"--threshold", "adagscale", "--calibration", file});
   save_by("k");
   const Image approximate = shown();
-  EXPECT_TRUE(same(approximate, rendered("key_000", {"--layout", "parallel", "--th", "adagscale",
+  EXPECT_TRUE(same(approximate, rendered("key_000", {"--layout", "parallel", "--threshold", "adagscale",
                                                      "--calibration", file})));
   key("x");
   const Image exact = shown();
@@ -207,7 +207,7 @@ TEST_F(ViewOnADisplay, DrawsByACalibrationAndFlipsToTheExactPicture) {
   leave();
 
   // Without a calibration the table is measured while the window shows its first pictures.
-  open({"--th", "adagscale", "--tolerance", "3"});
+  open({"--threshold", "adagscale", "--tolerance", "3"});
   EXPECT_TRUE(says("measured the transmittance by depth"));
   leave();
 }

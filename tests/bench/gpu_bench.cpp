@@ -380,17 +380,17 @@ Json run_crowd(const How& how) {
   };
   Json json = {{"scene", "crowd"}, {"gpu", context->renderer()}};
   {
-    render::Frame frame(on_gpu);
-    frame.place(crowd);
-    json["instances"] = timed("instances at rest", frame, [](render::Frame&) {});
-    double radians = 0.0;
-    json["moving"] = timed("instances", frame, [&](render::Frame& moved) {
-      turn(radians += 0.01);
-      moved.place(crowd);
-    });
+    render::Frame whole(*context, merged, how.settings.precision);
+    json["merged"] = timed("merged", whole, [](render::Frame&) {});
   }
-  render::Frame frame(*context, merged, how.settings.precision);
-  json["merged"] = timed("merged", frame, [](render::Frame&) {});
+  render::Frame frame(on_gpu);
+  frame.place(crowd);
+  json["instances"] = timed("instances at rest", frame, [](render::Frame&) {});
+  double radians = 0.0;
+  json["moving"] = timed("instances", frame, [&](render::Frame& moved) {
+    turn(radians += 0.01);
+    moved.place(crowd);
+  });
   const auto of = [&](const char* what, const char* of_it) { return json[what][of_it].get<double>(); };
   fmt::print("  instances over merged: GPU {:.3f}; CPU {:.3f} ms, {:.3f} moving, merged {:.3f}\n",
              of("instances", "frame") / of("merged", "frame"), of("instances", "cpu_ms"),

@@ -100,7 +100,7 @@ TEST(ModelOutputFiles, TagsAreKeptOrSaid) {
   EXPECT_TRUE(test::same_bits(mip.model, model));
   EXPECT_TRUE(mip.losses.empty());
   EXPECT_EQ(round_trip(model, ModelFormat::sog).losses.back(),
-            "SOG does not store the low-pass of 0.1 px^2: draw it with --kernel-px2 0.1");
+            "SOG does not store the low-pass of 0.1 px^2: draw it with --eps2d 0.1");
 }
 
 TEST(ModelOutputFiles, SaysWhatIsCut) {

@@ -49,7 +49,7 @@ def test_the_background_is_seen_through_what_is_transmitted(renderer, cameras):
 SETTINGS = [
     ({}, []),
     ({"tolerance": 0.5}, ["--tolerance", "0.5"]),
-    ({"tolerance": 20, "th": "peripheral"}, ["--tolerance", "20", "--th", "peripheral"]),
+    ({"tolerance": 20, "th": "peripheral"}, ["--tolerance", "20", "--threshold", "peripheral"]),
     ({"quality": 30}, ["--quality", "30"]),
     ({"order": "distance", "projection": "tangent"}, ["--order", "distance", "--projection", "tangent"]),
     ({"tiles": "aabb"}, ["--tiles", "aabb"]),
@@ -240,8 +240,8 @@ def test_a_calibration_draws_as_the_program_does(model, cameras, scene, program,
             renderer.draw(cameras["front"], th="adagscale", calibration=file)
     assert not same(picture.colour, exact.colour)
     assert own.report.tolerance == 0.5
-    program("render", scene / "model.ply", "--mono", "--view", "front", "--th", "adagscale", "--calibration", file,
-            "-o", tmp_path / "picture.png")
+    program("render", scene / "model.ply", "--mono", "--view", "front", "--threshold", "adagscale", "--calibration",
+            file, "-o", tmp_path / "picture.png")
     drawn = binosplat.load_image(tmp_path / "picture.png")
     assert same(binosplat.quantised(picture.colour), drawn)
     assert not same(binosplat.quantised(exact.colour), drawn)

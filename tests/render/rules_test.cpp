@@ -51,8 +51,8 @@ TEST(ThresholdRules, PlantedFaultsAreCaught) {
 TEST(Settings, ThatContradictAreNamed) {
   const float nan = std::nanf(""), infinite = std::numeric_limits<float>::infinity();
   const std::vector<std::pair<FrameSettings, std::string>> wrong = {
-      {{.tolerance = 1.0f}, "--tolerance has no effect with --th tau, which is exact"},
-      {{.quality = 40.0f}, "--quality has no effect with --th tau, which is exact"},
+      {{.tolerance = 1.0f}, "--tolerance has no effect with the rule tau, which is exact"},
+      {{.quality = 40.0f}, "--quality has no effect with the rule tau, which is exact"},
       {{.th = TH_SQUARED, .tolerance = 1.0f, .quality = 40.0f}, "--tolerance with --quality"},
       {{.th = TH_SQUARED, .tolerance = -1.0f}, "--tolerance -1"},
       {{.th = TH_SQUARED, .tolerance = nan}, "--tolerance nan"},
@@ -67,7 +67,7 @@ TEST(Settings, ThatContradictAreNamed) {
     EXPECT_TRUE(test::fails_saying([&, s = settings] { check(s, "--"); }, {said}));
     EXPECT_TRUE(test::fails_saying([&, s = settings] { check_choice(s, "--"); }, {said}));
   }
-  EXPECT_ERROR(check({.quality = 40.0f}), "quality has no effect with th tau");
+  EXPECT_ERROR(check({.quality = 40.0f}), "quality has no effect with the rule tau");
 }
 
 TEST(DebugOptions, ThatContradictAreNamed) {
@@ -89,7 +89,7 @@ TEST(Settings, ThatGoTogetherDo) {
       if (can_use(th, source)) {
         check_choice(settings);
       } else {
-        EXPECT_ERROR(check_choice(settings), "transmittance has no effect with th");
+        EXPECT_ERROR(check_choice(settings), "transmittance has no effect with the rule");
       }
     }
   }

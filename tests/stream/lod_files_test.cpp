@@ -330,7 +330,7 @@ TEST(LodFiles, SaysWhatIsWrongWithErrors) {
   const LodFiles none(folder / "sog/st-lod");
   EXPECT_ERROR(none.check({.db = 40.0}), "--detail 40dB",
                "st-lod/lod-meta.json lacks the errors of its levels", "`binosplat levels` writes them",
-               "--detail PX");
+               "--detail Npx");
 }
 
 TEST(LodFiles, RoomIsMadeForWhatIsThere) {

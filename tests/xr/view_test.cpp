@@ -320,7 +320,7 @@ TEST_F(XrView, DrawsByACalibration) {
   calibration.entries = {{TH_PERIPHERAL, TRANSMITTANCE_DEPTH, 3.0}};
   const std::string path = folder / "c.json";
   write_text(path, json_of(calibration).dump());
-  const XrLog log = run({"--th", "adagscale", "--calibration", path});
+  const XrLog log = run({"--threshold", "adagscale", "--calibration", path});
   const Json frame = log.frames()[0];
   const auto [eyes, sizes] = views_of(frame);
   const shared::View left = stereo::views_from_xr(eyes, start(), sizes).views.front();
@@ -331,7 +331,7 @@ TEST_F(XrView, DrawsByACalibration) {
             bytes_of(expected(frame, start(), policy.settings(asked, left, model.axes))[0]));
   EXPECT_NE(log.colours(frame, 0), bytes_of(expected(frame, start())[0])) << "it leaves nothing out";
   // Without one the table is measured from the cameras.
-  EXPECT_NE(run({"--th", "adagscale", "--tolerance", "3"}).colours(frame, 0),
+  EXPECT_NE(run({"--threshold", "adagscale", "--tolerance", "3"}).colours(frame, 0),
             bytes_of(expected(frame, start())[0]));
 }
 
@@ -495,7 +495,7 @@ TEST_F(XrView, SaysInOneLineWhatIsMissing) {
   EXPECT_NE(no_srgb.err.find("offers no textures"), std::string::npos) << no_srgb.err;
   for (const Strings& wrong : {Strings{"--layout", "anaglyph"}, {"--size", "640x400"}, {"--ipd", "0.06"}})
     ends(view(wrong), 2, "the headset determines it");
-  ends(view({"--tile", "8"}), 2, "exact tiles of 16 px");
+  ends(view({"--tile-size", "8"}), 2, "exact tiles of 16 px");
   ends(view({"--frame-budget", "5", "--quality", "40"}), 2, "choose one");
   ends(view({"--frame-budget", "-1"}), 2, "milliseconds");
   ends(run_program({"view", file, "--scale", "2"}), 2, "add --xr");

@@ -66,7 +66,7 @@ preview::Loaded load(const SceneOptions& scene, const std::vector<Camera>& camer
   return load_scene(scene, {}, cameras);
 }
 
-// Opens a scene. Each camera of a pair is a single view here.
+// Opens a scene. The cameras of an eye pair are separate views here.
 preview::Opened open(const RenderOptions& o) {
   const SceneOptions& scene = o.scene;
   const auto saved = find_saved(scene);
@@ -136,7 +136,7 @@ void view(const RenderOptions& o) {
                    {scene, "in the window", "as chosen there", lab::device_text(context), context.software()},
                    std::move(recording), draw);
   };
-  // Outputs of another model go to a folder of its own.
+  // Outputs of another model go to another folder.
   const auto open_other = [&o](const std::string& file) {
     RenderOptions other;
     other.scene.name = file;
@@ -156,7 +156,9 @@ int run(int argc, char** argv) {
     add_max_memory(program);
     add_quiet(program);
     check_arguments(argc, argv);
-    program.parse(argc, argv);
+    std::vector<std::string> words = with_current_names(program, {argv + 1, argv + argc});
+    std::reverse(words.begin(), words.end());  // the order that CLI11 expects
+    program.parse(std::move(words));
     note_inputs(program);
     view(options);
     return 0;

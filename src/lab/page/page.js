@@ -48,7 +48,7 @@ function table(columns, rows) {
 
 const problem = (text) => element("p", { class: "problem", role: "alert" }, text);
 
-// The series of a section's chart, from the rows of its table. Without `chart.by`, or with one value in it,
+// The series of a section's chart, from the rows of its table. If `chart.by` is empty or has only one value,
 // series of several columns have the columns' names.
 function seriesOf(section) {
   const chart = section.chart, { columns, rows } = section.numbers ?? section.table;
@@ -136,7 +136,7 @@ function draw(chart, chosen, width) {
     style: { background: "none", color: "var(--ink)", fontSize: "12px", fontFamily: "inherit" } });
 }
 
-// A standalone copy in the light colours.
+// Saves a standalone copy in the colours of light mode.
 function saveSvg(svg, name) {
   const copy = svg.cloneNode(true);
   copy.setAttribute("xmlns", "http://www.w3.org/2000/svg");

@@ -65,7 +65,7 @@ _Drawn = TypeVar("_Drawn", covariant=True)
 
 
 class _View(Generic[_Drawn]):
-    """Anything that can be drawn. Its parameter is the type that draw() returns, for type checkers."""
+    """A Camera or a Rig. For type checkers, its parameter is the type that draw() returns."""
 
 
 def _expect(value: Any, kind: Any, name: str) -> None:
@@ -102,7 +102,7 @@ def _array(given: Any, name: str) -> NDArray[Any]:
 
 
 def _rows(given: Any, name: str, shape: tuple[int | None, ...], kind: type = np.float32) -> NDArray[Any]:
-    """The values in contiguous memory. Checks their shape, in which None is any size."""
+    """Returns the values in contiguous memory. Checks their shape; None in ``shape`` allows any size."""
     array = _array(given, name)
     if len(shape) != array.ndim or any(size not in (None, n) for size, n in zip(shape, array.shape)):
         sizes = ", ".join("N" if size is None else str(size) for size in shape)
@@ -122,7 +122,7 @@ class Model:
     means : (N, 3) floats
         Centres, world units.
     quats : (N, 4) floats
-        Quaternions w, x, y, z of any length but 0.
+        Quaternions w, x, y, z. Their lengths are above 0.
     scales : (N, 3) floats
         Standard deviations, world units: exp() of the values that trainers store.
     opacities : (N,) floats
@@ -130,16 +130,16 @@ class Model:
     sh : (N, K, 3) floats
         Spherical harmonics, K = 1, 4, 9 or 16 coefficients; the colour at degree 0 is 0.5 + 0.2820948 sh[:, 0].
     name
-        Its name in messages.
+        The model's name in messages.
     axes
-        The directions of its x, y and z: R or L, U or D, F or B. The default is COLMAP's world.
+        The directions of the model's x, y and z: R or L (right, left), U or D, F or B. The default is COLMAP's.
     antialiased
-        Whether it was trained with gsplat's ``rasterize_mode="antialiased"`` or Mip-Splatting.
+        Whether the model was trained with gsplat's ``rasterize_mode="antialiased"`` or Mip-Splatting.
 
     Raises
     ------
     InputError
-        For other shapes, and for an invalid row, which the text names.
+        For arrays of other shapes, and for an invalid row, which the text names.
     TypeError
         For arrays that are not of floats.
 
@@ -150,14 +150,14 @@ class Model:
     count
         Number of Gaussians; for Scaffold-GS, of anchors.
     degree
-        Of the spherical harmonics, 0 to 3.
+        Degree of the spherical harmonics, 0 to 3.
     left_out
-        Number of the file's Gaussians that were dropped: values not finite or out of range, scales above 1e13, or
-        no rotation.
+        Number of the file's Gaussians that were dropped, because they have values that are not finite or out of
+        range, scales above 1e13, or no rotation.
     antialiased_by
-        The source of ``antialiased``: a comment of its file, or a file of the training run; empty: none.
+        The source of ``antialiased``: a comment in the model's file, or a file of the training run; empty: none.
     order, projection
-        The sorting and projection of its training; draw() also takes others.
+        The sort order and projection of the model's training; draw() also takes others.
     """
 
     name: str
@@ -196,7 +196,7 @@ class Model:
 
     @property
     def means(self) -> NDArray[np.float32] | NDArray[np.float64]:
-        """A copy, as the other four arrays, in the form of the arguments. float64 if the model is far from zero."""
+        """A copy in the form of the argument, as are the other four arrays. float64 if the model is far from zero."""
         return self._copy("means")
 
     @property
@@ -232,20 +232,20 @@ def load_model(path: _Path, *, lod: int | None = None, appearance: int | None = 
     Parameters
     ----------
     path
-        A file or its folder. The content determines the format.
+        A file, or a folder that holds a model. The content determines the format.
     lod
-        Level of detail of a streamed SOG, 0 the finest.
+        Level of detail of a streamed SOG; 0 is the finest.
     appearance
         Index of an appearance of Scaffold-GS.
     axes
         Directions of the model's axes, instead of the file's.
     antialiased
-        Whether it was trained with anti-aliasing, instead of the file's value.
+        Whether the model was trained with anti-aliasing, instead of the file's value.
 
     Raises
     ------
     InputError
-        If it is not a model; the text names its apparent format.
+        If the path holds no model; the text names the apparent format.
     """
     model = Model.__new__(Model)
     model._take(_binosplat.load_model(path, lod, appearance, axes, antialiased))
@@ -253,7 +253,7 @@ def load_model(path: _Path, *, lod: int | None = None, appearance: int | None = 
 
 
 class Calibration:
-    """A file of ``binosplat calibrate``: a model's tolerances, and its transmittance by depth.
+    """A file that ``binosplat calibrate`` wrote: a model's tolerances, and its table of transmittance by depth.
 
     ``renderer.draw(camera, th="adagscale", calibration=calibration)`` draws with AdaGScale, as the programs do.
 
@@ -283,13 +283,13 @@ class Report:
     stages
         GPU time of each stage, ms: decode, project, bin, sort, blend, probe.
     gpu_ms
-        Their sum.
+        Sum of the stages, ms.
     submit_ms
         CPU time of submitting the frame to the driver, ms.
     gpu_bytes
         Bytes of all buffers, including the model's.
     visible
-        Number of drawn Gaussians, summed over depth orders (one for parallel eyes).
+        Number of drawn Gaussians, summed over the order groups. Parallel eyes are one order group.
     pairs
         Number of Gaussian-tile pairs in all views.
     tolerance
@@ -303,9 +303,9 @@ class Report:
     redrawn
         Number of repeated drawings because a buffer was too small.
     used_measured
-        Whether it used the transmittance that the previous frame measured.
+        Whether the frame used the transmittance that an earlier frame measured.
     is_cut
-        With a quality or transmittance 'last': whether it used no earlier measurement.
+        With a quality or transmittance 'last': whether the frame could not use earlier measurements.
     """
 
     stages: dict[str, float]
@@ -363,12 +363,12 @@ class Camera(_View[Picture]):
     rotation : (3, 3) floats
         Camera to world: its columns are the camera's axes x right, y down, z forward in the world.
     name
-        Its name in messages.
+        The camera's name.
 
     Attributes
     ----------
     time
-        Time in a path, s; None elsewhere.
+        Time in a camera path, s; None for other cameras.
     """
 
     name: str
@@ -437,7 +437,7 @@ class Cameras:
         return len(self._cameras)
 
     def __getitem__(self, which: int | str) -> Camera:
-        """The camera of a number, or the first of a name. Raises InputError for an unknown name."""
+        """The camera with an index, or the first with a name. Raises InputError for an unknown name."""
         if not isinstance(which, str):
             return self._cameras[which]
         for camera in self._cameras:
@@ -461,8 +461,8 @@ def load_cameras(path: _Path, model: _Path | None = None) -> Cameras:
     path
         The file or its folder.
     model
-        A model that nerfstudio trained with them. Moves the cameras into its world, which
-        dataparser_transforms.json beside it defines.
+        A model that nerfstudio trained with these cameras. Moves the cameras into the model's world, which
+        dataparser_transforms.json in the model's folder or above defines.
     """
     if path is None:
         raise InputError("load_cameras: the path is None, as find_cameras() says where it finds none")
@@ -470,17 +470,17 @@ def load_cameras(path: _Path, model: _Path | None = None) -> Cameras:
 
 
 def find_cameras(model: _Path) -> Path | None:
-    """The file or folder with a model's cameras, beside the model's path; None if there is none."""
+    """Finds the file or folder with a model's cameras near the model's path; None if there is none."""
     return _binosplat.find_cameras(model)
 
 
 def find_photos(cameras: _Path) -> Path | None:
-    """The folder of the photos of these cameras, beside the cameras' path; None if there is none."""
+    """Finds the folder of these cameras' photos near the cameras' path; None if there is none."""
     return _binosplat.find_photos(cameras)
 
 
 def find_photo(folder: _Path, view: Camera | str) -> Path | None:
-    """A view's photo in a folder, by camera or name (with or without a picture's ending); None if there is none."""
+    """Finds a view's photo in a folder, by camera or name (with or without an ending); None if there is none."""
     return _binosplat.find_photo(folder, view)
 
 
@@ -492,7 +492,7 @@ class Rig(_View[tuple[Picture, Picture]]):
     head
         The camera between the eyes.
     ipd
-        Distance of the eyes, metres.
+        Distance between the eyes, metres.
     units_per_metre
         World units per metre.
     convergence
@@ -523,7 +523,7 @@ _Instance = tuple[Model, ArrayLike] | tuple[Model, ArrayLike, float]
 
 
 class Renderer:
-    """A model on a GPU, or in Mesa's software renderer, or several, each at its place.
+    """One or more models on a GPU, or in Mesa's software renderer.
 
     Parameters
     ----------
@@ -559,9 +559,9 @@ class Renderer:
         Parameters
         ----------
         instances
-            (model, matrix) or (model, matrix, opacity) for each. The (4, 4) matrix brings the model into the
-            cameras' world: a rotation, a uniform scale and a translation, as in ``world = matrix @ (x, y, z, 1)``.
-            The opacity, 0 to 1, is a factor of each Gaussian's. A model may occur several times.
+            (model, matrix) or (model, matrix, opacity) for each. The (4, 4) matrix transforms the model into the
+            cameras' world by a rotation, a uniform scale and a translation: ``world = matrix @ (x, y, z, 1)``.
+            The opacity, 0 to 1, multiplies each Gaussian's opacity. A model may occur several times.
         """
         parts = []
         for model, matrix, *opacity in instances:
@@ -588,7 +588,7 @@ class Renderer:
         quality
             Requested PSNR of the picture against the exact one, dB.
         tolerance
-            Instead of quality: the accepted loss of a dropped pair, in the unit of th.
+            Instead of quality: the loss that the rule th accepts, in the rule's unit.
         th
             The threshold rule: 'squared' (default with quality, tolerance or calibration), 'peripheral', 'adagscale'
             ('peripheral' with transmittance 'depth'), or 'tau', which is exact.
@@ -608,10 +608,10 @@ class Renderer:
         near
             Near plane, world units.
         depth
-            'mean', weighted by visibility, or 'median', at which T falls below a half.
+            'mean', weighted by visibility, or 'median', the depth at which T falls below a half.
         follow
-            Draws the next frame of a path, which uses the previous frame's measurements. Otherwise the picture does
-            not depend on earlier ones.
+            Draws the next frame of a path, which uses earlier frames' measurements. Otherwise the picture does not
+            depend on earlier pictures.
         calibration
             The model's calibration. Gives the table by depth, and the tolerance if neither quality nor tolerance is
             given. Views far from the calibrated cameras are drawn exactly.
@@ -631,12 +631,12 @@ class Renderer:
                  decode: Literal["eyes", "cyclopean"] = "eyes", background: ArrayLike = (0, 0, 0), near: float = 0.2,
                  depth: Literal["mean", "median"] = "mean", follow: bool = False,
                  calibration: Calibration | None = None) -> Iterator[_Drawn]:
-        """Draws views in sequence: the GPU draws the next one while Python uses the last picture.
+        """Draws views in sequence. The GPU draws the next view while Python uses the last picture.
 
         Parameters
         ----------
         views : iterable of Camera or Rig
-            Each view is read, and its errors are raised, when it is due.
+            A view is taken, and its errors are raised, only when the GPU is to draw it.
         quality, tolerance, th, transmittance, order, projection, tiles, decode, background, near, depth, follow, calibration
             As for draw(), the same for all views. With follow, the views are the frames of a path.
 
@@ -672,7 +672,7 @@ class Renderer:
 
 
 def _pictures(arrays: list[tuple[_Floats, _Floats, _Floats]], report: dict[str, Any]) -> Any:
-    """The picture of a view, or a tuple of those of both eyes."""
+    """Returns the picture of a camera, or a tuple of both eyes' pictures."""
     of_frame = Report(**report)
     pictures = tuple(Picture(*of_view, of_frame) for of_view in arrays)
     return pictures if len(pictures) == 2 else pictures[0]
@@ -700,9 +700,9 @@ class Comparison:
     psnr
         dB; inf for equal pictures, nan if one has a NaN or an infinity.
     ssim
-        At most 1, for equal pictures; nan for pictures below 11 x 11 px or with such a value.
+        1 for equal pictures, otherwise less; nan below 11 x 11 px, or if a picture has a NaN or an infinity.
     flip
-        Mean of FLIP's map, 0 to 1; nan for pictures with such a value.
+        Mean of FLIP's map, 0 to 1; nan if a picture has a NaN or an infinity.
     largest_error
         The largest absolute error of a channel, with white 1.
     at
@@ -720,8 +720,8 @@ _whites = {"<f4": 1, "<f8": 1, "|u1": 255, "<u2": 65535}  # by NumPy's type name
 
 
 def _picture(given: Any, name: str) -> _Floats:
-    """Converts an array to a picture with white 1. Refuses floats that seem to have white 255: those with a mean
-    above 2, and integers above 1."""
+    """Converts an array to a picture with white 1. Refuses floats that seem to have white 255: pictures with a mean
+    above 2, and pictures of integers with a value above 1."""
     _refuse_masked(given, name)
     array = np.asarray(given)
     if array.dtype.str not in _whites:
@@ -783,7 +783,7 @@ def quantised(picture: ArrayLike) -> _Floats:
 def compare(a: ArrayLike, b: ArrayLike, ppd: float = 67, background: ArrayLike | None = None) -> Comparison:
     """Compares two pictures of one size, as ``binosplat compare``.
 
-    Values are clamped to 0 to 1 but not rounded (see quantised). Beside colour, grey is repeated in three channels.
+    Values are clamped to 0 to 1 but not rounded (see quantised). If only one picture is grey, its channel is repeated.
 
     Parameters
     ----------
@@ -792,14 +792,14 @@ def compare(a: ArrayLike, b: ArrayLike, ppd: float = 67, background: ArrayLike |
     ppd
         The viewer's pixels per degree, 1 to 1000, for FLIP.
     background : (3,) floats
-        RGB behind pictures with alpha. By default, if both have alpha other than 1, it counts as a channel; if only
-        one has, it is composited over black.
+        RGB behind pictures with alpha. By default alpha counts as a channel if both pictures have alpha other than 1.
+        If only one has, this one is composited over black.
     """
     return Comparison(*_binosplat.compare(_picture(a, "a"), _picture(b, "b"), ppd, background))
 
 
 class Exposures:
-    """The exposures by which a training changed pictures before it compared them with photos.
+    """The exposures that a training applied to its pictures before it compared them with photos.
 
     Attributes
     ----------
@@ -827,7 +827,7 @@ def load_exposures(path: _Path) -> Exposures:
 
 
 def find_exposures(model: _Path) -> Path | None:
-    """The exposure.json of a model's training, beside the model's path; None if there is none."""
+    """Finds the exposure.json of a model's training near the model's path; None if there is none."""
     return _binosplat.find_exposures(model)
 
 
