@@ -45,7 +45,7 @@ TEST(LibrarySettings, ContradictionsAreRefused) {
       {{.quality = 0.0f}, "settings.quality 0: expected decibels"},
       {{.quality = 400.0f}, "settings.quality 400: expected decibels from 10 to 100"},
       {{.tolerance = NAN}, "zero or more"},
-      {{.transmittance = Transmittance::last}, "settings.transmittance measured has no effect"},
+      {{.transmittance = Transmittance::last}, "settings.transmittance last has no effect"},
       {{.threshold = static_cast<Threshold>(77)}, "settings.threshold 77"},
       {{.transmittance = static_cast<Transmittance>(77)}, "settings.transmittance 77"},
       {{.order = static_cast<Order>(-1)}, "settings.order -1"},
