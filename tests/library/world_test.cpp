@@ -39,19 +39,22 @@ TEST_F(Library, AnInstanceIsSeenFromItsOwnWorld) {
     const SplatModel in_its_axes = in_memory(std::move(other));
     Renderer alone(caller.get_proc_address(), in_its_axes), renderer(caller.get_proc_address());
     const Instance instance = turned(renderer.add(in_its_axes), 25.0);
-    Settings settings = over_black;
-    renderer.draw(views(), World{placement, std::span(&instance, 1)}, settings);
-    const auto seen = read(0);
-    settings.near_plane /= instance.scale;  // in the model's units
-    alone.draw(views(), renderer.in_model(placement, instance), settings);
-    const auto expected = read(0);
-    double error = 0.0, planted = 0.0;
-    for (std::size_t k = 0; k < seen.size(); ++k) {
-      error += std::abs(seen[k] - expected[k]);
-      planted += std::abs(seen[k] - seen[seen.size() - 1 - k]);
+    for (const bool foveated : {false, true}) {
+      Settings settings = over_black;
+      if (foveated) settings.foveation = Foveation{};
+      renderer.draw(views(), World{placement, std::span(&instance, 1)}, settings);
+      const auto seen = read(0);
+      settings.near_plane /= instance.scale;  // in the model's units
+      alone.draw(views(), renderer.in_model(placement, instance), settings);
+      const auto expected = read(0);
+      double error = 0.0, planted = 0.0;
+      for (std::size_t k = 0; k < seen.size(); ++k) {
+        error += std::abs(seen[k] - expected[k]);
+        planted += std::abs(seen[k] - seen[seen.size() - 1 - k]);
+      }
+      EXPECT_LT(error, 1e-4 * static_cast<double>(seen.size())) << letters << foveated;
+      EXPECT_GT(planted, 1e-2 * static_cast<double>(seen.size()));
     }
-    EXPECT_LT(error, 1e-4 * static_cast<double>(seen.size())) << letters;
-    EXPECT_GT(planted, 1e-2 * static_cast<double>(seen.size()));
   }
 }
 
