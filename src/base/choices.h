@@ -21,8 +21,8 @@ inline std::vector<std::string> names_of(std::span<const Choice> choices) {
   return names;
 }
 
-/// The index of a name in one of these lists. Throws Error, beginning with `place`, for an unknown name; the
-/// text lists the known ones.
+/// Returns the index of a name in a list of shared/axes.h. If the list lacks the name, throws Error with a
+/// text that begins with `place` and lists the known names.
 inline int find_choice(std::string_view place, std::string_view name, std::span<const Choice> choices) {
   const auto found = std::ranges::find(choices, name, &Choice::name);
   if (found == choices.end())

@@ -73,7 +73,7 @@ Image exposed(const Image& rgb, const glm::mat4x3& exposure) {
 
 std::optional<glm::mat4x3> inverse_exposure(const glm::mat4x3& exposure) {
   const glm::dmat3 mixed{glm::dmat4x3(exposure)};
-  // In a useful exposure, each channel keeps most of itself.
+  // Useful exposures are near the identity, so their determinants are far above this threshold.
   constexpr double least = 1e-3;
   if (!(std::abs(glm::determinant(mixed)) >= least)) return std::nullopt;
   const glm::dmat3 back = glm::inverse(mixed);

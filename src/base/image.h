@@ -42,41 +42,43 @@ struct Picture {
         z_sum(static_cast<std::size_t>(w) * h) {}
 };
 
-/// The depth of a pixel: none, the mean weighted by visibility, or the depth at which T falls below a half.
+/// The depth that is computed for a pixel: none, the mean weighted by alpha T, or the depth at which T falls
+/// below a half.
 enum class Depth { none, mean, median };
 
 /// Whether the pictures agree in number, sizes and every bit.
 bool same_bits(std::span<const Picture> a, std::span<const Picture> b);
 
-/// RGB behind the scene, display-referred; none: pictures keep straight alpha.
+/// The display-referred RGB colour behind the scene. Without a background, pictures keep straight alpha.
 using Background = std::optional<glm::vec3>;
 
-/// The display-referred image of a picture: C + T * background as RGB or, without a background, RGBA with
-/// straight alpha, colour C/A (0 where A = 0).
+/// Returns the display-referred image of a picture. With a background it is RGB: C + T * background. Without
+/// one it is RGBA with straight alpha: A = 1 - T, and the colour C/A (0 if A = 0).
 Image composite(const Picture& picture, const Background& background);
 
-/// The same over black.
+/// Composites a picture over black.
 Image on_black(const Picture& picture);
 
-/// Applies an exposure to an RGB picture: red, green and blue times the first three columns, plus the last
-/// one. Not clamped.
+/// Applies an exposure to an RGB picture: multiplies each colour by the matrix of the first three columns,
+/// and adds the last column. Does not clamp the result.
 Image exposed(const Image& rgb, const glm::mat4x3& exposure);
 
-/// The inverse of an exposure; none if it is singular, as one that maps all to grey.
+/// Returns the inverse of an exposure; none if the exposure is almost singular, for example if it makes all
+/// colours grey.
 std::optional<glm::mat4x3> inverse_exposure(const glm::mat4x3& exposure);
 
-/// Depth Z/A where A > 0.5, +infinity elsewhere; view-space z in world units; one channel.
+/// Returns one channel with each pixel's depth Z/A: the mean view-space z in world units. If A = 1 - T is at
+/// most 0.5, the depth is +infinity.
 Image depth_map(const Picture& picture);
 
-/// The integer from 0 to `top` that a file stores for a value from 0 to 1: round(top clamp(value)); 0 for
-/// NaN.
+/// Returns the integer that a file stores for a value from 0 to 1: round(top clamp(value)), or 0 for NaN.
 inline int step_of(float value, float top) {
   const float scaled = (value > 0.0f ? std::min(value, 1.0f) : 0.0f) * top;
   const int whole = static_cast<int>(scaled);
   return scaled - static_cast<float>(whole) >= 0.5f ? whole + 1 : whole;  // equals std::lround, but faster
 }
 
-/// Every value rounded to 8 bits, or to 16 with a `top` of 65535.
+/// Returns the image with each value rounded to 8 bits, or to 16 bits if `top` is 65535.
 Image quantised(const Image& image, float top = 255.0f);
 
 }  // namespace binosplat

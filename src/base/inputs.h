@@ -5,8 +5,8 @@
 
 namespace binosplat {
 
-/// Protects this file from OutputFile, under any name, while it exists under this one. Ignores a missing
-/// file.
+/// Makes OutputFile refuse to replace the file at `path`, also under another path. The protection ends when
+/// `path` no longer names this file. Ignores a missing file.
 void note_input(const std::filesystem::path& path);
 
 /// Throws Error if `path` is a protected file.

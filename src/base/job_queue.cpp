@@ -22,7 +22,7 @@ void JobQueue::work(const std::stop_token& stop) {
     changed_.notify_all();
     run(lock, job.work);
     if (job.then) {
-      changed_.wait(lock, [&] { return turn_ == job.turn; });  // earlier jobs have started and will finish
+      changed_.wait(lock, [&] { return turn_ == job.turn; });  // ends: earlier jobs have started
       run(lock, job.then);
       ++turn_;
       changed_.notify_all();
@@ -67,7 +67,8 @@ void JobQueue::finish() {
 
 void JobQueue::share(std::size_t count, std::size_t chunk, const Body& body) {
   if (threads_.empty() || count <= chunk || is_sharing_.exchange(true)) return body(0, count);
-  // Chunks share no data, so relaxed order suffices, and the thread sanitizer can see races in bodies.
+  // Chunks share no data, so relaxed order suffices. A stronger order would hide races in bodies from the
+  // thread sanitizer.
   std::atomic<std::size_t> next = 0;
   const auto work = [&] {
     const auto take = [&] { return next.fetch_add(chunk, std::memory_order_relaxed); };

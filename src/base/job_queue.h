@@ -1,6 +1,6 @@
 #pragma once
-// A queue of jobs with its own threads. They encode pictures while the caller draws the next ones, or help
-// the caller to copy a frame's data.
+// A queue of jobs with its own threads. The threads encode pictures while the caller draws the next ones, or
+// help the caller to copy a frame's data.
 
 #include <atomic>
 #include <condition_variable>
@@ -23,22 +23,24 @@ class JobQueue {
   JobQueue(const JobQueue&) = delete;
   JobQueue& operator=(const JobQueue&) = delete;
 
-  /// Adds a job, after waiting for room in the queue. `then` runs after the job: one at a time, in the order
-  /// of add(). After a job or `then` has thrown, no other starts, and this rethrows the exception.
+  /// Waits for room in the queue and adds a job. `then` runs after the job. Calls of `then` run one at a
+  /// time, in the order of add(). After a job or a `then` has thrown, no other starts, and add() rethrows the
+  /// exception.
   void add(std::function<void()> job, std::function<void()> then = {});
 
-  /// Waits for all jobs. Throws as add() does.
+  /// Waits for all jobs. Rethrows exceptions as add() does.
   void finish();
 
-  /// Calls body(begin, end) for chunks of at most `chunk` that cover [0, count), on this thread and the
-  /// queue's. If another thread is in share(), uses this thread alone. `body` must not throw.
+  /// Calls body(begin, end) for intervals that cover [0, count) and have at most `chunk` indices, on this
+  /// thread and the queue's. If the queue has no threads or another thread is in share(), calls body(0,
+  /// count) instead. `body` must not throw.
   using Body = std::function<void(std::size_t begin, std::size_t end)>;
   void share(std::size_t count, std::size_t chunk, const Body& body);
 
  private:
   struct Job {
     std::function<void()> work, then;
-    std::size_t turn = 0;  // position of `then` in the order
+    std::size_t turn = 0;  // number of earlier jobs that have a `then`
   };
   void work(const std::stop_token& stop);
   void run(std::unique_lock<std::mutex>& lock, const std::function<void()>& part);
@@ -49,17 +51,17 @@ class JobQueue {
   std::condition_variable_any changed_;
   std::deque<Job> waiting_;
   std::size_t running_ = 0;
-  std::size_t turns_ = 0, turn_ = 0;   // number of turns assigned, and the current one
-  std::exception_ptr failure_;         // of the first failed job
-  std::vector<std::jthread> threads_;  // last: destroyed first, which joins them
+  std::size_t turns_ = 0, turn_ = 0;   // number of turns assigned, and the current turn
+  std::exception_ptr failure_;         // thrown by the first failed job
+  std::vector<std::jthread> threads_;  // the last member: its destructor runs first and joins the threads
 };
 
-/// JobQueue::share of a global queue for frames, which uses a quarter of the cores, this one included. Frames
-/// cannot use parallel_chunks: its threads may be busy for some ms, and have a low priority after background
-/// work.
+/// Calls JobQueue::share() of a global queue for frames. The queue and the calling thread use a quarter of
+/// the cores. Frames cannot use parallel_chunks(): its threads may be busy for some ms, and keep a low
+/// priority after background work.
 void frame_chunks(std::size_t count, std::size_t chunk, const JobQueue::Body& body);
 
-/// Chunk of numbers of 4 bytes to copy that is worth a thread: about 20 us.
+/// The `chunk` of frame_chunks() for copying 4-byte numbers. Copying this many numbers takes about 20 us.
 inline constexpr std::size_t frame_chunk_numbers = std::size_t{1} << 15;
 
 }  // namespace binosplat

@@ -10,7 +10,7 @@
 namespace binosplat {
 
 /// Writes `binosplat: TEXT` and a newline to standard error. Replaces control characters except newlines by
-/// '?', because quoted files and libraries could control the terminal.
+/// '?', because text from files and libraries could otherwise control the terminal.
 void log_line(const std::string& text);
 
 /// The last value of set_quiet().

@@ -18,14 +18,15 @@ namespace binosplat {
 
 namespace {
 
-/// A mapping for the signal handler, which cannot lock, while threads map and unmap.
+/// A mapping that the signal handler can read while threads map and unmap. The members are atomic, because
+/// the handler cannot lock.
 struct Mapping {
   std::atomic<const std::byte*> data = nullptr;  // null: the entry is free
   std::atomic<std::size_t> size = 0;
   std::atomic<const char*> name = nullptr;
 };
 
-/// More than are mapped at once; the handler cannot name further ones.
+/// There are more entries than files mapped at once. The handler cannot name a file without an entry.
 std::array<Mapping, 256> mappings;
 static_assert(std::atomic<const char*>::is_always_lock_free && std::atomic<std::size_t>::is_always_lock_free);
 
@@ -62,7 +63,7 @@ void on_cut_file(int, siginfo_t* info, void*) {
     say(" was cut short while it was read: leave it alone until this is done, and start again\n");
     _exit(static_cast<int>(ExitCode::bad_input));
   }
-  std::signal(SIGBUS, SIG_DFL);  // not in a mapped file: fault again
+  std::signal(SIGBUS, SIG_DFL);  // not in a mapped file: the repeated fault ends the process
 }
 
 }  // namespace

@@ -8,18 +8,18 @@
 
 namespace binosplat {
 
-/// If another program truncates a mapped file, ends the program with ExitCode::bad_input and a line that
-/// names the file, instead of a silent SIGBUS. Only for `main`, because it installs a handler for the
-/// process.
+/// Installs a handler for the process, so only `main` may call it. If another program truncates a mapped
+/// file, the handler names the file in a message and ends the process with ExitCode::bad_input, instead of a
+/// silent SIGBUS.
 void end_cleanly_on_cut_files();
 
-/// Throws the Error of a missing or unreadable file; `reason` is an errno.
+/// Throws the Error for a missing or unreadable file; `reason` is an errno.
 [[noreturn]] void fail_to_read(const std::filesystem::path& path, int reason);
 
 class MappedFile {
  public:
-  /// Maps the whole file for reading; an empty file gives no bytes. Throws Error if it is missing, a folder
-  /// or unreadable.
+  /// Maps the whole file for reading; an empty file gives no bytes. Throws Error if the file is missing,
+  /// unreadable or a folder.
   explicit MappedFile(const std::filesystem::path& path);
   ~MappedFile();
   MappedFile(const MappedFile&) = delete;

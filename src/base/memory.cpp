@@ -22,7 +22,7 @@ bool is_out_of_memory() {
   return false;
 }
 
-/// Calls only async-signal-safe functions (signal-safety(7)), and mmap, a bare system call.
+/// Calls only async-signal-safe functions (signal-safety(7)), and mmap and munmap, which are system calls.
 void on_crash(int signal) {
   if (is_out_of_memory()) {
     constexpr char text[] =
@@ -31,7 +31,7 @@ void on_crash(int signal) {
     static_cast<void>(!write(STDERR_FILENO, text, sizeof(text) - 1));
     _exit(static_cast<int>(ExitCode::out_of_memory));
   }
-  // Restores the handler: the fault repeats, and abort() continues.
+  // Restores the previous handler. Then the fault repeats, or abort() continues.
   sigaction(signal, signal == SIGABRT ? &before_abort : &before_fault, nullptr);
 }
 

@@ -10,9 +10,9 @@ inline double memory_bytes() {
   return static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
 }
 
-/// If a library crashes when memory is exhausted, ends the program with ExitCode::out_of_memory and a line:
-/// OpenGL drivers do not check their allocations. Other crashes are unchanged. Only for `main`, because it
-/// installs handlers for the process.
+/// Installs handlers for the process, so only `main` may call it. OpenGL drivers do not check their
+/// allocations. If a library crashes while memory is exhausted, the handlers write a message and end the
+/// process with ExitCode::out_of_memory. Other crashes are unchanged.
 void end_cleanly_without_memory();
 
 }  // namespace binosplat

@@ -20,8 +20,8 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Waits until the disk has a file or folder; false, with errno, on failure. Disks without fsync and
-/// unreadable folders count as done.
+/// Waits until a file or folder is stored on the disk. On failure returns false and sets errno. Disks without
+/// fsync and unreadable folders count as stored.
 bool is_on_disk(const fs::path& path) {
   const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC);
   if (file < 0) return errno == EACCES;
@@ -36,7 +36,7 @@ bool is_on_disk(const fs::path& path) {
 struct Unfinished {
   std::mutex mutex;
   std::multiset<fs::path> paths;
-  bool watches = false;  // also records finished files
+  bool watches = false;  // whether finished files are recorded
   std::set<fs::path> finished, folders;
 };
 
@@ -122,10 +122,11 @@ OutputFile::OutputFile(const fs::path& path) : target_(path) {
          error.message());
   }
 
-  // Processes with equal ids may share a disk, in containers or across machines.
+  // Processes in containers or on several machines may have equal process ids and share a disk, so the name
+  // has a random number, too.
   temporary_.emplace(target_.string() + fmt::format(".part-{}-{:08x}", getpid(), std::random_device()()));
   {
-    // Under the lock, so that no file appears after remove_unfinished_files().
+    // Holds the lock, so that no file appears after remove_unfinished_files().
     const std::lock_guard lock(unfinished().mutex);
     file_ = std::fopen(temporary_->path().c_str(), "wb");
   }
@@ -179,7 +180,8 @@ bool OutputFile::commit_as_first() {
 void OutputFile::finish() {
   // Closing flushes buffers, so a full disk may surface here.
   if (std::fclose(std::exchange(file_, nullptr)) != 0) fail_to_write();
-  // A system may store the new name before the data, and then lose power.
+  // Stores the data before the new name exists. Otherwise a power failure could leave the name without the
+  // data.
   if (!is_on_disk(temporary_->path())) fail_to_write();
 }
 

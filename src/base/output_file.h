@@ -1,6 +1,6 @@
 #pragma once
-// Files that are complete or absent: writes go to a temporary file beside the target, which commit() renames.
-// The program writes every output this way.
+// Files that are complete or absent. Writes go to a temporary file in the target's folder, and commit()
+// renames this file to the target. The program writes every output this way.
 
 #include <cstddef>
 #include <cstdio>
@@ -12,11 +12,11 @@
 
 namespace binosplat {
 
-/// The path of a temporary file, registered while this exists.
+/// Registers the path of a temporary file for remove_unfinished_files(), while this object exists.
 class UnfinishedFile {
  public:
   explicit UnfinishedFile(std::filesystem::path path);
-  /// Unregisters the file, but does not remove it: its creator does.
+  /// Unregisters the file. Its creator removes it.
   ~UnfinishedFile();
   UnfinishedFile(const UnfinishedFile&) = delete;
   UnfinishedFile& operator=(const UnfinishedFile&) = delete;
@@ -27,21 +27,22 @@ class UnfinishedFile {
   std::filesystem::path path_;
 };
 
-/// From now on, finished files must stay. If a folder with a finished file disappears, OutputFile throws
-/// Error and does not create the folder again. Only for `main`: users of the library may remove files.
+/// Records the files that are finished from now on, and their folders. If such a folder disappears,
+/// OutputFile throws Error instead of creating it again. Only for `main`: users of the library may remove
+/// files.
 void watch_finished_files();
 
-/// Throws Error, naming a file that was finished since then and no longer exists.
+/// If a recorded file no longer exists, throws Error and names the file.
 void check_finished_files();
 
-/// Removes all unfinished files; the process must end now. Threads that start or commit a file block until
-/// then.
+/// Removes all unfinished files. Afterwards the process must end: threads that start or commit a file block
+/// forever.
 void remove_unfinished_files();
 
 class OutputFile {
  public:
   /// Creates missing folders above `path` and opens PATH.part-PID-RANDOM in its folder. Follows a symbolic
-  /// link. Throws Error with path and reason: a file in place of a folder, no permission, a folder or device,
+  /// link. Throws Error with path and reason if the file cannot be opened, or if `path` is a folder, a device
   /// or an input of the run (base/inputs.h).
   explicit OutputFile(const std::filesystem::path& path);
 
@@ -50,7 +51,7 @@ class OutputFile {
   OutputFile(const OutputFile&) = delete;
   OutputFile& operator=(const OutputFile&) = delete;
 
-  /// The temporary file, for libraries that write by name. Before commit() it may lack data from write().
+  /// The temporary file, for libraries that write to a path. Before commit() it may lack data from write().
   const std::filesystem::path& path() const { return temporary_->path(); }
 
   /// Appends. Throws Error, for example on a full disk.
@@ -61,13 +62,13 @@ class OutputFile {
   /// write() does.
   void flush();
 
-  /// Flushes, closes and renames to the target, which it replaces. Then even a power failure leaves a
-  /// complete file. Throws Error if any step fails, and leaves the target as before. `has_to_stay`: false for
-  /// files of caches, which others may remove.
+  /// Flushes and closes the temporary file, and renames it to the target, which it replaces. Afterwards even
+  /// a power failure leaves a complete file. If a step fails, throws Error and leaves the target as before.
+  /// `has_to_stay` is false for files of caches, which other programs may remove.
   void commit(bool has_to_stay = true);
 
-  /// As commit(), but only if the target does not exist; else returns false. Of several processes at once,
-  /// exactly one gets true.
+  /// If the target does not exist, commits as commit() does and returns true; otherwise returns false. If
+  /// several processes call this at once, it returns true in exactly one of them.
   bool commit_as_first();
 
  private:
@@ -76,8 +77,8 @@ class OutputFile {
   [[noreturn]] void fail_to_write() const;
 
   std::filesystem::path target_;
-  std::vector<std::filesystem::path> folders_;  // the file's, and those created above it
-  std::optional<UnfinishedFile> temporary_;     // until it is renamed
+  std::vector<std::filesystem::path> folders_;  // the target's folder and its parents, up to one that existed
+  std::optional<UnfinishedFile> temporary_;     // until the file is renamed
   std::FILE* file_ = nullptr;
 };
 

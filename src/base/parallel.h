@@ -8,8 +8,8 @@
 
 namespace binosplat {
 
-/// Calls body(begin, end) for chunks of about `chunk` that cover [0, count), on several threads. Rethrows
-/// exceptions of body.
+/// Calls body(begin, end) on several threads, for intervals that cover [0, count) and have about `chunk`
+/// indices. Rethrows exceptions of body.
 void parallel_chunks(std::size_t count, std::size_t chunk,
                      const std::function<void(std::size_t begin, std::size_t end)>& body);
 
@@ -23,15 +23,15 @@ void parallel_for(Count count, const Body& body, std::size_t chunk = 1) {
 
 enum class HandOver { in_order, as_done };
 
-/// A pipeline: calls work(k) for k = 0, 1, 2... while begins(k) is true, up to `ahead` at once, and
-/// hand_over(k) after each. Calls of begins are serial, and so are those of hand_over. Rethrows their
-/// exceptions.
+/// A pipeline: calls begins(k), work(k) and hand_over(k) for k = 0, 1, 2... until begins(k) is false, with at
+/// most `ahead` indices in the pipeline. Calls of work() run in parallel. Calls of begins() run one at a
+/// time, and so do calls of hand_over(). Rethrows the functions' exceptions.
 void parallel_stages(std::size_t ahead, const std::function<bool(std::size_t k)>& begins,
                      const std::function<void(std::size_t k)>& work,
                      const std::function<void(std::size_t k)>& hand_over, HandOver how);
 
-/// Runs body() in the background: its loops use at most this share of the cores, and at least one. All
-/// participating threads, including this one, keep a low priority afterwards.
+/// Runs body() in the background: its loops use at most this share of the cores, but at least one core. All
+/// participating threads, including the calling thread, keep a low priority afterwards.
 void on_some_cores(double share, const std::function<void()>& body);
 
 /// While the returned object exists, every loop runs only on its calling thread.

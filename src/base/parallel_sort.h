@@ -1,8 +1,8 @@
 #pragma once
 // Parallel sorting on all cores.
 
-// The thread sanitizer's build sorts without TBB: TBB is not instrumented, so it hides races and reports
-// false ones.
+// The thread sanitizer's build sorts without TBB. TBB is not instrumented, so the sanitizer would miss races
+// and report false ones.
 #ifdef __SANITIZE_THREAD__
 #include <algorithm>
 #else

@@ -18,12 +18,14 @@ namespace binosplat {
 
 namespace {
 
-// More threads than some machines have cores, so that races can occur. Nested loops use the remaining ones.
+// A loop may have more threads than the machine has cores, so that races can occur. Nested loops use the
+// helpers that are still free.
 constexpr int helpers_of_a_loop = 3;
 std::atomic<int> free_helpers = 4 * helpers_of_a_loop;
 std::atomic<int> loops_alone = 0;
 
-// The counters here must not order accesses in bodies: that would hide their races.
+// The counters of this file must not order memory accesses in bodies, because that would hide races in
+// bodies.
 constexpr auto unordered = std::memory_order_relaxed;
 
 bool is_a_helper_free() {
@@ -63,7 +65,7 @@ void with_helpers(std::size_t most, const std::function<void()>& work) {
 void parallel_chunks(std::size_t count, std::size_t chunk,
                      const std::function<void(std::size_t begin, std::size_t end)>& body) {
   if (count == 0) return;
-  constexpr std::size_t most_chunks = 64;  // of some duration each, as TBB's
+  constexpr std::size_t most_chunks = 64;  // so that each chunk takes some time, as with TBB
   const std::size_t step = std::max(chunk, count / most_chunks);
   std::atomic<std::size_t> next = 0;
   with_helpers((count - 1) / step, [&] {
@@ -133,7 +135,7 @@ std::shared_ptr<void> without_helpers() {
   return {nullptr, [](void*) { --loops_alone; }};
 }
 
-// Large enough that code which divides the cores still starts threads.
+// Large enough that code which uses a share of the cores still starts threads.
 int core_count() { return 16; }
 
 }  // namespace binosplat

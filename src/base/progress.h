@@ -10,8 +10,8 @@ namespace binosplat {
 
 class Progress {
  public:
-  /// `label` describes the work, as in "reading garden.ply". With `counted`, as in "views", the line also has
-  /// their rate per second.
+  /// `label` describes the work, as in "reading garden.ply". If `counted` names the elements, as in "views",
+  /// the line also has the elements per second.
   Progress(std::string label, std::uint64_t total, std::string counted = {});
   ~Progress();
   Progress(const Progress&) = delete;
@@ -28,7 +28,7 @@ class Progress {
   bool shown_ = false;
   Clock::time_point start_ = Clock::now();
   Clock::time_point next_;
-  Clock::time_point next_line_;  // next line in a log
+  Clock::time_point next_line_;  // time of the next line in a log
 };
 
 /// A duration in words: "40 s", "3 min 20 s", "2 h 5 min".

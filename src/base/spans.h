@@ -1,6 +1,6 @@
 #pragma once
-// Records what threads do; `binosplat profile` shows a track for each. Off by default, when a span costs only
-// the test of a flag.
+// Records what threads do; `binosplat profile` shows a track for each thread. While recording is off, as by
+// default, a span costs only the test of a flag.
 
 #include <string>
 #include <vector>
@@ -29,7 +29,8 @@ void add_span(const std::string& name, Clock::time_point begin);
 /// A span with the lifetime of this object.
 class TimedSpan {
  public:
-  /// `name`, a literal, must outlive it. The span's length is added to `ms`.
+  /// `name` must outlive this object, as literals do. If `ms` is not null, adds the span's length in ms to
+  /// it.
   explicit TimedSpan(const char* name, double* ms = nullptr) : name_(name), ms_(ms) {}
   ~TimedSpan();
   TimedSpan(const TimedSpan&) = delete;

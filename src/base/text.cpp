@@ -24,7 +24,7 @@ bool comes_before(std::string_view a, std::string_view b) {
     }
   }
   if (a.empty() != b.empty()) return a.empty();
-  return whole_a < whole_b;  // 01 and 1
+  return whole_a < whole_b;  // differ only in leading zeros, as 01 and 1
 }
 
 std::vector<std::string_view> words_of(std::string_view line, std::size_t most) {

@@ -21,7 +21,7 @@ inline std::string lowered(std::string text) {
   return text;
 }
 
-/// A name's ending in lower case with its dot, as in ".png"; empty without one.
+/// Returns a name's ending in lower case with its dot, as in ".png"; empty if the name has none.
 inline std::string lowered_ending(const std::filesystem::path& path) {
   return lowered(path.extension().string());
 }
@@ -29,11 +29,12 @@ inline std::string lowered_ending(const std::filesystem::path& path) {
 /// Whether a name sorts before another, with numbers by value: "x9" before "x10".
 bool comes_before(std::string_view a, std::string_view b);
 
-/// Splits at blanks. The last of `most` words contains the rest, with its blanks.
+/// Splits at blanks into at most `most` words. If the line has more, the last word is the rest of the line,
+/// with its blanks.
 std::vector<std::string_view> words_of(std::string_view line,
                                        std::size_t most = std::numeric_limits<std::size_t>::max());
 
-/// A coordinate for messages, with more digits if it is far from zero.
+/// Formats a coordinate for messages, with more digits if it is far from zero.
 inline std::string coordinate(double value) {
   return fmt::format("{:.{}g}", value, std::abs(value) < 1e4 ? 4 : 10);
 }

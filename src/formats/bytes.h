@@ -29,7 +29,7 @@ constexpr std::uint32_t bit_field(std::uint32_t word, int low, int bits) {
   return (word >> low) & ((1u << bits) - 1u);
 }
 
-/// Returns the half float (IEEE 754 binary16) with these bits; every half fits a float exactly.
+/// Returns the half float (IEEE 754 binary16) with these bits as a float, which represents it exactly.
 inline float half_of(std::uint16_t h) {
   const std::uint32_t sign = (h & 0x8000u) << 16, exponent = (h >> 10) & 31u, fraction = h & 1023u;
   if (exponent == 0) {

@@ -17,7 +17,7 @@ namespace {
 
 using nlohmann::ordered_json;
 
-constexpr std::size_t table_max = 100000;  // bins: more are implausible
+constexpr std::size_t table_max = 100000;  // maximum number of bins; more are implausible
 
 double at_least(double low, const JsonValue& value) {
   const double number = value.number();

@@ -100,7 +100,7 @@ std::vector<Camera> load_any(const std::filesystem::path& named, const std::opti
       path.string(), root.type_name());
 }
 
-/// Returns the ending of a name that stays behind a number, as in NAME_2.png: a photo's, or a pair's.
+/// Returns the ending before which a name gets its number, as in NAME_2.png: a picture's ending or an eye's.
 std::string_view ending_of(std::string_view name) {
   for (const std::string_view ending : {".png", ".jpg", ".jpeg", "_left", "_right"}) {
     if (lowered(std::string(name)).ends_with(ending)) return name.substr(name.size() - ending.size());
@@ -108,8 +108,8 @@ std::string_view ending_of(std::string_view name) {
   return "";
 }
 
-/// Makes names unique: a camera whose name occurred before becomes NAME_2 or so. INRIA's trainer gives equal
-/// names to test and training views of NeRF's synthetic scenes.
+/// Makes names unique: further cameras with the same name become NAME_2 and so on. INRIA's trainer gives
+/// equal names to test and training views of NeRF's synthetic scenes.
 void make_names_unique(const std::filesystem::path& path, std::vector<Camera>& cameras) {
   std::set<std::string> names, met;
   for (const Camera& camera : cameras) {
@@ -208,7 +208,7 @@ std::optional<std::filesystem::path> find_photos(const std::filesystem::path& ca
   std::error_code ignored;
   const fs::path path = fs::absolute(cameras).lexically_normal();
   fs::path folder = fs::is_directory(path, ignored) ? path : path.parent_path();
-  // The names in such files are relative to their own folder.
+  // The names in a transforms.json are relative to its folder.
   if (path.filename().string().starts_with("transforms")) return folder;
   // A reconstruction's folder is up to three levels below the scene's.
   const int levels = is_colmap(folder) ? 4 : 1;

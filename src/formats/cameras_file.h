@@ -5,8 +5,8 @@
 //
 // cameras.json is a list of objects: img_name, width, height (px), position (x, y, z), rotation (three rows
 // of three), fx, fy (px). The rotation is camera-to-world: its COLUMNS are the camera's axes x right, y down,
-// z forward in the world. Optional: cx, cy (px; default: the middle of the picture), time (s) and the keys of
-// lenses that are no pinholes (formats/distortion.h). Other keys are ignored.
+// z forward in the world. Optional keys: cx, cy (px; default: the middle of the picture), time (s) and those
+// of lenses that are no pinholes (formats/distortion.h). Other keys are ignored.
 
 #include <filesystem>
 #include <nlohmann/json_fwd.hpp>
@@ -20,17 +20,17 @@
 namespace binosplat {
 
 /// Returns the path that load_cameras() reads: a JSON file, a ply, or the folder of a COLMAP reconstruction.
-/// `path` is one of these, a folder that contains one, or a file of a reconstruction. Throws Error for a
-/// folder without cameras.
+/// `path` is one of these, a folder that contains one, or a file of a reconstruction. If a folder has no
+/// cameras, throws Error.
 std::filesystem::path resolve_cameras(const std::filesystem::path& path);
 
-/// Reads all cameras, at least one, of a file or of a folder that contains such files, also in sparse/0 below
-/// it. They are in file order, COLMAP's by name. Rotations must be orthonormal within 1e-3 with determinant
-/// +1; they are kept to the digit. For files that lacks_lenses(), the vertical field of view is
-/// `fov_degrees`, or 60. Names must be unique, since they find photos and name pictures: later cameras of one
-/// name become NAME_2 and so on, with a warning. Throws Error naming the file, the camera's number in the
-/// list and its key; for broken JSON, the line and byte. Throws Error if no camera's lens can be drawn
-/// (formats/distortion.h).
+/// Reads all cameras, at least one, from resolve_cameras(path). Cameras are in file order; COLMAP's are
+/// sorted by name. Rotations must be orthonormal within 1e-3 with determinant +1, and are not changed. If
+/// lacks_lenses() is true for the file, the vertical field of view is `fov_degrees` (default: 60). Names are
+/// made unique, since they find photos and name pictures: further cameras with the same name become NAME_2
+/// and so on, with a warning. For an invalid camera throws Error and names the file, the camera's number in
+/// the list and the key; for broken JSON, the line and byte. Also throws Error if no camera's lens can be
+/// drawn (formats/distortion.h).
 std::vector<Camera> load_cameras(const std::filesystem::path& path,
                                  const std::optional<double>& fov_degrees = {});
 
@@ -41,18 +41,18 @@ bool lacks_lenses(const std::filesystem::path& path);
 [[noreturn]] void fail_no_camera(const std::string& asked, const std::string& source,
                                  std::span<const Camera> cameras);
 
-/// Returns a camera as an object of cameras.json, with its principal point and its time (0 if it has none).
+/// Returns a camera as an object of cameras.json, with principal point and time (0 if the time is unknown).
 nlohmann::ordered_json camera_json(const Camera& camera);
 
-/// Returns the path of the cameras of a model, a file or its folder. A ply with a camera
-/// (formats/ply_camera.h) is that path itself. Otherwise it is cameras.json, transforms.json or a COLMAP
-/// reconstruction in the model's folder. For INRIA's MODEL/point_cloud/iteration_N/NAME.ply and
-/// MODEL/point_cloud/NAME.ply the folder is MODEL, if the model's has none.
+/// Returns the path of a model's cameras. `model` is the model's file or its folder. If the model is a ply
+/// with a camera (formats/ply_camera.h), returns the ply. Otherwise returns the cameras.json, transforms.json
+/// or COLMAP reconstruction in the model's folder. If there is none, looks in MODEL for INRIA's
+/// MODEL/point_cloud/iteration_N/NAME.ply and MODEL/point_cloud/NAME.ply.
 std::optional<std::filesystem::path> find_cameras(const std::filesystem::path& model);
 
-/// Returns the folder of the photos of these cameras: `images` or `photos` beside their file, or beside the
-/// folders around a reconstruction. For transforms.json it is its own folder, to which its names are
-/// relative.
+/// Returns the folder of the cameras' photos. For transforms.json returns the file's own folder, because the
+/// names in the file are relative to that folder. Otherwise returns `images` or `photos` in the folder of the
+/// cameras, or, for a COLMAP reconstruction, also in the three folders above.
 std::optional<std::filesystem::path> find_photos(const std::filesystem::path& cameras);
 
 }  // namespace binosplat

@@ -13,7 +13,7 @@ namespace binosplat {
 namespace {
 
 constexpr std::size_t evenly = 64;
-constexpr int rounds = 24;  // of Lloyd's algorithm: later ones change the error by less than a hundredth
+constexpr int rounds = 24;  // of Lloyd's algorithm; later rounds change the error by less than a hundredth
 
 /// Returns prefix sums, which give the mean of any range of values.
 std::vector<double> sums_of(const std::vector<float>& values) {
@@ -27,7 +27,7 @@ struct Entry {
   bool stays = false;
 };
 
-/// Moves the free entries to the mean of the values nearest to them.
+/// Moves each free entry to the mean of the values that are nearest to it.
 void move_to_means(std::vector<Entry>& entries, const std::vector<float>& values,
                    const std::vector<double>& sums) {
   std::sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) { return a.value < b.value; });
@@ -47,12 +47,12 @@ void move_to_means(std::vector<Entry>& entries, const std::vector<float>& values
   }
 }
 
-/// Rows [begin, end) of the order.
+/// A set of rows: those at [begin, end) in PaletteMaker::order_.
 struct Cell {
   std::size_t begin = 0, end = 0;
-  std::size_t axis = 0;  // of the largest spread
-  double middle = 0.0;   // the mean there
-  double error = 0.0;    // squared, summed over rows and numbers
+  std::size_t axis = 0;  // column that varies most
+  double middle = 0.0;   // mean of this column
+  double error = 0.0;    // squared error, summed over rows and columns
   bool operator<(const Cell& other) const { return error < other.error; }
 };
 
@@ -74,7 +74,7 @@ class PaletteMaker {
       const auto end = order_.begin() + static_cast<std::ptrdiff_t>(cell.end);
       const auto cut =
           std::partition(begin, end, [&](std::uint32_t i) { return row_(i)[cell.axis] < cell.middle; });
-      if (cut == begin || cut == end) {  // all are equal but for rounding
+      if (cut == begin || cut == end) {  // all rows are equal up to rounding
         done.push_back(cell);
         continue;
       }

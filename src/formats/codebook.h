@@ -10,9 +10,9 @@
 
 namespace binosplat {
 
-/// 256 numbers in ascending order. Up to 256 different values are kept exactly. Of more values, 64 entries
-/// lie evenly between the ends, so that each value is at most 1 / 126 of the range from an entry. The others
-/// minimise the squared error (Lloyd 1982). Sorts the values, which must not be empty.
+/// 256 numbers in ascending order. If there are up to 256 different values, these are the entries. Otherwise
+/// 64 entries are spaced evenly over the range of the values, so that each value is at most 1 / 126 of the
+/// range from an entry. The other 192 minimise the squared error (Lloyd 1982). `values` must not be empty.
 class Codebook {
  public:
   explicit Codebook(std::vector<float> values);
@@ -27,13 +27,13 @@ class Codebook {
 
 struct Palette {
   std::size_t count = 0;
-  std::vector<float> entries;         // (count, size of a row)
-  std::vector<std::uint32_t> labels;  // by row
+  std::vector<float> entries;         // `count` rows of numbers
+  std::vector<std::uint32_t> labels;  // index of each row's entry
 };
 
-/// Replaces `rows` by at most `most` entries, each the mean of its rows. Repeatedly splits the cell with the
-/// largest squared error at its mean, across its longest spread. Up to `most` rows are kept exactly. `row(i)`
-/// returns a pointer to the row's `size` numbers.
+/// Replaces `rows` rows by at most `most` entries, each the mean of a set of rows. Repeatedly divides the set
+/// with the largest squared error in two, at the mean of the column that varies most. If there are up to
+/// `most` different rows, these are the entries. `row(i)` returns a pointer to the `size` numbers of row i.
 Palette make_palette(std::size_t rows, std::size_t size, std::size_t most,
                      const std::function<const float*(std::size_t i)>& row);
 

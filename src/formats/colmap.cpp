@@ -21,15 +21,15 @@ bool is_there(const fs::path& path) {
   return fs::is_regular_file(path, ignored);
 }
 
-/// The pinhole part of a lens's parameters, and the distortion by the others: src/colmap/sensor/models.h in
-/// COLMAP. Nothing for lenses without a flat picture: that includes fisheyes without distortion, whose
-/// distances are proportional to angles.
+/// A lens that is a pinhole with distortion (src/colmap/sensor/models.h in COLMAP). Its first parameters are
+/// the focal lengths and the principal point, and the others give the distortion. Even without distortion a
+/// fisheye is no such lens: its distances from the centre are proportional to angles.
 struct PlaneLens {
   std::size_t focal_lengths;
   Distortion distortion;
 };
 
-/// Fitzgibbon's division model: the pinhole place of a point drawn at u is u / (1 + k u^2).
+/// Fitzgibbon's division model: a pinhole shows a point at u / (1 + k u^2) if this lens shows it at u.
 Distortion division(double k) {
   if (k == 0.0) return {};
   return [k](const glm::dvec2& at) { return 2.0 / (1.0 + std::sqrt(1.0 - 4.0 * k * glm::dot(at, at))) * at; };

@@ -12,10 +12,10 @@ namespace binosplat {
 /// Returns whether a folder contains such a reconstruction.
 bool is_colmap(const std::filesystem::path& folder);
 
-/// Reads all cameras of a folder, sorted by the names of their pictures, from the binary files if both kinds
-/// exist. LensReport (formats/distortion.h) defines how lenses are drawn: distorted pinholes without the
-/// distortion, with a warning that names the command to undistort; fisheyes and panoramas not at all. Throws
-/// Error naming the file, and the image or line in it, if something is damaged, cut short or missing.
+/// Reads all cameras of a folder, sorted by the names of their pictures. If binary and text files exist,
+/// reads the binary ones. Distorted pinholes are drawn without the distortion, and a warning names the
+/// command to undistort them; fisheyes and panoramas cannot be drawn (LensReport, formats/distortion.h). If
+/// something is damaged, cut short or missing, throws Error and names the file and the image or line.
 std::vector<Camera> load_colmap(const std::filesystem::path& folder);
 
 }  // namespace binosplat

@@ -48,7 +48,7 @@ std::size_t parameters_of(int model) {
 
 /// Normalises a quaternion; throws Error for zero and for values that are not finite.
 glm::dvec4 unit(const std::string& where, const glm::dvec4& q) {
-  // Its squares may overflow or underflow a double; divided by the largest component they do not.
+  // Divides by the largest component first, because squares may overflow or underflow.
   const glm::dvec4 size = glm::abs(q), shrunk = q / std::max({size.x, size.y, size.z, size.w});
   const double length = glm::length(shrunk);
   if (!std::isfinite(length)) fail("{}: the rotation is not a quaternion (all zero, or not finite)", where);
@@ -158,7 +158,7 @@ std::optional<double> number_in(std::string_view word) {
   return word.empty() ? value : std::nullopt;
 }
 
-/// Accepts whole numbers written as 160.0.
+/// Parses a number of type T. An integer may be written as 160.0.
 template <typename T>
 T parse_number(const Lines& lines, std::string_view word, const char* what) {
   const std::optional<double> value = number_in(word);
@@ -172,13 +172,13 @@ bool are_numbers(std::span<const std::string_view> words) {
   return std::ranges::all_of(words, [](std::string_view word) { return number_in(word).has_value(); });
 }
 
-/// Returns whether a line lists an image's points, X Y POINT3D_ID of each, or is empty.
+/// Returns whether a line lists an image's points, with X Y POINT3D_ID for each, or is empty.
 bool are_points(std::string_view line) {
   const std::vector<std::string_view> words = words_of(line);
   return words.size() % 3 == 0 && are_numbers(words);
 }
 
-/// Splits an image's line. The name is the rest of the line: cameras name photos "IMG (1).jpg".
+/// Splits an image's line. The name is the rest of the line, because names may have blanks: "IMG (1).jpg".
 std::vector<std::string_view> fields_of_image(std::string_view line) { return words_of(line, 10); }
 
 bool is_image(std::string_view line) {
@@ -209,7 +209,7 @@ std::map<std::uint32_t, ColmapLens> colmap_lenses(const std::filesystem::path& p
     lens.model = cursor.take<std::int32_t>();
     lens.width = cursor.take<std::uint64_t>();
     lens.height = cursor.take<std::uint64_t>();
-    // The number of its parameters is unknown, too.
+    // The number of parameters is unknown, too, so the next camera cannot be found.
     if (colmap_model_name(lens.model).empty())
       fail("{}: camera {} has the unknown model {}: expected 0 to 17", path.string(), lens.id, lens.model);
     for (std::size_t k = 0; k < parameters_of(lens.model); ++k)
@@ -271,7 +271,7 @@ std::vector<ColmapImage> colmap_images_text(const std::filesystem::path& path) {
   const MappedFile file(path);
   Lines lines(path, as_text(file.bytes()));
   std::vector<ColmapImage> images;
-  bool may_be_points = false;  // the next line may be the last image's; some programs omit empty ones
+  bool may_be_points = false;  // the next line may list the last image's points; some programs omit them
   for (std::string_view line; lines.next_no_comment(line);) {
     const bool points = std::exchange(may_be_points, false);
     if (line.empty() || (points && are_points(line))) continue;

@@ -13,10 +13,10 @@ namespace binosplat {
 
 struct ColmapLens {
   std::uint32_t id = 0;
-  int model = 0;            // COLMAP's number
+  int model = 0;            // COLMAP's number of the lens model
   std::uint64_t width = 0;  // px
   std::uint64_t height = 0;
-  std::vector<double> parameters;  // as many as the model has; none for an unknown model
+  std::vector<double> parameters;  // parameters of the lens model; none if the model is unknown
 };
 
 struct ColmapImage {
@@ -30,7 +30,8 @@ struct ColmapImage {
 /// Returns the name of a lens model, or "" for an unknown number.
 std::string_view colmap_model_name(int model);
 
-/// Each reads a whole file. They throw Error naming the file and the record if it is damaged or cut short.
+/// Each function reads a whole file. If the file is damaged or cut short, it throws Error and names the file
+/// and the record.
 std::map<std::uint32_t, ColmapLens> colmap_lenses(const std::filesystem::path& path);
 std::map<std::uint32_t, ColmapLens> colmap_lenses_text(const std::filesystem::path& path);
 std::vector<ColmapImage> colmap_images(const std::filesystem::path& path);

@@ -16,14 +16,14 @@ namespace binosplat {
 
 namespace {
 
-constexpr std::size_t plain_fields = 12;  // without the bounds of colours
+constexpr std::size_t plain_fields = 12;  // number of fields without the bounds of colours
 constexpr const char* vertex_fields[] = {"packed_position", "packed_rotation", "packed_scale",
                                          "packed_color"};
 
 /// An element's rows: their first byte, and the offsets of the wanted properties.
 struct PackedRows {
   std::size_t at = 0;
-  std::size_t bytes = 0;  // of a row
+  std::size_t bytes = 0;  // size of a row
   std::vector<std::size_t> offsets;
 };
 
@@ -33,8 +33,8 @@ glm::dvec3 fractions(std::uint32_t word) {
           bit_field(word, 0, 11) / 2047.0};
 }
 
-/// Unpacks a quaternion: the highest two bits name the omitted largest of w, x, y, z; the others have 10 bits
-/// each.
+/// Unpacks a quaternion. The highest two bits name the largest of w, x, y, z, which is omitted. The other
+/// components have 10 bits each.
 glm::vec4 rotation_of(std::uint32_t word) {
   SmallestThree three{static_cast<int>(bit_field(word, 30, 2))};
   for (int k = 0; k < 3; ++k)
@@ -42,7 +42,7 @@ glm::vec4 rotation_of(std::uint32_t word) {
   return three.quaternion();
 }
 
-/// Decodes a byte of the harmonics: the middle of its step, except at both ends.
+/// Decodes a byte of the harmonics: the middle of the byte's interval, except for 0 and 255.
 float harmonic_of(std::byte stored) {
   const int b = std::to_integer<int>(stored);
   const double n = b == 0 ? 0.0 : b == 255 ? 1.0 : (b + 0.5) / 256.0;
@@ -139,7 +139,7 @@ class CompressedPlyReader {
     }
   }
 
-  /// Interpolates between three numbers of a chunk, from `field` on, and the three after them.
+  /// Interpolates from a chunk's three lower bounds, at `field`, to the three upper bounds after them.
   glm::dvec3 between(std::size_t chunk, std::size_t field, const glm::dvec3& fraction) const {
     const std::byte* row = bytes_.data() + chunks_.at + chunk * chunks_.bytes;
     glm::dvec3 value;

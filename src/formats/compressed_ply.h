@@ -1,10 +1,12 @@
 #pragma once
-// PlayCanvas' compressed ply: four words a Gaussian, quantised to the bounds of its chunk of 256.
+// PlayCanvas' compressed ply: four 32-bit words a Gaussian, quantised between the bounds of a chunk of 256
+// Gaussians.
 //
 // The first element is `chunk`: bounds of positions, of logarithms of scales and (except in old SuperSplat
 // files) of base colours. `vertex` follows with packed_position, packed_rotation, packed_scale and
-// packed_color. An optional `sh` has the higher harmonics, a byte each, channel-major as in a plain ply. The
-// file is binary and little-endian. Frame: RDF, as a plain ply; comments for anti-aliasing are the same, too.
+// packed_color. An optional `sh` has the higher harmonics, a byte each, channel-major as in a plain ply
+// (formats/ply.h). The file is binary and little-endian. Axes (RDF) and comments about anti-aliasing are as
+// in a plain ply.
 
 #include <filesystem>
 #include <span>
@@ -14,7 +16,7 @@
 
 namespace binosplat {
 
-/// Gaussians of a chunk, and the properties of its bounds; those of colours are optional.
+/// Number of Gaussians in a chunk, and the names of its bounds. Bounds of colours are optional.
 inline constexpr std::size_t packed_chunk_size = 256;
 inline constexpr const char* packed_chunk_fields[] = {
     "min_x",       "min_y",       "min_z",       "max_x",       "max_y",       "max_z",

@@ -10,7 +10,7 @@ namespace {
 
 using namespace std::string_view_literals;
 
-/// A content's description for errors, and its first bytes; empty if those do not identify it.
+/// A content's description for errors, and its first bytes; empty if other rules recognise the content.
 struct Kind {
   Content content;
   std::string_view words;
@@ -45,10 +45,10 @@ bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n'; 
 
 bool is_text(char c) { return static_cast<unsigned char>(c) >= 0x20 || is_blank(c); }
 
-/// Returns whether bytes from 0x80 on form UTF-8; the last character may be cut. A .splat of one Gaussian may
-/// have no byte below 0x20, but hardly ever valid UTF-8.
+/// Returns whether the bytes from 0x80 to 0xff form UTF-8; the last character may be cut. This distinguishes
+/// text from a .splat of one Gaussian, which may have no byte below 0x20, but is hardly ever valid UTF-8.
 bool is_utf8(std::string_view text) {
-  int following = 0;  // bytes left of the current character
+  int following = 0;  // remaining bytes of the current character
   for (const char c : text) {
     const int ones = std::countl_one(static_cast<unsigned char>(c));
     if ((following > 0) != (ones == 1) || ones > 4) return false;

@@ -18,15 +18,15 @@ struct Similarity : RigidTransform {
   double scale = 1.0;
 };
 
-// Returns the transform that ns-process-data applied to the poses before it wrote them; the identity for
-// COLMAP's own. Sets `is_moved` to false if no dataparser uses these poses' world.
+// Returns the transform that ns-process-data applied to the poses before it wrote them; for a COLMAP
+// reconstruction, the identity. If the cameras are in the model's world already, sets `is_moved` to false.
 Similarity applied(const fs::path& cameras, bool& is_moved) {
   std::error_code ignored;
   is_moved = true;
   const fs::path cameras_file = resolve_cameras(cameras);
   if (fs::is_directory(cameras_file, ignored)) return {};
   const MappedFile file(cameras_file);
-  is_moved = content_of(file.bytes()) != Content::ply;  // false for the model's own camera
+  is_moved = content_of(file.bytes()) != Content::ply;  // the camera in a model's ply is not moved
   if (!is_moved) return {};
   const nlohmann::json root = parse_json(cameras_file.string(), as_text(file.bytes()));
   is_moved = is_transforms(root);
@@ -36,7 +36,7 @@ Similarity applied(const fs::path& cameras, bool& is_moved) {
   if (value.has("applied_transform")) {
     done = {read_rows(value.at("applied_transform"))};
   } else if (fs::exists(cameras_file.parent_path() / "colmap/sparse/0", ignored)) {
-    // Older files lack the key.
+    // Older files lack the key, but were written with this transform.
     done.rotation = glm::dmat3(0, 1, 0, 1, 0, 0, 0, 0, -1);
   }
   if (value.has("applied_scale")) done.scale = value.at("applied_scale").above_zero();

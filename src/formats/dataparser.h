@@ -1,6 +1,6 @@
 #pragma once
 // nerfstudio trains in its own world: its dataparser transforms the poses, and dataparser_transforms.json in
-// the training's folder holds that transform.
+// the training's folder contains this transform.
 
 #include <filesystem>
 #include <optional>
@@ -10,14 +10,15 @@
 
 namespace binosplat {
 
-/// Returns the file of the training of a model or its folder: in that folder, or up to three levels above it.
+/// Returns the dataparser_transforms.json of a model's training: in the model's folder, or in one of the
+/// three folders above. `model` is the model's file or its folder.
 std::optional<std::filesystem::path> find_dataparser(const std::filesystem::path& model);
 
-/// Moves cameras into the world of the training: p' = scale (T p), with T and scale from `dataparser`. It
-/// applies to a COLMAP reconstruction and to a transforms.json, whose own applied_transform and applied_scale
-/// it inverts first. Other cameras stay, since they are already in the model's world, as nerfstudio's paths
-/// and exported poses are. Returns whether it moved them. Throws Error naming the file and the key if a value
-/// is missing or no such transform.
+/// Moves the cameras of a COLMAP reconstruction or a transforms.json into the world of the training:
+/// p' = scale (T p), with T and scale from `dataparser`. For a transforms.json, first inverts its own
+/// applied_transform and applied_scale. Other cameras, such as nerfstudio's paths and exported poses, are in
+/// the model's world already and are not moved. Returns whether the cameras were moved. If a value is missing
+/// or invalid, throws Error and names the file and the key.
 bool move_into_training(const std::filesystem::path& dataparser, const std::filesystem::path& cameras_file,
                         std::vector<Camera>& cameras);
 

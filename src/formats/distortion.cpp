@@ -79,7 +79,7 @@ Distortion read_distortion(const KeyOf& key) {
   };
   BrownDistortion brown{
       .k = {number("k1"), number("k2"), number("k3"), number("k4")}, .p1 = number("p1"), .p2 = number("p2")};
-  // OpenCV's full model has its last three coefficients in the denominator.
+  // In OpenCV's full model k4 to k6 are in the denominator.
   if (key("k5") || key("k6")) {
     brown.below = {std::exchange(brown.k[3], 0.0), number("k5"), number("k6")};
   }

@@ -1,6 +1,6 @@
 #pragma once
-// Lenses other than pinholes. Only pinholes can be drawn, so distortion is ignored, and every reader of
-// cameras reports that in the same words: LensReport.
+// Lenses other than pinholes. Only pinholes can be drawn, so distortion is ignored. Every reader of cameras
+// reports this by LensReport, in the same words.
 
 #include <array>
 #include <functional>
@@ -12,13 +12,13 @@
 
 namespace binosplat {
 
-/// Maps a point of a pinhole picture of focal length 1 to its place under the lens, both relative to the
-/// principal point. Empty: a pinhole.
+/// Transforms a point in the picture of a pinhole with focal length 1 to the point at which the lens shows
+/// it. Both points are relative to the principal point. If the function is empty, the lens is a pinhole.
 using Distortion = std::function<glm::dvec2(const glm::dvec2&)>;
 
 /// Brown's and OpenCV's distortion. The radial factor at distance r from the principal point is (1 + k[0] r^2
-/// + k[1] r^4 + ...) / (1 + below[0] r^2 + ...). p1 and p2 are the tangential shift of a tilted lens. All
-/// zeros are a pinhole.
+/// + k[1] r^4 + ...) / (1 + below[0] r^2 + ...). p1 and p2 give the tangential distortion of a tilted lens.
+/// If all coefficients are zero, the lens is a pinhole.
 struct BrownDistortion {
   std::array<double, 4> k{};
   std::array<double, 3> below{};
@@ -26,8 +26,8 @@ struct BrownDistortion {
 };
 Distortion distortion_of(const BrownDistortion& brown);
 
-/// Returns the largest distance of a picture's corner from its place in the pinhole picture, in px; infinite
-/// if the lens does not reach a corner.
+/// Returns the largest shift of a picture's corner by the distortion, in px; infinite if the lens does not
+/// reach a corner.
 double corner_shift(const Camera& camera, const Distortion& distortion);
 
 /// Collects the lenses of a file's cameras. report() gives one warning for each kind of unusual lens.
@@ -39,7 +39,7 @@ class LensReport {
 
   /// Adds a camera that can be drawn.
   void add(const Camera& camera, const Distortion& distortion);
-  /// Adds a camera that cannot be drawn; `why` is the error's text if no other camera can be.
+  /// Adds a camera that cannot be drawn. If no camera can be drawn, the first `why` is the text of the error.
   void add_skipped(std::string why);
   /// Warns about distorted and skipped cameras. Throws Error if all were skipped.
   void report() const;
@@ -48,18 +48,18 @@ class LensReport {
   std::string file_, remedy_;
   std::size_t drawn_ = 0, left_out_ = 0;
   std::string first_left_out_;
-  std::optional<double> farthest_;  // shift of a corner, px
+  std::optional<double> farthest_;  // largest shift of a corner, px
   std::string farthest_camera_;
 };
 
-/// Returns the value of a key, from a camera or from its whole file.
+/// Returns a key's value for a camera: the camera's own, or that of the file for all cameras.
 using KeyOf = std::function<std::optional<JsonValue>(const char*)>;
 
 /// Reads OpenCV's k1 to k6, p1 and p2, or nerfstudio's distortion_params.
 Distortion read_distortion(const KeyOf& key);
 
-/// Returns why a lens has no flat picture, for an error's text: "key 'camera_model': ...". Checks
-/// camera_model, camera_type, is_fisheye and the keys of instant-ngp's lenses. Returns "" for other lenses.
+/// Returns why a lens cannot be drawn, for an error's text: "key 'camera_model': ...". Checks camera_model,
+/// camera_type, is_fisheye and the keys of instant-ngp's lenses. For lenses that can be drawn, returns "".
 std::string undrawable_lens(const KeyOf& key);
 
 }  // namespace binosplat

@@ -1,6 +1,7 @@
 #pragma once
 // The exposures in exposure.json of INRIA's training (train_test_exp). Photos of one scene differ in exposure
-// and white balance, so the training maps each view's picture by these before it compares it with the photo.
+// and white balance. So the training applies a view's exposure to its picture, and then compares picture and
+// photo.
 
 #include <cstddef>
 #include <filesystem>
@@ -12,21 +13,21 @@ namespace binosplat {
 
 class Exposures {
  public:
-  Exposures() = default;  // none
+  Exposures() = default;  // no exposures
 
-  /// Reads a file: three rows of four numbers by view name. As in INRIA's renderer, a colour is a row vector
-  /// times the first three columns, plus the last column. Throws Error naming the file, the view and the
-  /// place if it is invalid.
+  /// Reads a file: three rows of four numbers for each view name. As in INRIA's renderer, the exposed colour
+  /// is the colour as a row vector times the first three columns, plus the last column. If the file is
+  /// invalid, throws Error and names the file, the view and the element.
   explicit Exposures(const std::filesystem::path& file);
 
-  /// Returns the exposure of a view by its name, with or without a picture's ending, for exposed() of
-  /// base/image.h. A missing view gets the identity.
+  /// Returns the exposure of a view, for exposed() of base/image.h. The view's name may lack the picture's
+  /// ending. For views that the file lacks, returns the identity.
   glm::mat4x3 of(const std::string& view) const;
   bool has(const std::string& view) const { return find(view) != nullptr; }
 
   const std::filesystem::path& file() const { return file_; }
   std::size_t count() const { return by_name_.size(); }
-  /// Returns whether any picture changes: the trainer writes the file without train_test_exp, too.
+  /// Returns whether any exposure changes a picture. Without train_test_exp, the trainer writes identities.
   bool change_any() const;
 
  private:
@@ -34,7 +35,7 @@ class Exposures {
 
   std::filesystem::path file_;
   std::map<std::string, glm::mat4x3> by_name_;
-  std::map<std::string, std::string> by_stem_;  // names by stem; empty if two have this stem
+  std::map<std::string, std::string> by_stem_;  // names by stem; "" if two names have the same stem
 };
 
 }  // namespace binosplat

@@ -30,7 +30,7 @@ namespace {
 constexpr const char* encoding_name = "binosplatEncoding";
 constexpr const char* coverage_name = "coverage";
 
-/// OpenEXR compresses in its own threads, and has none by default.
+/// OpenEXR compresses in threads of a global pool, which is empty by default.
 void use_all_cores() {
   static const bool once = [] {
     Imf::setGlobalThreadCount(static_cast<int>(std::thread::hardware_concurrency()));
@@ -51,7 +51,7 @@ Imf::Compression compression_of(ExrCompression compression) {
   return Imf::NO_COMPRESSION;
 }
 
-/// Keeps OpenEXR's output in memory: its own file stream ignores a full disk in a destructor.
+/// Keeps OpenEXR's output in memory, because the destructor of OpenEXR's file stream ignores a full disk.
 class MemoryStream : public Imf::OStream {
  public:
   explicit MemoryStream(const char* name) : Imf::OStream(name) {}
@@ -166,7 +166,7 @@ std::vector<std::string> wanted_channels(const std::filesystem::path& path,
   return wanted;
 }
 
-/// Size of a window that OpenEXR has validated, px.
+/// Returns the size of a window that OpenEXR has validated, px.
 glm::ivec2 size_of(const Imath::Box2i& window) {
   return {window.max.x - window.min.x + 1, window.max.y - window.min.y + 1};
 }
@@ -209,7 +209,7 @@ Image read_channels(Imf::InputFile& file, const std::vector<std::string>& wanted
   return image;
 }
 
-/// Reads the first and the last line: one of them is at the end of the file.
+/// Reads the first and the last line, to detect cut files: one of these lines is at the end of the file.
 void read_ends(Imf::InputFile& file, const std::vector<std::string>& wanted) {
   const Imath::Box2i window = file.header().dataWindow();
   std::vector<float> line(static_cast<std::size_t>(size_of(window).x));
@@ -228,7 +228,7 @@ bool is_display(const Imf::Header& header) {
   return encoding != nullptr && encoding->value() == "display";
 }
 
-/// Calls `work`. Errors begin with `what` and replace OpenEXR's own, which name no file.
+/// Calls `work`. Replaces errors of OpenEXR, which name no file, by errors that begin with `what`.
 template <typename Work>
 auto with_errors(const std::string& what, const Work& work) {
   use_all_cores();
@@ -350,13 +350,13 @@ glm::ivec2 exr_size(const std::filesystem::path& path, std::span<const std::byte
 bool is_whole_exr(const std::filesystem::path& path, std::span<const std::byte> bytes) {
   check_exr_header(path, bytes, {});
   return read_file(path, [](Imf::InputFile& file) {
-    // Lines of a block in files written here.
+    // Number of lines in a block, for files that binosplat writes.
     const int lines = file.header().compression() == Imf::ZIP_COMPRESSION ? 16 : 1;
     const Imath::Box2i window = file.header().dataWindow();
     for (int y = window.min.y; y <= window.max.y; y += lines) {
       const char* block = nullptr;
       int size = 0;
-      file.rawPixelData(y, block, size);  // throws if it is cut
+      file.rawPixelData(y, block, size);  // throws if the block is cut short
     }
     return file.isComplete();
   });

@@ -1,19 +1,21 @@
 #pragma once
 // OpenEXR files as docs/method.md 3 defines them: scene-linear by convention, with depth.
 //
-// With a background: R, G, B = EOTF(C + T * background), A = 1, and the model's coverage, 1 - T, in channel
-// `coverage`. Without: associated alpha, R, G, B = A * EOTF(C/A), A = 1 - T. EOTF is sRGB's, extended above 1
-// by the same power law; nothing is clamped. Z is view-space depth Z/A if A > 0.5, otherwise +infinity,
-// always FLOAT. The header's attribute `binosplatEncoding` is "linear" or "display" (without EOTF).
+// With a background: R, G, B = EOTF(C + T * background), A = 1, and channel `coverage` has the model's
+// coverage, 1 - T. Without a background, alpha is associated: A = 1 - T, and R, G, B = A * EOTF(C/A). EOTF is
+// sRGB's, extended above 1 by the same power law; nothing is clamped. Channel Z, always FLOAT, has the depths
+// of depth_map() (base/image.h). The header's attribute `binosplatEncoding` is "linear" or "display" (without
+// EOTF).
 //
 // Both eyes share one file in OpenEXR's multi-view standard: the attribute `multiView` lists left and right.
 // The left eye is the default view with the channels above. The right eye's channels are right.R, right.Z and
 // so on.
 //
-// load_image (formats/image_file.h) reads R, G, B or Y of any OpenEXR file and converts them to display
-// values by that attribute; without it, values are scene-linear. The picture is the display window: 0 outside
-// the data window, and cropped. A becomes straight alpha; it is dropped if the file has `coverage`, whose
-// colours include the background. Of several views it reads the default one and logs that.
+// load_image (formats/image_file.h) reads R, G, B or Y of any OpenEXR file. Unless `binosplatEncoding` is
+// "display", it converts them from scene-linear to display values. The picture covers the display window:
+// pixels outside the data window are 0, and data outside the display window is cropped. A becomes straight
+// alpha. If the file has `coverage`, its colours include the background, and A is ignored. If the file has
+// several views, load_image reads the default view and logs this.
 
 #include <filesystem>
 
@@ -22,7 +24,8 @@
 
 namespace binosplat {
 
-/// sRGB's transfer function from display values to linear light and back, odd about 0 and unbounded.
+/// sRGB's transfer function from display values to linear light, and its inverse. Both are extended as odd
+/// functions to all numbers.
 double srgb_to_linear(double v);
 double linear_to_srgb(double v);
 
@@ -31,8 +34,8 @@ enum class ExrCompression { none, rle, zip };
 
 struct ExrOptions {
   bool half = true;       // all channels but Z as 16-bit floats
-  bool display = false;   // without EOTF
-  Background background;  // none: associated alpha
+  bool display = false;   // stores display values, without the EOTF
+  Background background;  // if none, alpha is associated
   Notes notes;            // string attributes of the header
   ExrCompression compression = ExrCompression::rle;
 };
@@ -40,12 +43,12 @@ struct ExrOptions {
 /// Writes a picture. Throws Error naming the file.
 void save_exr(const std::filesystem::path& path, const Picture& picture, const ExrOptions& options);
 
-/// Writes a pair as the views left and right of one file. Throws Error naming the file, also if the two
-/// differ in size: views share a window.
+/// Writes an eye pair as the views left and right of one file. Throws Error naming the file, also if the
+/// pictures differ in size, because both views share a window.
 void save_exr(const std::filesystem::path& path, const Picture& left, const Picture& right,
               const ExrOptions& options);
 
-/// Return the bytes of such files; the path names them in errors.
+/// Return the bytes of such files. Errors name the file by `path`.
 std::string exr_bytes(const std::filesystem::path& path, const Picture& picture, const ExrOptions& options);
 std::string exr_bytes(const std::filesystem::path& path, const Picture& left, const Picture& right,
                       const ExrOptions& options);

@@ -40,8 +40,8 @@ class ExrHeaders {
     const exr_result_t result = exr_start_read(&context, path.c_str(), &how);
     context_.reset(context);
     check(result);
-    // The C library continues after faults that the C++ library, which reads the pixels, may interpret
-    // otherwise.
+    // The C library continues after some faults. The C++ library, which reads the pixels, may interpret such
+    // a header differently.
     if (!fault_.empty()) check(EXR_ERR_UNKNOWN);
   }
 
@@ -51,7 +51,7 @@ class ExrHeaders {
     return count;
   }
 
-  /// Throws Error if the file cannot hold a part's pixels, or they exceed `limit`.
+  /// Throws Error if the file cannot hold the pixels of an OpenEXR part, or if the pixels exceed `limit`.
   void check_part(int part, const PictureLimit& limit) const {
     exr_attr_box2i_t data, shown;
     exr_compression_t compression;
@@ -66,8 +66,8 @@ class ExrHeaders {
     const std::int64_t shown_width = extent(shown.min.x, shown.max.x),
                        shown_height = extent(shown.min.y, shown.max.y);
 
-    // The most pixels per byte. Pictures of one colour with up to 4 channels reached 7,000 with DWA, and 500
-    // with other compressions. The limits are about twice as large.
+    // Maximum number of pixels per byte. Pictures of one colour with up to 4 channels reach 7,000 with DWA,
+    // and 500 with other compressions. The limits are about twice as large.
     const bool dwa = compression == EXR_COMPRESSION_DWAA || compression == EXR_COMPRESSION_DWAB;
     const int most = (dwa ? 16384 : 1024) * 4 / std::clamp(channels->num_channels, 4, 4096);
     const auto check_window = [&](std::int64_t w, std::int64_t h) {
@@ -75,8 +75,8 @@ class ExrHeaders {
     };
     check_window(width, height);
     check_room(path_, width, height, limit);
-    // The area around the data window takes no bytes.
-    constexpr std::int64_t always_allowed = std::int64_t{1} << 24;  // px that are always allowed: 4096 x 4096
+    // The area around the data window takes no bytes, so pictures of up to `always_allowed` px pass.
+    constexpr std::int64_t always_allowed = std::int64_t{1} << 24;  // px: 4096 x 4096
     if (std::min(shown_width, shown_height) < 1 || shown_width > always_allowed / shown_height)
       check_window(shown_width, shown_height);
     check_room(path_, shown_width, shown_height, limit);
@@ -124,7 +124,7 @@ class ExrHeaders {
   const std::filesystem::path& path_;
   std::span<const std::byte> bytes_;
   std::unique_ptr<std::remove_pointer_t<exr_context_t>, Finish> context_;
-  std::string fault_;  // the first one
+  std::string fault_;  // the first fault
 };
 
 }  // namespace

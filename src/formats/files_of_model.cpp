@@ -15,7 +15,7 @@ namespace {
 namespace fs = std::filesystem;
 using Files = std::vector<fs::path>;
 
-/// Returns the files that a file refers to.
+/// Returns the files to which a model's file refers.
 Files named_by(const fs::path& path) {
   const MappedFile file(path);
   const ModelBytes bytes = examine(path, file.bytes());

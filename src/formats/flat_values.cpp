@@ -30,8 +30,8 @@ std::string unquoted(std::string_view text) {
   return std::string(is_quoted(text) ? text.substr(1, text.size() - 2) : text);
 }
 
-/// Converts a value to a word. Text that reads like a truth value is quoted, so that it is not mistaken for
-/// one. YAML 1.1, which trainers write, also has yes and on for true.
+/// Converts a value to a word. Quotes text that reads like true or false, to distinguish it from these
+/// values. YAML 1.1, which trainers write, also has yes and on for true.
 std::string word_of(const YAML::Node& node) {
   if (node.IsNull()) return "null";
   constexpr std::string_view yes[] = {"true", "True", "TRUE", "yes", "Yes", "YES", "on", "On", "ON"};
@@ -50,15 +50,15 @@ struct FlatYaml {
   std::vector<YAML::Node> above;  // mappings around the current value
   std::size_t added = 0;
 
-  /// Of duplicate keys the last one counts, with all of its content.
+  /// Adds a value. If a key is duplicate, its last value replaces the others with all of their contents.
   void add(const YAML::Node& node, const std::string& path) {
-    // References multiply a file's content, and may be circular.
+    // YAML's references can repeat content many times, and may be circular.
     constexpr std::size_t most = 20000, longest = 500;
     if (++added > most) throw YAML::Exception(node.Mark(), fmt::format("more than {} values", most));
     if (path.size() > longest || std::ranges::any_of(above, [&](const YAML::Node& n) { return n.is(node); }))
       return;
     const std::string inside = path + ".";
-    values.erase(values.lower_bound(inside), values.lower_bound(path + "/"));  // '/' follows '.'
+    values.erase(values.lower_bound(inside), values.lower_bound(path + "/"));  // '/' follows '.' in ASCII
     values.erase(path);
     if (node.IsScalar() || node.IsNull()) values.emplace(path, word_of(node));
     if (!node.IsMap()) return;
@@ -97,7 +97,7 @@ std::size_t end_of_value(std::string_view text) {
 }  // namespace
 
 FlatValues yaml_values(const std::string& source, std::string_view text) {
-  // UTF-16 begins with its byte order mark; its zeros are halves of letters.
+  // Text in UTF-16, which begins with a byte order mark, may have zero bytes in its letters.
   const auto bad = std::ranges::find_if(
       text, [](unsigned char c) { return (c < 0x20 && c != '\t' && c != '\n' && c != '\r') || c == 0x7f; });
   if (bad != text.end() && !text.starts_with("\xff\xfe") && !text.starts_with("\xfe\xff")) {

@@ -7,12 +7,12 @@
 
 namespace binosplat {
 
-/// Values without quotes, by their path of keys: "pipeline.model.sh_degree".
+/// Values without quotes. Each is named by its path of keys, as in "pipeline.model.sh_degree".
 using FlatValues = std::map<std::string, std::string, std::less<>>;
 
-/// Flattens YAML with nested mappings. null, true and false become these words; text that reads like true or
-/// false is quoted. Tagged objects and lists are skipped, since no setting that affects a picture is one.
-/// Throws Error naming `source` and the line.
+/// Flattens YAML with nested mappings. All spellings of null, true and false become these words; quoted text
+/// that reads like true or false stays quoted. Tagged objects and lists are skipped, since no setting that
+/// affects a picture is one. Throws Error naming `source` and the line.
 FlatValues yaml_values(const std::string& source, std::string_view text);
 
 /// Flattens Python's print of an argparse.Namespace: Namespace(eval=True, images='images').

@@ -36,7 +36,7 @@ bool is_known(const std::string& name) {
   return std::ranges::any_of(also_known, is) || std::ranges::any_of(packed_names, is);
 }
 
-/// Parses two whole numbers with a point between, as in "2.0".
+/// Parses two integers separated by a point, as in "2.0".
 std::pair<unsigned, unsigned> version_in(const JsonValue& value) {
   const std::string text = value.text();
   const auto numbers = two_numbers(text, '.');
@@ -81,9 +81,9 @@ std::optional<std::size_t> packed_view(const JsonValue& primitive, const JsonVal
   return std::nullopt;
 }
 
-/// Drafts of the extension store logarithms of the scales, so some are below 0; final scales never are.
+/// Converts logarithms, which drafts of the extension store, to scales. Only logarithms can be below 0.
 void undo_logarithms(const std::filesystem::path& path, std::vector<float>& scales) {
-  constexpr std::ptrdiff_t few = 100;  // one in this many may be damaged
+  constexpr std::ptrdiff_t few = 100;  // one scale in this many may be damaged
   const auto below = std::ranges::count_if(scales, [](float s) { return s < 0.0f; });
   if (below <= std::ssize(scales) / few) return;
   log_warning("{}: its scales are taken for logarithms, as they were in drafts: {} are below 0",
@@ -125,11 +125,11 @@ class GltfReader {
   }
 
  private:
-  /// Data that nodes share is read once: nodes times primitives may far exceed the file's bytes.
+  /// A mesh is read once for all of its nodes, since nodes times primitives may far exceed the file's size.
   struct Mesh {
-    std::size_t left = 0;  // nodes that have yet to show it
+    std::size_t left = 0;  // number of nodes that have not shown the mesh yet
     bool known = false;
-    bool morphs = false;  // its Gaussians move by weights
+    bool morphs = false;  // weights move the Gaussians
     Model model;
     std::size_t others = 0, points = 0;  // primitives that are no Gaussians
   };
@@ -158,7 +158,7 @@ class GltfReader {
     }
   }
 
-  /// Throws Error if anything but its transform moves a node's Gaussians.
+  /// Throws Error if anything except the node's transform moves the Gaussians of a node.
   void check_still(const GltfNode& shown, const Mesh& mesh) const {
     if (shown.node.has("skin"))
       shown.node.at("skin").fail_here("it moves Gaussians by joints, which cannot be drawn");
@@ -194,9 +194,9 @@ class GltfReader {
     mesh.known = true;
   }
 
-  /// Checks the total before memory is allocated for the copies.
+  /// Checks the total number of Gaussians before memory is allocated for the copies.
   void check_copies(const JsonValue& node, std::size_t count, std::size_t copies) const {
-    // Nodes can share a mesh, and meshes their numbers: a few bytes add any number of Gaussians.
+    // Nodes can share a mesh, and meshes can share numbers, so a few bytes can add any number of Gaussians.
     const std::size_t most_here = most_gaussians_in(document_.size());
     if (count == 0) return;
     if (copies > (most_here - std::min(most_here, read_)) / count) {
@@ -268,7 +268,7 @@ class GltfReader {
       for (int m = 0; m <= 2 * degree; ++m)
         harmonics.push_back(attribute(attributes, coefficient(degree, m), 3, n));
     }
-    model.lacks_degree_4 = attributes.has(coefficient(4, 0));  // the format does not define it
+    model.lacks_degree_4 = attributes.has(coefficient(4, 0));  // the format does not define degree 4
     model.resize(n);
     std::vector<std::uint8_t> kept(n);
     std::array<float, 3 * sh_count(3)> sh{};
@@ -289,7 +289,7 @@ class GltfReader {
   const std::filesystem::path& path_;
   GltfDocument document_;
   Model model_;
-  std::vector<glm::dvec3> places_;  // positions of its Gaussians in the scene
+  std::vector<glm::dvec3> places_;  // positions of the model's Gaussians in the scene
   bool packed_ = false;
   std::string unknown_;  // an unknown extension of the current primitive
   std::map<std::size_t, Mesh> meshes_;
@@ -300,7 +300,7 @@ class GltfReader {
 }  // namespace
 
 bool is_gltf(const nlohmann::json& root) {
-  // Other files of 3D Tiles have an asset, too.
+  // Other files of 3D Tiles also have the key `asset`.
   return root.is_object() && root.contains("asset") && (root.contains("buffers") || root.contains("meshes"));
 }
 

@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::uint32_t json_chunk = 0x4e4f534a, binary_chunk = 0x004e4942;
 
-/// Reads a number of type T; normalized integers become fractions of the largest.
+/// Reads a number of type T. Normalized integers become fractions of the type's maximum.
 template <typename T>
 float load_as(const std::byte* at, bool normalized) {
   const auto value = static_cast<float>(load_number<T>(at));
@@ -25,7 +25,7 @@ float load_as(const std::byte* at, bool normalized) {
   return std::max(value / static_cast<float>(std::numeric_limits<T>::max()), -1.0f);
 }
 
-/// The number types of Gaussians, by glTF's codes.
+/// A number type that Gaussians may have, by glTF's code (componentType).
 struct Component {
   int type;
   std::size_t bytes;
@@ -37,7 +37,7 @@ constexpr Component gltf_components[] = {{5120, 1, load_as<std::int8_t>},
                                          {5123, 2, load_as<std::uint16_t>},
                                          {5126, 4, load_as<float>}};
 
-/// Throws Error for another type.
+/// Returns the number type of an accessor. Throws Error for other types.
 const Component& component_of(const JsonValue& holder) {
   const JsonValue type = holder.at("componentType");
   const auto* const found =
@@ -49,7 +49,7 @@ const Component& component_of(const JsonValue& holder) {
 
 constexpr const char* meshopt_names[] = {"EXT_meshopt_compression", "KHR_meshopt_compression"};
 
-/// Returns whether a buffer is a placeholder for another, compressed one.
+/// Returns whether a buffer is a placeholder for a compressed buffer.
 bool is_placeholder(const JsonValue& buffer) {
   return std::any_of(std::begin(meshopt_names), std::end(meshopt_names), [&](const char* name) {
     return buffer.has("extensions") && buffer.at("extensions").has(name) &&
@@ -94,7 +94,7 @@ void GltfDocument::open_binary(std::span<const std::byte> bytes) {
       json_length > chunks.size() - 20) {
     fail("{}: the first chunk, {} bytes at byte 12, is not JSON, or exceeds the file", name, json_length);
   }
-  // Some programs pad with zeros; the format has blanks.
+  // The format pads the JSON with blanks, but some programs pad it with zero bytes.
   std::string_view json = as_text(chunks.subspan(20, json_length));
   while (json.ends_with('\0')) json.remove_suffix(1);
   json_ = parse_json(name, json);
@@ -133,7 +133,7 @@ std::span<const std::byte> GltfDocument::bytes_of(std::size_t index, const JsonV
     if (index != 0 || binary_.empty()) buffer.fail_here("it has no uri, and the file no binary chunk for it");
     return binary_;
   }
-  // Decoded once: a URI may hold megabytes, and any number of views may use it.
+  // Decodes a URI once, because it may hold megabytes, and any number of views may use it.
   if (const auto known = buffers_.find(index); known != buffers_.end()) return known->second;
   const JsonValue uri = buffer.at("uri");
   if (has_data(uri)) return buffers_[index] = data_in(uri);
@@ -162,7 +162,7 @@ std::vector<std::filesystem::path> GltfDocument::files() const {
 }
 
 std::span<const std::byte> GltfDocument::view(std::size_t index) {
-  // A view with optional meshopt compression also has its uncompressed bytes.
+  // If a view's meshopt compression is optional, the file has uncompressed bytes, too. These are read here.
   const JsonValue view = root().at("bufferViews").at(index);
   const auto bytes = buffer(view.at("buffer").whole(gltf_number_most));
   const std::size_t offset = optional_size(view, "byteOffset"),

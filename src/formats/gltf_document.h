@@ -14,38 +14,39 @@
 
 namespace binosplat {
 
-/// Larger sizes, counts and indices are damage.
+/// If a size, count or index is larger, the file is damaged.
 inline constexpr std::uint64_t gltf_number_most = std::uint64_t{1} << 40;
 
 class GltfDocument {
  public:
-  /// `bytes` are the file's and must outlive this object. Throws Error for a damaged or cut container or
-  /// JSON.
+  /// `bytes`, the file's contents, must outlive this object. Throws Error if the container or the JSON is
+  /// damaged or cut short.
   GltfDocument(const std::filesystem::path& path, std::span<const std::byte> bytes);
 
   const JsonValue& root() const { return *root_; }
 
-  /// Returns the bytes of a buffer view. Throws Error naming the key if it exceeds its buffer, or if that is
-  /// missing, cut short, or only present compressed.
+  /// Returns the bytes of a buffer view. Throws Error naming the key if the view exceeds its buffer, or if
+  /// the buffer is missing, cut short, or only present compressed.
   std::span<const std::byte> view(std::size_t index);
 
-  /// Returns the numbers of the accessor `index`, `components` an element. Integers become 0 to 1 or -1 to 1
-  /// if it is `normalized`. Without a view they are zeros; `sparse` replaces some. Throws Error naming the
-  /// key if it exceeds its view, or if its type is other than float, byte or short. Also throws for other
-  /// than `components` and `count`; the text explains `count` by `like`.
+  /// Returns the numbers of the accessor `index`, which must have `count` elements of `components` numbers
+  /// each. Normalized integers become 0 to 1 or -1 to 1. Without a view all numbers are zero. `sparse`
+  /// replaces some numbers. Throws Error naming the key if the accessor exceeds its view, has other sizes, or
+  /// has a type other than float, byte or short. For a wrong count the text says that `like` have `count`
+  /// elements.
   std::vector<float> read(std::size_t index, std::size_t components, std::size_t count,
                           const char* like = "the positions");
 
-  /// Returns whether the file has numbers for an accessor; one without a view and `sparse` is all zeros.
+  /// Returns whether the file has numbers for an accessor. Accessors without a view and `sparse` are zero.
   bool has_numbers(std::size_t accessor) const;
 
-  /// Returns the files that its buffers name, existing or not.
+  /// Returns the files that the buffers name, existing or not.
   std::vector<std::filesystem::path> files() const;
 
   /// Size of the file and of the buffers read so far.
   std::size_t size() const { return size_; }
 
-  /// Returns an accessor's number of elements, not checked against the bytes.
+  /// Returns an accessor's number of elements, without checking it against the file's size.
   std::size_t count(std::size_t accessor) const;
 
  private:
@@ -59,9 +60,9 @@ class GltfDocument {
   std::filesystem::path path_;
   nlohmann::json json_;
   std::unique_ptr<JsonValue> root_;
-  std::span<const std::byte> binary_;                                   // of a .glb
-  std::map<std::size_t, std::vector<std::byte>> buffers_;               // of data: URIs
-  std::map<std::filesystem::path, std::unique_ptr<MappedFile>> files_;  // of other URIs
+  std::span<const std::byte> binary_;                                   // binary chunk of a .glb
+  std::map<std::size_t, std::vector<std::byte>> buffers_;               // buffers from data: URIs
+  std::map<std::filesystem::path, std::unique_ptr<MappedFile>> files_;  // buffers from other URIs
   std::size_t size_;
 };
 

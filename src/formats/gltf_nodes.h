@@ -12,26 +12,27 @@ namespace binosplat {
 /// A node with a mesh.
 struct GltfNode {
   JsonValue node;
-  glm::dmat4 matrix;  // in the world of the scene
+  glm::dmat4 matrix;  // from the node to the scene's world
   std::size_t mesh;
 };
 
-/// Returns a node's own transform: a matrix, or translation, rotation and scale; the identity without any.
-/// Throws Error naming the key if it is invalid.
+/// Returns a node's own transform: a matrix, or translation, rotation and scale. If the node has none,
+/// returns the identity. Throws Error naming the key if it is invalid.
 glm::dmat4 node_transform(const JsonValue& node);
 
-/// Returns the nodes with a mesh of the default scene (or the first), except those that are hidden or below a
-/// hidden one (KHR_node_visibility). Throws Error naming the key for missing nodes, nodes with two parents,
-/// and invalid transforms.
+/// Returns the nodes with a mesh in the default scene, or in the first scene if there is no default. Omits
+/// hidden nodes and the nodes below them (KHR_node_visibility). Throws Error naming the key for missing
+/// nodes, nodes with two parents, and invalid transforms.
 std::vector<GltfNode> visible_nodes(const JsonValue& root);
 
 /// The transforms of a mesh's copies within a node: those of EXT_mesh_gpu_instancing, or one identity.
 class MeshInstances {
  public:
-  /// Throws Error naming the key if the attributes differ in number.
+  /// Throws Error naming the key if the attributes differ in their number of elements.
   MeshInstances(GltfDocument& document, const JsonValue& node);
 
-  /// Number of copies; checked against the bytes only if an attribute moves, rotates or scales them.
+  /// Number of copies. Only if an attribute moves, rotates or scales the copies, this number is checked
+  /// against the file's size.
   std::size_t count() const { return count_; }
 
   /// Throws Error naming the key for a rotation of length 0.

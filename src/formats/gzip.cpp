@@ -13,7 +13,7 @@ namespace binosplat {
 namespace {
 
 constexpr int with_gzip_header = 16 + MAX_WBITS;
-/// zlib counts in 32 bits.
+/// zlib counts bytes in 32 bits.
 constexpr std::size_t most_at_once = std::size_t{1} << 30;
 
 }  // namespace

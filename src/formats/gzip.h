@@ -1,5 +1,5 @@
 #pragma once
-// Reads gzip in parts of known size, so that nothing unpacks beyond them.
+// Reads gzip up to a given size, so that a small file cannot unpack to a huge one.
 
 #include <cstddef>
 #include <memory>
@@ -11,12 +11,12 @@ struct z_stream_s;
 
 namespace binosplat {
 
-/// The largest factor by which deflate, also in zip archives, expands.
+/// The largest factor by which data in the deflate format (gzip, zip) expands.
 inline constexpr std::size_t deflate_growth_most = 1032;
 
 class GzipReader {
  public:
-  /// Starts at the first member of `bytes`, which must outlive this object; `source` names them in errors.
+  /// Starts at the first gzip member in `bytes`, which must outlive this object. Errors name `source`.
   GzipReader(std::string source, std::span<const std::byte> bytes);
   ~GzipReader();
   GzipReader(const GzipReader&) = delete;

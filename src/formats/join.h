@@ -5,7 +5,8 @@
 
 namespace binosplat {
 
-/// Appends the Gaussians of `part`; missing higher harmonics are 0. Warns if the two differ in perspective.
+/// Appends the Gaussians of `part`; missing higher harmonics become 0. Warns if `all` and `part` differ in
+/// sort order or projection.
 void join(Model& all, Model&& part);
 
 }  // namespace binosplat

@@ -27,7 +27,7 @@ class JpegReader {
       fail("{}: broken JPEG: it ends before its picture begins", path.string());
     if (colours_ == TJCS_CMYK || colours_ == TJCS_YCCK)
       fail("{}: a CMYK JPEG; convert it to RGB", path.string());
-    // Two bits a block of 8 x 8 px are 256 px a byte; progressive files need less.
+    // With 2 bits for a block of 8 x 8 px, a byte holds 256 px. Progressive files need fewer bits.
     check_size(path, size_.x, size_.y, bytes.size(), 1024);
   }
 

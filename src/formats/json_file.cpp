@@ -25,7 +25,7 @@ void check_depth(const std::string& source, std::string_view text) {
     if (c == ']' || c == '}') --depth;
     if (depth > most) {
       const auto line = 1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(i), '\n');
-      const Content content = content_of(std::as_bytes(std::span(text)));  // may be a binary file
+      const Content content = content_of(std::as_bytes(std::span(text)));  // the text may be a binary file
       fail("{}: its lists and objects are nested more than {} deep, at line {}, byte {}{}", source, most,
            line, i + 1, content == Content::json ? "" : fmt::format("; it looks like {}", describe(content)));
     }
@@ -77,7 +77,7 @@ JsonValue JsonValue::at(const std::string& key) const {
   const auto found = value_->find(key);
   if (found == value_->end())
     fail("{}: the key '{}{}{}' is missing", source(), where(), step_ ? "." : "", key);
-  // Errors show the file's keys unescaped; keys requested here are the program's own.
+  // Errors print keys unescaped; log_line() replaces control characters.
   return inner(*found, key);
 }
 

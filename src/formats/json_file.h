@@ -15,12 +15,12 @@
 namespace binosplat {
 
 /// Parses a whole text. Throws Error naming `source` (a file, or a file in an archive), the line and the
-/// byte. Also throws for more than 500 nested lists and objects, which no file needs (a tree over a planet
-/// takes 60).
+/// byte. Also throws if lists and objects are nested more than 500 deep, which no file needs (a tree over a
+/// planet takes 60 levels).
 nlohmann::json parse_json(const std::string& source, std::string_view text);
 
-/// A value in a file. An access that does not fit its type throws an Error that names the file and the keys,
-/// as in "scene/meta.json, key 'means.files[1]': expected text in quotes".
+/// A value in a file. If an access does not fit the value's type, it throws an Error that names the file and
+/// the keys, as in "scene/meta.json, key 'means.files[1]': expected text in quotes".
 class JsonValue {
  public:
   JsonValue(std::string source, const nlohmann::json& root)
@@ -31,14 +31,14 @@ class JsonValue {
 
   /// Returns whether an object has this key, with a value other than null.
   bool has(const std::string& key) const;
-  JsonValue at(const std::string& key) const;                   // throws if it is missing
+  JsonValue at(const std::string& key) const;                   // throws if the key is missing
   std::optional<JsonValue> find(const std::string& key) const;  // nothing if has() is false
   JsonValue at(std::size_t index) const;                        // throws beyond size()
   std::size_t size() const;                                     // of a list; throws for anything else
-  JsonValue list_of(std::size_t n) const;         // returns itself; throws unless it is a list of n
+  JsonValue list_of(std::size_t n) const;         // returns itself; throws unless it is a list of n values
   double number() const;                          // finite
   double above_zero() const;                      // finite and above 0
-  std::uint64_t whole(std::uint64_t most) const;  // 0 to `most`, at most 2^53; 5.0 is whole, too
+  std::uint64_t whole(std::uint64_t most) const;  // integer from 0 to `most`, at most 2^53; accepts 5.0
   int pixels() const { return static_cast<int>(whole(std::numeric_limits<int>::max())); }
   std::string text() const;
   /// Returns the numbers of a list of n.
@@ -58,8 +58,8 @@ class JsonValue {
   }
 
  private:
-  /// A key, or an index as in "[3]", and the step before it. Values share these steps, and only an error
-  /// joins them to text: a tree of many long paths costs no more than its nodes.
+  /// A key, or an index as in "[3]", and the step before it. Values share steps, and only an error joins
+  /// steps to a text. So many values with long paths need little memory.
   struct Step {
     std::shared_ptr<const Step> before;
     std::string name;

@@ -14,9 +14,9 @@ namespace {
 constexpr std::size_t ksplat_header_bytes = 4096, section_header_bytes = 1024;
 constexpr std::size_t most_sections = 65536;
 
-/// Storage of a Gaussian at the three compression levels.
+/// Storage of a Gaussian at the three compression levels, in bytes.
 struct Storage {
-  std::size_t position, scale, rotation, harmonic;  // bytes of all three, three, four, and of one coefficient
+  std::size_t position, scale, rotation, harmonic;  // harmonic: one coefficient
 };
 constexpr Storage storages[] = {{12, 12, 16, 4}, {6, 6, 8, 2}, {6, 6, 8, 1}};
 constexpr std::size_t colour_bytes = 4;
@@ -82,7 +82,8 @@ class KsplatReader {
   }
 
   void read_sections() {
-    // In some files the number of sections at byte 8 is 0; sections without Gaussians take no room.
+    // Reads all sections for which the header has room, since in some files the number of sections, at byte
+    // 8, is 0. Unused sections have no Gaussians and no data.
     const std::size_t most = word(4), promised = word(16);
     if (most > most_sections || ksplat_header_bytes + most * section_header_bytes > bytes_.size()) {
       fail("{} is damaged or cut short: its header has room for {} sections, which {} bytes cannot hold",
@@ -121,7 +122,7 @@ class KsplatReader {
       fail("{}: section {} has harmonics of degree {}; expected 0 to 3", source_, index, s.degree);
     if (s.count > s.most)
       fail("{}: section {} has {} Gaussians and room for {}", source_, index, s.count, s.most);
-    // All are below 2^32, so the sum is far below 2^64.
+    // All numbers are below 2^32, so the sum is far below 2^64.
     const std::size_t needed = 4 * s.partial_buckets + s.buckets * s.bucket_bytes + s.most * record_bytes(s);
     if (needed > bytes_.size() - at) {
       fail("{} is cut short: section {} takes {} bytes from byte {} on, and {} are there", source_, index,
@@ -134,8 +135,8 @@ class KsplatReader {
     return s;
   }
 
-  /// Returns the bucket of each Gaussian: first the full ones, then the others by their lengths. Level 0 has
-  /// none.
+  /// Returns the bucket of each Gaussian. Full buckets come first, then partial buckets with stored lengths.
+  /// Files of compression level 0 have no buckets.
   std::vector<std::size_t> buckets_of(const Section& s) const {
     std::vector<std::size_t> buckets;
     if (level_ == 0) return buckets;
@@ -191,7 +192,7 @@ class KsplatReader {
       sh[c] = static_cast<float>((std::to_integer<int>(at[c]) / 255.0 - 0.5) / sh_c0);
     const float opacity = static_cast<float>(std::to_integer<int>(at[3]) / 255.0);
     at += colour_bytes;
-    // By band, and within a band by channel.
+    // The file stores coefficients by band and, within a band, by channel.
     std::size_t first = 0;
     for (int band = 1; band <= s.degree; ++band) {
       const std::size_t width = 2 * static_cast<std::size_t>(band) + 1;
@@ -207,7 +208,7 @@ class KsplatReader {
   const std::string& source_;
   std::span<const std::byte> bytes_;
   std::size_t level_ = 0;
-  float sh_low_ = 0.0f, sh_high_ = 0.0f;  // range of level 2's bytes
+  float sh_low_ = 0.0f, sh_high_ = 0.0f;  // range of the bytes at compression level 2
   std::vector<Section> sections_;
   std::size_t count_ = 0;
 };

@@ -1,5 +1,5 @@
 #pragma once
-// Checks that every reader of cameras makes.
+// Checks that every reader of cameras applies.
 
 #include <string>
 
@@ -7,12 +7,12 @@
 
 namespace binosplat {
 
-/// Throws Error beginning with `where` for pictures without pixels or with more than 2^31, and for invalid
-/// focal lengths and principal points.
+/// Throws Error for pictures without pixels or with more than 2^31 px, and for invalid focal lengths and
+/// principal points. The text begins with `where`.
 void check_lens(const std::string& where, const Camera& camera);
 
-/// Returns why columns are no camera axes (x right, y down, z forward): not orthogonal or not of length 1
-/// within 1e-3, or mirrored. Returns "" if they are.
+/// Returns why the columns are no camera axes (x right, y down, z forward): they are not orthonormal within
+/// 1e-3, or they include a reflection. Returns "" if they are camera axes.
 std::string rotation_fault(const glm::dmat3& columns);
 
 }  // namespace binosplat

@@ -19,7 +19,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Returns the file folder/BEFORE N AFTER of the largest N, or the file `inside` in the folder of that name.
+/// Returns the file in `folder` that is named BEFORE, N, AFTER and has the largest N. With `inside`, these
+/// names are folders, and the file `inside` in the folder with the largest N is returned.
 std::optional<fs::path> latest(const fs::path& folder, std::string_view before, std::string_view after,
                                const fs::path& inside = {}) {
   std::error_code ignored;
@@ -39,7 +40,7 @@ std::optional<fs::path> latest(const fs::path& folder, std::string_view before, 
   return found;
 }
 
-/// Returns whether a file is named as a model, and not as the points from which training begins.
+/// Returns whether a file is named like a model, and not like the points from which training begins.
 bool is_named_as_model(const fs::path& path) {
   const std::string ending = lowered_ending(path), name = lowered(path.filename().string());
   for (const char* points : {"input.ply", "points3d.ply", "sparse_pc.ply", "sparse.ply"}) {
@@ -50,7 +51,7 @@ bool is_named_as_model(const fs::path& path) {
   });
 }
 
-/// Returns whether a file exists and contains a text. A damaged or cut file may.
+/// Returns whether a file exists and contains a text. The file may be damaged or cut.
 bool has_text(const fs::path& path, std::string_view text) {
   std::error_code ignored;
   if (!fs::is_regular_file(path, ignored)) return false;
@@ -98,7 +99,7 @@ Model load_content(const fs::path& path, const ModelOptions& options) {
 
 std::vector<fs::path> models_in(const fs::path& folder) {
   std::error_code ignored;
-  // Other programs use these file names, too.
+  // Other programs use these file names, too, so the contents decide.
   if (has_text(folder / "lod-meta.json", "\"lodLevels\"")) return {folder / "lod-meta.json"};
   if (has_text(folder / "meta.json", "\"means\"")) return {folder / "meta.json"};
   const fs::path clouds = folder / "point_cloud", ply = "point_cloud.ply";

@@ -20,17 +20,17 @@ Losses write_ply(OutputFile& file, const Model& model);
 Losses write_sog(OutputFile& file, const Model& model);
 Losses write_spz(OutputFile& file, const Model& model, int harmonic_bits);
 
-/// Returns the files of a SOG in a folder, meta.json first; Gaussians stay in their order.
+/// Returns the files of a SOG in a folder, meta.json first. Gaussians keep their order.
 ZipEntries sog_files(const Model& model);
-/// Returns the losses of every SOG of this model.
+/// Returns the losses that any SOG of this model has.
 Losses sog_losses(const Model& model);
 
-/// Returns the nearest whole number from 0 to `most`.
+/// Returns the nearest integer from 0 to `most`.
 inline std::uint32_t nearest_step(double v, std::uint32_t most) {
   return static_cast<std::uint32_t>(std::clamp(std::floor(v + 0.5), 0.0, static_cast<double>(most)));
 }
 
-/// Adds a line to `losses` if `lost` is true for some Gaussians.
+/// Adds a line to `losses` if lost(i) is true for some Gaussians i.
 template <typename Lost>
 void count_lost(Losses& losses, const Model& model, const char* what, const Lost& lost) {
   std::size_t count = 0;
@@ -38,14 +38,13 @@ void count_lost(Losses& losses, const Model& model, const char* what, const Lost
   if (count > 0) losses.push_back(fmt::format("{} of {} Gaussians have {}", count, model.count(), what));
 }
 
-/// Returns whether a ply can express the low-pass by Mip-Splatting's filter, which the scales already
-/// include.
+/// Returns whether a ply can express the low-pass by Mip-Splatting's filter. The scales include the filter.
 inline bool is_mip_splatting(const Model& model) {
   return model.antialiased && model.kernel_px2 == mip_splatting_kernel_px2;
 }
 
-/// Returns a ply header's comment about anti-aliasing. `default` (without) is
-/// written only if a file or an option decided it: otherwise the training run beside the file decides.
+/// Returns a ply header's comment about anti-aliasing. Writes `default`, without anti-aliasing, only if a
+/// file or an option decided this. Otherwise the training run beside the ply decides when the ply is read.
 inline std::string antialias_comment(const Model& model) {
   if (model.antialiased) return "comment SplatRenderMode: mip\n";
   return model.antialiased_by.empty() ? "" : "comment SplatRenderMode: default\n";

@@ -12,7 +12,7 @@ namespace {
 
 constexpr int morton_bits = 21;
 
-/// Spreads the bits of a 21-bit number, two zeros between each.
+/// Spreads the bits of a 21-bit number: inserts two zeros between neighbouring bits.
 std::uint64_t spread(std::uint64_t v) {
   v = (v | v << 32) & 0x001f00000000ffff;
   v = (v | v << 16) & 0x001f0000ff0000ff;

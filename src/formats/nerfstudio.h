@@ -13,18 +13,18 @@ namespace binosplat {
 /// Returns whether a JSON file is a path: an object with camera_path (frames) or keyframes.
 bool is_camera_path(const nlohmann::json& root);
 
-/// Reads the frames of a path, named 00000 and so on, with times from `seconds` or else `fps`. A path without
-/// frames has keyframes, named key_000 and so on, with times from their transitions. Each has a
-/// camera_to_world (a keyframe: matrix) of 16 numbers, with OpenGL's axes, and a vertical fov in degrees.
-/// Frames are row-major. Keyframes are row-major as lists, and column-major in quotes, as older viewers wrote
-/// them. render_width and render_height are the pictures' size. Throws Error naming the file and the key for
-/// paths of fisheyes and panoramas, and for missing or wrong values.
+/// Reads the frames of a path as cameras named 00000 and so on; times come from `seconds` or else from `fps`.
+/// If the path has no frames, reads its keyframes, named key_000 and so on; times come from their
+/// transitions. The pose is camera_to_world, or a keyframe's matrix: 16 numbers, with OpenGL's axes. `fov` is
+/// vertical, in degrees. Frames are row-major. Keyframes as lists are row-major; keyframes in quotes, from
+/// older viewers, are column-major. render_width and render_height are the pictures' size. Throws Error
+/// naming the file and the key for paths of fisheyes and panoramas, and for missing or wrong values.
 std::vector<Camera> load_camera_path(const std::filesystem::path& path, const nlohmann::json& json);
 
 /// Returns whether a JSON file has only poses: a list of objects with file_path and transform.
 bool is_pose_list(const nlohmann::json& root);
 
-/// Size of pictures for poses without lenses, if their photos are missing, px.
+/// Size, px, of pictures for poses without lenses if the photos are missing.
 constexpr int pose_width = 1280, pose_height = 720;
 
 /// Reads such poses in file order, camera-to-world with OpenGL's axes; a camera's name is its file_path. The

@@ -22,8 +22,8 @@ glm::ivec2 png_size(const std::filesystem::path& path, std::span<const std::byte
 glm::ivec2 jpeg_size(const std::filesystem::path& path, std::span<const std::byte> bytes);
 glm::ivec2 exr_size(const std::filesystem::path& path, std::span<const std::byte> bytes);
 
-/// Throws Error for a picture of more than 2^31 px, or of more than the file's bytes can hold at the format's
-/// best compression. It runs before memory is allocated, because headers can be forged.
+/// Throws Error for a picture of more than 2^31 px, or of more px than the file's bytes can hold at the
+/// format's best compression. Readers call it before they allocate memory, because headers can be forged.
 void check_size(const std::filesystem::path& path, std::int64_t width, std::int64_t height,
                 std::uint64_t file_bytes, std::uint64_t most_pixels_a_byte);
 

@@ -1,5 +1,5 @@
 #pragma once
-// Limits on unpacked sizes, checked before memory is allocated: a kilobyte of zeros unpacks to gigabytes.
+// Limits on unpacked sizes, checked before memory is allocated, because a small file can unpack to gigabytes.
 
 #include <algorithm>
 #include <atomic>
@@ -7,17 +7,18 @@
 
 namespace binosplat {
 
-/// Gaussians that are always allowed, whatever the file's size: --max-memory raises it for trusted files.
+/// Readers accept this many Gaussians from a file of any size. --max-memory raises the number, for trusted
+/// files.
 inline std::atomic<std::uint64_t> gaussians_allowed{0};
 
-/// Returns the most Gaussians that readers accept from a file of `bytes` bytes on disk: one a byte, plus a
-/// million. Real models take three bytes or more for each in every format; synthetic models of equal values
-/// need the million.
+/// Returns the maximum number of Gaussians that readers accept from a file of `bytes` bytes on disk: one for
+/// each byte, plus a million. Real models take three bytes or more for each Gaussian in every format;
+/// synthetic models of equal values need the million.
 inline std::uint64_t most_gaussians_in(std::uint64_t bytes) {
   return std::max(bytes + (std::uint64_t{1} << 20), gaussians_allowed.load());
 }
 
-/// The end of the errors' texts.
+/// The end of the text of errors about these limits.
 constexpr const char* more_may_be_allowed = "; if it is right, --max-memory MB allows more";
 
 }  // namespace binosplat

@@ -28,7 +28,7 @@ class PlyText : public PlyLines {
  public:
   using PlyLines::PlyLines;
 
-  /// Parses one value a property; of a list, its length.
+  /// Parses one value for each property; for a list, its length.
   void parse_row(const PlyElement& element, std::uint64_t row, std::string_view line,
                  std::vector<double>& values) {
     values.clear();
@@ -83,11 +83,11 @@ class PlyText : public PlyLines {
   }
 };
 
-/// Base colours other than uchar were read as 0 to 1. Some programs write 0 to 255, so the largest value
-/// decides.
+/// Corrects the range of base colours. Colours other than uchar were read as 0 to 1, but some programs write
+/// 0 to 255, so the largest value decides.
 void settle_colours(const std::filesystem::path& path, const std::vector<std::uint8_t>& kept, Model& model) {
   const std::size_t values = 3 * static_cast<std::size_t>(sh_count(model.degree));
-  constexpr double most = 2.0;  // of 0 to 1: trained colours may exceed 1
+  constexpr double most = 2.0;  // maximum for colours from 0 to 1, because trained colours may exceed 1
   double largest = 0.0;
   for (std::size_t k = 0; k < model.sh.size(); ++k) {
     if (k % values < 3 && kept[k / values] != 0) largest = std::max(largest, 0.5 + sh_c0 * model.sh[k]);
@@ -174,7 +174,7 @@ class PlyReader {
          path_.string(), element.name, row, element.count, bytes_.size());
   }
 
-  /// Reads binary rows of one size.
+  /// Reads binary rows without lists, which all have the same size.
   void read_fixed(const PlyElement& element, bool gaussians) {
     const std::size_t row = element.row_bytes(), behind = end_of_rows(path_, bytes_, element, at_);
     if (gaussians) {
@@ -193,7 +193,7 @@ class PlyReader {
     at_ = behind;
   }
 
-  /// Reads binary rows with lists, whose sizes only a walk reveals.
+  /// Reads binary rows with lists. Only reading all rows reveals their sizes.
   void read_ragged(const PlyElement& element, bool gaussians) {
     const std::size_t most = (bytes_.size() - at_) / element.row_bytes();
     if (element.count > most) fail_cut(element, most);
@@ -265,7 +265,7 @@ class PlyReader {
   Progress progress_;
   Model model_;
   std::vector<std::uint8_t> kept_;
-  std::vector<glm::dvec3> places_;  // if layout_.wide
+  std::vector<glm::dvec3> places_;  // positions as doubles, if layout_.wide
 };
 
 }  // namespace

@@ -9,8 +9,8 @@
 // order of properties, CRLF in the header, and other elements and properties are read or skipped as ply
 // defines.
 //
-// A property of a Gaussian declared as ushort is a half (IEEE 754 binary16), a type that ply lacks; some
-// exporters and other viewers use this. In text it is the decimal value of its bits. The types half and
+// If a property of a Gaussian is declared as ushort, it is a half (IEEE 754 binary16), a type that ply lacks.
+// Some exporters and viewers use this. In text it is the decimal value of its bits. The types half and
 // float16, also not in ply, are halves, too.
 //
 // Other layouts that are read: two scales without scale_2 are flat Gaussians (2D Gaussian Splatting, Huang
@@ -25,8 +25,8 @@
 namespace binosplat {
 
 /// Reads a model; Model::left_out counts invalid Gaussians. Maps the file into memory and decodes it on all
-/// cores; shows progress if it takes long. Throws Error naming the file and the place for a broken header,
-/// missing properties, a cut file, a point cloud without opacities, and a header without Gaussians.
+/// cores; shows progress if it takes long. Throws Error naming the file and the fault's position for a broken
+/// header, missing properties, a cut file, a point cloud without opacities, and a header without Gaussians.
 Model load_ply(const std::filesystem::path& path);
 
 }  // namespace binosplat

@@ -20,15 +20,15 @@ namespace {
 
 using Numbers = std::vector<double>;
 
-/// Reads rows of one number of an element.
+/// Reads elements whose rows have one number.
 class CameraRows {
  public:
   CameraRows(const std::filesystem::path& path, std::span<const std::byte> bytes, const PlyHeader& header)
       : path_(path), bytes_(bytes), header_(header) {}
 
-  /// Returns the numbers of the element `name` with a property of that name; nothing if there is none.
+  /// Returns the numbers of the element `name`, in its property `name`; nothing if there is no such element.
   std::optional<Numbers> read(const char* name) const {
-    constexpr std::size_t most = 16;  // the largest number of rows of any of them
+    constexpr std::size_t most = 16;  // largest number of rows of a camera's elements
     const PlyElement* element = header_.find(name);
     if (element == nullptr || element->find(name) == nullptr) return std::nullopt;
     if (element->properties.size() != 1 || element->has_list() || element->count > most)
@@ -121,7 +121,7 @@ void set_pose(const CameraRows& rows, Camera& camera) {
   const bool first_version = extrinsic->size() == 12;
   if (!first_version && extrinsic->size() != 16)
     rows.fail("extrinsic", fmt::format("{} numbers; expected the 16 of a matrix (or 12)", extrinsic->size()));
-  // Row-major world-to-camera: its rows are the camera's axes, stored here as glm's columns.
+  // The matrix is world-to-camera, so its rows are the camera's axes; glm stores them as columns here.
   glm::dmat3 axes;
   glm::dvec3 shift;
   for (int row = 0; row < 3; ++row) {

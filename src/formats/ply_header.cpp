@@ -94,7 +94,7 @@ class HeaderReader {
               quoted(word));
   }
 
-  /// Checks a name: errors print names unescaped.
+  /// Returns a name. Throws Error for control characters, because errors print names unescaped.
   std::string read_name(std::string_view word) const {
     const auto control = [](char c) { return static_cast<unsigned char>(c) < ' ' || c == 127; };
     if (word.size() > 200 || std::any_of(word.begin(), word.end(), control))
@@ -141,7 +141,7 @@ class HeaderReader {
   std::size_t at_ = 0;
   PlyHeader header_;
   std::set<std::string> element_names_;
-  std::set<std::string> property_names_;  // of the last element
+  std::set<std::string> property_names_;  // those of the last element
 };
 
 }  // namespace

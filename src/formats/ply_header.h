@@ -22,8 +22,8 @@ constexpr std::size_t size_of(PlyType type) {
 
 struct PlyProperty {
   std::string name;
-  PlyType type = PlyType::float32;    // of the value, or of a list's values
-  std::optional<PlyType> count_type;  // of a list's length; none: a single value
+  PlyType type = PlyType::float32;    // type of the value, or of a list's values
+  std::optional<PlyType> count_type;  // type of a list's length; none if the property is a single value
 };
 
 struct PlyElement {
@@ -33,7 +33,7 @@ struct PlyElement {
 
   const PlyProperty* find(std::string_view property) const;
   bool has_list() const;
-  std::size_t row_bytes() const;  // with lists: the minimum, if all are empty
+  std::size_t row_bytes() const;  // size of a row; with lists the minimum, for empty lists
 };
 
 struct PlyHeader {
@@ -41,7 +41,7 @@ struct PlyHeader {
   std::vector<PlyElement> elements;   // in the order of their data
   std::vector<std::string> comments;  // without the word 'comment'
   std::size_t data = 0;               // byte where the data begins
-  std::size_t lines = 0;              // of the header
+  std::size_t lines = 0;              // number of lines in the header
 
   const PlyElement* find(std::string_view element) const;
 };

@@ -13,7 +13,7 @@ namespace binosplat {
 
 namespace {
 
-/// Properties by which files of other kernels are recognised, and those kernels.
+/// Properties by which files of other kernels are recognised, and the names of these kernels.
 constexpr std::pair<const char*, const char*> other_kernels[] = {
     {"beta", "Beta kernels (Deformable Beta Splatting)"},
     {"sb_params_0", "colours of spherical Betas (Deformable Beta Splatting)"},
@@ -66,19 +66,19 @@ std::size_t count_rest(const std::filesystem::path& path, const PlyElement& vert
   return count;
 }
 
-/// Adds the source of a number.
+/// Adds the source of a Gaussian's next number: the property `name`.
 void add_source(const std::filesystem::path& path, PlyLayout& layout, const std::string& name) {
   const PlyProperty* property = layout.vertices->find(name);
   if (property == nullptr) fail("{}: element 'vertex' has no property '{}'", path.string(), name);
   if (property->count_type)
     fail("{}: property '{}' of element 'vertex' is a list; expected one number", path.string(), name);
-  // ply has no halves. Exporters declare them as ushort, which no number of a Gaussian is otherwise.
+  // ply has no type for halves. Exporters declare them as ushort, a type that Gaussians never have otherwise.
   const bool halves = property->type == PlyType::uint16;
   layout.sources.push_back({static_cast<std::size_t>(property - layout.vertices->properties.data()),
                             halves ? PlyType::float16 : property->type, halves});
 }
 
-/// Sets layout.rgb if there are base colours in place of coefficients, and their type.
+/// If there are base colours instead of coefficients, sets layout.rgb and their type.
 void find_rgb(const std::filesystem::path& path, PlyLayout& layout) {
   if (layout.vertices->find("f_dc_0") != nullptr) return;
   layout.rgb = layout.rgb_bytes = true;
@@ -122,7 +122,7 @@ PlyLayout find_layout(const std::filesystem::path& path, const PlyHeader& header
       std::ranges::any_of(header.comments, [](const std::string& comment) {
         return lowered(comment).find("splatrendermode: 2dgs") != std::string::npos;
       });
-  // A flat Gaussian's third scale reads the second one until decode() replaces it.
+  // The third scale of flat Gaussians is read from scale_1, and decode() replaces it.
   for (const char* name : {"x", "y", "z", "scale_0", "scale_1", layout.flat ? "scale_1" : "scale_2", "rot_0",
                            "rot_1", "rot_2", "rot_3", "opacity"}) {
     add(name);
@@ -164,7 +164,7 @@ bool decode(const PlyLayout& layout, Model& model, std::size_t i, const RawGauss
                                 glm::vec4(raw[6], raw[7], raw[8], raw[9]), raw[10], sh.data()});
   if (!layout.filter_3d) return good;
 
-  // Mip-Splatting convolves the Gaussian with one of standard deviation f and keeps its mass.
+  // Mip-Splatting widens the Gaussian by convolution with one of standard deviation f, and keeps its mass.
   const double f = raw[11 + values];
   double mass = 1.0;
   for (int c = 0; c < 3; ++c) {

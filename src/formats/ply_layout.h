@@ -1,5 +1,5 @@
 #pragma once
-// Maps the properties of a ply file's vertices to a Gaussian's numbers.
+// Finds a Gaussian's numbers among the properties of a ply file's vertices.
 
 #include <array>
 #include <filesystem>
@@ -17,38 +17,38 @@ namespace binosplat {
 using RawGaussian = std::array<float, 11 + 3 * sh_count(3) + 1>;
 
 struct PlyLayout {
-  /// Source of a number of a RawGaussian.
+  /// The property that gives a number of a RawGaussian.
   struct Source {
-    std::size_t property = 0;  // of the vertices
+    std::size_t property = 0;  // index among the properties of the vertices
     PlyType type = PlyType::float32;
-    bool as_bits = false;  // declared as ushort: in text, a half is the decimal value of its bits
+    bool as_bits = false;  // a half declared as ushort; text has the decimal value of the half's bits
   };
 
   const PlyElement* vertices = nullptr;
   int degree = 0;
   std::vector<Source> sources;  // one for each number of a RawGaussian
-  bool wide = false;            // positions (from zero) may be finer than floats
+  bool wide = false;            // positions may be more precise than floats
   bool rgb = false;             // the first three coefficients are base colours
-  bool rgb_bytes = false;       // those are 0 to 255 (Nerfstudio)
+  bool rgb_bytes = false;       // base colours are 0 to 255 (Nerfstudio)
   bool filter_3d = false;       // the last number is Mip-Splatting's filter (world units)
   bool antialiased = false;
   std::string antialiased_by;   // as in Model
-  bool flat = false;            // two scales (2D Gaussian Splatting)
+  bool flat = false;            // Gaussians have two scales (2D Gaussian Splatting)
   bool lacks_degree_4 = false;  // the file has coefficients of degree 4, too
 };
 
-/// Variance of Mip-Splatting's low-pass in training, px^2; a ply with filter_3D is drawn with it.
+/// Variance of Mip-Splatting's low-pass in training, px^2. A ply with filter_3D is drawn with this low-pass.
 constexpr double mip_splatting_kernel_px2 = 0.1;
 
-/// Returns whether a model was trained with anti-aliasing, from the last comment about it (Brush's and
-/// Postshot's); nothing if there is none.
+/// Returns whether a model was trained with anti-aliasing, from the last comment about it, which Brush and
+/// Postshot write; nothing if there is no such comment.
 std::optional<bool> antialiased_comment(const PlyHeader& header);
 
-/// Names that source for display.
+/// Model::antialiased_by if such a comment decides.
 constexpr const char* by_comment = "a comment of the ply";
 
-/// Finds the Gaussians' properties in a file by their names. Throws Error naming `path` if some are missing;
-/// the text names the file's apparent content. `header` must outlive the layout.
+/// Finds the Gaussians' properties in a file by their names. If some are missing, throws Error and names
+/// `path` and the file's apparent content. `header` must outlive the layout.
 PlyLayout find_layout(const std::filesystem::path& path, const PlyHeader& header);
 
 /// Decodes Gaussian `i` of a model; returns whether it is valid (scene/model.h, decode_raw).

@@ -32,8 +32,8 @@ double load_ply_as(const std::byte* at, bool swapped) {
   return static_cast<double>(std::bit_cast<T>(load_ply_bits<Bits>(at, swapped)));
 }
 
-/// Returns a stored number. The caller has checked that its bytes exist. Every type fits a double exactly.
-/// `swapped`: its byte order differs from this machine's.
+/// Returns a stored number, which a double represents exactly for every type. The caller has checked that its
+/// bytes exist. `swapped` means that the file's byte order differs from this machine's.
 inline double load_ply_number(PlyType type, const std::byte* at, bool swapped) {
   switch (type) {
     case PlyType::int8:

@@ -11,12 +11,13 @@
 
 namespace binosplat {
 
-/// Returns the byte after an element's rows, which have no lists and begin at byte `at` of a binary file.
-/// Throws Error for a file that ends before.
+/// Returns the position of the first byte after an element's rows, which have no lists and begin at byte `at`
+/// of a binary file. Throws Error if the file ends earlier.
 std::size_t end_of_rows(const std::filesystem::path& path, std::span<const std::byte> bytes,
                         const PlyElement& element, std::size_t at);
 
-/// Returns a property's offset in such a row, in bytes. Throws Error if it is missing or has another type.
+/// Returns a property's offset in such a row, in bytes. Throws Error if the property is missing or has
+/// another type.
 std::size_t offset_in_row(const std::filesystem::path& path, const PlyElement& element,
                           const std::string& name, PlyType type);
 

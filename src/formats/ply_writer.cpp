@@ -11,8 +11,9 @@ namespace binosplat {
 
 namespace {
 
-/// Returns the float near `start` that `decode` maps to exactly `wanted`, or the one nearest to `start` if
-/// none does. `step` is a quarter of a rounding step of `wanted` there; decoding rounds a few times.
+/// Returns a float near `start` that `decode` converts to exactly `wanted`; if there is none, the float
+/// nearest to `start`. `step`, the distance between candidates, changes the decoded number by a quarter of
+/// the spacing of floats, since decoding rounds a few times.
 template <typename Decode>
 float float_for(float wanted, double start, double step, const Decode& decode) {
   for (int k = 0; k <= 32; ++k) {
@@ -23,7 +24,7 @@ float float_for(float wanted, double start, double step, const Decode& decode) {
   return static_cast<float>(start);
 }
 
-/// Returns the stored logarithm of a scale. That of 0 is finite, but decodes to 0.
+/// Returns the stored logarithm of a scale. For a scale of 0 it is finite, but decodes to 0.
 float ply_log_scale(float scale) {
   const double start = std::max(std::log(static_cast<double>(scale)), -110.0);
   return float_for(scale, start, 0x1p-26, [](float raw) { return std::exp(raw); });
@@ -43,7 +44,7 @@ Losses write_ply(OutputFile& file, const Model& model) {
   const std::size_t values = 3 * static_cast<std::size_t>(sh_count(model.degree)), higher = values / 3 - 1;
   std::string header =
       fmt::format("ply\nformat binary_little_endian 1.0\nelement vertex {}\n", model.count());
-  std::size_t columns = 0;  // of 4 bytes
+  std::size_t columns = 0;  // number of columns of 4 bytes
   const auto add = [&](const std::string& name, bool is_wide = false) {
     header += fmt::format("property {} {}\n", is_wide ? "double" : "float", name);
     columns += is_wide ? 2 : 1;
@@ -55,7 +56,7 @@ Losses write_ply(OutputFile& file, const Model& model) {
   for (const char* name : {"opacity", "scale_0", "scale_1", "scale_2", "rot_0", "rot_1", "rot_2", "rot_3"})
     add(name);
   if (is_mip_splatting(model)) add("filter_3D");
-  // After the elements: INRIA's viewer takes the third line for the count.
+  // Comments follow the elements, because INRIA's viewer reads the count from the third line.
   header += antialias_comment(model);
   header += perspective_comments(model.perspective);
   file.write(header + "end_header\n");

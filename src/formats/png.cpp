@@ -80,7 +80,7 @@ glm::ivec2 begin(PngReader& reader) {
   const png_uint_32 width = png_get_image_width(reader.png, reader.info);
   const png_uint_32 height = png_get_image_height(reader.png, reader.info);
   const int bits = png_get_bit_depth(reader.png, reader.info) * png_get_channels(reader.png, reader.info);
-  constexpr std::uint64_t best_deflate = 1032;  // bytes from one byte of a zlib stream
+  constexpr std::uint64_t best_deflate = 1032;  // maximum bytes from one byte of a zlib stream
   check_size(reader.path, width, height, reader.bytes.size(),
              best_deflate * 8 / static_cast<std::uint64_t>(bits) + 1);
   return glm::ivec2(width, height);

@@ -65,12 +65,12 @@ std::uint64_t left_to_pack(const Bytes& filtered) {
   return sum;
 }
 
-/// Filters each row with the filter of the smallest estimate, after that filter's number. Paeth, the fourth
-/// filter, saves nothing on rendered pictures, and takes as long as the other three.
+/// Returns, for each row, the number of the filter with the smallest estimate, then the filtered row. Paeth,
+/// the fourth filter, saves nothing on rendered pictures, and takes as long as the other three.
 Bytes filtered_rows(const Image& image, int bits) {
   const std::size_t pixel = static_cast<std::size_t>(image.channels * bits / 8);
   const std::size_t size = pixel * static_cast<std::size_t>(image.width);
-  // A pixel of zeros precedes each row, and a row of zeros the first.
+  // A pixel of zeros precedes each row, and a row of zeros precedes the first row.
   Bytes row(pixel + size), above(pixel + size), best(size), tried(size), all;
   all.reserve((1 + size) * static_cast<std::size_t>(image.height));
   for (int y = 0; y < image.height; ++y) {
@@ -106,7 +106,7 @@ std::string packed(const Bytes& bytes, int level) {
 std::string png_bytes(const Image& image, const PngOptions& options) {
   const auto& [bits, level, notes] = options;
   if (bits != 8 && bits != 16) fail("a PNG has 8 or 16 bits, not {}", bits);
-  constexpr int size_max = INT32_MAX / 8;  // a row's bytes
+  constexpr int size_max = INT32_MAX / 8;  // maximum bytes of a row
   if (image.width < 1 || image.height < 1 || image.width > size_max / image.channels)
     fail("a PNG cannot have {} x {} px", image.width, image.height);
   const char colour_type = image.channels == 1 ? 0 : image.channels == 3 ? 2 : 6;
@@ -119,10 +119,10 @@ std::string png_bytes(const Image& image, const PngOptions& options) {
   std::string png = "\x89PNG\r\n\x1a\n";
   append_chunk(png, "IHDR", header);
   append_chunk(png, "sRGB", std::string_view("\0", 1));  // rendering intent: perceptual
-  // Uncompressed, without a language.
+  // The five zeros: uncompressed text, without a language.
   for (const auto& [key, value] : notes) append_chunk(png, "iTXt", key + std::string(5, '\0') + value);
   std::string rows = packed(filtered_rows(image, bits), level);
-  // A chunk's length has 31 bits; readers join several IDAT.
+  // A chunk's length has 31 bits. Readers join the data of several IDAT chunks.
   constexpr std::size_t piece = std::size_t{1} << 30;
   for (std::size_t at = 0; at < rows.size(); at += piece)
     append_chunk(png, "IDAT", std::string_view(rows).substr(at, piece));

@@ -17,8 +17,8 @@ struct SavedPose {
   double near_plane = 0.2;        // world units
 };
 
-/// Returns the saved view's path, beside a model's file or folder. It lacks the model's ending: models of one
-/// name share it.
+/// Returns the path of the saved view, beside a model's file or folder. The path lacks the model's ending, so
+/// models that differ only in their endings share a view.
 std::filesystem::path pose_path(const std::filesystem::path& model);
 
 /// Reads a view. Throws Error naming the file and the key if it is invalid.

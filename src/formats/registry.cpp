@@ -33,8 +33,8 @@ bool is_usd(const ModelBytes& f) {
          (f.content == Content::zip && is_usdz(f.path, f.bytes));
 }
 
-/// Recognises a format without magic bytes by its numbers. The file name lets a damaged file reach the
-/// reader, which explains the fault, but never overrides another format.
+/// Recognises a format that has no magic number by the file's values. If no other content was recognised,
+/// also accepts a file by its name, so that the reader can explain the fault of a damaged file.
 bool is_unmarked(const ModelBytes& f, const char* ending, bool (*is)(std::span<const std::byte>)) {
   return f.content == Content::unknown && (is(f.bytes) || f.path.extension() == ending);
 }

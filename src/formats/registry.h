@@ -1,6 +1,6 @@
 #pragma once
-// The registry of model formats: a row for each. Reading, writing, help, errors, sizes and the lists on the
-// pages use its rows.
+// The registry of model formats, with a row for each format. Reading, writing, help, errors, sizes and the
+// lists in the documentation use its rows.
 
 #include <cstdint>
 #include <filesystem>
@@ -17,7 +17,7 @@
 
 namespace binosplat {
 
-/// In the order of the rows, in which they are tried on a file.
+/// The model formats, in the order of the rows. Readers try formats on a file in this order.
 enum class ModelFormat {
   scaffold,
   compressed_ply,
@@ -31,7 +31,7 @@ enum class ModelFormat {
   splat
 };
 
-/// The contents of a file whose format is wanted.
+/// The contents of a file whose format is to be recognised.
 struct ModelBytes {
   std::filesystem::path path;
   std::span<const std::byte> bytes;
@@ -40,11 +40,11 @@ struct ModelBytes {
 };
 
 struct FormatRow {
-  const char* name;     // in help, errors, and on the pages
-  const char* endings;  // of its files; "" if another row's files have the same
+  const char* name;     // in help, errors and the documentation
+  const char* endings;  // of the format's files; "" if another row has the same endings
   bool (*recognises)(const ModelBytes&);
   Model (*read)(const ModelBytes&, const ModelOptions&);
-  /// Returns the additional files of a model that the first one names; null if there are none.
+  /// Returns the files that a model's file names. Null if files of this format never name others.
   std::vector<std::filesystem::path> (*named_by)(const ModelBytes&) = nullptr;
 
   /// Null if the format is only read. Only spz uses `harmonic_bits`. Returns the properties that the format

@@ -15,13 +15,13 @@ namespace binosplat {
 
 namespace {
 
-// A shader keeps one bit for each Gaussian of an anchor in one word.
+// A shader has one bit for each Gaussian of an anchor, in one 32-bit word.
 constexpr std::size_t offsets_max = 31;
 constexpr std::size_t features_max = 256;
 
 /// Offsets of an anchor's numbers in a row of the file.
 struct AnchorLayout {
-  std::size_t row = 0;  // bytes
+  std::size_t row = 0;  // size of a row, bytes
   std::vector<std::size_t> position, scale, rotation, offset, feature;
 };
 
@@ -74,7 +74,7 @@ class AnchorReader {
     return offset_in_row(path_, *vertices_, name, PlyType::float32);
   }
 
-  // Returns the columns NAME0, NAME1, ... by number, whatever their order in the file.
+  // Returns the columns NAME0, NAME1, ... sorted by number; the file may have any order.
   std::vector<std::size_t> columns(const std::string& name, std::size_t count) const {
     std::vector<std::size_t> out;
     for (std::size_t i = 0; i < count; ++i) out.push_back(column(name + std::to_string(i)));
@@ -108,7 +108,7 @@ class AnchorReader {
     layout_.feature = columns("f_anchor_feat_", features);
   }
 
-  // Decodes anchor n into slot n; returns whether it is valid.
+  // Decodes row n to anchor n; returns whether the anchor is valid.
   bool decode(std::size_t n) {
     const std::byte* row = bytes_.data() + header_.data + n * layout_.row;
     bool finite = true;

@@ -17,7 +17,7 @@ constexpr const char *opacity_name = "opacity_mlp.pt", *covariance_name = "cov_m
 
 fs::path beside(const fs::path& ply, const char* name) { return ply.parent_path() / name; }
 
-// Loads a network's weights; their sizes must fit each other and `outputs`.
+// Loads a network's weights. The sizes of the layers must fit each other and `outputs`.
 Network load_network(const fs::path& path, std::size_t outputs) {
   std::error_code ignored;
   if (!fs::exists(path, ignored)) {
@@ -60,7 +60,7 @@ Network load_plain(const fs::path& path, std::size_t features, std::size_t outpu
   return network;
 }
 
-// Loads the colour network, and the appearances if it takes one.
+// Loads the colour network. If the network takes an appearance, also loads the appearances.
 void load_colour(const fs::path& ply, Scaffold& scaffold) {
   const fs::path path = beside(ply, colour_name);
   scaffold.colour = load_network(path, 3 * scaffold.offset_count);

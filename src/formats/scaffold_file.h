@@ -5,9 +5,9 @@
 //
 // Anchors: binary_little_endian float32; x y z, f_offset_* (3 K, component-major: f_offset_(c * K + k)),
 // f_anchor_feat_* (F), scale_0..5 (logarithms: 3 of offsets, 3 of Gaussians), rot_0..3. The numbers of these
-// properties give K and F. The sizes of a network's weights give its further inputs. With F + 3 + 1 or F + 3
-// + A + 1 inputs, the last one is the distance, and A is the size of an appearance. If both readings fit an
-// appearance's size, all further inputs are the appearance.
+// properties give K and F. A network has F + 3 inputs (features and direction), optionally A for an
+// appearance, and optionally one for the distance. The sizes of its weights give the number of inputs. If the
+// inputs beyond F + 3 fit an appearance both with and without a distance, all of them are the appearance.
 
 #include <filesystem>
 #include <memory>
@@ -21,9 +21,9 @@ namespace binosplat {
 /// Returns whether a ply file contains anchors of Scaffold-GS: property f_anchor_feat_0.
 bool is_scaffold(const PlyHeader& header);
 
-/// Reads anchors and networks. Drops anchors with values that are not finite and counts them. Throws Error
-/// naming the file and the expected value: a network missing or of sizes that do not fit K and F, a ply cut
-/// short or of other types, no anchors.
+/// Reads anchors and networks. Drops anchors with values that are not finite and counts them. Throws Error if
+/// a network is missing or does not fit K and F, or if the ply is cut short, has other types or no anchors.
+/// The text names the file and the expected value.
 std::shared_ptr<Scaffold> load_scaffold(const std::filesystem::path& ply);
 
 /// Returns the files of networks beside such a ply file, including the optional ones.

@@ -7,9 +7,9 @@
 
 namespace binosplat {
 
-/// The largest component, made positive, follows from the others.
+/// The largest component follows from the others. If it is negative, smallest_three() negates the quaternion.
 struct SmallestThree {
-  int largest = 0;       // index of the one left out
+  int largest = 0;       // index of the omitted, largest component
   glm::dvec3 others{0};  // in ascending order of their indices, each within +-sqrt(1/2)
 
   glm::dvec4 quaternion() const {

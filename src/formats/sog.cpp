@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A .sog archive, read by the names in its meta.json, which may lie in a folder with its pictures.
+/// A .sog archive. Files are read by their names in meta.json, which may lie in a folder with the pictures.
 class Archive {
  public:
   explicit Archive(const fs::path& path)
@@ -33,7 +33,8 @@ class Archive {
     folder_ = folder_of_meta(path);
   }
 
-  /// Pictures are compressed, so deflate hardly shrinks valid ones further: a larger size is an attack.
+  /// Returns a file of the archive. Pictures are compressed, so deflate hardly shrinks them further; a size
+  /// above most_ is an attack.
   std::vector<std::byte> read(const std::string& name) const {
     const std::string below = plain((folder_ / name).string());
     const auto entry = names_.find(below);
@@ -41,7 +42,7 @@ class Archive {
   }
 
  private:
-  /// Normalises a name: some programs write "\\" for "/", and "./" or "/" at the start.
+  /// Normalises a name, because some programs write "\\" for "/", and "./" or "/" at the start.
   static std::string plain(std::string name) {
     std::replace(name.begin(), name.end(), '\\', '/');
     return fs::path(name).lexically_normal().relative_path().generic_string();
@@ -54,7 +55,7 @@ class Archive {
          path.string(), binosplat::quoted(a), binosplat::quoted(b));
   }
 
-  /// Returns the folder of the topmost meta.json.
+  /// Returns the folder of the meta.json that is nearest to the archive's root.
   fs::path folder_of_meta(const fs::path& path) const {
     std::vector<fs::path> found;
     for (const auto& [below, name] : names_) {
@@ -78,7 +79,7 @@ class Archive {
 
   MappedFile file_;
   ZipFile zip_;
-  std::size_t most_;                          // largest size of a file in it
+  std::size_t most_;                          // largest size of an unpacked file
   std::map<std::string, std::string> names_;  // normalised names, and names in the archive
   fs::path folder_;
 };
@@ -129,8 +130,8 @@ Model load_sog(const std::filesystem::path& meta, const nlohmann::json& root) {
 SogSource sog_in_archive(const std::filesystem::path& archive) {
   const std::vector<std::byte> meta = Archive(archive).read("meta.json");
   const nlohmann::json root = parse_json(archive.string() + ": meta.json", as_text(meta));
-  // Opens the archive anew for each file: the library is not thread-safe, and a streamed SOG has too many
-  // archives to keep open.
+  // Opens the archive again for each file, because the library is not thread-safe, and a streamed SOG has too
+  // many archives to keep them open.
   return {archive.string(), root, [archive](const std::string& name) { return Archive(archive).read(name); }};
 }
 

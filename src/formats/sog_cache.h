@@ -13,10 +13,10 @@ namespace binosplat {
 /// Keeps the most recently used pictures. Several threads may call it.
 class SogCache {
  public:
-  /// Keeps at most this many bytes, besides the pictures in use.
+  /// Keeps at most this many bytes. Pictures in use may take more.
   explicit SogCache(std::size_t most) : most_(most) {}
 
-  /// Returns the pictures of the SOG with this number. Throws Error as decoding them does.
+  /// Returns the decoded pictures of `source`, which `number` identifies. Throws Error as decoding them does.
   std::shared_ptr<const SogSource::Textures> textures(std::size_t number, const SogSource& source);
   bool has(std::size_t number);
 

@@ -15,7 +15,7 @@ namespace fs = std::filesystem;
 
 constexpr std::uint64_t most_levels = 100;
 constexpr std::uint64_t most_gaussians = std::uint64_t{1} << 32;
-// Limit for errors, widths of pixels and positions: products of such numbers stay finite.
+// Limit for errors, pixel widths and positions, so that products of these numbers stay finite.
 constexpr double most_lost = 1e20;
 
 std::vector<double> widths_of(const JsonValue& value) {
@@ -30,7 +30,7 @@ std::vector<double> widths_of(const JsonValue& value) {
   return widths;
 }
 
-/// Reads a list of numbers for each direction, one for each width.
+/// Reads, for each direction, a list with one number for each pixel width.
 std::vector<double> by_direction(const JsonValue& value, std::size_t widths) {
   const JsonValue directions = value.list_of(detail_directions);
   std::vector<double> numbers;
@@ -53,8 +53,8 @@ void check_bound(const JsonValue& bound, const LodChunk& chunk) {
     bound.fail_here("expected numbers from -{0} to {0}", most_lost);
 }
 
-/// Returns whether a chunk's errors per visible pixel are bounded. They are not if its finest level shows
-/// nothing and another level does.
+/// Returns whether a chunk's errors per visible pixel are bounded. If the finest level shows nothing but
+/// another level does, they are not.
 bool has_bounded_errors(const LodChunk& chunk) {
   return std::ranges::all_of(chunk.levels, [&](const LodChunk::Level& level) {
     return std::ranges::equal(level.errors, chunk.seen,
@@ -62,7 +62,7 @@ bool has_bounded_errors(const LodChunk& chunk) {
   });
 }
 
-// Calls see(node) for every node of the tree that has Gaussians, in a fixed order.
+// Calls see(node), in a fixed order, for every node of the tree that has Gaussians.
 void walk(const JsonValue& root, const std::function<void(const JsonValue&)>& see) {
   std::vector<JsonValue> nodes{root.at("tree")};
   while (!nodes.empty()) {
@@ -86,7 +86,7 @@ SogLevels::SogLevels(const fs::path& path, const nlohmann::json& json) : path_(p
   count_ = static_cast<int>(root.at("lodLevels").whole(most_levels));
   if (count_ == 0) root.at("lodLevels").fail_here("expected one level at least");
   const JsonValue names = root.at("filenames");
-  std::set<fs::path> named;  // named twice, a file could be used any number of times
+  std::set<fs::path> named;  // refuses repeated names, by which a file could be used any number of times
   for (std::size_t i = 0; i < names.size(); ++i) {
     files_.push_back(file(names.at(i)));
     if (!named.insert(files_.back().lexically_normal()).second)
@@ -184,7 +184,7 @@ fs::path SogLevels::file(const JsonValue& value) const {
   return path_.parent_path() / name;
 }
 
-// Parses the file and range of a chunk's level.
+// Parses the file and the range of a chunk's level.
 SogLevels::Place SogLevels::place(int level, const JsonValue& lod) const {
   const std::uint64_t index = lod.at("file").whole(most_gaussians);
   if (index >= files_.size()) {

@@ -22,38 +22,38 @@ struct LodChunk {
   struct Level {
     int number = 0;
     std::size_t count = 0;  // Gaussians
-    /// Squared difference between pictures of the chunk at this level and at the finest, each drawn alone
-    /// over the chunk's mean colour: the sum over pixels of the mean over channels. One number for each
-    /// direction and, within it, each width of a pixel.
+    /// Squared difference between pictures of the chunk at this level and at the finest: the sum over pixels
+    /// of the mean over channels. Each picture shows the chunk alone over its mean colour. The list has one
+    /// number for each direction and, within a direction, for each pixel width.
     std::vector<double> errors = {};
   };
   glm::dvec3 low{0.0}, high{0.0};
   std::vector<Level> levels;   // may be empty
-  std::vector<double> pixels;  // widths of a pixel, world units, ascending; empty: errors are unknown
-  std::vector<double> seen;    // what those pictures of the finest level show (ChunkVisibility), px
+  std::vector<double> pixels;  // pixel widths, world units, ascending; empty: errors are unknown
+  std::vector<double> seen;    // visible area (ChunkVisibility) at the finest level, px, ordered as `errors`
 };
 
 class SogLevels {
  public:
-  /// The range of a file that a chunk uses; its slot is not set.
+  /// The range of a file's Gaussians that a chunk uses. Range::slot is not set.
   struct ChunkRange {
     std::size_t chunk = 0;
     SogSource::Range range;
   };
   using FileRanges = std::vector<ChunkRange>;
 
-  /// Reads the parsed lod-meta.json at `path`. Throws Error naming the wrong key, as the functions below do.
+  /// `json` is the parsed lod-meta.json at `path`. All functions throw Error naming the key if it is wrong.
   SogLevels(const std::filesystem::path& path, const nlohmann::json& json);
 
   int count() const { return count_; }
   const std::vector<std::filesystem::path>& files() const { return files_; }
   /// The SOG that is part of every level.
   const std::optional<std::filesystem::path>& environment() const { return environment_; }
-  /// Returns whether a file exists: files of unused levels may be missing.
+  /// Returns whether a file exists. Files of unused levels may be missing.
   bool exists(std::size_t file) const;
 
-  /// Returns, for each file, the ranges in use, in order, if chunk i has level_of(i); a negative level uses
-  /// nothing.
+  /// Returns, for each file, the ranges that are in use if chunk i has the level level_of(i). Ranges are in
+  /// the file's order. A chunk with a negative level uses nothing.
   std::vector<FileRanges> ranges_in_use(const std::function<int(std::size_t chunk)>& level_of) const;
   std::vector<FileRanges> ranges_in_use(int level) const;
 
@@ -61,7 +61,7 @@ class SogLevels {
   /// the same lod-meta.json.
   std::vector<LodChunk> chunks(const nlohmann::json& json) const;
 
-  /// Returns, for each level, the first file that it needs and that is missing.
+  /// Returns, for each level, the first missing file that the level needs.
   std::vector<std::optional<std::filesystem::path>> missing() const;
 
  private:
@@ -95,12 +95,13 @@ void check_chunks(const std::filesystem::path& path, const std::vector<LodChunk>
 /// Returns Model::format for a model whose levels are chosen by chunk.
 std::string format_of_chosen(const SogLevels& levels);
 
-/// Throws Error unless the ranges, at least one, are within the file.
+/// Throws Error if a range exceeds the file. There must be at least one range.
 void check_ranges(const std::filesystem::path& lod_meta, const std::filesystem::path& file,
                   const SogSource& source, std::span<const SogLevels::ChunkRange> ranges);
 
-/// Throws Error if `total` Gaussians are too many for files of `bytes` bytes (SogSource::bytes) together.
-/// Each file alone is allowed a million more than its size justifies, but a thousand files are not.
+/// Throws Error if `total` Gaussians are too many for files of `bytes` bytes (SogSource::bytes) together. The
+/// check of each file alone allows a million Gaussians beyond the file's size. This check allows a million
+/// for all files together.
 void check_total(const std::filesystem::path& lod_meta, std::size_t total, std::uint64_t bytes);
 
 }  // namespace binosplat

@@ -19,7 +19,7 @@ namespace {
 
 enum Texture { means_l, means_u, quats, scales, sh0, labels, texture_count };
 
-/// Returns the values of a byte between two ends.
+/// Returns the value of each byte, linear from `low` for 0 to `high` for 255.
 std::array<float, 256> linear_table(double low, double high) {
   std::array<float, 256> table;
   for (std::size_t b = 0; b < 256; ++b)
@@ -27,7 +27,7 @@ std::array<float, 256> linear_table(double low, double high) {
   return table;
 }
 
-/// Reads 256 values. Old writers wrote null as the first: it is one step below the second.
+/// Reads 256 values. Old writers wrote null as the first value, which is one step below the second.
 std::array<float, 256> codebook(const JsonValue& values) {
   values.list_of(256);
   std::array<float, 256> table;
@@ -86,8 +86,8 @@ SogSource::SogSource(std::string source, const nlohmann::json& json, ReadFile re
     read_tables_v1(meta);
   }
   if (meta.has("shN")) read_harmonics(meta.at("shN"));
-  // The low bytes of positions are noise, which no picture compresses, so their size limits the number of
-  // Gaussians. Less than a byte for 256 of them is a forgery, however few they are.
+  // The low bytes of positions are noise, which WebP cannot compress, so the size of their picture limits the
+  // number of Gaussians. A picture with less than a byte for 256 Gaussians is forged, even for a small model.
   const std::vector<std::byte> low = read_(files_[means_l]);
   bytes_ = low.size();
   const WebpSize size = webp_size(named(files_[means_l]), low);
@@ -118,7 +118,7 @@ void SogSource::read_tables_v1(const JsonValue& meta) {
     scale_[c] = exponential(between("scales", 3, c));
     dc_[c] = between("sh0", 4, c);
   }
-  opacity_ = between("sh0", 4, 3);  // a logit
+  opacity_ = between("sh0", 4, 3);  // logits until the next line
   for (float& v : opacity_) v = 1.0f / (1.0f + std::exp(-v));
 }
 
@@ -187,7 +187,7 @@ bool SogSource::decode_one(const Textures& textures, std::size_t i, Model& model
     scale[c] = scale_[channel][texel(scales)[c]];
     sh[channel] = dc_[channel][texel(sh0)[c]];
   }
-  // The largest of w, x, y, z is omitted; the fourth byte names it.
+  // The largest of w, x, y, z is omitted, and the fourth byte names it.
   glm::vec4 rotation(1, 0, 0, 0);
   if (three[3] >= 252) {
     SmallestThree smallest{three[3] - 252};

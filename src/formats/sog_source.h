@@ -19,46 +19,47 @@ namespace binosplat {
 
 class SogSource {
  public:
-  /// Returns the bytes of a file by its name in meta.json; throws Error naming it. Several threads call it.
+  /// Returns the bytes of the file that meta.json calls `name`, or throws Error naming it. Several threads
+  /// may call it at once.
   using ReadFile = std::function<std::vector<std::byte>(const std::string& name)>;
 
-  /// Gaussians `first` to `first + count - 1`, for a model's slots from `slot` on.
+  /// Gaussians `first` to `first + count - 1` of the SOG. In a model these Gaussians begin at index `slot`.
   struct Range {
     std::size_t first = 0;
     std::size_t count = 0;
     std::size_t slot = 0;
   };
 
-  /// Checks meta.json, and that the pictures' headers fit it. `source` names meta.json or the archive in
-  /// errors.
+  /// Checks meta.json, and that the pictures' headers fit it. `source` is the name of meta.json or the
+  /// archive for errors.
   SogSource(std::string source, const nlohmann::json& json, ReadFile read);
 
   std::size_t count() const { return count_; }
-  /// Size of the picture that compresses least (formats/plausible.h).
+  /// Bytes of the picture that compresses least, for most_gaussians_in() (formats/plausible.h).
   std::uint64_t bytes() const { return bytes_; }
   int degree() const { return degree_; }
   bool antialiased() const { return antialiased_; }
   bool flat() const { return flat_; }  // 2D Gaussian Splatting: the third scale is 0
   const Perspective& perspective() const { return perspective_; }
 
-  /// All of its decoded pictures, four bytes a texel. Decoding them takes most of the time, even for a few
-  /// Gaussians.
+  /// All decoded pictures of the SOG, four bytes a texel. Even for a few Gaussians, decoding the pictures
+  /// takes most of the time.
   struct Textures {
     std::array<std::vector<std::uint8_t>, 6> data;
     std::size_t bytes() const;
   };
   std::shared_ptr<const Textures> textures() const;
 
-  /// Decodes ranges, which must lie below count(), into a model of this degree or a higher one. Sets kept[i]
-  /// if slot i is valid. Several threads may call it for disjoint slots.
+  /// Decodes ranges, which must lie below count(), into a model of degree() or a higher degree. Sets kept[i]
+  /// if the model's Gaussian i is valid. Several threads may call it for disjoint Gaussians of the model.
   void decode(Model& model, std::span<const Range> ranges, std::vector<std::uint8_t>& kept) const {
     decode(model, ranges, kept, *textures());
   }
-  /// The same from decoded pictures.
+  /// Decodes ranges in the same way, from decoded pictures.
   void decode(Model& model, std::span<const Range> ranges, std::vector<std::uint8_t>& kept,
               const Textures& textures) const;
-  /// Returns the valid Gaussians of each range as a model of its own, with the other properties of `like`.
-  /// Slots are ignored.
+  /// Returns a model for each range, with the range's valid Gaussians and the other properties of `like`.
+  /// Ignores Range::slot.
   std::vector<Model> decode_each(const Model& like, std::span<const Range> ranges,
                                  const Textures& textures) const;
 
@@ -82,13 +83,13 @@ class SogSource {
   Perspective perspective_;
   std::array<std::string, 5> files_;  // means_l, means_u, quats, scales, sh0
   std::string labels_file_;           // empty without higher harmonics
-  glm::dvec3 mean_low_{0.0};          // of sign(p) ln(1 + |p|)
+  glm::dvec3 mean_low_{0.0};          // least stored position, sign(p) ln(1 + |p|)
   glm::dvec3 mean_span_{0.0};
   std::array<Table, 3> scale_;  // per axis, world units
   std::array<Table, 3> dc_;     // per channel, coefficients of degree 0
   Table opacity_;
   Table sh_;                 // coefficients of the higher degrees
-  std::size_t palette_ = 0;  // entries; a label beyond these has no harmonics
+  std::size_t palette_ = 0;  // number of entries; a label beyond them means no harmonics
   std::vector<std::uint8_t> palette_texels_;
 };
 
@@ -98,8 +99,8 @@ SogSource open_sog(const std::filesystem::path& path);
 /// Opens the SOG of a meta.json, with pictures in its folder.
 SogSource sog_in_folder(const std::filesystem::path& meta, const nlohmann::json& root);
 
-/// Opens the SOG in a .sog archive. Its meta.json may lie in a folder of the archive, beside its pictures.
-/// Throws Error if there is none or more than one.
+/// Opens the SOG in a .sog archive: the meta.json that is nearest to the archive's root, with pictures in its
+/// folder. Throws Error if there is none, or if several are equally near.
 SogSource sog_in_archive(const std::filesystem::path& archive);
 
 }  // namespace binosplat

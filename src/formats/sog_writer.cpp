@@ -29,7 +29,8 @@ constexpr double sog_log_scale_most = 20.0;
 
 using Rgba = std::array<std::uint8_t, 4>;
 
-/// A picture, one texel a Gaussian (except the palette's), and its name in the archive.
+/// A picture and its name in the archive. The picture has one texel for each Gaussian, except the palette's
+/// picture.
 struct TableTexture {
   std::string name;
   int width = 0, height = 0;

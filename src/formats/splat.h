@@ -1,6 +1,6 @@
 #pragma once
 // antimatter15's .splat: only records of 32 bytes: position and scale (3 floats each), base colour and
-// opacity (4 bytes), quaternion w x y z ((b - 128) / 128). No harmonics. Frame: a ply's (RDF).
+// opacity (4 bytes), quaternion w x y z ((b - 128) / 128). No harmonics. Axes: a ply's (RDF).
 
 #include <span>
 #include <string>
@@ -9,11 +9,11 @@
 
 namespace binosplat {
 
-/// Returns whether unmarked bytes are such records: a whole number of them, and at least three quarters of
-/// the first 1,000 have plausible scales and quaternions.
+/// Returns whether bytes without a magic number are such records: their number is a multiple of 32, and at
+/// least three quarters of the first 1,000 records have plausible scales and quaternions.
 bool is_splat(std::span<const std::byte> bytes);
 
-/// Decodes a file's bytes; `source` names it in errors. Throws Error if they are not such records.
+/// Decodes a file's bytes. Errors name the file `source`. Throws Error if they are not such records.
 Model load_splat(const std::string& source, std::span<const std::byte> bytes);
 
 }  // namespace binosplat

@@ -61,7 +61,7 @@ class SpzDecoder {
     return p;
   }
 
-  /// Returns w, x, y, z. The file stores x, y, z; from version 3 on, the three smallest of x, y, z, w.
+  /// Returns w, x, y, z. Versions 1 and 2 store x, y, z; later versions the three smallest of x, y, z, w.
   glm::vec4 rotation(std::size_t i) const {
     const std::byte* at = rotations_ + sizes_.rotation * i;
     SmallestThree three{3};

@@ -1,9 +1,10 @@
 #pragma once
-// Niantic's spz, versions 1 to 4: attribute after attribute in whole bytes. Versions 1 to 3 are compressed
-// with gzip or not at all, version 4 with zstd.
+// Niantic's spz, versions 1 to 4: the positions of all Gaussians, then their opacities and so on, in whole
+// bytes. Versions 1 to 3 are compressed with gzip or not at all, version 4 with zstd.
 //
-// Frame: OpenGL's (RUB) as the format defines, unless an extension in the file names another. Some writers
-// store a ply's numbers (RDF) without that extension, so Model::format then ends with axes_assumed.
+// Axes: OpenGL's (RUB) as the format defines, unless an extension in the file names others. Some writers
+// store a ply's numbers (RDF) without the extension. If the extension is missing, Model::format ends with
+// axes_assumed.
 
 #include <span>
 #include <string>
@@ -15,9 +16,9 @@ namespace binosplat {
 
 inline constexpr std::string_view axes_assumed = ", axes assumed";
 
-/// Decodes a file's bytes; `source` names it in errors. Of harmonics of degree 4, degrees up to 3 are read,
+/// Decodes a file's bytes. Errors name the file `source`. Of harmonics of degree 4, degrees up to 3 are read,
 /// and Model::lacks_degree_4 is set. Throws Error for damaged or cut files, for unknown versions, and for
-/// headers that promise more than the bytes can expand to. Unpacks at most the promised size.
+/// headers that promise more bytes than the file can expand to. Unpacks at most the promised size.
 Model load_spz(const std::string& source, std::span<const std::byte> bytes);
 
 }  // namespace binosplat

@@ -18,7 +18,7 @@ namespace binosplat {
 namespace {
 
 constexpr std::size_t spz_header_bytes = 16, header_bytes_4 = 32;
-constexpr std::uint32_t magic = 0x5053474e;  // NGSP
+constexpr std::uint32_t magic = 0x5053474e;  // the letters NGSP
 constexpr std::uint8_t antialiased_flag = 1, extensions_flag = 2, levels_flag = 0x80;
 constexpr std::uint32_t axes_extension = 0xadbe0003;
 constexpr const char* axes_names[] = {"LDB", "RDB", "LUB", "RUB", "LDF", "RDF", "LUF", "RUF",
@@ -61,8 +61,8 @@ Header read_spz_header(const std::string& source, std::span<const std::byte> byt
   return header;
 }
 
-/// Returns the bytes of all attributes. Throws Error unless `packed` bytes can hold that many Gaussians and
-/// expand to `least` bytes each, so nothing larger is allocated.
+/// Returns the number of bytes of all attributes. Because callers allocate so many bytes, throws Error unless
+/// `packed` bytes can hold that many Gaussians and expand to `least` bytes for each.
 std::size_t attribute_bytes(const std::string& source, const SpzContents& contents, std::size_t least,
                             std::size_t packed) {
   if (contents.count > most_gaussians_in(packed) || contents.count * least / deflate_growth_most > packed) {
@@ -82,7 +82,7 @@ std::size_t attribute_bytes(const std::string& source, const SpzContents& conten
       source, contents.count, contents.degree, needed, found);
 }
 
-/// Reads records of a type, a length and that many bytes. Skips unknown ones.
+/// Reads the extensions: records of a type, a length and as many bytes. Skips unknown types.
 void read_extensions(const std::string& source, std::span<const std::byte> bytes, SpzContents& contents) {
   while (!bytes.empty()) {
     const std::size_t length = bytes.size() < 8 ? 0 : load_number<std::uint32_t>(&bytes[4]);
@@ -117,7 +117,7 @@ SpzContents unpack_attributes(const std::string& source, std::size_t packed,
   contents.attributes = read(needed);
   if (contents.attributes.size() < needed) fail_short(source, contents, needed, contents.attributes.size());
   const bool extended = (header.flags & extensions_flag) != 0;
-  // gzip tests its checksum at the end, which this reaches unless more follows.
+  // Reads to the end, where gzip tests its checksum, unless too much data follows.
   const std::vector<std::byte> rest = read(extended ? most_extensions : 1);
   if (extended) {
     read_extensions(source, rest, contents);
@@ -135,8 +135,7 @@ void unpack_streams(const std::string& source, std::span<const std::byte> bytes,
                              sizes.scale,    sizes.rotation, sizes.harmonics};
   constexpr const char* names[] = {"positions", "opacities", "colours", "scales", "rotations", "harmonics"};
   const std::size_t streams = contents.degree == 0 ? 5 : 6;
-  // zstd's expansion is unbounded: a stream of one value takes a few bytes. Positions are never such a
-  // stream.
+  // zstd's expansion is unbounded: a stream that repeats one value takes a few bytes. Positions never repeat.
   contents.attributes.resize(attribute_bytes(source, contents, sizes.position, bytes.size()));
   std::size_t at = toc + 16 * streams, to = 0;
   for (std::size_t i = 0; i < streams; ++i) {

@@ -22,22 +22,22 @@ struct SpzContents {
   std::vector<std::byte> attributes;
 };
 
-/// Bytes a Gaussian of each attribute, in file order.
+/// Bytes of each attribute of one Gaussian, in file order.
 struct SpzSizes {
   std::size_t position, opacity, colour, scale, rotation, harmonics;
   std::size_t sum() const { return position + opacity + colour + scale + rotation + harmonics; }
 };
 SpzSizes spz_sizes(std::uint32_t version, int degree);
 
-/// Scale of colours in bytes; wider than the base colours' range, so that colours beyond 0 to 1 fit.
+/// Scale of the bytes of colours. Their range is wider than 0 to 1, so that base colours beyond 0 to 1 fit.
 constexpr double spz_colour_scale = 0.15;
 
 /// Returns the header of versions 1 to 3, which announces extensions at the end of the file. `fraction_bits`
-/// is that of positions. Throws Error for more Gaussians than it can count.
+/// is the number of fraction bits of positions. Throws Error for more Gaussians than the header can count.
 std::vector<std::byte> spz_header(std::uint32_t version, std::size_t count, int degree, int fraction_bits,
                                   bool antialiased);
 
-/// Returns the extension that names a file's axes, which must be among those that have a number.
+/// Returns the extension that names a file's axes. The format must have a number for them.
 std::vector<std::byte> spz_axes_extension(std::string_view axes);
 
 /// Checks and unpacks a file. Throws Error as in formats/spz.h.

@@ -1,4 +1,4 @@
-// Writes Niantic's spz, version 3: attribute after attribute in whole bytes, within gzip.
+// Writes Niantic's spz, version 3: all positions, then all opacities and so on, in whole bytes, within gzip.
 
 #include "formats/bytes.h"
 #include "formats/gzip.h"
@@ -11,10 +11,11 @@ namespace binosplat {
 namespace {
 
 constexpr std::uint32_t version = 3;
-constexpr int fraction_bits_usual = 12;  // always used by other writers
+constexpr int fraction_bits_usual = 12;  // other writers always use 12
 constexpr int fraction_bits_most = 24;
 constexpr double position_most = (1 << 23) - 1;
-constexpr double steps_least = 1 << 14;  // to the outermost position: for a small model 12 bits give too few
+// The least number of steps from 0 to the outermost position. With 12 bits, small models have fewer.
+constexpr double steps_least = 1 << 14;
 
 double outermost(const Model& model) {
   double most = 0.0;
@@ -24,7 +25,7 @@ double outermost(const Model& model) {
   return most;
 }
 
-/// Returns the positions' number of fraction bits, of 24 with the sign.
+/// Returns the number of fraction bits of positions, which have 24 bits with the sign.
 int fraction_bits(const Model& model) {
   const double most = outermost(model);
   int bits = fraction_bits_usual;
@@ -35,18 +36,18 @@ int fraction_bits(const Model& model) {
   return bits;
 }
 
-/// Quantises a coefficient in -1 to 1 to `steps` of 256, as a multiple of 256 / steps from -128 on.
+/// Quantises a coefficient from -1 to 1 to one of `steps` bytes, the multiples of 256 / steps.
 std::byte harmonic_byte(double v, int steps) {
   const int bucket = 256 / steps;
   const auto most = static_cast<std::uint32_t>(steps - 1);
   return static_cast<std::byte>(static_cast<int>(nearest_step((v + 1.0) * 128.0 / bucket, most)) * bucket);
 }
 
-/// Returns the steps of the higher coefficient of index `k`, counting all channels: degree 1 has one bit more
-/// than the others.
+/// Returns the number of steps for the higher coefficient with index `k` among those of all channels. Degree
+/// 1 has one bit more than the other degrees.
 int steps_of(std::size_t k, int harmonic_bits) { return 1 << std::min(harmonic_bits + (k < 9 ? 1 : 0), 8); }
 
-/// Packs the three smallest of x, y, z, w: nine bits and a sign each, the first one highest.
+/// Packs the three smallest of x, y, z, w with nine bits and a sign each, the first one in the highest bits.
 std::uint32_t packed_rotation(const glm::vec4& q) {
   const SmallestThree smallest = smallest_three(glm::vec4(q.y, q.z, q.w, q.x));
   auto word = static_cast<std::uint32_t>(smallest.largest);
@@ -99,7 +100,7 @@ Losses losses_of(const Model& model, int bits, int harmonic_bits) {
   if (bits < fraction_bits_usual)
     losses.push_back(fmt::format("the model is so large that spz keeps positions in steps of {:.4g} only",
                                  std::ldexp(1.0, -bits)));
-  // Up to half a step beyond the last one is rounding.
+  // Scales up to half a step beyond the range are only rounded to its ends, which is no loss.
   const double thin = std::exp(-10.0 - 0.5 / 16.0), thick = std::exp(255.5 / 16.0 - 10.0);
   count_lost(losses, model, "scales beyond e^-10 to e^5.94, which spz clips", [&](std::size_t i) {
     const glm::vec3& s = model.scale[i];

@@ -117,7 +117,7 @@ Model load_ranges(const fs::path& lod_meta, const SogLevels& levels,
     bytes += sog.source.bytes();
     model.degree = std::max(model.degree, sog.source.degree());
     model.antialiased = model.antialiased || sog.source.antialiased();
-    model.perspective = sog.source.perspective();  // equal in all
+    model.perspective = sog.source.perspective();  // equal in all SOGs
     for (SogLevels::ChunkRange& used : sog.ranges) {
       used.range.slot = total;
       total += used.range.count;

@@ -1,6 +1,6 @@
 #pragma once
-// Streamed SOG: several SOGs, folders or .sog archives, and a lod-meta.json, which maps their Gaussians to
-// chunks and levels of detail. Frame: the trainer's (RDF).
+// Streamed SOG: several SOGs, folders or .sog archives, and a lod-meta.json, which assigns the SOGs'
+// Gaussians to chunks and levels of detail. Axes: the trainer's (RDF).
 
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -16,22 +16,23 @@ namespace binosplat {
 /// Returns whether a JSON file is a lod-meta.json.
 bool is_sog_levels(const nlohmann::json& root);
 
-/// Returns the lod-meta.json that a path names, or the one in the folder of that name.
+/// Returns the path of a lod-meta.json: `path` itself, or the file in the folder `path`.
 std::filesystem::path lod_meta_of(const std::filesystem::path& path);
 
-/// Returns the parsed file; nothing if it is missing or another kind of file.
+/// Returns the parsed file; nothing if the file is missing or of another kind.
 std::optional<nlohmann::json> read_lod_meta(const std::filesystem::path& lod_meta);
 
 /// Returns whether a path names a lod-meta.json, or the folder of one.
 bool is_streamed_sog(const std::filesystem::path& path);
 
 /// Reads one level of detail, 0 being the finest, and the environment, which is part of every level. Without
-/// `lod` it reads the finest complete level, and warns if that is not 0. Gaussians come in the order of the
-/// files and of the Gaussians in them. Throws Error as load_sog does, and for a level that does not exist.
+/// `lod` it reads the finest complete level, and warns if that is not 0. Gaussians are in the order of the
+/// files and, within a file, in the file's order. Throws Error as load_sog does, and for a level that does
+/// not exist.
 Model load_streamed_sog(const std::filesystem::path& lod_meta, const nlohmann::json& root,
                         std::optional<int> lod);
 
-/// Reads the `ranges` of each file (SogLevels::ranges_in_use), and the environment; `format` is the model's.
+/// Reads the `ranges` of each file (SogLevels::ranges_in_use), and the environment. Sets Model::format.
 Model load_ranges(const std::filesystem::path& lod_meta, const SogLevels& levels,
                   const std::vector<SogLevels::FileRanges>& ranges, const std::string& format);
 

@@ -8,10 +8,10 @@
 
 namespace binosplat {
 
-/// Returns the first `count` tensors of the file, flat; a caller that knows the network derives their shapes
-/// from their sizes. Throws Error naming the file and the entry: no such archive, no data.pkl (another kind
-/// of file), a tensor missing, damaged, too large (64 MiB), not float32 little-endian, or with a value that
-/// is not finite.
+/// Returns the first `count` tensors of the file as flat lists. A caller that knows the network derives the
+/// shapes from the sizes. Throws Error if the file is no such archive or has no data.pkl, or if a tensor is
+/// missing, damaged or larger than 64 MiB. Also throws Error for tensors that are not float32 little-endian
+/// or not finite. The text names the file and the entry.
 std::vector<std::vector<float>> load_torch_tensors(const std::filesystem::path& path, std::size_t count);
 
 }  // namespace binosplat

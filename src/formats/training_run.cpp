@@ -18,9 +18,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t largest_run_file = std::size_t{1} << 20;  // bytes; usual are about ten thousand
+constexpr std::size_t largest_run_file = std::size_t{1} << 20;  // bytes; usual files have about ten thousand
 
-/// The effect of a setting's value on the pictures. A value that begins with '!' matches all others.
+/// The effect of a setting's value on the pictures. A `value` "!X" matches all values except X.
 struct Clue {
   const char *key, *value, *sentence;
 };
@@ -28,7 +28,7 @@ struct Clue {
 constexpr const char* no_eval3d =
     "it was trained by 3DGUT, which evaluates Gaussians along each ray and has no low-pass. They are drawn "
     "as splats with hardly any (--eps2d 0.001), at about 45 dB: large ones near the eye look different";
-/// The low-pass for such models (tests/bench/results/judges.md).
+/// The low-pass for models of 3DGUT (tests/bench/results/judges.md).
 constexpr double along_rays_kernel_px2 = 0.001;
 constexpr const char* no_sigma_points =
     "it was trained with the unscented transform, and is drawn by a linear projection: large Gaussians near "
@@ -86,14 +86,14 @@ constexpr Clue of_3dgrut[] = {
      "pictures look too dark"},
     {"model.background.color", "white", white}};
 
-/// A kind of run file.
+/// A kind of file that describes a training run.
 struct RunKind {
   const char *name, *trainer;
   FlatValues (*read)(const std::string& source, std::string_view text);
-  const char* prefix;  // of the following keys
-  const char* mark;    // a key that every file of this kind has, and no other kind
+  const char* prefix;  // precedes the keys in the following members
+  const char* mark;    // a key that every file of this kind has, and no file of another kind
   const char *antialiasing, *word_for_it;
-  const char* reported_keys;  // keys to report besides those of the clues
+  const char* reported_keys;  // keys to report in addition to the clues' keys
   std::vector<Clue> clues;
 };
 
@@ -160,7 +160,7 @@ void tell(const FlatValues& values, const RunKind& kind, TrainingRun& run) {
     (is_advice ? run.advice : run.differences).emplace_back(clue.sentence);
   }
   const auto value = value_of(values, kind, kind.antialiasing);
-  // Other text than true or false decides nothing.
+  // A text other than true or false decides nothing.
   if (value && (*kind.word_for_it != 't' || *value == "true" || *value == "false"))
     run.antialiased = *value == kind.word_for_it;
 }
@@ -189,7 +189,7 @@ std::optional<fs::path> find_above(const fs::path& model, const std::string& nam
     folder = folder.parent_path();
     const fs::path file = folder / name;
     if (!fs::is_regular_file(file, ignored)) continue;
-    // Relative to the working directory, if the model's path is relative.
+    // If the model's path is relative to the working directory, returns a relative path, too.
     return model.is_absolute() ? file : file.lexically_proximate(fs::current_path());
   }
   return std::nullopt;

@@ -14,12 +14,12 @@ struct TrainingRun {
   std::filesystem::path file;
   std::string trainer;               // for display
   std::optional<bool> antialiased;   // trained with opacity compensated for the low-pass
-  std::optional<double> kernel_px2;  // nearest low-pass if training had an unusual one, px^2
+  std::optional<double> kernel_px2;  // nearest low-pass that can be drawn if training's was unusual, px^2
   std::vector<std::pair<std::string, std::string>>
       settings;  // settings that may affect pictures, as in the file
   /// Differences between the training's rendering and this program's: their effect, and a remedy.
   std::vector<std::string> differences;
-  std::vector<std::string> advice;  // options that draw it as it was trained
+  std::vector<std::string> advice;  // options that draw the model as it was trained
 };
 
 constexpr const char* exposures_name = "exposure.json";
@@ -32,7 +32,7 @@ std::optional<std::filesystem::path> find_above(const std::filesystem::path& mod
 
 /// Returns the run of a model's file, from the nearest of gsplat's cfg.yml, nerfstudio's config.yml, INRIA's
 /// cfg_args, LichtFeld Studio's training_config.json and 3DGRUT's parsed.yaml (find_above). Skips files of
-/// these names from other programs. Skips unreadable ones with a warning, since the user did not name them.
+/// these names from other programs. Skips unreadable files with a warning, since the user did not name them.
 std::optional<TrainingRun> find_training_run(const std::filesystem::path& model);
 
 }  // namespace binosplat

@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// One frame; the file's values are defaults for all frames.
+/// One frame. The file's values are the defaults of all frames.
 class Frame {
  public:
   Frame(const fs::path& path, const JsonValue& root, const JsonValue& frame)
@@ -59,7 +59,7 @@ class Frame {
   }
 
   void read_focal(Camera& camera) const {
-    // From an angle across `pixels`, in radians or in degrees.
+    // Returns the focal length for a picture of `pixels` px, from its angle in radians or in degrees.
     const auto focal = [&](const char* radians, const char* degrees, int pixels) -> std::optional<double> {
       auto angle = number(radians);
       if (!angle && number(degrees)) angle = glm::radians(*number(degrees));

@@ -12,7 +12,8 @@ namespace binosplat {
 /// Returns whether a JSON file is a transforms.json.
 bool is_transforms(const nlohmann::json& root);
 
-/// Three rows of four numbers, or four rows of which the last is ignored: p' = rotation p + shift.
+/// The transform p' = rotation p + shift. Files store it as three rows of four numbers, or as four rows, of
+/// which the last is ignored.
 struct RigidTransform {
   glm::dmat3 rotation{1.0};
   glm::dvec3 shift{0.0};
@@ -25,10 +26,10 @@ RigidTransform read_rows(const JsonValue& rows);
 void place_as_opengl(Camera& camera, const RigidTransform& pose);
 
 /// Reads the frames in file order; a camera's name is its file_path. Poses are camera-to-world with OpenGL's
-/// axes, as stored: nerfstudio's applied_transform stays applied. The size, fl_x, fl_y, cx and cy are the
-/// frame's or the file's. Without fl_x, camera_angle_x or x_fov gives the focal length; without w and h, the
-/// picture gives the size. LensReport (formats/distortion.h) defines how lenses are drawn. Throws Error
-/// naming the frame and the key for missing or wrong values.
+/// axes, as stored: nerfstudio's applied_transform stays applied. If a frame lacks w, h, fl_x, fl_y, cx or
+/// cy, the file's value applies. Without fl_x, camera_angle_x or x_fov gives the focal length; without w and
+/// h, the picture gives the size. LensReport (formats/distortion.h) defines how lenses are drawn. Throws
+/// Error naming the frame and the key for missing or wrong values.
 std::vector<Camera> load_transforms(const std::filesystem::path& path, const nlohmann::json& json);
 
 }  // namespace binosplat

@@ -11,7 +11,7 @@
 
 namespace binosplat {
 
-/// Replaces each % and two hexadecimal digits by their byte; other % stay.
+/// Replaces each % with two hexadecimal digits by their byte.
 std::string percent_decoded(std::string_view text);
 
 /// Returns whether a URI has the scheme data:.
@@ -21,9 +21,9 @@ bool has_data(const JsonValue& uri);
 /// comma is missing or the base64 is invalid.
 std::vector<std::byte> data_in(const JsonValue& uri);
 
-/// Returns the file in or below `folder` that a relative URI names. The name is decoded; if only a file of
-/// the undecoded name exists, it is that one, since some programs do not encode. Throws Error naming the key
-/// for a URI that leads elsewhere.
+/// Returns the file in or below `folder` that a relative URI names. Decodes the name; if only a file with the
+/// undecoded name exists, returns that file, since some programs do not encode names. If the URI leads
+/// elsewhere, throws Error and names the key.
 std::filesystem::path file_named(const std::filesystem::path& folder, const JsonValue& uri);
 
 }  // namespace binosplat

@@ -57,7 +57,7 @@ class UsdReader {
   Model read() {
     note_unresolved(file_);
     for (const UsdaPrim& prim : file_.prims) show(prim, {});
-    // As in renderers, proxies are not drawn beside prims with the purpose render.
+    // As in other renderers, proxies are drawn only if no prim has the purpose render.
     for (const auto& add_proxy : proxies_)
       if (!has_render_) add_proxy();
     if (model_.count() == 0 && model_.left_out == 0) fail_without_gaussians();
@@ -134,7 +134,7 @@ class UsdReader {
       others_.insert(prim.type);
       nurec_ = nurec_ || prim.attribute("omni:nurec:isNuRecVolume") != nullptr;
     }
-    if (prim.type == "PointInstancer") return;  // its children are prototypes of its instances
+    if (prim.type == "PointInstancer") return;  // its children are only prototypes
     for (const UsdaPrim& child : prim.prims) show(child, inherited);
   }
 
@@ -152,8 +152,8 @@ class UsdReader {
     join(model_, std::move(part));
   }
 
-  /// Returns an attribute's numbers, floats or else halves: `each` for each of `count` Gaussians; empty if it
-  /// is missing.
+  /// Returns the numbers of the attribute `name` (floats) or, if it is missing, of NAMEh (halves): `each` for
+  /// each of `count` Gaussians. Empty if both are missing.
   std::vector<float> values(const UsdaPrim& prim, const std::string& name, std::size_t components,
                             std::size_t each, std::size_t count) const {
     const UsdaText* text = prim.attribute(name);
@@ -214,13 +214,13 @@ class UsdReader {
   }
 
   fs::path path_;
-  std::string source_;  // for errors: the path, and the file in an archive
+  std::string source_;  // for errors: the path, or the archive and the file in it
   UsdaPrim file_;
   Model model_;
-  std::vector<glm::dvec3> places_;  // positions of its Gaussians in the scene
+  std::vector<glm::dvec3> places_;  // positions of the model's Gaussians in the scene
   bool flat_ = false, nurec_ = false, has_render_ = false;
   std::vector<std::function<void()>> proxies_;
-  std::string unresolved_;        // the word for its parts in other files or variants, for errors
+  std::string unresolved_;        // for errors: the word for content in other files or variants
   std::set<std::string> others_;  // types of prims that are no Gaussians
 };
 

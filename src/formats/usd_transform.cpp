@@ -16,7 +16,7 @@ glm::dmat4 turn_around(char axis, double degrees) {
                      glm::dvec3(axis == 'X' ? 1 : 0, axis == 'Y' ? 1 : 0, axis == 'Z' ? 1 : 0));
 }
 
-/// Reads rows of a matrix for row vectors, as OpenUSD writes it: they are our columns.
+/// Reads the rows of a matrix. OpenUSD's matrices multiply row vectors, so their rows are glm's columns.
 glm::dmat4 matrix_in(UsdaText text) {
   glm::dmat4 matrix(1.0);
   text.expect('(');

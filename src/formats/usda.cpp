@@ -27,7 +27,7 @@ bool edits_list(std::string_view word) {
   return is_one_of(word, {"prepend", "append", "add", "delete", "reorder"});
 }
 
-/// Reads the parentheses after a prim, and at the top of a file.
+/// Reads metadata: the parentheses after a prim's name, or at the top of a file.
 void read_metadata(UsdaText& text, UsdaValues& values) {
   if (!text.take('(')) return;
   while (!text.take(')')) {
@@ -42,7 +42,7 @@ void read_metadata(UsdaText& text, UsdaValues& values) {
   }
 }
 
-/// Reads `uniform token visibility = "invisible" (...)`, from `word` on.
+/// Reads an attribute, as in `uniform token visibility = "invisible" (...)`. `word` is its first word.
 void read_attribute(UsdaText& text, std::string_view word, UsdaPrim& prim) {
   while (edits_list(word) || is_one_of(word, {"custom", "uniform", "varying", "config"})) word = text.word();
   const bool orders = word == "nameChildren" || word == "properties";  // reorder nameChildren = [...]
@@ -55,8 +55,8 @@ void read_attribute(UsdaText& text, std::string_view word, UsdaPrim& prim) {
   if (text.next() == '(') text.value();
 }
 
-/// OpenUSD holds a sample until the next, and the first one before it. So equal samples become a constant
-/// value.
+/// Replaces equal time samples by a constant value. OpenUSD holds a sample until the next one, and uses the
+/// first sample for all times before it.
 void hold_still(UsdaValues& attributes) {
   constexpr std::string_view ending = ".timeSamples";
   for (auto at = attributes.begin(); at != attributes.end();) {
@@ -210,7 +210,7 @@ UsdaText UsdaText::value() {
       skip_item();
     }
   } while (!closing.empty());
-  // A prim of another file is its file name, a path, and its time offset.
+  // A reference to another file is a file name, optionally a prim's path, and optionally a time offset.
   if (all_[value.at_] == '@' || all_[value.at_] == '<') {
     if (next() == '<') skip_item();
     if (next() == '(') this->value();

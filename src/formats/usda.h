@@ -12,8 +12,8 @@
 
 namespace binosplat {
 
-/// A part of a file's text, parsed from its start. A text that does not fit the request throws an Error that
-/// names the file and the line.
+/// A part of a file's text, parsed from its start. If the text does not fit a request, the request throws an
+/// Error that names the file and the line.
 class UsdaText {
  public:
   /// `text` must outlive this object.
@@ -52,18 +52,18 @@ class UsdaText {
     }
   }
 
-  /// Read the whole rest as one value. They throw if more follows.
+  /// Read the rest of the text as one value, and throw if anything follows it.
   std::vector<double> numbers(std::size_t count) const;
-  std::vector<float> tuples(std::size_t count) const;  // a list of tuples, one after the other
-  std::vector<std::string> texts() const;              // a list
+  std::vector<float> tuples(std::size_t count) const;  // a list of tuples, flattened
+  std::vector<std::string> texts() const;              // a list of texts
   std::string text() const;
-  std::vector<UsdaText> samples() const;  // of timeSamples, in their order
+  std::vector<UsdaText> samples() const;  // the values of timeSamples, in their order
 
   /// The unread text.
   std::string_view rest() const { return all_.substr(at_, end_ - at_); }
   const std::string& source() const { return *source_; }
 
-  /// Throws an Error about the text in place of `wanted`.
+  /// Throws an Error: the text should continue with `wanted`.
   [[noreturn]] void fail_to_find(const std::string& wanted) const;
   template <typename... Args>
   [[noreturn]] void fail_here(fmt::format_string<Args...> format, Args&&... args) const {
@@ -85,16 +85,16 @@ class UsdaText {
 using UsdaValues = std::map<std::string, UsdaText, std::less<>>;
 
 struct UsdaPrim {
-  std::string specifier, type, name;  // def, over or class; empty of the file itself
-  UsdaText where;                     // its beginning
-  UsdaValues metadata, attributes;    // also "positions.timeSamples", where these differ
+  std::string specifier, type, name;  // specifier: def, over or class; all empty for the file itself
+  UsdaText where;                     // the prim's beginning
+  UsdaValues metadata, attributes;    // attributes: also "NAME.timeSamples", if the samples differ
   std::vector<UsdaPrim> prims = {};
 
   const UsdaText* attribute(std::string_view named) const;
 };
 
-/// Reads the file as a prim with its metadata and, unless `only_metadata`, its prims. `text` must outlive it.
-/// Throws Error naming the line.
+/// Reads the file as a prim with its metadata and, unless `only_metadata`, its prims. `text` must outlive the
+/// result. Throws Error naming the line.
 UsdaPrim read_usda(const std::string& source, std::string_view text, bool only_metadata = false);
 
 }  // namespace binosplat

@@ -22,7 +22,7 @@ std::string without_ending(std::string name) {
   return name;
 }
 
-/// Splits a name into folders and file, without those that lead outside.
+/// Splits a name into folders and file, and omits "..".
 fs::path parts_of(std::string name) {
   std::ranges::replace(name, '\\', '/');
   fs::path parts;
@@ -45,7 +45,7 @@ std::optional<fs::path> picture_at(const fs::path& name) {
   return std::nullopt;
 }
 
-/// Returns the picture of such parts in a folder; the parts may begin with the folder's own last parts.
+/// Returns the picture at a path below `folder`. The path `parts` may begin with the last parts of `folder`.
 std::optional<fs::path> picture_in(const fs::path& folder, const fs::path& parts) {
   const fs::path whole = fs::absolute(folder / ".").lexically_normal().parent_path();
   for (fs::path above = whole;; above = above.parent_path()) {

@@ -52,7 +52,7 @@ std::string described(const std::string& attributes) {
          attributes + "/></rdf:RDF></x:xmpmeta>";
 }
 
-// The segment that every reader reads.
+// The XMP segment that every reader reads. The segment names the extension that contains the right eye.
 std::string packet(int side, const std::string& rest) {
   return app1(
       "http://ns.adobe.com/xap/1.0/\0"s +
@@ -67,7 +67,7 @@ std::string packet(int side, const std::string& rest) {
                             side / 2, side, 2 * side, rest)));
 }
 
-// Splits data longer than a segment of 64 KiB into many that name the whole.
+// Splits data that exceeds a segment (64 KiB) into several segments. Each has the name and size of all data.
 std::string extension_segments(const std::string& whole, const std::string& name) {
   constexpr std::size_t part = 65000;
   std::string segments;
@@ -89,7 +89,7 @@ std::string vr_photo_bytes(const std::filesystem::path& path, const Image& left,
   // XMP requires an MD5 as this name. Readers only compare it, so any digest works.
   const XXH128_hash_t hash = XXH3_128bits(rest.data(), rest.size());
   const std::string name = fmt::format("{:016X}{:016X}", hash.high64, hash.low64);
-  // After the JPEG's start mark and JFIF segment, as cameras write it.
+  // Cameras write XMP after the JPEG's start mark and JFIF segment.
   const std::size_t jfif_end =
       4U + (static_cast<unsigned char>(first[4]) << 8) + static_cast<unsigned char>(first[5]);
   return first.substr(0, jfif_end) + packet(left.width, name) + extension_segments(rest, name) +

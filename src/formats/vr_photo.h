@@ -11,8 +11,8 @@
 
 namespace binosplat {
 
-/// Returns the file of two equirectangular pictures of one size, RGB, 180 degrees across and down. Throws
-/// Error naming the file.
+/// Returns the bytes of a VR photo. The eyes' pictures are equirectangular, of one size, RGB, and cover 180
+/// degrees across and down. Throws Error naming the file.
 std::string vr_photo_bytes(const std::filesystem::path& path, const Image& left, const Image& right);
 
 }  // namespace binosplat

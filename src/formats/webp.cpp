@@ -34,7 +34,7 @@ WebpSize webp_size(const std::string& source, std::span<const std::byte> bytes) 
 }
 
 std::vector<std::byte> webp_file(std::span<const std::uint8_t> texels, int width, int height) {
-  constexpr int effort = 6;  // of 9: more saves less than a hundredth and is many times slower
+  constexpr int effort = 6;  // of 9; more effort saves less than a hundredth, in many times the time
   WebPConfig config;
   WebPPicture picture;
   WebPMemoryWriter writer;

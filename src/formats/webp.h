@@ -20,16 +20,16 @@ struct WebpSize {
   }
 };
 
-/// Returns the size in a file's header; `source` names it in errors. Throws Error unless it is a still,
-/// lossless WebP picture: lossy compression changes the values.
+/// Returns the size in a file's header. Errors name the file `source`. Throws Error unless the file is a
+/// still, lossless WebP picture: lossy compression changes the values.
 WebpSize webp_size(const std::string& source, std::span<const std::byte> bytes);
 
 /// Returns all texels row by row from the top left, four bytes each (R, G, B, and A, 255 if the file has
-/// none), not premultiplied. Throws Error for damaged data. Check webp_size() first: this allocates the
-/// header's size.
+/// none), not premultiplied. Throws Error for damaged data. Check webp_size() first, because this function
+/// allocates the size in the header.
 std::vector<std::uint8_t> webp_texels(const std::string& source, std::span<const std::byte> bytes);
 
-/// Returns the file of a lossless picture; texels as from webp_texels(). Throws Error if memory is short.
+/// Returns the bytes of a lossless picture, with texels as in webp_texels(). Throws Error if memory is short.
 std::vector<std::byte> webp_file(std::span<const std::uint8_t> texels, int width, int height);
 
 }  // namespace binosplat

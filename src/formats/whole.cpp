@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Checks the size in the header, which counts the bytes after it.
+/// Checks the size in the header, which is the number of bytes after it.
 bool is_whole_webp(std::span<const std::byte> bytes) {
   return bytes.size() > 12 && load_number<std::uint32_t>(&bytes[4]) <= bytes.size() - 8;
 }

@@ -1,5 +1,5 @@
 #pragma once
-// Checks that files of binosplat are complete: power losses and aborted copies leave empty or cut ones.
+// Checks that files of binosplat are complete. Power losses and aborted copies leave empty or cut files.
 
 #include <filesystem>
 
@@ -10,7 +10,7 @@ namespace binosplat {
 /// other, missing and unreadable files.
 bool is_whole(const std::filesystem::path& path);
 
-/// Returns whether a SOG has its meta.json and all files that it names, complete.
+/// Returns whether a SOG's meta.json and all files that it names are complete.
 bool is_whole_sog(const std::filesystem::path& meta);
 
 }  // namespace binosplat

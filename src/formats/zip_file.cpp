@@ -27,7 +27,7 @@ bool is_below_folder(const std::string& name) {
 }
 
 std::vector<std::byte> zip_of(const ZipEntries& entries) {
-  constexpr zip_uint16_t first_day = 1 << 5 | 1;  // of 1980: zip's earliest date
+  constexpr zip_uint16_t first_day = 1 << 5 | 1;  // 1 January 1980, zip's earliest date
   zip_source_t* out = zip_source_buffer_create(nullptr, 0, 0, nullptr);
   if (out != nullptr) zip_source_keep(out);
   zip_t* archive = out == nullptr ? nullptr : zip_open_from_source(out, ZIP_TRUNCATE, nullptr);
@@ -128,7 +128,7 @@ std::vector<std::byte> ZipFile::read(const std::string& name, std::size_t bytes_
   }
   const std::unique_ptr<zip_file_t, CloseEntry> entry(zip_fopen_index(archive_.get(), at, 0));
   if (!entry) fail_entry(name, fmt::format("cannot be read: {}", zip_strerror(archive_.get())));
-  // One byte more than promised, so that reading reaches the end, where the library tests the checksum.
+  // Room for one byte more than promised: reading then reaches the end, where the library tests the checksum.
   std::vector<std::byte> bytes(status.size + 1);
   std::size_t filled = 0;
   for (zip_int64_t n = 1; n > 0 && filled < bytes.size();) {

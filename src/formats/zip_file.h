@@ -13,19 +13,20 @@ struct zip;
 
 namespace binosplat {
 
-/// Returns whether a name in a file stays below that file's folder.
+/// Returns whether the relative path `name` in a file stays below the file's folder.
 bool is_below_folder(const std::string& name);
 
 /// Files of an archive to write: names and contents.
 using ZipEntries = std::vector<std::pair<std::string, std::vector<std::byte>>>;
 
-/// Returns an uncompressed archive of these files. It is deterministic. Throws Error if memory is short.
+/// Returns an uncompressed archive of these files. The result is deterministic. Throws Error if memory is
+/// short.
 std::vector<std::byte> zip_of(const ZipEntries& entries);
 
 class ZipFile {
  public:
-  /// Opens an archive whose bytes outlive this object; `source` names it in errors. Throws Error if the list
-  /// of files at its end is damaged or missing.
+  /// Opens an archive whose bytes outlive this object. Errors name the archive `source`. Throws Error if the
+  /// list of files at its end is damaged or missing.
   ZipFile(std::string source, std::span<const std::byte> bytes);
 
   bool has(const std::string& name) const;
@@ -36,8 +37,9 @@ class ZipFile {
   /// Returns the first few names, for an error's text.
   std::string list() const;
 
-  /// Returns a whole file, stored or deflated; verifies its checksum. Throws Error if it is missing, damaged,
-  /// promises more than its bytes can expand to, or more than `bytes_max`.
+  /// Returns the contents of a file, which may be stored or deflated; verifies its checksum. Throws Error if
+  /// the file is missing or damaged, or if its promised size exceeds `bytes_max` or the size to which its
+  /// bytes can expand.
   std::vector<std::byte> read(const std::string& name, std::size_t bytes_max = SIZE_MAX) const;
 
  private:

@@ -11,25 +11,26 @@ namespace binosplat {
 
 namespace {
 
-// The loss of chunks together over the sum of their losses alone: neighbouring and overlapping chunks err
-// alike. Measured: 0.6 to 1.0 dB in headset pictures of the city, from street and air, and of taebak.
+// The error of all chunks together, divided by the sum of their single errors. The ratio is above 1, since
+// neighbouring and overlapping chunks err alike. Measured ratios: 0.6 to 1.0 dB in headset pictures of the
+// city, from street and air, and of taebak.
 const double together = std::pow(10.0, 0.08);
-constexpr double fades = 0.9;      // weight of earlier samples against the next one
-constexpr double nothing = 1e-20;  // squared error of a picture
-// A sample's ratio of measured to predicted error is limited to this factor and its inverse: single chunks
-// vary more.
+constexpr double fades = 0.9;      // each new sample multiplies the weights of earlier samples by this factor
+constexpr double nothing = 1e-20;  // least squared error in a sampling weight, which must not be 0
+// A sample's ratio of measured to predicted error is clamped to this factor and its inverse, since the ratios
+// of single chunks vary even more.
 constexpr double by_chance = 8.0;
 
 }  // namespace
 
-// Weighted sampling by Efraimidis and Spirakis (2006): takes the largest of random numbers to the power of
-// one over the weight. The weight is the root of the loss. With the loss itself as weight, chunks of large
-// loss would dominate a sample's sum even more. They lose 1.1 times the prediction, while others lose 0.6
-// times (city, street).
+// Weighted sampling by Efraimidis and Spirakis (2006): raises a random number for each chunk to the power
+// 1 / weight, and takes the chunks with the largest results. The weight is the root of the predicted loss. If
+// the weight were the loss, chunks of large loss would dominate a sample's sum even more. These chunks
+// lose 1.1 times the predicted loss, and others 0.6 times (city, from the street).
 std::vector<std::size_t> sample_of(const LevelChoice& choice, std::span<const std::size_t> levels,
                                    std::size_t most, unsigned seed) {
   Random random(seed);
-  std::vector<std::pair<double, std::size_t>> keys;  // and chunks
+  std::vector<std::pair<double, std::size_t>> keys;  // pairs of key and chunk
   for (std::size_t c = 0; c < levels.size(); ++c) {
     if (levels[c] == 0) continue;
     const double lost = choice.error_of_chunk(0, c, levels[c]);
@@ -43,7 +44,8 @@ std::vector<std::size_t> sample_of(const LevelChoice& choice, std::span<const st
 }
 
 void drop_beyond_room(ChunkModels& others, const Model& model, const ModelChunks& chunks) {
-  std::size_t taken = chunks.gaussians() + chunks.size() * ModelChunks::block, kept = 0;  // half empty blocks
+  // Counts one block more for each chunk, because a chunk's last block may be almost empty.
+  std::size_t taken = chunks.gaussians() + chunks.size() * ModelChunks::block, kept = 0;
   for (; kept < others.chunks.size(); ++kept) {
     taken += others.models[kept].count();
     if (taken > model.room) break;
@@ -74,7 +76,7 @@ void LevelCalibration::add(const SampleError& error) {
   if (!(error.predicted > 0.0 && error.all > 0.0)) return;
   const double left = 1.0 - std::min(error.predicted / error.all, 1.0),
                times = error.measured / error.predicted;
-  if (left < 0.01) {  // the sample covers nearly all
+  if (left < 0.01) {  // the sample covers nearly all of the error
     chunks_ = static_cast<double>(error.chunks);
     measured_ = chunks_ * times;
     return;

@@ -1,7 +1,7 @@
 #pragma once
-// Measures the true loss of levels of detail in a view, with a sample of chunks at their finest levels.
-// Predictions are made for each chunk alone and are right in the mean of a scene; one view may lose more or
-// less.
+// Measures how much a view really loses by its levels of detail: draws a sample of chunks at their finest
+// levels. The predicted loss adds up losses of single chunks. This prediction is right in the mean of a
+// scene, but one view may lose more or less.
 
 #include <algorithm>
 #include <cstddef>
@@ -14,12 +14,12 @@
 
 namespace binosplat {
 
-/// Largest sample for which a model keeps room (LodFiles::extra_room).
+/// A model keeps room for samples of up to this many chunks (LodFiles::extra_room).
 inline constexpr std::size_t sample_room = 24;
 
-/// Draws up to `most` random chunks that are not at their finest level. A chunk's likelihood grows with the
-/// root of its predicted error in the first view. Chunks with a predicted error of 0 come last, in case the
-/// prediction is wrong. The same seed draws the same chunks.
+/// Picks up to `most` random chunks that are not at their finest level. A chunk's likelihood grows with the
+/// root of its predicted error in the first view. Chunks with a predicted error of 0 are picked last, in case
+/// the prediction is wrong. The same seed picks the same chunks.
 std::vector<std::size_t> sample_of(const LevelChoice& choice, std::span<const std::size_t> levels,
                                    std::size_t most, unsigned seed);
 
@@ -29,37 +29,40 @@ struct ChunkModels {
   std::vector<Model> models;
 };
 
-/// Drops the last chunks of `others` for which the model's `room` may be too small.
+/// Keeps the first chunks of `others` that surely fit into Model::room together with the model's chunks, and
+/// drops the other ones.
 void drop_beyond_room(ChunkModels& others, const Model& model, const ModelChunks& chunks);
 
-/// Replaces these chunks of the model by `others`, and returns their former Gaussians.
+/// Replaces chunks of the model by those of `others`, and returns the replaced Gaussians.
 ChunkModels swap_chunks(const ChunkModels& others, Model& model, ModelChunks& chunks);
 
 /// The error of a sample of chunks in a view: squared, mean over pixels and channels.
 struct SampleError {
   double predicted = 0.0, measured = 0.0;
   double all = 0.0;        // predicted error of all chunks
-  std::size_t chunks = 0;  // in the sample
+  std::size_t chunks = 0;  // number of chunks in the sample
 };
 
-/// Returns the error of a sample in the first view of a choice, with all chunks at `levels`.
+/// Returns the error of a sample in the first view of a choice: the errors predicted if all chunks have
+/// `levels`, and the `measured` error.
 SampleError sample_error(const LevelChoice& choice, std::span<const std::size_t> levels,
                          std::span<const std::size_t> sample, double measured);
 
-/// The calibration factor: the ratio of the measured to the predicted error of levels. It is a mean over
-/// samples with fading weights. A sample that covers 99 % of the predicted error replaces it.
+/// The calibration factor: the ratio of the measured to the predicted error of levels. The ratio is a mean
+/// over samples, in which older samples weigh less. A sample that covers 99 % of the predicted error replaces
+/// the mean.
 class LevelCalibration {
  public:
   void add(const SampleError& error);
   double factor() const { return measured_ / chunks_; }
-  /// The factor for choosing levels, at least 1/8. Otherwise a sample with hardly any error would allow
-  /// levels so coarse that the next sample refutes them.
+  /// The factor for choosing levels, at least 1/8. Without this limit, a sample with hardly any error would
+  /// allow levels so coarse that the next sample refutes them.
   double factor_for_choice() const { return std::max(factor(), 1.0 / 8.0); }
 
  private:
-  static constexpr double prior = 8.0;  // chunks that initially count as measured to be as predicted
+  static constexpr double prior = 8.0;  // weight, in chunks, of the initial factor 1
 
-  // Sum of the samples' weights, in chunks, and sum of weight times measured over predicted error.
+  // The sum of the samples' weights, in chunks, and the sum of weight * measured error / predicted error.
   double chunks_ = prior, measured_ = prior;
 };
 

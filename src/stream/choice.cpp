@@ -50,7 +50,7 @@ std::vector<std::size_t> choose_by_spacing(const std::vector<LodChunk>& chunks,
   std::size_t total = 0;
   const auto add = [&](std::size_t p) {
     const LodChunk& chunk = chunks[p];
-    if (chosen[p] == 0) return;  // the finest
+    if (chosen[p] == 0) return;  // already the finest level
     const auto count = static_cast<double>(std::max<std::size_t>(chunk.levels[chosen[p]].count, 1));
     const double diagonal = glm::distance(chunk.low, chunk.high);
     const double stays = inertia_of(before, p, chosen[p] - 1);
@@ -68,7 +68,7 @@ std::vector<std::size_t> choose_by_spacing(const std::vector<LodChunk>& chunks,
     coarse.pop();
     const std::size_t now = chunks[p].levels[chosen[p]].count;
     const std::size_t finer = chunks[p].levels[chosen[p] - 1].count;
-    if (total - now + finer > most) continue;  // others may be smaller
+    if (total - now + finer > most) continue;  // another chunk's step may fit
     total = total - now + finer;
     --chosen[p];
     add(p);

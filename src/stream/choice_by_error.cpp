@@ -19,7 +19,8 @@ namespace binosplat {
 
 namespace {
 
-/// A rest below 1 / `little` of the allowed Gaussians is not worth a search for a step that fits.
+/// A search for a step that fits is worth its time only if at least 1 / `little` of the allowed Gaussians is
+/// left.
 constexpr std::size_t little = 1024;
 
 /// The implementation of choose_by_error().
@@ -62,8 +63,8 @@ class ErrorChooser {
       }
     }
     const std::vector<Step> steps = steps_of_all();
-    std::vector<bool> left(chunks_.size(), false);  // a step of this chunk was refused
-    std::priority_queue<Step> others;               // steps of such chunks
+    std::vector<bool> left(chunks_.size(), false);  // whether a step of the chunk was refused
+    std::priority_queue<Step> others;               // steps of chunks with a refused step
     auto next = steps.begin();
     while (loses_more_than(before_.empty() ? 1.0 : 1.0 / inertia) && has_room()) {
       while (next != steps.end() && left[next->chunk]) ++next;
@@ -78,7 +79,7 @@ class ErrorChooser {
     return chosen_;
   }
 
-  /// Returns whether more is needed than may be read.
+  /// Returns whether the views need more Gaussians than may be read.
   bool is_limited() const { return is_limited_ && loses_more_than(1.0); }
   void give_errors(LevelChoice& choice) {
     choice.sphere_pixels = sphere_pixels_;
@@ -88,7 +89,7 @@ class ErrorChooser {
 
  private:
   struct Step {
-    double worth = 0.0;  // error saved per Gaussian
+    double worth = 0.0;  // error saved per added Gaussian
     std::size_t chunk = 0, level = 0;
     bool operator<(const Step& other) const {
       return std::tuple(worth, other.chunk, level) < std::tuple(other.worth, chunk, other.level);
@@ -105,7 +106,7 @@ class ErrorChooser {
     return errors_[first_[c] + view * chunks_[c].levels.size() + level];
   }
 
-  /// Adds the steps that a chunk takes if none is refused; each is worth at most the previous one.
+  /// Adds the steps that a chunk takes if none is refused. No step is worth more than the one before it.
   void add_steps(std::size_t c, std::vector<Step>& steps) const {
     double most = std::numeric_limits<double>::infinity();
     for (Step step = best_step(c, chosen_[c]); step.worth > 0.0; step = best_step(c, step.level)) {
@@ -114,8 +115,8 @@ class ErrorChooser {
     }
   }
 
-  /// Returns the steps of all chunks in the order in which they are taken. Other chunks' losses do not change
-  /// it.
+  /// Returns the steps of all chunks in the order of their worth, in which choose() takes them. A step's
+  /// worth does not depend on other chunks, so one sort suffices.
   std::vector<Step> steps_of_all() const {
     std::vector<Step> all;
     std::mutex adding;
@@ -134,7 +135,7 @@ class ErrorChooser {
   bool try_step(const Step& step) {
     const auto [worth, c, level] = step;
     if (!fits(c, level)) {
-      finest_[c] = level + 1;  // coarser ones may be smaller
+      finest_[c] = level + 1;  // coarser levels may fit
     } else if (!needed(c, level)) {
       finest_[c] = next_needed(c, level);
     } else if (!may_be_read(c, level)) {
@@ -183,13 +184,14 @@ class ErrorChooser {
     return false;
   }
 
-  /// Returns the finest level that may still be needed if this one is not: steps up to the previous level
-  /// count more.
+  /// If `level` is not needed, returns the finest level that may still be needed: hysteresis raises the error
+  /// for levels no finer than the chunk's previous level.
   std::size_t next_needed(std::size_t c, std::size_t level) const {
     return before_.empty() || level >= before_[c] ? chosen_[c] : before_[c];
   }
 
-  /// Returns the chunk's step that saves the most error per Gaussian; its worth is 0 if none saves any.
+  /// Returns the chunk's step that saves the most error per added Gaussian. Without such a step the
+  /// worth is 0.
   Step best_step(std::size_t c) const { return best_step(c, chosen_[c]); }
   Step best_step(std::size_t c, std::size_t from) const {
     Step best{0.0, c, 0};
@@ -209,11 +211,11 @@ class ErrorChooser {
   std::size_t read_most_, most_;
   std::span<const std::size_t> before_;
   double sphere_pixels_ = 0.0;
-  std::vector<double> allowed_, lost_;        // squared error, by view, the sphere last
-  std::vector<double> errors_;                // by chunk, then view, then level
+  std::vector<double> allowed_, lost_;        // squared errors by view; the sphere is last
+  std::vector<double> errors_;                // squared errors by chunk, then view, then level
   std::vector<std::size_t> first_ = {0};      // index of each chunk's first error
   std::vector<std::size_t> chosen_, finest_;  // finest_: the finest level that may be taken
-  std::size_t total_ = 0, new_ = 0;           // Gaussians
+  std::size_t total_ = 0, new_ = 0;           // Gaussians of chosen_, and those of them that must be read
   bool is_limited_ = false;
 };
 

@@ -10,7 +10,7 @@
 
 namespace binosplat {
 
-/// Passes each choice the previous one (choose_levels), and warns if even the coarsest levels do not fit.
+/// Calls choose_levels() with the previous choice as `before`. Warns if even the coarsest levels do not fit.
 class Chooser {
  public:
   /// The files must outlive this object.

@@ -13,15 +13,15 @@ namespace binosplat {
 
 namespace {
 
-/// In pixels narrower than the file's, errors grow by this power of the ratio of widths, at most to
-/// growth_most.
+/// In pixels narrower than the file's narrowest width, an error grows by (narrowest width / width)^growth, at
+/// most by the factor growth_most.
 constexpr double growth = 0.3, growth_most = 8.0;
 
-/// A level extends from behind its occluders by this factor times the spacing of its Gaussians.
+/// A level extends beyond its chunk's visible part by this factor times the spacing of its Gaussians.
 constexpr double reach = 0.5;
 
-/// Returns the least distance of the box from the picture's side, world units. It is 0 if the box may be in
-/// the picture, or in the pixels beside it into which Gaussians are blurred.
+/// Returns a lower limit for the distance from the chunk's box to the picture's sides, world units. Returns 0
+/// if the box may reach the picture or the margin from which Gaussians blur into the picture.
 double distance_beside(const DetailView& view, const LodChunk& chunk, double pixel) {
   constexpr double blurred_px = 4.0;
   const glm::dvec3 to = 0.5 * (chunk.low + chunk.high) - view.eye, half = 0.5 * (chunk.high - chunk.low);
@@ -37,7 +37,7 @@ double reach_of(const LodChunk& chunk, std::size_t count) {
   return reach * box / std::sqrt(static_cast<double>(std::max<std::size_t>(count, 1)));
 }
 
-/// Evaluates relative_error() for the levels of one chunk, seen from one place.
+/// Evaluates relative_error() for the levels of one chunk, at one pixel width and viewing direction.
 class SeenFrom {
  public:
   SeenFrom(const LodChunk& chunk, double width, const glm::dvec3& along)
@@ -60,7 +60,8 @@ class SeenFrom {
   }
 
  private:
-  /// Interpolates a list by directions and widths: the mean over directions, log-log between widths.
+  /// Interpolates a list of the chunk: log-log between pixel widths, and the mean over directions, weighted
+  /// by squares_.
   double of(const std::vector<double>& list) const {
     double sum = 0.0;
     for (glm::length_t axis = 0; axis < 3; ++axis) {
@@ -77,8 +78,8 @@ class SeenFrom {
 
   const LodChunk& chunk_;
   glm::dvec3 squares_;
-  std::array<std::size_t, 3> direction_{};  // by axis
-  std::size_t narrower_ = 0, wider_ = 0;    // of the file's widths
+  std::array<std::size_t, 3> direction_{};  // index of the direction along each axis
+  std::size_t narrower_ = 0, wider_ = 0;    // indices of the file's next pixel widths
   double share_ = 0.0, seen_ = 0.0, grown_;
 };
 
@@ -86,7 +87,7 @@ class SeenFrom {
 ChunkVisibility unhidden(const LodChunk& chunk, const DetailView& view) {
   const double distance = distance_to(chunk, view.eye);
   if (chunk.pixels.empty()) return {0.0, distance};
-  double area = 0.0;  // in pixels of the narrowest width
+  double area = 0.0;  // in pixels of the file's narrowest width
   for (std::size_t d = 0; d < detail_directions; ++d)
     area += chunk.seen[d * chunk.pixels.size()] / double{detail_directions};
   const double px = chunk.pixels.front() * view.focal / distance;
@@ -104,7 +105,7 @@ ChunkErrors::ChunkErrors(const std::vector<LodChunk>& chunks, const std::vector<
     eye_.push_back(view.eye);
   }
   std::vector<std::uint8_t> is_seen(chunks.size(), 0);
-  std::vector<glm::dvec2> areas(chunks.size(), glm::dvec2(0.0));  // visible, and unhidden, px
+  std::vector<glm::dvec2> areas(chunks.size(), glm::dvec2(0.0));  // px: visible area, and area if unhidden
   const auto see = [&](std::size_t c) {
     for (std::size_t v = 0; v < views.size(); ++v) {
       const ChunkVisibility open = unhidden(chunks[c], views[v]);
@@ -129,7 +130,7 @@ ChunkErrors::ChunkErrors(const std::vector<LodChunk>& chunks, const std::vector<
     all += of_chunk.y;
   }
   const double share = all > 0.0 ? std::min(1.0, shown / all) : 1.0;
-  focal_.push_back(0.0);  // the sphere's is the longest
+  focal_.push_back(0.0);  // the sphere has the longest focal length
   for (const DetailView& view : views) focal_.back() = std::max(focal_.back(), view.focal);
   eye_.push_back(views.empty() ? glm::dvec3(0.0) : views.front().eye);
   if (views.empty() || !heads_turn) return;
@@ -153,8 +154,9 @@ void ChunkErrors::find_errors(std::size_t view, std::size_t c, double* errors) c
     errors[level] = area(view, c, level) * seen_from.error(level);
 }
 
-// Returns the visible area of a chunk at a level, px. It is larger if a finer level was measured. Beside the
-// picture it is the measured area, unless the level extends into the picture.
+// Returns the visible area of a chunk at a level, px. If the level is coarser than the measured level, its
+// Gaussians extend further, so its area is larger than the measured one. A chunk outside the picture has the
+// measured area, unless the level extends into the picture.
 double ChunkErrors::area(std::size_t view, std::size_t c, std::size_t level) const {
   const Seen& seen = seen_[view][c];
   const LodChunk& chunk = chunks_[c];

@@ -10,23 +10,23 @@
 
 namespace binosplat {
 
-/// The visibility of all chunks in each view and, as the last view, in the sphere around them, which sees the
-/// chunks that no view sees.
+/// The visibility of all chunks in each view. An additional last view is the sphere around the views, which
+/// sees the chunks that no other view sees.
 class ChunkErrors {
  public:
   /// `chunks` and `visible` must outlive this object.
   ChunkErrors(const std::vector<LodChunk>& chunks, const std::vector<DetailView>& views,
               const VisibleChunks& visible, bool heads_turn);
 
-  /// Writes the squared error of each level of chunk `c`, summed over px. Writes nothing if the view does not
-  /// see the chunk or its errors are unknown.
+  /// Writes the squared error of each level of chunk `c`, summed over pixels. If the view does not see the
+  /// chunk, or the chunk's errors are unknown, writes nothing.
   void find_errors(std::size_t view, std::size_t c, double* errors) const;
 
   double longest_focal() const { return focal_.back(); }
 
  private:
   struct Seen : ChunkVisibility {
-    double outside = 0.0;  // distance of the chunk from the picture's side, world units; 0 inside
+    double outside = 0.0;  // distance from the picture's sides if the chunk is outside, world units; else 0
   };
   double area(std::size_t view, std::size_t c, std::size_t level) const;
 
@@ -34,7 +34,7 @@ class ChunkErrors {
   std::span<const std::size_t> drawn_;
   std::vector<double> focal_;
   std::vector<glm::dvec3> eye_;
-  std::vector<std::vector<Seen>> seen_;  // by view
+  std::vector<std::vector<Seen>> seen_;  // by view, then chunk
 };
 
 }  // namespace binosplat

@@ -10,14 +10,14 @@
 
 namespace binosplat {
 
-/// Extrapolates the eyes' motion along a straight line and their rotation, from the views of the last tenth
-/// of a second or two. Jumps count as no motion, and so do views that are noted too rarely.
+/// Extrapolates the eyes' motion along a straight line, and their rotation, from the views of the last 0.1 to
+/// 0.5 s. After a jump, or if the views come too rarely, it assumes no motion.
 class HeadMotion {
  public:
-  /// Adds the views of a frame, all in one frame of reference. It restarts if their number changes.
+  /// Adds a frame's views, all in one frame of reference. If their number changes, forgets earlier views.
   void note(std::span<const shared::View> views, Clock::time_point now = Clock::now());
 
-  /// Returns the views noted last, extrapolated by `seconds`; the same bits if nothing moves.
+  /// Returns the last noted views, extrapolated by `seconds`. If nothing moves, their bits stay the same.
   std::vector<shared::View> predicted(double seconds) const;
 
  private:
@@ -26,7 +26,7 @@ class HeadMotion {
     Clock::time_point at;
   };
   std::vector<shared::View> views_;
-  std::array<Pose, 3> poses_;  // the latest first, far enough apart in time to measure a speed
+  std::array<Pose, 3> poses_;  // latest first, at times far enough apart to measure a speed
 };
 
 }  // namespace binosplat

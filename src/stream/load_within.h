@@ -1,5 +1,5 @@
 #pragma once
-// Reads a model with levels of detail once, at levels that fit into memory.
+// Reads a model at levels of detail that fit into memory and never change.
 
 #include <cstddef>
 #include <filesystem>
@@ -11,14 +11,15 @@
 
 namespace binosplat {
 
-/// How much of a model with levels of detail fits, and the eyes for which levels are chosen.
+/// The number of Gaussians that fit, and the eyes for which levels are chosen.
 struct DetailBudget {
-  std::function<std::size_t(int degree)> gaussians;  // the most that fit, by degree of harmonics
-  std::vector<glm::dvec3> eyes;                      // in the model's frame; empty: from far away
+  std::function<std::size_t(int degree)> gaussians;  // maximum number, with harmonics of a degree
+  std::vector<glm::dvec3> eyes;  // in the model's frame of reference; empty: all chunks are equally far away
 };
 
-/// Reads each chunk of a streamed SOG at its own level (choose_by_spacing), from existing files. `path` is a
-/// lod-meta.json or its folder. Throws Error as load_streamed_sog() does, and for other files.
+/// Chooses a level for each chunk of a streamed SOG by choose_by_spacing(), among levels whose files exist,
+/// and reads the chunks. `path` is a lod-meta.json or its folder. Throws Error as load_streamed_sog() does,
+/// and for other kinds of files.
 Model load_within(const std::filesystem::path& path, const DetailBudget& budget);
 
 }  // namespace binosplat

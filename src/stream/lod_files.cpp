@@ -19,13 +19,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t files_at_a_time = 16;  // each decoded by several threads and held in memory
-// Bytes of decoded files in the cache, about 80 million Gaussians. Without it, a head that moves through 20
-// million decodes files of 131,072 repeatedly for a few chunks each, on eight cores.
+constexpr std::size_t files_at_a_time = 16;  // several threads decode each file, and memory holds all
+// Maximum size of the cache of decoded files, in bytes: 2 GiB hold about 80 million Gaussians. Without the
+// cache, a head that moves through 20 million Gaussians keeps eight cores decoding: they decode files of
+// 131,072 Gaussians again and again, for a few chunks each.
 std::size_t cached_most() {
   return static_cast<std::size_t>(std::min(std::exp2(31.0), memory_bytes() / 8.0));
 }
-// Decoding this many Gaussians of a file takes as long as moving one to the GPU.
+// Decoding this many Gaussians of a file takes as long as uploading one Gaussian.
 constexpr std::size_t decoded_for_one = 8;
 
 nlohmann::json levels_json(const fs::path& path, const fs::path& asked) {
@@ -35,7 +36,7 @@ nlohmann::json levels_json(const fs::path& path, const fs::path& asked) {
   return std::move(*json);
 }
 
-/// Returns the Gaussians of the largest chunk.
+/// Returns the number of Gaussians of the largest chunk.
 std::size_t largest_of(const std::vector<LodChunk>& chunks) {
   std::size_t most = 0;
   for (const LodChunk& chunk : chunks)
@@ -45,14 +46,14 @@ std::size_t largest_of(const std::vector<LodChunk>& chunks) {
 
 }  // namespace
 
-/// The contents of lod-meta.json, and the SOGs that exist; empty for missing files.
+/// The contents of lod-meta.json, and the SOGs that exist. Elements of `files` are empty for missing files.
 struct LodFiles::Source {
   fs::path path;
   SogLevels levels;
   std::vector<std::optional<SogSource>> files;
   std::optional<SogSource> environment;
   std::uint64_t bytes = 0;        // sum of SogSource::bytes
-  SogCache cache{cached_most()};  // by file number
+  SogCache cache{cached_most()};  // its keys are the numbers of files
 
   Source(const fs::path& lod_meta, const nlohmann::json& json) : path(lod_meta), levels(path, json) {
     files.resize(levels.files().size());
@@ -71,7 +72,8 @@ struct LodFiles::Reading {
   const std::function<bool()>& may_continue;
 
   std::size_t level(std::size_t chunk) const { return choice.levels[chunk]; }
-  /// With `may_continue` the order depends on the cached files; without, it is always the same.
+  /// If reading may be interrupted, its order depends on the cached files; otherwise the order is always the
+  /// same.
   bool may_be_interrupted() const { return may_continue != nullptr; }
   bool ends() const { return may_continue && !may_continue(); }
 };
@@ -162,13 +164,13 @@ void LodFiles::read(std::span<const std::size_t> from, const LevelChoice& choice
   if (!reading.ends()) read_some(reading, growing, on_chunk);
 }
 
-// A slow file does not delay decoding of others. Without `may_continue` it only delays passing on the files
+// A slow file never delays the decoding of others. Without `may_continue`, it delays passing on the files
 // after it.
 void LodFiles::read_some(const Reading& reading, const RangesByFile& ranges, const OnChunk& on_chunk) const {
   std::vector<std::size_t> files;
   for (std::size_t i = 0; i < ranges.size(); ++i)
     if (!ranges[i].empty()) files.push_back(i);
-  // Few Gaussians that save much error come before many that save little.
+  // Files that save more error per Gaussian come first.
   std::vector<double> first(ranges.size());
   for (const std::size_t i : files) first[i] = worth(reading, i, ranges[i]);
   std::ranges::stable_sort(files, std::greater<>(), [&](std::size_t i) { return first[i]; });

@@ -19,11 +19,11 @@ namespace binosplat {
 /// The constructor opens the files; the other functions are thread-safe.
 class LodFiles {
  public:
-  /// The level of a chunk that was not read.
+  /// Instead of a level: the chunk has not been read.
   static constexpr std::size_t not_read = any_number;
 
-  /// `path` is a lod-meta.json or its folder. Opens the existing SOGs that it names. Throws Error as
-  /// load_streamed_sog() does, and for other files.
+  /// `path` is a lod-meta.json or its folder. Opens the SOGs that lod-meta.json names and that exist. Throws
+  /// Error as load_streamed_sog() does, and for other kinds of files.
   explicit LodFiles(const std::filesystem::path& path);
   ~LodFiles();
 
@@ -39,11 +39,11 @@ class LodFiles {
 
   /// Returns the number of Gaussians of the environment and of all chunks at these levels.
   std::size_t count(std::span<const std::size_t> levels) const;
-  /// The same at the finest levels.
+  /// Returns the same number at the finest levels.
   std::size_t finest() const;
-  /// Gaussians for which a model needs room beside its levels. They fill up half empty blocks and,
-  /// if the files have errors, hold a calibration sample at its finest levels (at most an eighth of all
-  /// Gaussians).
+  /// Returns the number of Gaussians by which a model's room must exceed count(). The additional room covers
+  /// partly filled blocks (ModelChunks). If the files have errors, it also covers a calibration sample at its
+  /// finest levels, of at most an eighth of finest().
   std::size_t extra_room() const { return extra_room_; }
   /// Returns whether the files have the errors of their levels, so that levels can be chosen by dB.
   bool has_errors() const;
@@ -58,13 +58,14 @@ class LodFiles {
   using OnChunk = std::function<void(LoadedChunk loaded)>;
 
   /// Reads the chunks whose level in `from` differs from the choice's, and passes them to `on_chunk`, one at
-  /// a time, on any thread. The order is:
-  /// - first chunks that get fewer Gaussians, so that the model never has more than before or after;
-  /// - then, for a choice by dB, files that save the most error per Gaussian; otherwise coarse levels before
-  ///   fine levels.
+  /// a time, on any thread. Chunks that get fewer Gaussians come first, so that the model never grows beyond
+  /// the larger of its old and new size. Among these, and among the others, files are sorted:
+  /// - if levels are chosen by dB, by the error that they save per Gaussian, the most first;
+  /// - otherwise coarse levels before fine levels.
   ///
-  /// With `may_continue`, each file is passed on as soon as it is decoded, and no further file is begun after
-  /// `may_continue` returned false. Throws Error if a file has become unreadable.
+  /// With `may_continue`, the chunks of a file are passed on as soon as the file is decoded. After
+  /// `may_continue` has returned false, no further file is begun. Throws Error if a file has become
+  /// unreadable.
   void read(std::span<const std::size_t> from, const LevelChoice& choice, const OnChunk& on_chunk,
             const std::function<bool()>& may_continue = {}) const;
   /// Reads the finest levels of some chunks.

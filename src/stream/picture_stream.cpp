@@ -6,9 +6,9 @@ namespace binosplat {
 
 namespace {
 
-constexpr int choices_most = 3;  // for the same views: later choices hardly change
-// Samples for a picture. Levels get finer if a sample shows that they miss the request by more than
-// misses_db; each further miss raises the request by more_db.
+constexpr int choices_most = 3;  // for the same views; further choices would hardly differ
+// Maximum number of samples for a picture. If a sample shows that the levels miss the request by more than
+// misses_db, finer levels are chosen. Each further miss raises the request by more_db.
 constexpr int samples_most = 8;
 constexpr double misses_db = 1.0, more_db = 3.0;
 
@@ -19,7 +19,7 @@ bool PictureStream::settle(std::span<const shared::View> views, const render::Fr
   if (views.empty() || (settings.quality == quality_ && are_last(views))) return false;
   views_.assign(views.begin(), views.end());
   quality_ = settings.quality;
-  if (!settings_.detail.heads_turn) {  // results for other pictures do not count
+  if (!settings_.detail.heads_turn) {  // a picture does not depend on earlier ones
     chooser_.forget();
     calibration_ = {};
     samples_ = 0;
@@ -46,7 +46,7 @@ bool PictureStream::settle(std::span<const shared::View> views, const render::Fr
     if (choice.levels == drawn_) break;
     change(choice);
   }
-  sample_error_ = 0.0;  // if levels are not chosen by dB
+  sample_error_ = 0.0;  // stays 0 if levels are not chosen by dB
   for (int sample = 1; request.db && sample <= samples_most; ++sample) {
     const VisibleChunks visible = calibrate(views, settings, choice);
     DetailRequest finer = request_for(views);
@@ -59,7 +59,7 @@ bool PictureStream::settle(std::span<const shared::View> views, const render::Fr
   }
   choice_.reset();
   if (request.db) choice_ = std::move(choice);
-  visibility_.reset();  // frees the memory of a small frame
+  visibility_.reset();  // frees the memory of its frame
   return changed;
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-// Levels of detail for pictures, which may wait for them.
+// Levels of detail for single pictures, which wait for their levels.
 
 #include "stream/streamed_model.h"
 
@@ -10,10 +10,11 @@ class PictureStream : public StreamedModel {
   PictureStream(const std::filesystem::path& path, StreamSettings settings)
       : StreamedModel(path, std::move(settings)) {}
 
-  /// Chooses, reads and uploads the levels for these views before it returns. By dB it chooses up to eleven
-  /// times, with a calibration for these views. With DetailRequest::heads_turn the choice starts from the
-  /// previous views' levels; without, it does not depend on them. Returns whether levels have changed; calls
-  /// `before_change` before the first change. Throws Error if a file has become unreadable.
+  /// Chooses, reads and uploads the levels for these views before it returns. If levels are chosen by dB, it
+  /// calibrates their loss for these views and chooses up to eleven times. With DetailRequest::heads_turn the
+  /// choice starts from the previous views' levels; otherwise it does not depend on previous views. Returns
+  /// whether levels have changed; calls `before_change` before the first change. Throws Error if a file has
+  /// become unreadable.
   bool settle(std::span<const shared::View> views, const render::FrameSettings& settings,
               const std::function<void()>& before_change = {});
 
@@ -22,7 +23,7 @@ class PictureStream : public StreamedModel {
   std::optional<double> reported_db() const;
 
  private:
-  std::optional<LevelChoice> choice_;  // by dB, of the last picture
+  std::optional<LevelChoice> choice_;  // for the last picture; none if levels are not chosen by dB
 };
 
 }  // namespace binosplat

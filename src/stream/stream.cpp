@@ -11,18 +11,20 @@ namespace binosplat {
 namespace {
 
 constexpr double between_passes_ms = 100.0;  // meanwhile the worker reads the levels of the last pass
-constexpr int passes_most = 3;               // at the same views: later choices hardly change
-constexpr double lead_s = 0.5;  // prediction for a moving head: the time from a request to its drawing
-constexpr std::size_t put_least = 1 << 14;  // Gaussians: fewer do not measure the rate
+constexpr int passes_most = 3;               // for the same views; further choices would hardly differ
+constexpr double lead_s =
+    0.5;  // how far views are predicted: the time from a request until its levels are drawn
+constexpr std::size_t put_least = 1 << 14;  // Gaussians; smaller uploads do not measure the rate
 constexpr double put_share = 0.75;  // share of a frame's ms for uploads, which may take longer than estimated
-// A request stays active while the next one is made, which takes as long as the time between requests. It has
-// at least requested_least Gaussians.
+// The limit of a request is requests_at_once times the Gaussians that frames had time to upload since the
+// previous request. The factor is above 1, because a request stays active while the next one is made. The
+// limit is at least requested_least.
 constexpr double requests_at_once = 2.0, requested_least = 1 << 14;
-// The loss of levels is measured while the views rest. When a head has moved on, this factor multiplies it
-// (README.md lists other factors). Along walks the true factor was 0.7 to 1.6, and missing the request is
-// worse than exceeding it.
+// The loss of levels is calibrated while the views rest. When a head has moved on, this factor multiplies the
+// predicted loss (README.md lists other factors). Along walks the true factor was 0.7 to 1.6. The factor here
+// is above the middle of that range, because missing the requested dB is worse than exceeding them.
 constexpr double extrapolation_factor = 1.3;
-// ms of a frame that are neither drawing nor levels
+// ms of a frame for work other than drawing and levels
 constexpr double apart_ms = 1.2;
 
 }  // namespace
@@ -37,13 +39,13 @@ std::optional<double> Stream::reported_db() const {
   chosen.error->follow(drawn_);
   const double current = chosen.error->error(0, chosen.current_views);
   if (chosen.current_views == chosen.error->views()) return reported(current, loss_factor());
-  // The loss of approaching chunks grows faster when they are near.
+  // The share is squared, because the loss of a chunk grows faster the nearer the chunk comes.
   const double share = std::min(1e-3 * ms_since(chosen.at) / lead_s, 1.0);
   const double predicted = chosen.error->error(chosen.current_views, chosen.error->views());
   return reported(std::lerp(current, predicted, share * share), loss_factor());
 }
 
-// The factor for views at which the loss was not measured.
+// The factor on the predicted loss. Views without a calibration have a larger one.
 double Stream::loss_factor() const { return is_calibrated_ ? 1.0 : extrapolation_factor; }
 
 bool Stream::begin_frame(std::span<const shared::View> views, const render::FrameSettings& settings,
@@ -66,7 +68,7 @@ bool Stream::begin_frame(std::span<const shared::View> views, const render::Fram
   }
   uploads_in_time_ += put_share * ms * uploads_per_ms_;
   const bool made_pass = std::exchange(made_pass_, false), is_due = pass_is_due();
-  // A frame has no time for both, so they alternate.
+  // A frame has no time for both a pass and an upload, so they alternate.
   if ((!is_due || made_pass) && upload_some(ms)) return true;
   if (is_due) {
     make_pass(settings);
@@ -77,7 +79,7 @@ bool Stream::begin_frame(std::span<const shared::View> views, const render::Fram
 }
 
 void Stream::prepare(std::span<const shared::View> views, const render::FrameSettings& settings) {
-  // Reloads one Gaussian unchanged, with the shader for levels.
+  // Uploads one unchanged Gaussian, which compiles the shader for levels.
   gpu_model_->reload({.filled = {{0, 1}}, .emptied = {}});
   if (!levels_db_for(settings.quality)) return;
   measure(views.first(1), settings);  // as in a pass
@@ -104,7 +106,7 @@ bool Stream::pass_is_due() const {
   return is_due_ && !worker_.is_choosing() && ms_since(worker_.chosen().made_at) >= between_passes_ms;
 }
 
-// Measures one more view, current or predicted, as it is now.
+// Measures one more view of the pass: a current view, or a view predicted now.
 void Stream::make_pass(const render::FrameSettings& settings) {
   const TimedSpan span("visibility pass");
   const std::vector<shared::View> predicted = motion_.predicted(lead_s);
@@ -128,8 +130,8 @@ void Stream::make_pass(const render::FrameSettings& settings) {
   ++passes_;
 }
 
-// While a head moves, a request is limited to what frames can upload in time. Then all visible chunks improve
-// a little before some are complete.
+// While a head moves, a request is limited to the Gaussians that frames can upload in time. All visible
+// chunks then improve a little, instead of a few chunks completely.
 void Stream::request(StreamWorker::Request request) {
   request.detail = request_for(views_, loss_factor());
   const double in_time = requests_at_once * std::exchange(uploads_in_time_, 0.0);
@@ -149,7 +151,7 @@ bool Stream::upload_some(double ms) {
   std::size_t gaussians = 0;
   for (const LodFiles::LoadedChunk& loaded : loaded_chunks) gaussians += loaded.model.count();
   times_.put += gaussians;
-  loaded_chunks.clear();  // destruction takes time, too
+  loaded_chunks.clear();  // the rate includes the time of destruction
   if (gaussians >= put_least)
     uploads_per_ms_ =
         std::lerp(uploads_per_ms_, static_cast<double>(gaussians) / std::max(ms_since(start), 1e-3), 0.2);

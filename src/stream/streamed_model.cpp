@@ -9,8 +9,8 @@ namespace binosplat {
 
 namespace {
 
-// Gaussians of a calibration sample at their finest levels: for one picture, and for each of a turning
-// head's.
+// Maximum number of Gaussians in a calibration sample at the finest levels. The first number is for single
+// pictures, the second if heads turn.
 constexpr std::size_t sample_of_one = 1 << 17, sample_of_many = 1 << 14;
 
 /// Takes from `other` the chunks that are more visible there.
@@ -34,8 +34,8 @@ StreamedModel::StreamedModel(const std::filesystem::path& path, StreamSettings s
   draws_finest_ = finest <= std::min(settings_.finest_up_to, most);
   if (settings_.reserve > 0) {
     model_.room = std::min(finest, most < finest ? most : settings_.reserve) + files_.extra_room();
-    // Touched now: the system provides memory page by page, slowly while other threads decode (10 ms a
-    // frame).
+    // Writes to the memory now. The system provides each page at its first write, which is slow while other
+    // threads decode (10 ms a frame).
     model_.reserve(model_.room);
     model_.resize(std::min(model_.room, settings_.reserve));
   }
@@ -88,9 +88,9 @@ void StreamedModel::put(std::span<const LodFiles::LoadedChunk> loaded_chunks) {
 }
 
 // Adds a sample to the calibration. If the sample contains all chunks that are not at their finest level,
-// each chunk's visibility is the larger one of both pictures. A chunk may hide others, or extend into the
-// picture, at only one of both levels; its loss would be predicted as 0. With fewer chunks in the sample,
-// this would overrate those in it.
+// each chunk's visibility is the larger one of the two pictures. A chunk may be hidden by others, or out of
+// view, in only one of the pictures; with a visibility near 0, its loss would be predicted too small. If the
+// sample contains fewer chunks, the larger visibility would overrate the sample's chunks.
 VisibleChunks StreamedModel::calibrate(std::span<const shared::View> views,
                                        const render::FrameSettings& settings, LevelChoice& choice) {
   const std::size_t gaussians = settings_.detail.heads_turn ? sample_of_many : sample_of_one;
@@ -126,7 +126,7 @@ void StreamedModel::start_over() {
   chunks_ = ModelChunks(chunks_.size());
   drawn_.clear();
   for (const LodChunk& chunk : files_.chunks())
-    drawn_.push_back(chunk.levels.empty() ? 0 : LodFiles::not_read);  // some have nothing to read
+    drawn_.push_back(chunk.levels.empty() ? 0 : LodFiles::not_read);  // chunks without levels are never read
   chunks_.replace(model_, files_.chunks().size(), files_.environment());
 }
 

@@ -22,16 +22,16 @@ namespace binosplat {
 
 struct StreamSettings {
   DetailRequest detail;  // the stream sets `calibration`, and limits `most` by `room`
-  /// With FrameSettings::quality, levels are chosen by dB and may use half of the squared error that it
-  /// allows.
+  /// With FrameSettings::quality, levels are chosen by dB and may use half of the squared error that the
+  /// quality allows.
   bool shares_quality = false;
-  /// If the finest levels have at most this many Gaussians and fit, the model is drawn at these instead of
-  /// choosing levels by dB.
+  /// If the finest levels have at most this many Gaussians and fit into the room, they are drawn, and no
+  /// levels are chosen by dB.
   std::size_t finest_up_to = 0;
-  /// Returns how many Gaussians with harmonics of a degree fit beside a frame of these views (no views: a
-  /// typical pair). Empty: any number fits.
+  /// Returns how many Gaussians with harmonics of a degree fit into memory together with a frame of these
+  /// views; without views, of a typical eye pair. If this function is empty, any number fits.
   std::function<std::size_t(std::span<const shared::View> views, int degree)> room = {};
-  /// The constructor allocates memory for this many Gaussians, so that no frame waits for it.
+  /// The constructor allocates memory for this many Gaussians, so that no frame waits for an allocation.
   std::size_t reserve = 0;
 };
 
@@ -41,29 +41,31 @@ class StreamedModel {
   StreamedModel(const StreamedModel&) = delete;
   StreamedModel& operator=(const StreamedModel&) = delete;
 
-  /// The caller may change its axes, anti-aliasing and low-pass before it calls gpu_model(); only the stream
-  /// changes its Gaussians.
+  /// The caller may change the model's axes, anti-aliasing and low-pass before it calls gpu_model(). Only the
+  /// stream may change the model's Gaussians.
   Model& model() { return model_; }
   const ModelChunks& chunks() const { return chunks_; }
   const LodFiles& files() const { return files_; }
 
-  /// Returns the model on the GPU. The first call uploads it, in a PRECISION_ of shared/axes.h; from then on
-  /// the context must be current in every call. Frames that draw it must be destroyed before the stream.
+  /// Returns the model on the GPU. The first call uploads it; `precision` is a PRECISION_ of shared/axes.h.
+  /// From then on the context must be current in every call. Frames that draw the model must be destroyed
+  /// before the stream.
   std::shared_ptr<render::GpuModel> gpu_model(gl::Context& context, int precision);
 
-  /// Frees the model on the GPU, which no frame may draw any more. Another context may follow.
+  /// Frees the model on the GPU. No frame may draw it afterwards. The next gpu_model() may use another
+  /// context.
   void release_gpu_model() {
     visibility_.reset();
     gpu_model_.reset();
   }
 
-  /// Gaussians of the model.
+  /// Number of Gaussians in the model.
   std::size_t gaussians() const { return chunks_.gaussians(); }
   /// Returns the dB that a frame itself must reach, so that frame and levels together reach `together_db`.
   double frame_quality(double together_db) const;
 
-  /// Since the last call: ms of reading and uploading in settle(), and Gaussians that begin_frame() added to
-  /// the model.
+  /// Since the last take_times(): ms of reading and uploading in settle(), and Gaussians that begin_frame()
+  /// added to the model.
   struct Times {
     double read_ms = 0.0, upload_ms = 0.0;
     std::size_t put = 0;
@@ -72,7 +74,7 @@ class StreamedModel {
 
  protected:
   /// Opens the files and reads the coarsest levels. Throws Error as LodFiles does, and if levels are
-  /// requested by dB and the file has no errors of levels.
+  /// requested by dB but the file lacks the errors of its levels.
   StreamedModel(const std::filesystem::path& path, StreamSettings settings);
   ~StreamedModel() = default;
 
@@ -81,35 +83,35 @@ class StreamedModel {
   std::optional<double> levels_db_for(double quality) const;
   /// Returns whether the last frame or picture had these views, bit for bit.
   bool are_last(std::span<const shared::View> views) const;
-  /// Puts chunks that were read into the model.
+  /// Inserts loaded chunks into the model.
   void put(std::span<const LodFiles::LoadedChunk> loaded_chunks);
   /// Resets the model to the Gaussians that are part of every level.
   void start_over();
-  /// Reads a choice's levels, and uploads the model if it is on the GPU. Single pictures upload all of it,
-  /// since their Gaussians change places each time.
+  /// Reads a choice's levels. If the model is on the GPU, uploads the changes; for single pictures uploads
+  /// the whole model, since start_over() moves most Gaussians.
   void read_levels(const LevelChoice& choice);
   VisibleChunks measure(std::span<const shared::View> views, const render::FrameSettings& settings);
-  /// Measures the loss of the drawn levels in the first view, from a second picture with a sample of chunks
-  /// at their finest levels. Updates the choice. Returns the visibility in both pictures; empty without a
-  /// sample.
+  /// Draws the first view twice, at the drawn levels and with a sample of chunks at their finest levels. The
+  /// difference is the loss of the sample's levels. Updates the calibration and the choice. Returns the
+  /// chunks' visibility; empty if no chunk is in the sample.
   VisibleChunks calibrate(std::span<const shared::View> views, const render::FrameSettings& settings,
                           LevelChoice& choice);
-  /// Returns the dB of a predicted error.
+  /// Returns the calibrated dB of a predicted error.
   double reported(double error, double lost = 1.0) const;
 
   StreamSettings settings_;
   LodFiles files_;
   Model model_;
   ModelChunks chunks_;
-  std::vector<std::size_t> drawn_;  // of each chunk in the model
+  std::vector<std::size_t> drawn_;  // level of each chunk in the model
   std::shared_ptr<render::GpuModel> gpu_model_;
   std::optional<Visibility> visibility_;
   std::vector<shared::View> views_;  // of the last frame or picture
   double quality_ = 0.0;             // FrameSettings::quality of the last frame or picture
   Chooser chooser_;
   LevelCalibration calibration_;
-  unsigned samples_ = 0;
-  double sample_error_ = 0.0;  // measured with the last sample
+  unsigned samples_ = 0;       // number of samples, and the seed of the next one
+  double sample_error_ = 0.0;  // error measured with the last sample
   Times times_;
 
  private:

@@ -11,11 +11,11 @@ namespace binosplat {
 
 namespace {
 
-// px. In smaller pictures too few pixels sample a chunk; chunks that are missed by chance stay coarse, which
-// costs 1.5 dB (taebak at 915 x 800 px).
+// The shorter side of a shrunk view has at least this many px. In smaller pictures too few pixels sample a
+// chunk. Chunks that are missed by chance stay coarse, which costs 1.5 dB (taebak at 915 x 800 px).
 constexpr std::uint32_t small_enough = 512;
-// A GPU finishes a less shrunk view sooner. Its time goes to the few tiles that contain most of a scene, and
-// tiles that cover less of the scene have shorter lists.
+// A GPU draws a view faster at 1/2 than at 1/4 of its size. Most of the time goes to the few tiles that
+// contain most of a scene. Tiles of a larger picture cover less of the scene, so their lists are shorter.
 constexpr int shrink_on_gpu = 2, shrink_on_cpu = 4;
 
 /// Returns the same view with fewer pixels.
@@ -56,7 +56,7 @@ std::vector<std::vector<ChunkVisibility>> Visibility::measure(std::span<const sh
   const int most = shrink_most.value_or(frame_.model()->context().software() ? shrink_on_cpu : shrink_on_gpu);
   render::FrameSettings exact = exact_in_precision(settings);
   std::vector<shared::View> small(views.begin(), views.end());
-  std::vector<double> pixel_areas;  // sizes of the shrunk views' pixels, in pixels of the views
+  std::vector<double> pixel_areas;  // area of a pixel of each shrunk view, in pixels of the view
   for (shared::View& view : small) {
     const auto shrink = static_cast<int>(std::min(view.width, view.height) / small_enough);
     const glm::dvec2 size(view.width, view.height);
@@ -82,11 +82,11 @@ std::vector<std::vector<ChunkVisibility>> Visibility::measure(std::span<const sh
   return seen;
 }
 
-// Sums visibility by chunk, for the views that the frame has drawn up to its blend.
+// Sums visibility by chunk, for the views that the frame has drawn up to its stage `sort`.
 std::vector<std::int64_t> Visibility::sum_up(std::size_t views, int precision, const ModelChunks& chunks) {
   const render::FramePlan& plan = frame_.plan();
   render::FrameBuffers& buffers = frame_.buffers();
-  // The shader resets the sums to 0, since clearing takes as long as all other work.
+  // The shader resets the sums to 0, since a separate clear would take as long as all other work.
   const std::int64_t sum_bytes = std::int64_t{buffers.slots} * static_cast<std::int64_t>(views) * 8;
   if (sums_.bytes() < sum_bytes) sums_.reserve_zeros(sum_bytes);
   of_chunks_.reserve_zeros(static_cast<std::int64_t>(chunks.size() * views * 16));

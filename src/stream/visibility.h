@@ -1,6 +1,6 @@
 #pragma once
-// The visibility pass: measures what views show of the chunks of a model on the GPU, for choosing levels of
-// detail (stream/choice.h).
+// The visibility pass: measures on the GPU how much of a model's chunks the views show. The choice of
+// levels of detail depends on it (stream/choice.h).
 
 #include <memory>
 #include <optional>
@@ -16,14 +16,14 @@ namespace binosplat {
 
 class Visibility {
  public:
-  /// The model may have other users, and must not be of Scaffold-GS. Its context must be current in every
-  /// call.
+  /// Other frames may draw the same model. The model must not be of Scaffold-GS. The model's context must be
+  /// current in every call.
   explicit Visibility(std::shared_ptr<render::GpuModel> model);
 
-  /// Returns, for each view, the visibility of each of the model's `chunks`. Draws the views, large ones
-  /// shrunk by up to `shrink_most` along each axis (default: the fastest here), but not below 512 px. Uses
-  /// the settings that exact_of() keeps, and the precision. Distances are means of the logarithm, up to 2^32
-  /// world units. The result is deterministic. Throws as Frame::draw() does.
+  /// Returns, for each view, the visibility of each of the model's `chunks`. Draws large views with fewer
+  /// pixels: divides width and height by up to `shrink_most` (default: the fastest on this device), but keeps
+  /// at least 512 px. Uses `settings.precision` and the settings that exact_of() keeps. Distances are
+  /// geometric means, up to 2^32 world units. The result is deterministic. Throws as Frame::draw() does.
   std::vector<std::vector<ChunkVisibility>> measure(std::span<const shared::View> views,
                                                     const render::FrameSettings& settings,
                                                     const ModelChunks& chunks,
@@ -40,7 +40,9 @@ class Visibility {
 
   render::Frame frame_;
   gl::Dispatcher dispatcher_;
-  gl::Buffer sums_;  // alpha T^2 by splat: sums of the tiles' low VISIBILITY_LOW_BITS, and of the higher bits
+  /// By splat, the sum over tiles of alpha T^2 as two numbers: the sum of the tiles' low VISIBILITY_LOW_BITS,
+  /// and the sum of their higher bits.
+  gl::Buffer sums_;
   gl::Buffer owners_;  // chunk of each block, uint
   /// By view, then chunk: alpha T^2 in 64 bits, then alpha T^2 times the logarithm of the distance.
   gl::Buffer of_chunks_;

@@ -10,9 +10,9 @@ namespace binosplat {
 
 namespace {
 
-// Gaussians that may wait to be taken: a quarter of a GB with all harmonics.
+// Maximum number of loaded Gaussians that wait for take(): a quarter of a GB with all harmonics.
 constexpr std::size_t waiting_most = 1 << 20;
-constexpr double cores_share = 0.5;  // the others draw frames
+constexpr double cores_share = 0.5;  // the other cores draw frames
 
 }  // namespace
 
@@ -103,7 +103,8 @@ void StreamWorker::work(const Request& request, const std::stop_token& stop) {
       });
 }
 
-// Drops chunks that were read for another choice. Returns the chunks' levels once the others are taken.
+// Drops loaded chunks that the choice does not need. Returns the level that each chunk has in the model after
+// take() has returned the kept chunks.
 std::vector<std::size_t> StreamWorker::keep_wanted(const LevelChoice& choice) {
   const std::lock_guard lock(mutex_);
   std::erase_if(loaded_, [&](const LodFiles::LoadedChunk& loaded) {

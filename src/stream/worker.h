@@ -18,8 +18,8 @@
 
 namespace binosplat {
 
-/// Chooses levels for the last request and reads their chunks, until another request arrives. Its loops use
-/// up to half of the cores. The other cores draw frames.
+/// Chooses levels for the last request and reads their chunks, until another request arrives. The thread's
+/// loops use up to half of the cores. The other cores draw frames.
 class StreamWorker {
  public:
   /// A request for levels, for views of one frame in the model's frame of reference.
@@ -32,9 +32,9 @@ class StreamWorker {
   };
   /// The last choice.
   struct Chosen {
-    std::shared_ptr<RunningError> error;  // of its views; null if levels are not chosen by dB
-    bool is_limited = false;              // the request needs more than it allows to read
-    std::size_t current_views = 0;        // as in the request, also `at`
+    std::shared_ptr<RunningError> error;  // of the request's views; null if levels are not chosen by dB
+    bool is_limited = false;              // the views need more Gaussians than may be read
+    std::size_t current_views = 0;        // from the request, as is `at`
     Clock::time_point at = {};
     Clock::time_point made_at = {};
   };
@@ -46,7 +46,7 @@ class StreamWorker {
 
   /// Replaces the previous request. Does nothing after an error.
   void request(Request request);
-  /// Returns chunks that were read, until they have `gaussians` Gaussians; empty if none are ready.
+  /// Returns loaded chunks until they have at least `gaussians` Gaussians together; empty if none is ready.
   std::vector<LodFiles::LoadedChunk> take(std::size_t gaussians);
   /// Returns whether all requested chunks have been taken.
   bool is_idle() const;
@@ -74,7 +74,7 @@ class StreamWorker {
   std::size_t waiting_gaussians_ = 0;  // Gaussians of loaded_
   Chosen chosen_;
   std::exception_ptr error_;
-  std::jthread thread_;  // last, so that it ends first
+  std::jthread thread_;  // the last member, so that it is joined first
 };
 
 }  // namespace binosplat
