@@ -38,7 +38,7 @@ TEST(BlendVariants, WhatNoFrameHasIsRefused) {
   EXPECT_THROW(gl::key_of(numbers), std::logic_error);
 }
 
-// So many that each two of their numbers stand together as they do in any variant of the shader.
+// Compiles so many variants that each two numbers occur together if they do in any variant.
 TEST(BlendVariants, Compile) {
   if (!test::has_glslang()) GTEST_SKIP() << "no glslangValidator: apt install glslang-tools";
   test::CompiledShaders compiled;
