@@ -101,7 +101,7 @@ bool choose_origin(Model& model) {
   constexpr double far = 1024.0;  // at this distance floats round by some hundredths of a pixel
   if (glm::length(middle) <= far * radius) return false;
   const double step = std::exp2(std::ceil(std::log2(radius)));
-  // has few digits, so that subtracting it rounds nothing
+  // The origin has few digits, so that subtracting it rounds nothing.
   model.axes.origin = glm::round(middle / step) * step;
   return true;
 }

@@ -34,7 +34,7 @@ struct Scaffold {
   std::size_t offset_count = 0;     // K: Gaussians of one anchor
   std::size_t feature_count = 0;    // F
   std::vector<glm::vec3> position;  // by anchor, world units
-  // world units per unit of `offset`; as scale with `rotation`, the cull's ellipsoid
+  // World units per unit of `offset`. The cull of anchors uses it as scale, with `rotation`.
   std::vector<glm::vec3> offset_scale;
   std::vector<glm::vec3> scale;     // the largest standard deviations of its Gaussians, world units
   std::vector<glm::vec4> rotation;  // unit quaternions (w, x, y, z)
@@ -43,7 +43,7 @@ struct Scaffold {
   Network opacity;                  // K outputs; tanh gives alpha; a Gaussian exists only if it is above 0
   Network covariance;  // 7 K outputs: 3 through a sigmoid, times scale; a quaternion (w, x, y, z)
   Network colour;      // 3 K outputs; sigmoid: RGB
-  // weights of the feature bank: inputs direction and distance, 3 outputs, softmax
+  // The feature bank's network has direction and distance as inputs, and 3 outputs, through a softmax.
   std::optional<Network> bank;
   std::vector<float> appearances;   // (row, appearance_size)
   std::size_t appearance_size = 0;  // 0: colours use no appearance

@@ -59,8 +59,8 @@ Model crowded_tile(const Camera& camera, int tile_x, int tile_y, int tile_size =
 }
 
 /// One Gaussian over all tiles of any picture up to 120 degrees across. Every pixel has nearly its opacity of
-/// 0.8 times its colour. Planted faults: a screen extent that overflows 16 bits, a loop over a splat's tiles
-/// that is cut short.
+/// 0.8 times its colour. It breaks screen extents of 16 bits, and loops over a splat's tiles that are
+/// limited.
 Model blanket() {
   Model model;
   model.name = "blanket";
@@ -159,8 +159,7 @@ TEST(Hostile, ATileOfManySplatsIsNotCutByTheDriver) {
   EXPECT_LT(psnr(drawn, reference::blend(splats, lists, view)), 60.0);
 }
 
-// With 8 px, tiles are as many as those of 16 px in a headset's two pictures, which have four times the
-// pixels.
+// Tiles of 8 px are as many here as tiles of 16 px in a headset's two pictures, with a quarter of the pixels.
 TEST(Hostile, OneGaussianOverEveryTileOfAHeadsetPair) {
   const Model model = blanket();
   const Camera head =

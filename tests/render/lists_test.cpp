@@ -76,7 +76,7 @@ TEST(ListsOf, EveryTileTestAndSizeEqualTheReferences) {
       // around shapes, which it makes slightly too wide, the limit is 0.05 %.
       EXPECT_LE(differing_entries(lists, expected),
                 total(expected) / (tiles == TILES_SNUG ? 2000 : 5000) + 1);
-      // planted: every list one tile further, as if by an index that is off by one
+      // Planted: every list one tile further, as if by an index that is off by one
       TileLists shifted = expected;
       std::rotate(shifted.begin(), shifted.begin() + 1, shifted.end());
       EXPECT_GT(differing_entries(lists, shifted), total(expected) / 100);

@@ -28,7 +28,7 @@ struct Trained {
 struct Case {
   Trained trained;
   const char* view;
-  // numbers of pairs (docs/method.md 8); 0: none is published
+  // Numbers of pairs in docs/method.md 8; 0 if it has none.
   std::size_t aabb = 0, ellipse = 0, obb = 0, snug = 0;
 };
 

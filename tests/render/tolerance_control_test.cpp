@@ -22,8 +22,8 @@ constexpr int attempts_most = 8;
 
 double db(double squared_error) { return -10 * std::log10(squared_error); }
 
-// Views with a squared error of at_one * tolerance^power. In each tile the error is multiplied by exp(uneven
-// * g), where g has a variance of about 1.
+// Views with a squared error of at_one * tolerance^power. It differs between tiles by factors of
+// exp(uneven * g), where g has a variance of about 1.
 class SimulatedScene {
  public:
   SimulatedScene(double power, std::vector<double> at_one, double uneven = 0.0)
@@ -371,7 +371,7 @@ int attempts_at(ToleranceControl& control, const std::vector<shared::View>& view
 
 TEST(ToleranceControl, WhereNothingHoldsTheFrameIsExactAndTheNextRecovers) {
   SimulatedScene scene = scene_for(1.3, 0.05);
-  for (const bool settled : {true, false}) {  // false: no frame ever has the bounds that it needs
+  for (const bool settled : {true, false}) {  // false: measurements never settle
     ToleranceControl control;
     EXPECT_EQ(attempts_at(control, scene.views, settled ? 1.0 : 1e-4, settled), attempts_most);
     EXPECT_EQ(control.quality(), std::numeric_limits<double>::infinity());
