@@ -242,8 +242,8 @@ struct StabilityBounds {
   double darkening = 0.004;  // upper bound of each frame's mean signed error, in both directions
   /// Largest fall of the median dB of a still camera, from the second third of the frames to the last third.
   double drift_db = 0.5;
-  /// Number of frames after the event. All later frames are at least settled_db, or within 1 dB of the
-  /// settled median.
+  /// Largest number of frames from the event to the last frame that is below settled_db and more than 1 dB
+  /// below the settled median.
   std::size_t settling = 3;
   double disagreement_db = 34.0;  // no frame below
 };
