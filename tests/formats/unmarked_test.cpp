@@ -48,7 +48,7 @@ TEST(Ksplat, Damaged) {
   const std::string good = test::read_text(folder / "ksplat/gs3d-train-l1-sh1.ksplat");
   EXPECT_EQ(test::load_model_of(good, "model").count(), 1000u) << "content decides";
   const auto with = [&](std::size_t at, const std::string& bytes) { return patched(good, at, bytes); };
-  // The section at 4096 begins with the lengths of its partly filled buckets.
+  // The data after the header of the section begins with the lengths of the partly filled buckets.
   const std::size_t section = 4096, data = section + 1024;
   std::vector<test::BrokenFile> refusals = {
       {with(1, std::string(1, '\0')), {"unknown .ksplat version 0.0"}},
