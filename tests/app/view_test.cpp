@@ -427,7 +427,7 @@ TEST_F(ViewOnADisplay, WhatADisplayLacksIsTold) {
 }
 
 TEST_F(ViewOnADisplay, ALostGpuEndsIt) {
-  // Reports a GPU reset once a picture is saved; see lost_context.c.
+  // Reports a GPU reset once a picture is saved; see lost_context.cpp.
   const std::string flag = folder / "lost";
   start({model, "-o", out}, {{"LD_PRELOAD", BINOSPLAT_LOST_CONTEXT},
                              {"LOST_CONTEXT", flag},
