@@ -88,7 +88,7 @@ Swapchain make_swapchain(XrSession session, const XrViewConfigurationView& view)
   info.height = view.recommendedImageRectHeight;
   info.sampleCount = info.faceCount = info.arraySize = info.mipCount = 1;
   Swapchain swapchain = {.size = {info.width, info.height}};
-  if (xrCreateSwapchain(session, &info, &swapchain.handle) < 0) {  // as Monado: use a copy
+  if (xrCreateSwapchain(session, &info, &swapchain.handle) < 0) {  // Monado refuses: copy instead
     swapchain.in_place = false;
     info.usageFlags = XR_SWAPCHAIN_USAGE_COLOR_ATTACHMENT_BIT;
     XR(xrCreateSwapchain, session, &info, &swapchain.handle);

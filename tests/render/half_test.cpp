@@ -43,7 +43,7 @@ TEST(Half, IsOf60DbThroughHaze) {
   EXPECT_GE(test::psnr(test::draw(model, view, in_half), reference::render(model, view)), 60.0);
 }
 
-// Only in tiles of 16 px, NVIDIA's GPUs blend in halves, batch by batch. The batches depend on the tile test.
+// NVIDIA's GPUs blend in halves only in tiles of 16 px, in batches that depend on the tile test.
 TEST(Half, IsTheSameInEveryTileTestAndSize) {
   const bool in_halves = gl::has_extension(test::gl_context().gl(), "GL_NV_gpu_shader5");
   const Model model = test::random_model(42, 2000, 2);
@@ -63,8 +63,8 @@ TEST(Half, IsTheSameInEveryTileTestAndSize) {
   }
 }
 
-// Replaces llvmpipe's blend by the one of NVIDIA's GPUs for halves (blend_halves.glsl), with floats as
-// halves.
+// Lets llvmpipe run blend_halves.glsl, which blends in halves on NVIDIA's GPUs. A float takes the place of
+// each half.
 std::vector<test::ShaderFault> with_floats() {
   return {{"blend_blocks.comp", "#define BLOCK_HEIGHT COLUMN\n",
            "#define BLOCK_HEIGHT COLUMN\n#define MAY_PACK 1\n#define f16vec2 vec2\n#define float16_t float\n"
@@ -105,7 +105,7 @@ TEST(Half, TheBarCatchesScalesOfEightBits) {
   for (glm::vec3& scale : model.scale) {
     for (int axis = 0; axis < 3; ++axis) {
       const auto bits = std::bit_cast<std::uint32_t>(scale[axis]);
-      scale[axis] = std::bit_cast<float>(bits & 0xFFF80000u);  // five significant bits of fp16's eleven
+      scale[axis] = std::bit_cast<float>(bits & 0xFFF80000u);  // five significant bits; fp16 has eleven
     }
   }
   EXPECT_LT(test::psnr(test::draw(model, eyes_for_half()[0], in_half), right), 60.0);
