@@ -98,8 +98,9 @@ void add_rug(Stage& stage) {
               Grain(0.028), all_borders);
 }
 
+constexpr double panelling = 0.88;  // height, m
+
 /// Returns painted boards between a skirting and a rail.
-constexpr double panelling = 0.88;
 Material boarding(double u, double high) {
   const bool edge = std::abs(high - 0.12) < 0.012 || std::abs(high - 0.81) < 0.012;
   const bool groove = high > 0.13 && high < 0.80 && std::abs(std::remainder(u, 0.12)) < 0.015;

@@ -20,8 +20,8 @@ namespace {
 constexpr std::size_t neighbours = 8;
 // Cost of one nat of lost shape. A squared colour difference of 1 costs 1.
 constexpr double shape_weight = 0.3;
-// The squared deviations are increased by this share, squared, of the merged covariance's trace, because
-// smaller deviations are invisible from afar.
+// Adds thinnest^2 times the trace of the merged covariance to each squared deviation, because smaller
+// deviations are invisible from afar.
 constexpr double thinnest = 0.5;
 constexpr double opaque_most = 0.999;
 // Area of an evenly filled square, divided by the integral of the Gaussian with the same moments.

@@ -10,8 +10,8 @@ namespace binosplat {
 
 namespace {
 
-// The most blocks by which the model grows at once. The first access to new memory takes time: 5 ms for 1,024
-// blocks, too much for a frame.
+// Maximum number of blocks that the model grows by at once. The first access to new memory takes time: 5 ms
+// for 1,024 blocks, too much for a frame.
 constexpr std::size_t blocks_at_once = 128;
 
 void hide(Model& model, std::size_t first, std::size_t count) {

@@ -82,7 +82,7 @@ double distance_between(const Camera& a, const Camera& b) {
 
 /// 2-opt: reverses sections while that shortens the tour. The first stop stays, the last may change.
 void shorten(std::vector<Camera>& stops) {
-  constexpr double worth = 1e-9;  // m
+  constexpr double worth = 1e-9;  // least gain, m
   for (bool shorter = true; shorter;) {
     shorter = false;
     for (std::size_t i = 0; i + 2 < stops.size(); ++i) {

@@ -51,7 +51,7 @@ TEST_F(BackendTest, DriversThatMesaLacksAreNoCrash) {
         {{"GALLIUM_DRIVER", "zink"}, {"LIBGL_ALWAYS_SOFTWARE", "1"}},
         {{"MESA_LOADER_DRIVER_OVERRIDE", "zink"}}}) {
     const std::string shown = variables.begin()->first + "=" + variables.begin()->second;
-    variables["ASAN_OPTIONS"] = "detect_leaks=0";  // of drivers that are no longer there to be named
+    variables["ASAN_OPTIONS"] = "detect_leaks=0";  // leak reports cannot name unloaded drivers
     variables["VK_ICD_FILENAMES"] = "/nowhere";    // zink over Mesa 22's own Vulkan ends by a signal
     const Outcome drawn = draw_small(variables);
     if (osmesa) {

@@ -161,7 +161,7 @@ TEST_F(BenchTest, GoesOnWithTheSameContentOnly) {
   ASSERT_TRUE(good(measure(out, {"--shard", "16/16"})));
   EXPECT_TRUE(good(measure(out, {"--shard", "7/8"})));
   std::string other = bytes;
-  ++other[other.size() - 100];  // of equal size
+  ++other[other.size() - 100];  // keeps the file's size
   write_text(model, other);
   EXPECT_TRUE(ended(measure(out, {"--shard", "6/8"}), 2, "has points of another run"));
   write_text(model, bytes);

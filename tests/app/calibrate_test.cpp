@@ -115,8 +115,9 @@ TEST_F(CalibrateTest, RenderGoesByIt) {
 }
 
 TEST_F(CalibrateTest, DropsAreAgainstPhotos) {
-  // Photos with another background, to which the model comes close. With its own background the photos equal
-  // the exact pictures: nothing is lost only as long as they stay equal, which takes every search to its end.
+  // Photos with another background, so that the model differs from them. With its own background, photos
+  // would equal the exact pictures. Then any difference would be a loss, and every search would go to its
+  // end.
   std::vector<const char*> backgrounds = {"0.1,0.1,0.1"};
   if (test::switched_on("BINOSPLAT_LONG")) backgrounds.push_back("0,0,0");
   for (const char* background : backgrounds) {

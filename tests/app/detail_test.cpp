@@ -13,7 +13,8 @@
 namespace binosplat {
 namespace {
 
-// A model has room for all that fits, most of which arrives later. Its memory is computed as frames do it.
+// The model reserves room for all Gaussians that fit, although most arrive later. Memory is computed as for
+// frames.
 TEST(GaussiansThatFit, LeaveRoomForAModelThatGrows) {
   const std::vector<shared::View> views(2, make_view(look_at({0, 0, -1}, {0, 0, 0}, {0, -1, 0}, 60, 64, 64)));
   const auto megabytes = [&](bool in_parts, double asked) {

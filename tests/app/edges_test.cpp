@@ -117,7 +117,7 @@ TEST_F(Edges, AFullStandardOutputIsAnError) {
 // Programs are stored in cache folders, by this program and by the driver, which has a separate one.
 TEST_F(Edges, FoldersOfCaches) {
   const TempFolder here, home, mesa;
-  // This test is about this program's caches. Mesa's has a separate folder, unless Mesa must have none.
+  // Tests binosplat's own cache. Mesa's cache has a separate folder if `mesas_own`.
   const auto draw = [&](const std::string& caches, bool mesas_own = true) {
     std::map<std::string, std::string> variables = {{"HOME", home.path()}, {"XDG_CACHE_HOME", caches}};
     if (mesas_own)

@@ -29,7 +29,7 @@ TEST_F(Info, SaysTheSameInTextAndJson) {
 }
 
 TEST_F(Info, TreesTakeNoMoreThanTheirNodes) {
-  // Many nodes at the end of a long path, which each node would store if nodes stored their paths.
+  // Many nodes at the end of a long path. If nodes stored their paths, each would store all of it.
   std::string tree = "{}";
   for (int i = 0; i < 400000; ++i) tree += ",{}";
   for (int i = 0; i < 240; ++i) tree = R"({"children":[)" + tree + "]}";

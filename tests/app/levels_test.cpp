@@ -45,7 +45,7 @@ TEST_F(LevelsTest, GoOnAfterAnInterruption) {
   wait_for_file(out + "/levels-run.json");
   run.send(SIGINT);
   run.wait();
-  // Whenever it was interrupted: now one SOG is complete, and one is not.
+  // Whenever the run was interrupted, one SOG is complete now, and one is not.
   for (const char* file : {"0_0", "1_0"}) {
     fs::create_directories(out + "/" + file);
     fs::copy(whole + "/" + file, out + "/" + file,

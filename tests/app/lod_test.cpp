@@ -137,7 +137,7 @@ TEST_F(RenderLevels, OfSinglePicturesGoByThemAlone) {
   EXPECT_EQ(views("z-20"), std::vector(1, all[0]));
   EXPECT_EQ(views("z-60"), std::vector(1, all[1]));
   EXPECT_GT(gaussians_of({"--path", cameras}).back(), 250u) << "planted: heads turn";
-  // So shards may draw them.
+  // Single pictures do not depend on each other, so shards may draw them.
   views("all", {"-o", folder / "whole"});
   views("all", {"-o", folder / "parts", "--shard", "2/2"});
   EXPECT_EQ(read_text(folder / "parts/z-60_left.png"), read_text(folder / "whole/z-60_left.png"));

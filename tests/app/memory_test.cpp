@@ -55,7 +55,7 @@ TEST_F(Memory, LevelsSayWhatTheyLeaveOut) {
 }
 
 TEST_F(Memory, OtherCommandsEndWithALine) {
-  // One of them once did not end within ten minutes; which, and where it waited, is not known.
+  // One of these runs once did not end within ten minutes, for an unknown reason.
   if (!test::switched_on("BINOSPLAT_LONG")) GTEST_SKIP() << "may take long: set BINOSPLAT_LONG=1";
   for (const Words& line : {Words{"render", model, "--mono", "--size", "64x48", "-o", out},
                             {"calibrate", model, "--quality", "40", "--views", "1", "-o", folder / "c.json"},
@@ -65,7 +65,7 @@ TEST_F(Memory, OtherCommandsEndWithALine) {
   }
 }
 
-// The sizes that matter, on the GPU or CPU that draws here.
+// Realistic sizes, on the GPU or CPU that draws here.
 TEST_F(Memory, ACityOfFourMillionAtHeadsetSizeFitsIntoEightGigabytes) {
   if (!test::switched_on("BINOSPLAT_LONG")) GTEST_SKIP() << "a minute or two: set BINOSPLAT_LONG=1";
   const Outcome outcome =

@@ -110,7 +110,7 @@ TEST_F(Photos, WhatCannotBeReadIsFoundBeforeTheModel) {
   };
   refused("no picture", "front.png is not a picture that can be read");
   refused(png_bytes(Image(5, 5, 4)), "front.png has 5 x 5 px");
-  // Planted fault: a readable photo, so the model is what is wrong.
+  // Planted fault: with a readable photo, the error names the model.
   refused(whole, "broken.ply");
   // Without any photo, all else is correct.
   fs::remove(photo);

@@ -67,7 +67,7 @@ inline Model floor_model() {
 
 using Words = std::vector<std::string>;
 
-/// Returns both, one after the other.
+/// Returns `words`, followed by `more`.
 inline Words joined(Words words, const Words& more) {
   words.insert(words.end(), more.begin(), more.end());
   return words;

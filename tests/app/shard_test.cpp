@@ -71,7 +71,7 @@ TEST_F(Resume, GoesOnAfterAnInterruption) {
   wait_for_file(out + "/view0.png");
   run.send(SIGINT);
   run.wait();
-  // Whenever it was interrupted: one existing picture must stay, and one missing picture must be drawn.
+  // Whenever the run was interrupted: one existing picture must stay, and one missing picture must be drawn.
   const std::string as_it_was = read_text(whole + "/view0.png") + "as it was";
   write_text(out + "/view0.png", as_it_was);
   fs::remove(out + "/view4.png");

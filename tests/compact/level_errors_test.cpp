@@ -43,8 +43,9 @@ std::vector<Model> part(double scale, double opacity, double less) {
       level.opacity.push_back(other.opacity[0]);
     };
     const glm::vec3 aside(12.0f * s);
-    add(ball(s, static_cast<float>(opacity), glm::vec3(1.0f, 2.0f, 3.0f) + aside));         // black
-    for (int k = 0; k < 300; ++k) add(ball(s, 0.0f, glm::vec3(1.0f, 2.0f, 3.0f) + aside));  // finer pixels
+    add(ball(s, static_cast<float>(opacity), glm::vec3(1.0f, 2.0f, 3.0f) + aside));  // black
+    // More Gaussians give finer pixels.
+    for (int k = 0; k < 300; ++k) add(ball(s, 0.0f, glm::vec3(1.0f, 2.0f, 3.0f) + aside));
     level.sh.resize(3 * level.count(), static_cast<float>(-0.5 / sh_c0));
   }
   return levels;

@@ -82,7 +82,7 @@ TEST(Refit, GetsNearThePicturesInAnotherOrderAndProjection) {
 }
 
 // From one side a colour is clamped at 0 before and after. That view must have no influence. Otherwise the
-// first step would be too short, although it is all that the other view needs.
+// first step, which is all that the other view needs, would be too short.
 TEST(Refit, ViewsOfColoursThatAreCutOffHaveNoSay) {
   const auto of = [](float along_z) {
     Model model;

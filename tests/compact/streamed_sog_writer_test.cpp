@@ -77,7 +77,7 @@ struct StreamedSogWriter : testing::Test {
     return errors;
   }
 
-  /// Returns joint losses that identify their chunks and errors in the file's factor.
+  /// Returns one joint loss. Its factor in the file depends on all chunks and errors, and so identifies them.
   static std::vector<JointLoss> of_all(std::span<const std::vector<Model>> chunks,
                                        std::span<const LevelErrors> errors) {
     double sum = 0.0;

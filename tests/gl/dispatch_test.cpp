@@ -80,7 +80,7 @@ TEST(Dispatcher, RefusesWhatIsForgotten) {
   const Program& program = context.program("count_up.comp");
   EXPECT_THROW(dispatcher.run(program, DispatchSize::of_groups(1), {}, {{"count", 1}}), std::logic_error);
   EXPECT_THROW(dispatcher.run(program, DispatchSize::of_groups(1), {{"Items", items}}, {{"count", 1}}),
-               std::logic_error);  // no storage
+               std::logic_error);  // has no storage yet
   items.reserve(1024);
   EXPECT_THROW(dispatcher.run(program, DispatchSize::of_groups(1), {{"Items", items}}, {}), std::logic_error);
   EXPECT_NO_THROW(dispatcher.run(program, DispatchSize::of_groups(1), {{"Items", items}}, {{"count", 1}}));
@@ -148,7 +148,7 @@ TEST(Buffer, KeepsWhatIsUploadedInPiecesOfItsOwn) {
   const std::int64_t before = context.allocated_bytes();
   {
     Buffer buffer(context, "big");
-    std::vector<std::uint32_t> data((std::size_t{130} << 20) / 4);  // in more than two pieces
+    std::vector<std::uint32_t> data((std::size_t{130} << 20) / 4);  // uploads in more than two pieces
     std::iota(data.begin(), data.end(), 0u);
     buffer.upload(data);
     EXPECT_EQ(buffer.read<std::uint32_t>(data.size()), data);

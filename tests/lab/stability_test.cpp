@@ -237,7 +237,7 @@ std::vector<StabilityCase> cases_in(const std::shared_ptr<const Model>& scene, c
 
 /// A case holds if it breaks none of these bounds.
 struct StabilityBounds {
-  double worst_db = 34.0;    // no frame below
+  double worst_db = 34.0;    // lower bound of each frame
   double settled_db = 37.0;  // lower bound of the median over the last third of the frames
   double darkening = 0.004;  // upper bound of each frame's mean signed error, in both directions
   /// Largest fall of the median dB of a still camera, from the second third of the frames to the last third.
@@ -245,7 +245,7 @@ struct StabilityBounds {
   /// Largest number of frames from the event to the last frame that is below settled_db and more than 1 dB
   /// below the settled median.
   std::size_t settling = 3;
-  double disagreement_db = 34.0;  // no frame below
+  double disagreement_db = 34.0;  // lower bound of each frame
 };
 
 struct StabilityResult {

@@ -68,8 +68,9 @@ TEST(Flip, OfFlatColoursByHand) {
               0.95 * 2.3935 / usual, 1e-5);
 }
 
-// A fine pattern, compared with a flat colour of its mean light (0.2140 of 0.5; half of 0.4281 of 0.6872).
-// With more pixels per degree a viewer is farther away, and sees less of the pattern.
+// A fine pattern, compared with a flat colour of the same mean light: 0.5 is a light of 0.2140, and 0.6872
+// one of 0.4281, twice as much. With more pixels per degree a viewer is farther away, and sees less of the
+// pattern.
 TEST(Flip, FartherViewersSeeLess) {
   Image pattern = flat(64, 64, glm::vec3(0.0f));
   for (int y = 0; y < 64; ++y) {

@@ -200,7 +200,7 @@ TEST(Difference, PictureWithAGain) {
   EXPECT_FLOAT_EQ(picture.at(1, 2, 1), 0.0f);
   EXPECT_FLOAT_EQ(picture.at(2, 2, 1), 1.0f);
   EXPECT_FLOAT_EQ(picture.at(3, 3, 2), 1.0f);
-  // An error of alpha alone is visible, in a picture without alpha.
+  // A difference of alpha alone is visible in the difference picture, which has no alpha.
   Image c = filled(2, 2, 4, 0.5f), d = c;
   d.at(1, 1, 3) = 0.75f;
   const Image of_alpha = difference_picture(c, d, 2.0);

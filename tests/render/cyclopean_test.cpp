@@ -1,5 +1,5 @@
 // Measures the error of decoding a Scaffold-GS model once for both eyes, from their midpoint, instead of for
-// each eye. Also measures how much this error differs between the eyes. The distances are three;
+// each eye, and how much this error differs between the eyes. It does so at three distances;
 // tests/bench/results/scaffold.md has the numbers.
 
 #include <algorithm>

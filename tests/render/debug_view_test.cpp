@@ -106,7 +106,7 @@ TEST_F(ShowTest, OfPairsAndOtherTiles) {
   }
 }
 
-// The blend that stores the median depth finds it after several splats at a time.
+// With a median depth, the blend handles several splats at a time before it finds the depth.
 TEST_F(ShowTest, PicturesWithTheMedianDepthAreTheSameOtherwise) {
   for (const int projection : {PROJECTION_AFFINE, PROJECTION_TANGENT}) {
     render::FrameSettings settings{.projection = projection};

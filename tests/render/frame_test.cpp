@@ -304,7 +304,7 @@ TEST(Frame, IsTheSameWithoutSubgroups) {
   render::Frame with(context, model);
   for (int n = 0; n < 3; ++n) with.draw(both);
   const std::vector<Picture> drawn = with.read_pictures();
-  with.draw(std::span(both).first(1));  // with another plan
+  with.draw(std::span(both).first(1));  // one eye, with another plan
   with.draw(both);
   EXPECT_TRUE(test::same_bits(with.read_pictures()[1], drawn[1]));
   context.use_subgroups(false);

@@ -28,8 +28,7 @@ constexpr float tau = 1.0f / 255.0f;
 const float just_below_tau = std::nextafter(tau, 0.0f);
 const float just_above_tau = std::nextafter(tau, 1.0f);
 
-/// Returns the position at this depth that projects to pixel (x, y). Centres of pixels are whole numbers from
-/// 0.
+/// Returns the position at this depth that projects to pixel (x, y). Pixel centres are at integers from 0.
 glm::vec3 behind_pixel(const Camera& camera, double x, double y, double depth) {
   return glm::vec3((x + 0.5 - camera.cx) / camera.fx * depth, (y + 0.5 - camera.cy) / camera.fy * depth,
                    depth);
@@ -59,8 +58,7 @@ Model crowded_tile(const Camera& camera, int tile_x, int tile_y, int tile_size =
 }
 
 /// One Gaussian over all tiles of any picture up to 120 degrees across. Every pixel has nearly its opacity of
-/// 0.8 times its colour. It breaks screen extents of 16 bits, and loops over a splat's tiles that are
-/// limited.
+/// 0.8 times its colour. It breaks 16-bit screen extents, and limited loops over a splat's tiles.
 Model blanket() {
   Model model;
   model.name = "blanket";

@@ -68,7 +68,7 @@ TEST(LinearBlends, WeighWhatTheReferenceWeighs) {
   }
 }
 
-// Sums of either sign that need two words, of Gaussians that hide others.
+// Sums of both signs that need two words each. Some Gaussians hide others.
 TEST(LinearBlends, LargeSumsCarry) {
   Model model;
   test::add(model, {0, 0, 2}, glm::vec3(3000.0f, 3000.0f, 0.01f), 0.99f);

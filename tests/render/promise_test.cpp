@@ -153,7 +153,7 @@ Model bright_behind_a_front() {
   return model;
 }
 
-// A head that rests, or that looks in another direction in every frame: each time a camera cut.
+// Returns a walk in which the head rests, or turns in every frame by so much that each is a camera cut.
 Walk look_at(const Model& model, bool cuts, std::size_t count) {
   Walk walk;
   render::Frame frame(test::gl_context(), model);
@@ -178,8 +178,7 @@ TEST(Promise, HoldsInMistBehindFrontsAndUnderCuts) {
       if (!all && cuts != (&model == &models[0])) continue;  // 15 s each
       const Walk walk = look_at(model, cuts, 3);
       const Kept kept = keep(model, walk, steered(walk));
-      // In so few Gaussians there may be no tolerance between too high and too low: a higher quality is no
-      // fault.
+      // With so few Gaussians, no tolerance may give just the requested quality, so a higher one is allowed.
       EXPECT_GE(kept.worst, asked - 1.0) << model.name << cuts;
       EXPECT_LE(kept.report_off_most, 1.5) << model.name << cuts;
       const Kept planted = keep(model, walk, unsteered(walk));

@@ -143,7 +143,7 @@ void expect_the_reference(const Case& c, DrawnScene& drawn) {
              db, 100.0 * beyond, worst.max, worst.x, worst.y, trace.explain());
   EXPECT_GE(db, 68.0);
   EXPECT_LE(beyond, 0.0001);
-  // An error beyond rounding is allowed only if fp32 may decide something differently that changes as much.
+  // An error beyond rounding is allowed only if a decision that fp32 may make differently changes as much.
   if (worst.max > 5e-4) {
     EXPECT_GE(trace.largest_change(), 0.4 * worst.max);
   }

@@ -38,7 +38,7 @@ TEST(BlendVariants, WhatNoFrameHasIsRefused) {
   EXPECT_THROW(gl::key_of(numbers), std::logic_error);
 }
 
-// Compiles so many variants that each two numbers occur together if they do in any variant.
+// Compiles enough variants that any two values occur together in one of them if any variant has both.
 TEST(BlendVariants, Compile) {
   if (!test::has_glslang()) GTEST_SKIP() << "no glslangValidator: apt install glslang-tools";
   test::CompiledShaders compiled;

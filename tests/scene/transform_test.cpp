@@ -91,7 +91,7 @@ TEST(Transform, MayFlatten) {
   EXPECT_EQ(gone.position[7], glm::vec3(0.0f));
 }
 
-// With the covariance, a scale of a millionth of another was lost.
+// A detour by covariances would lose a scale that is a millionth of another.
 TEST(Transform, KeepsThinGaussians) {
   Model model;
   test::add(model, {0, 0, 1}, {1.0f, 1e-6f, 1e-3f}, 1.0f, glm::vec3(1.0f), {0.3f, 0.4f, -0.8f, 0.1f});

@@ -99,7 +99,7 @@ TEST(ChoiceWithin, LieOnLinesBetweenThePixelsThatAreKnown) {
                                      {1.0, 0.04},
                                      {2.0, 0.0},
                                      {std::sqrt(0.5), std::sqrt(0.08 * 0.04)},
-                                     {std::sqrt(2.0), 0.04},  // half of both remains
+                                     {std::sqrt(2.0), 0.04},  // half of the error and of the visible pixels
                                      {0.25, 0.08 * std::pow(2.0, 0.3)},
                                      {1e-9, 0.64},
                                      {4.0, 0.0}}) {

@@ -780,7 +780,7 @@ void create_swapchain(XrSession session, const XrSwapchainCreateInfo* info, XrSw
   require(info->width - 1 < 4096 && info->height - 1 < 4096, XR_ERROR_SWAPCHAIN_RECT_INVALID, "a wrong size");
   require(info->sampleCount == 1 && info->faceCount == 1 && info->arraySize == 1 && info->mipCount == 1,
           XR_ERROR_FEATURE_UNSUPPORTED, "several samples, faces, layers or levels");
-  // This is no fault of the program, which may try.
+  // The program may try this format, so the error is not a fault of the program.
   require(info->format != GL_SRGB8_ALPHA8 || runtime.script.value("unordered_srgb", true) ||
               (info->usageFlags & XR_SWAPCHAIN_USAGE_UNORDERED_ACCESS_BIT) == 0,
           XR_ERROR_FEATURE_UNSUPPORTED, "");

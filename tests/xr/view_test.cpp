@@ -170,7 +170,8 @@ TEST_F(XrView, DepthIsTheMedian) {
     const double near = info["near"], far = info["far"];
     EXPECT_EQ(near, static_cast<double>(static_cast<float>(near_default)));
     const std::vector<float> depths = log.depths(frame, k);
-    // The sides are an eighth. Each depth is that of the pixel in the middle of 8 x 8 px.
+    // The sides of the depths are an eighth of the picture's. Each depth is that of the pixel in the middle
+    // of 8 x 8 px.
     ASSERT_EQ(depths.size(), (view_width / 4u) * (view_height / 4u));
     const auto differing = [&](const Picture& picture, int x = 4) {
       int count = 0;
