@@ -107,7 +107,7 @@ TEST_F(BenchTest, ShardsJoinToOneRun) {
   ASSERT_TRUE(good(bench({"--merge", one}, folder / "half")));
   EXPECT_NE(results(folder / "half"), results(out));
 
-  // Compared with itself, nothing changed. Compared with other numbers of pairs, each point changed.
+  // A comparison with itself finds no change. With other numbers of pairs, it finds a change at each point.
   ASSERT_TRUE(good(bench({"--merge", out, "--compare", out + "/results.json"}, out)));
   json old = results(out);
   for (json& point : old["points"]) point["pairs"] = 1.0;

@@ -178,12 +178,12 @@ TEST(ModelsIn, FilesOfOtherProgramsHideNoModel) {
   EXPECT_EQ(found(), Names{"m.ply"});
   write_text(folder / "scene.gltf", R"({"extensionsUsed": ["KHR_gaussian_splatting"]})");
   EXPECT_EQ(found(), (Names{"m.ply", "scene.gltf"}));
-  // The meta.json of a SOG is one even if it is truncated.
+  // Even a truncated meta.json is recognized as a SOG's.
   write_text(folder / "meta.json", R"({"version": 2, "means": {"mi)");
   EXPECT_EQ(found(), Names{"meta.json"});
   write_text(folder / "lod-meta.json", R"({"lodLevels": 2, )");
   EXPECT_EQ(found(), Names{"lod-meta.json"});
-  // Without another model, such a file is the one that the error names.
+  // Without a model, a file of another program is returned, so that the error names it.
   for (const char* name : {"m.ply", "mesh.ply", "scene.gltf", "scene.glb", "lod-meta.json"})
     fs::remove(folder / name);
   write_text(folder / "meta.json", R"({"title": "a scan"})");

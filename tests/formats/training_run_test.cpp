@@ -266,7 +266,7 @@ TEST_F(TrainingRunTest, DecidesOnlyWhatTheModelDoesNotSay) {
   EXPECT_EQ(std::ranges::count(files, folder / "run/cfg.yml"), 1) << "a run with another is another";
   EXPECT_FALSE(loaded("comment SplatRenderMode: default\n").antialiased);
   EXPECT_EQ(loaded("comment antialiased 0\n").antialiased_by, "a comment of the ply");
-  // A file written next to a run states itself whether it is antialiased, in both cases.
+  // A model written next to a run has its own tag, antialiased or not, which has precedence over the run.
   for (const bool antialiased : {true, false}) {
     Model model = loaded(antialiased ? "" : "comment antialiased 0\n");
     OutputFile file(ply.parent_path() / "a.ply");

@@ -44,8 +44,8 @@ TEST(Tiles, AabbByHand) {
 }
 
 TEST(Tiles, SnugAndEllipseByHand) {
-  // In the row of tiles that contains the mean, both have the same columns. With opacity 1 and variance 4, q
-  // reaches 2 ln 255 at sqrt(4 * 11.0825) = 6.6581 px.
+  // In the row of tiles that contains the mean, snug and ellipse have the same columns. With opacity 1 and
+  // variance 4, q reaches 2 ln 255 at sqrt(4 * 11.0825) = 6.6581 px.
   for (const int tiles : {TILES_SNUG, TILES_ELLIPSE}) {
     EXPECT_EQ(columns(24, 4.0, tiles), "1");
     EXPECT_EQ(columns(15 + 6.66, 4.0, tiles), "1");  // tile 0 ends with the centre at 15

@@ -208,7 +208,7 @@ TEST(LinearBlends, OfLongListsAreWhole) {
   EXPECT_FALSE(right());
 }
 
-// Each pixel counts for CHANGE_MOST at most, and a tile of such pixels counts for all of them.
+// The change of a pixel is limited to CHANGE_MOST, and the changes of all pixels of a tile add up.
 TEST(LinearBlends, ChangesOfWholeTilesAddUp) {
   Model model;
   test::add(model, {0, 0, 2}, glm::vec3(3000.0f, 3000.0f, 0.01f), 0.99f, glm::vec3(1.0f));

@@ -72,8 +72,8 @@ TEST(ListsOf, EveryTileTestAndSizeEqualTheReferences) {
       const TileLists lists = gpu_lists(run), expected = reference_lists(model, run.plan);
       ASSERT_EQ(lists.size(), expected.size());
       EXPECT_GT(total(expected), 5000u);
-      // fp32 decides differently only at boundaries: about 0.02 % of the pairs (docs/method.md 8). For boxes
-      // around shapes, which it makes slightly too wide, the limit is 0.05 %.
+      // fp32 decides differently only at boundaries: about 0.02 % of the pairs (docs/method.md 8). For the
+      // boxes of snug, which fp32 makes slightly too wide, the limit is 0.05 %.
       EXPECT_LE(differing_entries(lists, expected),
                 total(expected) / (tiles == TILES_SNUG ? 2000 : 5000) + 1);
       // Planted: every list one tile further, as if by an index that is off by one

@@ -21,7 +21,7 @@ using Views = std::vector<shared::View>;
 
 constexpr int walk_width = 96, walk_height = 168, tile = 8;  // px
 constexpr double asked = 40.0;
-constexpr double equal_pictures = 100.0;  // dB, as bench has it
+constexpr double equal_pictures = 100.0;  // dB of equal pictures, as in bench
 
 // The eyes' views in each frame, and their exact pictures.
 struct Walk {
@@ -120,8 +120,8 @@ Draw unsteered(const Walk& walk) {
   };
 }
 
-// Returns thousands of faint Gaussians one behind the other. Each may cost little; together they are most of
-// the picture.
+// Returns thousands of faint Gaussians one behind the other. Each contributes little, but together they are
+// most of the picture.
 Model mist() {
   test::Uniform uniform(11);
   Model model;
@@ -178,7 +178,7 @@ TEST(Promise, HoldsInMistBehindFrontsAndUnderCuts) {
       if (!all && cuts != (&model == &models[0])) continue;  // 15 s each
       const Walk walk = look_at(model, cuts, 3);
       const Kept kept = keep(model, walk, steered(walk));
-      // With so few Gaussians, no tolerance may give just the requested quality, so a higher one is allowed.
+      // So few Gaussians may have no tolerance for exactly this quality, so a higher quality is allowed.
       EXPECT_GE(kept.worst, asked - 1.0) << model.name << cuts;
       EXPECT_LE(kept.report_off_most, 1.5) << model.name << cuts;
       const Kept planted = keep(model, walk, unsteered(walk));

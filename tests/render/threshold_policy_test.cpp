@@ -45,7 +45,8 @@ TEST_F(ThresholdPolicyTest, GivesTheToleranceOfItsEntry) {
 }
 
 TEST_F(ThresholdPolicyTest, IsExactFarFromWhatWasCalibrated) {
-  // Within 6 world units of any calibrated view is covered, whatever the model's axes and origin are.
+  // Positions within 6 world units of a calibrated view are covered, whatever the model's axes and origin
+  // are.
   model.axes = {"LUF", {3.0, 2.0, 1.0}};
   EXPECT_TRUE(policy().covers(view(100.0, {1, 8.9, 0}), model.axes));
   EXPECT_EQ(policy().settings({.th = TH_PERIPHERAL}, view(100.0, {1, 8.9, 0}), model.axes).tolerance, 2.0f);

@@ -215,7 +215,7 @@ TEST(Foveate, TheSeamIsSmooth) {
   EXPECT_GT(seam, 20.0);
   EXPECT_LT(farthest_from_seam(drawn, exact, seam), 1e-5);
   EXPECT_GT(farthest_from_seam(drawn, exact, 0.9 * seam), 0.05) << "another seam goes unnoticed";
-  // A context with as many pixels as the picture equals it, and so does the composed picture.
+  // A context with as many pixels as the picture is equal to it, and so is the composed picture.
   EXPECT_GE(test::psnr(draw(model, views, foveation).pictures[0], exact), 120.0);
 }
 

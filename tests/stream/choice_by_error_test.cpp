@@ -256,7 +256,8 @@ TEST(ChoiceWithin, GoByWhatIsSeen) {
   EXPECT_LT(by(seen, coarsest).error(), 1e-9);
   EXPECT_EQ(by(seen, coarsest).levels, coarsest);
   EXPECT_GT(by(seen, Levels(chunks.size(), 0)).error(), 1e-6);
-  // So may finer levels: the drawn one has no Gaussian in the picture, but the chunk may extend into it.
+  // Finer levels may also show more: the drawn level has no Gaussian in the picture, but the chunk may extend
+  // into it.
   const std::vector<ChunkVisibility> nothing(chunks.size());
   const DetailView ahead = along_x(6.5);
   const auto ahead_by = [&](const std::vector<ChunkVisibility>& found, double error) {

@@ -175,7 +175,7 @@ struct Runtime {
 
 Runtime runtime;
 
-/// Ends a call with an error. If a text names one, it is the application's fault.
+/// Ends a call with an error. An error with a text is a fault of the application.
 struct Refusal {
   XrResult result;
   std::string text;
