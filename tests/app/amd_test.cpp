@@ -172,7 +172,7 @@ struct AmdTest : SceneTest, testing::WithParamInterface<const char*> {
     EXPECT_TRUE(has(device.at("renderer").get<std::string>(), "AMD")) << device;
     EXPECT_FALSE(device.at("software").get<bool>());
     EXPECT_GT(device.at("limits").at("program_binaries").get<int>(), 0);
-    // They are not used for drawing.
+    // This driver's subgroups are not used for drawing.
     EXPECT_FALSE(device.at("limits").at("subgroups").get<bool>());
     EXPECT_EQ(device.at("limits").at("why_no_subgroups"), "its subgroups have 64 invocations");
     EXPECT_TRUE(has(device.at("lacks").dump(), "64 invocations")) << device;

@@ -9,7 +9,7 @@ namespace {
 struct Antialias : SceneTest {
   Antialias() {
     add_cameras();
-    // So far away that all Gaussians are smaller than a pixel.
+    // Shrinks all Gaussians to less than a pixel.
     for (std::size_t i = 0; i < file.rows.size(); ++i) {
       for (const char* scale : {"scale_0", "scale_1", "scale_2"}) file.at(i, scale) -= 3;
     }

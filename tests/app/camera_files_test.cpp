@@ -54,7 +54,7 @@ const std::string fisheye = "OPENCV_FISHEYE 72 48 60 60 36 24 0 0 0 0";
 TEST_F(CameraFiles, EveryViewHasItsOwnPhoto) {
   const Words views = {"IMG.png", "IMG (1).png", "left/1.png", "right/1.png", "left_1.png"};
   save_colmap(pinhole, views);
-  // All pictures are written. Copied to the views' own names, each is the photo of its view.
+  // The run writes all pictures. Copies with the views' own names then serve as the photos of these views.
   ASSERT_TRUE(good(mono({"--view", "all", "-o", folder / "drawn"})));
   for (const char* side : {"left", "right"}) fs::create_directories(folder / "images" / side);
   const Words drawn = {"IMG.png", "IMG (1).png", "left_1.png", "right_1.png", "left_1_2.png"};
@@ -77,7 +77,7 @@ TEST_F(CameraFiles, TwoViewsOfOnePhotoStopAllThatMeasuresByPhotos) {
   save_colmap(pinhole, {"a.png", "b.png", "c.png", "a.jpg"});
   const std::string said = "a.png matches both views 'a.jpg' and 'a.png'";
   expect_refused({{{"--view", "all", "--photos", "beside"}, said},
-                  {{"--view", "a.jpg", "--photos", photos}, said}},  // although only one is drawn
+                  {{"--view", "a.jpg", "--photos", photos}, said}},  // only one is drawn, but all are checked
                  {"--mono"});
   expect_refused_after({}, {{{"trim", model, "--photos", photos, "--max-drop", "1", "-o", ply}, said},
                             {{"calibrate", model, "--photos", photos, "--max-drop", "1"}, said},

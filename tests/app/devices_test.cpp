@@ -6,7 +6,7 @@ namespace binosplat {
 namespace {
 
 struct Devices : SceneTest {
-  /// Returns surroundings in which files that are no libraries hide the real ones of these names.
+  /// Returns an environment in which the loader finds invalid files in place of these libraries.
   Surroundings without(const Words& libraries) const {
     for (const std::string& name : libraries) write_text(folder / name, "no library");
     return {.variables = {{"LD_LIBRARY_PATH", folder.path().string()}}};

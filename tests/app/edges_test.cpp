@@ -114,7 +114,7 @@ TEST_F(Edges, AFullStandardOutputIsAnError) {
   EXPECT_TRUE(has(read_text(folder / "err"), "cannot write to standard output: No space left"));
 }
 
-// Programs are stored in cache folders, by this program and by the driver, which has a separate one.
+// binosplat and the driver store compiled shaders in separate cache folders.
 TEST_F(Edges, FoldersOfCaches) {
   const TempFolder here, home, mesa;
   // Tests binosplat's own cache. Mesa's cache has a separate folder if `mesas_own`.

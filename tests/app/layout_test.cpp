@@ -66,7 +66,7 @@ TEST_F(LayoutOption, AScreenStandsWhereItSuitsTheFirstView) {
   EXPECT_LT(disparity["far_degrees"].get<double>(), 0.0);
   const Image suited = load_image(png);
 
-  // The option with the same distance has precedence, and "inf" means no screen.
+  // --convergence with the chosen distance gives the same picture. "inf" means no screen.
   with_eyes({"-o", png, "--convergence", metres(0).dump()});
   EXPECT_EQ(measure::largest_difference(load_image(png), suited).max, 0.0);
   const Outcome infinite = with_eyes({"-o", png, "--convergence", "inf"});

@@ -44,7 +44,7 @@ TEST_F(Runs, OfTwoKindsDoNotMix) {
   }
 }
 
-// Both do the same work, without harm.
+// Both runs do the same work, which does no harm.
 TEST_F(Runs, OfOneKindShareAFolder) {
   for (const Words& line : {levels_of(model), pictures()}) {
     ASSERT_TRUE(good(run_program(line)));

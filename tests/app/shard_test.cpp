@@ -83,7 +83,7 @@ TEST_F(Resume, GoesOnAfterAnInterruption) {
   EXPECT_TRUE(ended(again(), 0, "5 of 5 views are in"));
 }
 
-// A view of several files exists only if all of them exist.
+// A view with several files counts as drawn only if all of them exist.
 TEST_F(Resume, DrawsPairsOfWhichAFileIsMissing) {
   const Words pairs = {"--view", "all", "--exr", "half", "--resume"};
   ASSERT_TRUE(good(draw(out, pairs)));

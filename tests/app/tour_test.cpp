@@ -59,7 +59,7 @@ TEST_F(Tour, EyesAndSpeedsHaveOneMetre) {
     EXPECT_NEAR(glm::distance(place(frames[0]), place(frames[1])), units * 3.0 / 50.0, 1e-4);
     EXPECT_NEAR(glm::distance(place(frames[0], 0), place(frames[0], 1)), units * 0.063, 1e-6);
     EXPECT_EQ(frames[0].at("units_per_metre"), units);
-    // Single pictures have the same metre.
+    // Single pictures use the same metre.
     EXPECT_EQ(reported(joined(metre, {"--view", "v0", "--size", "32x24"}))["views"][0]["units_per_metre"],
               units);
   };

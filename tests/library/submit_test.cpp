@@ -26,7 +26,8 @@ bool same(const std::array<std::vector<float>, 2>& a, const std::array<std::vect
 }
 
 TEST_F(TwoCalls, DrawWhatOneDoes) {
-  // The frames write in place, copy, or repeat until a quality holds.
+  // Three kinds of frames: those that write in place, those that copy, and those that repeat until a quality
+  // holds.
   Settings through_quality = over_black;
   through_quality.quality = 35.0f;
   std::vector<View> copied = views();

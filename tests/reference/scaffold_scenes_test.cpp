@@ -56,7 +56,7 @@ TEST_P(ScaffoldPictures, MatchInriaAndThePhotos) {
   EXPECT_NEAR(psnr_to_photo(culled), number("psnr.json").get<double>(), 0.01);
   const Image whole = draw(model, false);
   EXPECT_NEAR(psnr_to_photo(whole), number("nocull.json").at("psnr").get<double>(), 0.01);
-  // The comparison distinguishes the two.
+  // The comparison distinguishes pictures with and without the anchor cull.
   EXPECT_GT(std::abs(psnr_to_photo(whole) - number("psnr.json").get<double>()), 0.01);
   if (fs::exists(inria)) {
     EXPECT_LT(measure::psnr(whole, load_image(inria)), inria_bound);

@@ -52,7 +52,7 @@ TEST(LinearBlends, WeighWhatTheReferenceWeighs) {
   for (float& opacity : fainter.opacity) opacity *= 0.995f;
   for (const int tile : {8, 16, 32}) {
     const std::vector<double> weights = shown_values(model, 1.0f, {.tile_size = tile});
-    // With fp32, a few may be blended in one pixel more or less.
+    // With fp32, a few Gaussians may be blended in one pixel more or less.
     const std::size_t few = model.count() / 500;
     EXPECT_LE(differing_weights(weights, model), few) << tile;
     EXPECT_GT(differing_weights(weights, fainter), 10 * few) << tile;

@@ -218,7 +218,7 @@ TEST(SharedLists, AreOnlyWhereEyesSeeEqualDepthsInEqualGrids) {
   EXPECT_EQ(list_views({eyes[0]}), 1);
   EXPECT_EQ(list_views(eyes, 1 << 24), 2);
   EXPECT_EQ(list_views(eyes, (1 << 24) + 1), 1);
-  for (const std::size_t count : {3, 4}) {  // the third view's splats need numbers, too
+  for (const std::size_t count : {3, 4}) {  // more views need more splat numbers
     std::vector<shared::View> views = {eyes[0], eyes[1], eyes[0], eyes[1]};
     views.resize(count);
     EXPECT_EQ(list_views(views, (1 << 24) / 3), 2);
@@ -315,8 +315,8 @@ TEST(HardListsOf, AnyDepthsAreWholeAndInOrder) {
 }
 
 TEST(HardListsOf, ArePartedInFramesOfMoreViews) {
-  // Splats in one supertile and in all eight. They fill more than half of the room for entries, and no other
-  // room.
+  // Some splats lie in one supertile, the others in all eight. They fill more than half of the buffer for
+  // entries, but of no other buffer.
   const Camera camera = test::front_camera(112, 48, 64);
   Model model = crowd(20'000, hard_depths.front(), camera);
   for (std::size_t i = 0; i < model.count(); ++i)

@@ -61,7 +61,7 @@ TEST(Remember, MeasuringDoesNotChangeThePicture) {
 TEST(Remember, MeasuresWhatTheReferenceMeasures) {
   for (const Model& model : {test::random_model(86, 4000, 0), wall_of_layers()}) {
     const std::vector<float> measured = test::measured_on_gpu(model, wall_view());
-    // With fp32, a few may be blended in one pixel more or less.
+    // With fp32, a few Gaussians may be blended in one pixel more or less.
     const std::size_t few = model.count() / 500;
     EXPECT_LE(test::differing(measured, model, wall_view()), few);
     EXPECT_GT(std::count_if(measured.begin(), measured.end(), [](float m) { return m < 0.5f; }), 100);

@@ -119,7 +119,8 @@ TEST(Panoramas, ShowBothEyesAtOnce) {
   const auto [left, right] = eyes_of_head();
   const std::vector<Picture> both = drawn(model, {left, right});
   ASSERT_EQ(both.size(), 2U);
-  // Both are sorted from the point between the eyes, and still nearly equal the panorama of one eye.
+  // Both panoramas are sorted from the point between the eyes, and still nearly equal the panorama of one
+  // eye.
   const Image of_left = on_black(drawn(model, {left})[0]), of_right = on_black(drawn(model, {right})[0]);
   EXPECT_GE(measure::psnr(on_black(both[0]), of_left), 50.0);
   EXPECT_GE(measure::psnr(on_black(both[1]), of_right), 50.0);

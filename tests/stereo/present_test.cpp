@@ -90,7 +90,7 @@ TEST_F(Present, AnEyeByItself) {
 }
 
 TEST_F(Present, EveryKindOfTargetHoldsDisplayValues) {
-  // Written in place, through a view, and copied, with rows above and columns left of the picture.
+  // The pictures are written in place, through a view, or copied, with rows above and columns left of them.
   const auto immutable = [&](GLenum format) {
     return caller.texture(format, present_width + 3, present_height + 5);
   };
@@ -155,8 +155,8 @@ TEST_F(Present, ArraysAndRectanglesOfFramebuffers) {
     EXPECT_LE(difference(pixels, composite(eyes[eye], blue)), 1e-6);
   }
 
-  // Both eyes in one framebuffer of the caller, drawn separately: equals the parallel layout and changes
-  // nothing outside. Written in place, and copied.
+  // Both eyes are drawn separately into one framebuffer of the caller, in place or by a copy. They equal the
+  // parallel layout, and nothing outside changes.
   for (const auto& [format, bound] : {std::pair{GL_RGBA32F, 1e-6}, {GL_RGB8, 0.51 / 255}}) {
     const std::uint32_t texture =
         caller.texture(static_cast<GLenum>(format), 2 * present_width + 3, present_height + 5);

@@ -131,7 +131,7 @@ TEST(Rig, HeadRollTurnsTheBaseline) {
               1e-12)
       << "the right eye is below the left one";
 
-  // Planted: the rig without the roll, with rolled pictures, as a rig that ignores roll makes them.
+  // Planted: the pictures roll with the head, but the baseline does not.
   EyePair fault = make_rig(head_camera(), {});
   for (std::size_t k = 0; k < 2; ++k) {
     Camera eye = fault.cameras[k];

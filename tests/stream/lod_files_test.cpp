@@ -67,7 +67,7 @@ struct Followed {
   }
 };
 
-/// Returns the same model without earlier reads.
+/// Returns the model that a first read gives.
 Model read_anew(const fs::path& path, const glm::dvec3& eye, const DetailRequest& need) {
   return Followed(path).read({view_at(eye)}, need);
 }
@@ -196,7 +196,8 @@ TEST(LodFiles, ByErrorsThatItsFileTells) {
   Followed scene(copy.path());
   scene.choose({}, {});
   EXPECT_FALSE(scene.predicted_db());
-  // At this distance pixels are 3.8 to 4 wide, and show a 10,000th of the pixels that the narrowest show.
+  // At this distance a pixel is 3.8 to 4 world units wide, about 100 times the largest width in the file. So
+  // the chunks cover 10,000 times fewer pixels.
   const std::size_t coarse = scene.read({ahead(far_away)}, {.db = 40.0}).count();
   EXPECT_EQ(coarse, 250u);
   const double lost = 4000.0 * 0.02 * 0.02 / (3.9 * 3.9) * 21.0 / 1000.0 / 1e4;
@@ -218,8 +219,8 @@ TEST(LodFiles, ByErrorsThatItsFileTells) {
   EXPECT_EQ(behind.read().count(), 250u);
 }
 
-// The file says that its finest level shows nothing but a coarser one does: the coarser level's loss is
-// unknown.
+// According to the file, the finest level shows nothing and a coarser one does. So the coarser level's loss
+// is unknown.
 TEST(LodFiles, WhatIsNotKnownIsRefined) {
   REQUIRE_FIXTURES(folder);
   const Copy copy(folder / "sog/st-lod");

@@ -196,7 +196,7 @@ TEST(PictureStream, SettlesThePictureByItself) {
   EXPECT_EQ(alone.first, after_another.first);
   EXPECT_EQ(alone.second[0].colour, after_another.second[0].colour);
   EXPECT_GT(settled({8.0}, false).first, alone.first);
-  // Planted: a turning head keeps at least its Gaussians.
+  // Planted: levels for a turning head have at least as many Gaussians.
   EXPECT_GE(settled({8.0, 60.0}, true).first, alone.first);
 }
 
