@@ -18,9 +18,9 @@ class KeyList {
   const std::vector<Camera>& keys() const { return keys_; }
   const std::filesystem::path& file() const { return file_; }
 
-  // The following functions write the file, or remove it if there are no keys. If another program has changed
-  // it, they write another file. Times count from the first key. They throw Error if writing fails; the keys
-  // then stay as before.
+  // The following functions write the file, or remove it if there are no keys. They write another file if
+  // another program has changed the file. Times count from the first key. If writing fails, the functions
+  // throw Error, and the keys stay as before.
 
   /// Appends a key, key_seconds after the last one.
   void add(Camera camera);

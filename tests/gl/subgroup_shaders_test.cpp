@@ -1,5 +1,5 @@
-// Compiles shaders with Khronos's reference compiler that llvmpipe never compiles, because it has no
-// subgroups. tests/render/variants_test.cpp has those of the blend.
+// Compiles the shaders that llvmpipe never compiles, as it has no subgroups, with Khronos's reference
+// compiler. tests/render/variants_test.cpp has those of the blend.
 
 #include <gtest/gtest.h>
 

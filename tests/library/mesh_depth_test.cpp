@@ -1,4 +1,4 @@
-// Compares splats among meshes with the float64 twin. The caller has drawn a table and a ball before.
+// Compares splats among meshes with the float64 twin. The caller has already drawn a table and a ball.
 
 #include <algorithm>
 #include <cmath>

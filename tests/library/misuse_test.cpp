@@ -40,7 +40,7 @@ struct Misuse : Library {
   testing::AssertionResult target_refused(const Target& target, std::initializer_list<std::string> parts) {
     return refused([&](View& view) { view.target = target; }, parts);
   }
-  /// Returns whether views with depth targets are refused; the second has this one.
+  /// Returns whether views are refused if the second one has this depth target.
   testing::AssertionResult depth_refused(const DepthTarget& depth, std::initializer_list<std::string> parts) {
     std::vector<View> pair = views();
     pair[0].depth = {.texture = caller.texture(GL_DEPTH_COMPONENT32F, size.x, size.y)};

@@ -31,7 +31,7 @@ struct State : testing::Test {
   test::Caller caller;
   const gl::Functions& gl = caller.gl;
   std::vector<Piece> pieces;
-  std::size_t changed_count = 0;  // the first pieces, which drawing changes
+  std::size_t changed_count = 0;  // number of leading pieces that drawing changes
   gl::Buffer buffer{*caller.context, "the caller's"};
   std::uint32_t framebuffer = 0, vertices = 0, sampler = 0;
   std::uint32_t texture = caller.texture(GL_RGBA8, 8, 8), array = caller.texture(GL_RGBA16F, 8, 8, 2);
@@ -114,7 +114,7 @@ struct State : testing::Test {
           return binding(GL_UNIFORM_BUFFER_BINDING, GL_UNIFORM_BUFFER_START, GL_UNIFORM_BUFFER_SIZE, 0);
         });
     for (GLuint i = 0; i < gl::storage_bindings_needed; ++i) {
-      // Some are bound as a range, some as a whole buffer. The general binding must survive both.
+      // Some buffers are bound as a range, some as a whole. The general binding point must survive both.
       const auto set = [this, i] {
         if (i % 3 == 2) {
           gl.BindBufferBase(GL_SHADER_STORAGE_BUFFER, i, buffer.id());

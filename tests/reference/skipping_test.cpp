@@ -13,7 +13,7 @@ namespace binosplat::reference {
 namespace {
 
 constexpr std::array opacities = {0.3, 0.9, 0.2, 0.8};
-constexpr std::array lights = {1.0, 0.7, 0.07, 0.056};  // T before each
+constexpr std::array lights = {1.0, 0.7, 0.07, 0.056};  // T in front of each wall
 const std::array<glm::dvec3, 4> colours = {glm::dvec3{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 0}};
 
 /// Returns four walls, one behind the other, each with the same alpha everywhere.

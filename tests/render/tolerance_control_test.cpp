@@ -22,7 +22,7 @@ constexpr int attempts_most = 8;
 
 double db(double squared_error) { return -10 * std::log10(squared_error); }
 
-// Views with a squared error of at_one * tolerance^power. It differs between tiles by factors of
+// Views with a squared error of at_one * tolerance^power. The error differs between tiles by factors of
 // exp(uneven * g), where g has a variance of about 1.
 class SimulatedScene {
  public:

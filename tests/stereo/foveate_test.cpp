@@ -116,7 +116,7 @@ double catmull_rom(double t) {
   return t < 1 ? 1 + t * t * (1.5 * t - 2.5) : t < 2 ? 2 + t * (-4 + t * (2.5 - 0.5 * t)) : 0;
 }
 
-// Returns the largest difference of colours beyond the seam from the context, drawn alone and resampled.
+// Returns the largest difference between colours beyond the seam and the context, drawn alone and resampled.
 double around_error(const Drawn& drawn, const Model& model) {
   const stereo::FoveatedEye& part = drawn.parts[0];
   const render::FrameSettings whole{.regions = {{.low_pass_share = part.context_region.low_pass_share}}};

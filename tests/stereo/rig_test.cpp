@@ -71,8 +71,8 @@ TEST(Rig, KnownPointHasKnownDisparity) {
   EXPECT_TRUE(disparity_is_right(pair, head, 0.063, infinitely_far));
   EXPECT_EQ(pair.cameras[0].name, "head_left");
   EXPECT_EQ(pair.cameras[1].name, "head_right");
-  // By hand: at 1 m with 63 mm between the eyes, it is fx * 0.063 px. The left eye sees the point further
-  // right.
+  // By hand: at 1 m with 63 mm between the eyes, the disparity is fx * 0.063 px. The left eye sees the point
+  // further right.
   const glm::vec3 p = seen_at(head, {0, 0, 1});
   EXPECT_NEAR(pixel(pair.views[0], p).x - pixel(pair.views[1], p).x,
               0.063 * 360.0 / std::tan(glm::radians(30.0)), 1e-3);
