@@ -14,7 +14,7 @@
 namespace binosplat::render {
 namespace {
 
-// Returns the wrong entry of a row, or "". Its splat has a Th above tau at the careful tolerance.
+// Returns the wrong entry of a row, or "". At the careful tolerance, the Th of the splat is above tau.
 std::string wrong_with(const ThresholdRule& rule, int th) {
   const reference::Splat splat = reference::make_splat({8, 8}, {5, 2, 4}, 1.0);
   const auto threshold = [&](double tolerance, double bound = 1.0) {
@@ -85,7 +85,7 @@ TEST(Settings, ThatGoTogetherDo) {
     for (int source = 0; source < std::ssize(transmittance_choices); ++source) {
       FrameSettings settings{.th = th, .transmittance = source};
       settings.tolerance = static_cast<float>(threshold_rules[th].careful_tolerance);
-      check(settings);  // any rule may measure
+      check(settings);  // every rule may use measurements
       if (can_use(th, source)) {
         check_choice(settings);
       } else {

@@ -15,7 +15,7 @@ struct ScaffoldKind {
   std::size_t offsets = 10;   // K
   std::size_t features = 32;  // F
   std::size_t hidden = 32;
-  bool distances = false;       // every network takes the distance
+  bool distances = false;       // the distance is an input of every network
   std::size_t appearances = 0;  // number of appearances, of 5 values each
   bool bank = false;
 };
