@@ -37,7 +37,7 @@ TEST_F(BuiltIn, TheCityIsClosed) {
   EXPECT_EQ(read_text(out + "/street.png"), street);
   ASSERT_TRUE(good(draw("demo:city", joined(what, {"--seed", "18446744073709551615"}))));
   EXPECT_NE(read_text(out + "/street.png"), street);
-  // From below, where nothing is built, it is open.
+  // Seen from below, where nothing is built, the city is open.
   ASSERT_TRUE(good(draw("demo:city", joined(what, {"--eye", "0,40,0", "--at", "0,80,1"}))));
   EXPECT_GT(open_share(load_image(out + "/camera.png")), 0.5) << "a hole goes unnoticed";
 }
