@@ -24,8 +24,8 @@ TEST(StudyBlind, CamerasThatLookAwayOrPastSeeNothing) {
   EXPECT_EQ(seeing(test::gl_context(), faint, cameras, near_default), std::vector<bool>(4, false));
 }
 
-// Gaussians whose means are outside the picture, or before the near plane, and which extend into the picture
-// or not.
+// The means are outside the picture or before the near plane. Some Gaussians extend into the picture, some do
+// not.
 TEST(StudyBlind, WhatReachesIntoThePictureIsSeen) {
   Model model;
   test::add(model, {3, 0, 3}, glm::vec3(1.0f), 0.9f);
@@ -40,7 +40,7 @@ TEST(StudyBlind, WhatReachesIntoThePictureIsSeen) {
 // A speck that is invisible in a small picture is found in the large one.
 TEST(StudyBlind, ASpeckIsLookedForInTheViewsOwnSize) {
   Model model;
-  model.antialiased = true;  // smaller Gaussians in the picture are fainter
+  model.antialiased = true;  // so that smaller pictures show fainter Gaussians
   test::add(model, {0, 0, 3}, glm::vec3(0.0002f), 0.9f);
   const Camera large = test::front_camera(1600, 1200, 1500), small = test::front_camera(160, 120, 150);
   EXPECT_EQ(seeing(test::gl_context(), model, std::vector{small, large}, near_default),

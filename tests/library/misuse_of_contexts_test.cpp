@@ -146,7 +146,7 @@ TEST_F(Contexts, OfOpenGLES) {
   function<unsigned(void*, void*)>("eglDestroyContext")(display, context);
 }
 
-// The renderer can draw into a context's default framebuffer, from its corner on.
+// The renderer can draw into a context's default framebuffer, but not to the left of its corner.
 TEST_F(Contexts, WithADefaultFramebuffer) {
   const auto get_display = function<void*()>("eglGetCurrentDisplay");
   if (get_display == nullptr || get_display() == nullptr) GTEST_SKIP() << "no EGL here";

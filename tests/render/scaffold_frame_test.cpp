@@ -153,8 +153,8 @@ TEST(ScaffoldFrame, WhatIsHiddenMakesFewerPairs) {
 }
 
 TEST(ScaffoldFrame, AProbeSharesTheGaussiansOfItsView) {
-  // The frame's error is almost 0 at 200 dB, so the probe must equal its view. Alone it would see other
-  // anchors.
+  // The frame's error is almost 0 at 200 dB, so the probe must equal its view. A decoding for the probe alone
+  // would cull other anchors.
   const Model model = test::scaffold_model(30, four_hundred);
   const std::vector<shared::View> views = eyes_at_scaffold();
   for (const int decode : {DECODE_EYES, DECODE_CYCLOPEAN}) {

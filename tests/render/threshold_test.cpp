@@ -44,7 +44,7 @@ Compared compare_rho(const test::StageRun& run, std::uint32_t view, const Model&
 }
 
 TEST(ThEyes, EachEyeGoesByItsOwn) {
-  // Near and large, so that the eyes see different sizes.
+  // The Gaussians are near and large, so that the eyes see different sizes.
   const Model model = test::random_model(91, 3000, 0);
   for (const double cant : {0.0, 5.0}) {
     const auto eyes =
