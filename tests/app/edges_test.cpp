@@ -1,4 +1,4 @@
-// What every sub-command must handle: empty arguments, outputs that are inputs, full disks, unusual names.
+// Cases that every sub-command must handle: empty arguments, outputs that are inputs, full disks, unusual names.
 
 #include "app/scene.h"
 
